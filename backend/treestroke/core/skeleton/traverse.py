@@ -1,0 +1,55 @@
+"""Walks over a Skeleton."""
+
+import numpy as np
+
+from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+
+
+def children(skeleton: Skeleton) -> list[list[int]]:
+    """List each joint's children, in ascending order."""
+    found: list[list[int]] = [[] for _ in range(len(skeleton))]
+    for child, parent in enumerate(skeleton.parents.tolist()):
+        if parent >= 0:
+            found[parent].append(child)
+    return found
+
+
+def child_counts(skeleton: Skeleton) -> Indices:
+    """Count each joint's children (n,)."""
+    return np.bincount(skeleton.parents[skeleton.parents >= 0], minlength=len(skeleton)).astype(np.int64)
+
+
+def accumulate_to_root(skeleton: Skeleton, values: Floats) -> Floats:
+    """Sum values (n,) over each joint and all its descendants."""
+    total = np.array(values, dtype=np.float64)
+    parents = skeleton.parents.tolist()
+    for joint in range(len(skeleton) - 1, 0, -1):
+        if parents[joint] >= 0:
+            total[parents[joint]] += total[joint]
+    return total
+
+
+def heaviest_children(skeleton: Skeleton, weights: Floats) -> Indices:
+    """Give each joint's child of greatest weight (n,), the first among equals; -1 at a tip."""
+    best = np.full(len(skeleton), -1, dtype=np.int64)
+    for child in range(len(skeleton) - 1, -1, -1):
+        parent = skeleton.parents[child]
+        if parent >= 0 and (best[parent] < 0 or weights[child] >= weights[best[parent]]):
+            best[parent] = child
+    return best
+
+
+def limbs(skeleton: Skeleton, successors: Indices) -> list[Indices]:
+    """Split the skeleton into limbs: chains of joints that follow ``successors`` until a tip.
+
+    Each limb after a stem's begins with the joint (of another limb) that bears it, so limbs share just
+    their forks and together hold every edge once. Limbs come in the order of their first own joint.
+    """
+    starts = [j for j in range(len(skeleton)) if skeleton.parents[j] < 0 or successors[skeleton.parents[j]] != j]
+    found = []
+    for start in starts:
+        chain = [start] if skeleton.parents[start] < 0 else [int(skeleton.parents[start]), start]
+        while successors[chain[-1]] >= 0 and (len(chain) == 1 or chain[-1] >= start):
+            chain.append(int(successors[chain[-1]]))
+        found.append(np.array(chain, dtype=np.int64))
+    return found
