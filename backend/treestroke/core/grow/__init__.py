@@ -1,0 +1,1 @@
+"""Growth: fill the crown with branches by replacing branches with subtrees."""

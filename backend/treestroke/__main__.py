@@ -1,0 +1,5 @@
+"""``python -m treestroke``."""
+
+from treestroke.cli import run
+
+run()

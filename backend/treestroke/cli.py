@@ -1,0 +1,216 @@
+"""The command line: parse, call one use case, answer."""
+
+import argparse
+import json
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NoReturn, TextIO
+
+from treestroke import __version__
+from treestroke.core.errors import TreestrokeError
+from treestroke.core.pipeline.settings import ModelSettings, Span
+from treestroke.core.progress import silent
+
+BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
+
+
+class UsageError(TreestrokeError):
+    """The command itself is wrong."""
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser whose complaint is one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """Raise instead of printing the usage."""
+        raise UsageError(f"{message}; see {self.prog} --help")
+
+
+class ProgressLine:
+    """One line on a terminal that is rewritten as the work goes on."""
+
+    def __init__(self, stream: TextIO, iterations: int) -> None:
+        self._stream = stream
+        self._iterations = iterations
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Show the stage, its per cent and, in growth, its iterations."""
+        rounds = f" ({round(fraction * self._iterations)} of {self._iterations} iterations)" if stage == "grow" else ""
+        self._stream.write(f"\r\x1b[K{stage} {fraction:.0%}{rounds}")
+        self._stream.flush()
+
+    def clear(self) -> None:
+        """Leave an empty line."""
+        self._stream.write("\r\x1b[K")
+        self._stream.flush()
+
+
+def run() -> NoReturn:
+    """Run the command line and leave with its exit code; our own mistakes become one line too."""
+    if "--debug" not in sys.argv:
+        sys.excepthook = _one_line
+    sys.exit(main())
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; give its exit code: 0, 2 bad input, 1 the machine's fault, 130 interrupted."""
+    given = list(sys.argv[1:] if argv is None else argv)
+    try:
+        options = _parser().parse_args(given)
+        with warnings.catch_warnings():
+            if not options.debug:
+                warnings.simplefilter("ignore")
+            options.command(options)
+    except TreestrokeError as error:
+        return _fail(BAD_INPUT, str(error), "--debug" in given)
+    except (OSError, MemoryError) as error:
+        return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in given)
+    except KeyboardInterrupt:
+        return _fail(INTERRUPTED, "interrupted; nothing was written", debug=False)
+    return 0
+
+
+def _parser() -> Parser:
+    parser = Parser(prog="treestroke", description="One photo of a tree and a few strokes become a 3D tree.")
+    parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
+    commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    model = commands.add_parser("model", help="make a GLB", allow_abbrev=False)
+    model.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP; or a NAME.treestroke project")
+    model.add_argument("--strokes", metavar="STROKES.json", help="needed with a photo")
+    model.add_argument("--out", metavar="TREE.glb", type=Path, required=True)
+    model.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
+    model.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
+    model.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
+    for entry in fields(ModelSettings):
+        names = dict.fromkeys(f"--{entry.name.replace('_', mark)}" for mark in "-_")
+        about = f"{entry.metadata['meaning']}: {entry.metadata['allowed']} (default {entry.default})"
+        model.add_argument(*names, dest=entry.name, metavar="VALUE", help=about)
+    trace = commands.add_parser("trace", help="find foliage and branches", allow_abbrev=False)
+    trace.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP")
+    trace.add_argument("--strokes", metavar="STROKES.json", required=True)
+    trace.add_argument("--out", metavar="TRACE.json", type=Path, help="standard output where absent")
+    trace.add_argument(
+        "--overlay", metavar="OVERLAY.png", type=Path, help="the photo with what was found drawn over it"
+    )
+    for command, action in ((model, _model), (trace, _trace)):
+        command.add_argument("--debug", action="store_true", help="show the trace of an error")
+        command.set_defaults(command=action)
+    return parser
+
+
+def _model(options: argparse.Namespace) -> None:
+    outputs = _outputs(options, ("out", "report", "preview"))
+    photo, strokes, settings, seed = _model_inputs(options)
+    from treestroke.codec.image import encode_png
+    from treestroke.service.files import write_whole
+    from treestroke.service.inputs import load_settings
+    from treestroke.service.model import model
+
+    chosen = load_settings(settings)
+    line = ProgressLine(sys.stderr, chosen.iterations) if sys.stderr.isatty() else None
+    try:
+        result = model(photo, strokes, chosen, seed, line or silent)
+    finally:
+        if line:
+            line.clear()
+    makers: dict[str, Callable[[], bytes]] = {
+        "out": lambda: result.glb,
+        "report": lambda: json.dumps(result.report, indent=2).encode() + b"\n",
+        "preview": lambda: encode_png(result.preview()),
+    }
+    write_whole({path: makers[name]() for name, path in outputs.items()})
+
+
+def _trace(options: argparse.Namespace) -> None:
+    outputs = _outputs(options, ("out", "overlay"))
+    from treestroke.codec.image import encode_png
+    from treestroke.service.files import write_whole
+    from treestroke.service.trace import trace
+
+    result = trace(options.photo, options.strokes)
+    answer = json.dumps(result.answer())
+    makers: dict[str, Callable[[], bytes]] = {
+        "out": lambda: answer.encode() + b"\n",
+        "overlay": lambda: encode_png(result.overlay()),
+    }
+    write_whole({path: makers[name]() for name, path in outputs.items()})
+    if options.out is None:
+        print(answer)
+
+
+def _model_inputs(options: argparse.Namespace) -> tuple[Any, Any, dict[str, Any], Any]:
+    """Collect photo, strokes, settings and seed from the flags and, where one is given, the project file."""
+    flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
+    settings: dict[str, Any] = {name: _number(name, text) for name, text in flags.items() if text is not None}
+    if options.seed is not None:
+        settings["seed"] = _whole(options.seed)
+    if not options.photo.endswith(".treestroke"):
+        if options.strokes is None:
+            raise UsageError("--strokes is missing; name the strokes' JSON file")
+        return options.photo, options.strokes, settings, settings.pop("seed", 0)
+    if options.strokes is not None:
+        raise UsageError("--strokes: a project has its own strokes; leave the flag out")
+    from treestroke.service.inputs import load_project
+
+    project = load_project(options.photo)
+    settings = {**project.settings, **settings}
+    return project.photo, project.strokes, settings, settings.pop("seed", 0)
+
+
+def _number(name: str, text: str) -> object:
+    """Read a flag's value as the setting's kind; what does not fit stays text, which the settings refuse by name."""
+    allowed = {entry.name: entry.metadata["allowed"] for entry in fields(ModelSettings)}[name]
+    if not isinstance(allowed, Span):
+        return text
+    try:
+        return int(text) if allowed.whole else float(text)
+    except ValueError:
+        return text
+
+
+def _whole(text: str) -> object:
+    try:
+        return int(text)
+    except ValueError:
+        return text
+
+
+def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Path]:
+    """Collect the files to write; refuse, before any work, places that no file can have."""
+    outputs = {name: path for name in names if (path := getattr(options, name)) is not None}
+    taken = {os.path.realpath(given) for given in (options.photo, options.strokes) if given is not None}
+    for name, path in outputs.items():
+        if path.is_dir() or not path.parent.is_dir():
+            problem = "it is a folder" if path.is_dir() else f"there is no folder {path.parent}"
+            raise UsageError(f"--{name} {path}: {problem}; name a file in a folder that exists")
+        place = os.path.realpath(path)
+        if place in taken and path.is_file():
+            raise UsageError(f"--{name} {path}: another file of this command has this name; choose one of its own")
+        taken.add(place)
+    return outputs
+
+
+def _fault(error: OSError | MemoryError) -> str:
+    if isinstance(error, MemoryError):
+        return "there is not enough memory; close other programs or take a smaller photo"
+    where = f"{error.filename}: " if error.filename else ""
+    return f"{where}{error.strerror or error}; free space or choose another place"
+
+
+def _fail(code: int, message: str, debug: bool) -> int:
+    if debug:
+        traceback.print_exc()
+    print(f"treestroke: {' '.join(message.split())}", file=sys.stderr)
+    return code
+
+
+def _one_line(kind: type[BaseException], error: BaseException, _: TracebackType | None) -> None:
+    print(
+        f"treestroke: our mistake, {kind.__name__}: {' '.join(str(error).split())}; --debug shows more", file=sys.stderr
+    )

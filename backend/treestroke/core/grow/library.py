@@ -1,0 +1,226 @@
+"""The library of elementary subtrees that growth lays over branches."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.skeleton.measure import edge_lengths
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
+
+LibraryName = Literal["auto", "visible", "type1", "type2", "both"]
+Kind = Literal["leaves", "needles", "bare"]
+Bearer = Literal["any", "stem", "limb"]
+
+MOST_SUBTREES = 8
+MOST_SHOOTS = 8
+LONGEST_SHOOT = 0.85
+"""Of the support, for subtrees of visible branches: longer ones would grow from generation to generation."""
+FEW_VISIBLE = 3
+Row = tuple[int, float, float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Subtree:
+    """Shoots on a support that runs from (0, 0, 0) to (0, 1, 0).
+
+    Attributes
+    ----------
+    parents
+        (k,) the shoot that bears each shoot, -1 for the support; smaller than its own index.
+    fractions
+        (k,) where on its bearer each shoot stands, 0 at the base, 1 at the tip.
+    vectors
+        (k, 3) from each shoot's base to its tip, in lengths of the support.
+    bearer
+        Which branches it may replace: stems, limbs or any.
+
+    Raises
+    ------
+    ValueError
+        A shape, parent or fraction is wrong, or there are none or over 16 shoots.
+    """
+
+    parents: Indices
+    fractions: Floats
+    vectors: Floats
+    bearer: Bearer = "any"
+
+    def __post_init__(self) -> None:
+        k = len(self.parents)
+        if not 0 < k <= 16 or self.fractions.shape != (k,) or self.vectors.shape != (k, 3):
+            raise ValueError(f"a subtree needs 1 to 16 shoots with parents, fractions and vectors, got {k}")
+        if (self.parents >= np.arange(k)).any() or (self.fractions < 0).any() or (self.fractions > 1).any():
+            raise ValueError("a shoot's parent comes before it, its fraction lies in 0 to 1")
+
+    @property
+    def longest(self) -> float:
+        """Length of the longest shoot on the support, in lengths of the support."""
+        return float(np.sqrt((self.vectors[self.parents < 0] ** 2).sum(axis=1)).max())
+
+
+def _subtree(rows: tuple[Row, ...], bearer: Bearer = "any") -> Subtree:
+    """Build a subtree from rows of (parent, fraction, angle from the support, azimuth, length), degrees."""
+    parent, fraction, lean, azimuth, length = (np.array(column) for column in zip(*rows, strict=True))
+    lean, azimuth = np.radians(lean), np.radians(azimuth)
+    directions = [np.sin(lean) * np.cos(azimuth), np.cos(lean), np.sin(lean) * np.sin(azimuth)]
+    return Subtree(parent.astype(np.int64), fraction.astype(np.float64), (directions * length).T.copy(), bearer)
+
+
+# New branches at the end of the support. No two shoots mirror each other: symmetric forks would tie between angles.
+TYPE_1 = (
+    _subtree(((-1, 1.0, 24, 8, 0.84), (-1, 1.0, 43, 171, 0.66), (0, 0.52, 47, 96, 0.44), (1, 0.55, 44, 301, 0.39))),
+    _subtree(
+        (
+            (-1, 1.0, 29, 15, 0.78),
+            (-1, 0.97, 46, 139, 0.69),
+            (-1, 0.92, 52, 256, 0.61),
+            (0, 0.58, 44, 203, 0.36),
+            (1, 0.5, 48, 41, 0.33),
+        )
+    ),
+    _subtree(((-1, 1.0, 17, 77, 0.8), (-1, 0.95, 38, 238, 0.72), (-1, 0.86, 57, 5, 0.58), (0, 0.6, 41, 322, 0.4))),
+)
+
+# New branches along the support, in spirals and loose pairs.
+TYPE_2 = (
+    _subtree(
+        (
+            (-1, 0.27, 61, 4, 0.74),
+            (-1, 0.42, 57, 143, 0.81),
+            (-1, 0.58, 54, 281, 0.69),
+            (-1, 0.71, 49, 61, 0.58),
+            (-1, 0.84, 45, 196, 0.5),
+            (-1, 0.96, 34, 334, 0.45),
+        )
+    ),
+    _subtree(
+        (
+            (-1, 0.35, 58, 20, 0.79),
+            (-1, 0.55, 51, 218, 0.73),
+            (-1, 0.76, 46, 112, 0.62),
+            (-1, 0.94, 37, 299, 0.55),
+            (0, 0.55, 45, 150, 0.38),
+            (1, 0.6, 43, 12, 0.33),
+        )
+    ),
+    _subtree(
+        (
+            (-1, 0.38, 55, 11, 0.76),
+            (-1, 0.44, 59, 184, 0.7),
+            (-1, 0.66, 48, 98, 0.65),
+            (-1, 0.71, 52, 274, 0.59),
+            (-1, 0.93, 39, 33, 0.52),
+            (-1, 0.97, 36, 217, 0.47),
+        )
+    ),
+)
+
+# Conifers: whorls about the stem, flat sprays along the limbs.
+WHORLS = (
+    _subtree(
+        (
+            (-1, 0.93, 77, 3, 1.0),
+            (-1, 0.99, 74, 77, 0.94),
+            (-1, 0.95, 80, 142, 0.98),
+            (-1, 0.98, 73, 221, 0.91),
+            (-1, 0.91, 78, 290, 0.96),
+        ),
+        "stem",
+    ),
+    _subtree(
+        (
+            (-1, 0.42, 79, 21, 0.97),
+            (-1, 0.55, 76, 163, 1.0),
+            (-1, 0.51, 81, 248, 0.92),
+            (-1, 0.92, 75, 81, 0.95),
+            (-1, 0.97, 73, 204, 0.9),
+            (-1, 0.99, 77, 318, 0.93),
+        ),
+        "stem",
+    ),
+)
+SPRAYS = (
+    _subtree(
+        (
+            (-1, 0.24, 57, 4, 0.5),
+            (-1, 0.33, 54, 187, 0.52),
+            (-1, 0.5, 51, 351, 0.45),
+            (-1, 0.59, 52, 172, 0.4),
+            (-1, 0.74, 47, 9, 0.33),
+            (-1, 0.82, 45, 183, 0.28),
+            (-1, 0.96, 33, 348, 0.24),
+        ),
+        "limb",
+    ),
+    _subtree(
+        (
+            (-1, 0.3, 55, 22, 0.55),
+            (-1, 0.45, 52, 158, 0.5),
+            (-1, 0.63, 50, 335, 0.41),
+            (-1, 0.77, 46, 203, 0.34),
+            (-1, 0.97, 22, 65, 0.42),
+        ),
+        "limb",
+    ),
+)
+
+
+def visible_subtrees(skeleton: Skeleton) -> tuple[Subtree, ...]:
+    """Take a subtree from each visible limb (3D, metres) that bears others, the one that bears most first.
+
+    A limb's support is its chord; its shoots are the chords of the limbs it bears. All are scaled so that the
+    longest shoot has 0.85 of the support.
+    """
+    successors = heaviest_children(skeleton, accumulate_to_root(skeleton, edge_lengths(skeleton)))
+    chains = [chain for chain in limbs(skeleton, successors) if len(chain) > 1]
+    found = []
+    for chain in chains:
+        borne = [other for other in chains if other is not chain and other[0] in set(chain[1:].tolist())]
+        subtree = _subtree_of(skeleton, chain, borne[:MOST_SHOOTS]) if len(borne) >= 2 else None
+        if subtree is not None:
+            found.append(subtree)
+    return tuple(sorted(found, key=lambda subtree: -len(subtree.parents)))
+
+
+def _subtree_of(skeleton: Skeleton, chain: Indices, borne: list[Indices]) -> Subtree | None:
+    """Carry a limb and the limbs it bears to the unit support; None where a chord has no length."""
+    start, chord = skeleton.points[chain[0]], skeleton.points[chain[-1]] - skeleton.points[chain[0]]
+    length = float(np.sqrt((chord**2).sum()))
+    vectors = np.array([skeleton.points[other[-1]] - skeleton.points[other[0]] for other in borne])
+    if length <= 0 or not (np.abs(vectors).max(axis=1) > 0).all():
+        return None
+    up = chord / length
+    side = np.cross(up, [0.0, 0.0, 1.0] if abs(up[2]) <= 0.9 else [1.0, 0.0, 0.0])
+    side /= np.sqrt((side**2).sum())
+    frame = np.array([side, up, np.cross(side, up)])
+    local = vectors @ frame.T
+    local *= LONGEST_SHOOT / np.sqrt((local**2).sum(axis=1)).max()
+    fractions = [float((skeleton.points[other[0]] - start) @ up) / length for other in borne]
+    return Subtree(np.full(len(borne), -1), np.clip(fractions, 0.05, 1.0), local)
+
+
+def choose_library(name: LibraryName, kind: Kind, skeleton: Skeleton) -> tuple[Subtree, ...]:
+    """Choose at most 8 subtrees by the setting's name, what the twigs bear and the visible tree (3D, metres).
+
+    ``auto`` takes up to three visible subtrees beside the predefined ones, and none where fewer than three are
+    visible; ``visible`` falls back to the predefined ones where nothing visible forks. A conifer has its own.
+
+    Raises
+    ------
+    ValueError
+        The name is unknown.
+    """
+    predefined = {"type1": TYPE_1, "type2": TYPE_2, "both": TYPE_1 + TYPE_2}
+    visible = visible_subtrees(skeleton) if name in ("auto", "visible") else ()
+    if name in predefined:
+        return predefined[name]
+    if name == "visible":
+        return visible[:MOST_SUBTREES] or predefined["both"]
+    if name != "auto":
+        raise ValueError(f"the library is auto, visible, type1, type2 or both, not {name!r}")
+    if kind == "needles":
+        return WHORLS + SPRAYS
+    return ((visible[:2] if len(visible) >= FEW_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]

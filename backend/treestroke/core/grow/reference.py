@@ -1,0 +1,212 @@
+"""The plain evaluator: growth's mathematics in component-wise numpy, every placement every iteration.
+
+It keeps the paper's cache (each attractor remembers its distance, so just the new shoots are measured) and nothing
+else. `compiled` must choose the same sequence; the arithmetic that decides (placing, clipping, closeness) is written
+in the same order of operations in both, so that it agrees to the last bit. It is the fallback where the extension
+was not built.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.evaluator import TIE, Choice, Rules, Shoot, turn_library
+from treestroke.core.grow.library import Subtree
+from treestroke.core.skeleton.skeleton import Indices
+
+BLOCK = 12_000
+"""Point pairs measured at a time: their scratch fits the first cache levels."""
+
+
+class _Laid(NamedTuple):
+    """All placements on one branch: base, step (s, a, k, 3), samples and kept samples (s, a, k)."""
+
+    base: Floats
+    step: Floats
+    samples: Indices
+    kept: Indices
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    """Multiply vectors (..., 3) in a fixed order of operations."""
+    return (a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]) + a[..., 2] * b[..., 2]
+
+
+def _cross(a: Floats, b: Floats) -> Floats:
+    """Cross two vectors (3,) in a fixed order of operations."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
+    """Stand a right-angled frame on a chord (3,): side, along, other side, and the chord's length."""
+    length = float(np.sqrt(_dot(chord, chord)))
+    along = chord / length
+    across = _cross(along, np.array([1.0, 0, 0]) if abs(along[2]) > 0.9 else np.array([0, 0, 1.0]))
+    side = across / np.sqrt(_dot(across, across))
+    return side, along, _cross(along, side), length
+
+
+class PlainEvaluator:
+    """An `Evaluator` that keeps no more than each attractor's distance."""
+
+    def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
+        self._crown, self._rules = crown, rules
+        self._library = turn_library(library, rules.angles)
+        self._bases = self._tips = np.zeros((0, 3))
+        self._scales = np.zeros((0, len(library)))
+        self._wood = np.zeros((0, 3))
+        self._points = {False: np.zeros((0, 2)), True: np.zeros((0, 3))}
+        self._distances = {False: np.zeros(0), True: np.zeros(0)}
+        self.pairs = 0
+
+    def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
+        """Add branches, see `Evaluator`."""
+        self._bases, self._tips = np.vstack([self._bases, bases]), np.vstack([self._tips, tips])
+        self._scales = np.vstack([self._scales, scales])
+        chords = tips - bases
+        samples = self._sample_counts(chords)
+        new = [
+            base + np.arange(1, n + 1)[:, None] * (chord / n)
+            for base, chord, n in zip(bases, chords, samples.tolist(), strict=True)
+        ]
+        self._wood = np.vstack([self._wood, *new])
+        for in_space, points in self._points.items():
+            nearer = self._nearest(points, np.vstack(new)) if new else np.inf
+            self._distances[in_space] = np.minimum(self._distances[in_space], nearer)
+
+    def add_attractors(self, points: Floats) -> None:
+        """Add attractors, see `Evaluator`."""
+        in_space = points.shape[1] == 3
+        self._points[in_space] = np.vstack([self._points[in_space], points])
+        distances = self._nearest(points, self._wood)
+        self._distances[in_space] = np.concatenate([self._distances[in_space], distances])
+
+    def best(self, candidates: Indices, in_space: bool) -> Choice:
+        """Find the best placement, see `Evaluator`."""
+        gains = [self._gains(branch, in_space) for branch in sorted(candidates.tolist())]
+        limit = max((float(gain.max()) for gain in gains), default=0.0) * (1 - TIE)
+        for branch, gain in zip(sorted(candidates.tolist()), gains, strict=True):
+            first = int(np.argmax((gain > 0) & (gain >= limit)))
+            if gain.flat[first] > 0 and gain.flat[first] >= limit:
+                subtree, angle = divmod(first, self._rules.angles)
+                return Choice(branch, subtree, angle, float(gain.flat[first]))
+        return Choice(-1, 0, 0, 0.0)
+
+    def place(self, choice: Choice) -> list[Shoot]:
+        """List the shoots that stand, see `Evaluator`."""
+        laid, at = self._lay(choice.branch), (choice.subtree, choice.angle)
+        kept = self._uncrowded(laid, at, self._surroundings(choice.branch, laid))
+        standing = np.flatnonzero(kept)
+        order = {int(shoot): i for i, shoot in enumerate(standing)}
+        shoots = []
+        for i in standing.tolist():
+            parent = int(self._library.parents[choice.subtree, i])
+            fraction = float(self._library.fractions[choice.subtree, i])
+            if parent >= 0:
+                fraction = fraction * float(laid.samples[at][parent]) / float(kept[parent])
+            base = laid.base[at][i]
+            tip = base + float(kept[i]) * laid.step[at][i]
+            shoots.append(Shoot(order.get(parent, -1), fraction, base, tip))
+        return shoots
+
+    def image_distances(self) -> Floats:
+        """Give the image attractors' distances, see `Evaluator`."""
+        return self._distances[False]
+
+    def _sample_counts(self, along: Floats) -> Indices:
+        """Count the samples of vectors (..., 3)."""
+        return np.clip(np.rint(np.sqrt(_dot(along, along)) / self._rules.spacing), 1, 60000).astype(np.int64)
+
+    def _lay(self, branch: int) -> _Laid:
+        """Lay every subtree at every angle over a branch and clip the shoots at the crown."""
+        turned, base = self._library, self._bases[branch]
+        chord = self._tips[branch] - base
+        side, axis, other, length = _frame(chord)
+        v = turned.vectors
+        size = (length * self._scales[branch])[:, None, None, None]
+        along = ((v[..., 0:1] * side + v[..., 1:2] * axis) + v[..., 2:3] * other) * size
+        samples = self._sample_counts(along)
+        bases, kept = np.zeros_like(along), np.zeros_like(samples)
+        for s, k in zip(*np.nonzero(np.arange(v.shape[2]) < turned.counts[:, None]), strict=True):
+            parent, fraction = int(turned.parents[s, k]), turned.fractions[s, k]
+            if parent < 0:
+                bases[s, :, k] = base + chord * fraction
+            else:
+                bases[s, :, k] = bases[s, :, parent] + along[s, :, parent] * fraction
+            kept[s, :, k] = self._kept(bases[s, :, k], along[s, :, k], samples[s, :, k])
+            if parent >= 0:
+                torn = (kept[s, :, parent] == 0) | (fraction * samples[s, :, parent] > kept[s, :, parent])
+                kept[s, torn, k] = 0
+        kept[self._scales[branch] <= 0] = 0
+        return _Laid(bases, along / samples[..., None], samples, kept)
+
+    def _kept(self, base: Floats, along: Floats, samples: Indices) -> Indices:
+        """Count the leading samples of shoots (a,) inside the crown; 0 where inward or clipped too short."""
+        count = np.arange(1, samples.max() + 1)
+        points = base[:, None] + count[:, None] * (along / samples[:, None])[:, None]
+        inside = self._crown.inside(points) & (count <= samples[:, None])
+        kept = np.where(inside.all(axis=1), len(count), np.argmin(inside, axis=1))
+        out = (base + along * 0.5) - self._crown.foot
+        limit = self._rules.inward_cosine * (np.sqrt(_dot(along, along)) * np.sqrt(_dot(out, out)))
+        return np.where((_dot(along, out) >= limit) & (kept >= self._rules.keep * samples), kept, 0)
+
+    def _surroundings(self, branch: int, laid: _Laid) -> Floats:
+        """Take the tree's samples near the shoots of a branch."""
+        ends = laid.base + laid.step * laid.kept[..., None]
+        low = np.minimum(laid.base, ends)[laid.kept > 0].min(axis=0, initial=np.inf) - self._rules.closeness
+        high = np.maximum(laid.base, ends)[laid.kept > 0].max(axis=0, initial=-np.inf) + self._rules.closeness
+        return self._wood[((self._wood >= low) & (self._wood <= high)).all(axis=1)]
+
+    def _uncrowded(self, laid: _Laid, at: tuple[int, int], near: Floats) -> Indices:
+        """Drop the shoots (k,) of a placement whose outer half crowds the tree, and what they bear."""
+        kept = laid.kept[at].copy()
+        for i in np.flatnonzero(kept).tolist():
+            parent = int(self._library.parents[at[0], i])
+            outer = np.arange((kept[i] + 1) // 2, kept[i] + 1)
+            points = laid.base[at][i] + outer[:, None] * laid.step[at][i]
+            apart = points[:, None] - near
+            if (parent >= 0 and kept[parent] == 0) or (_dot(apart, apart) < self._rules.closeness**2).any():
+                kept[i] = 0
+        return kept
+
+    def _gains(self, branch: int, in_space: bool) -> Floats:
+        """Measure the gain of every placement (s, a) on a branch."""
+        laid = self._lay(branch)
+        near = self._surroundings(branch, laid)
+        gains = np.zeros(laid.kept.shape[:2])
+        for at in np.ndindex(*gains.shape):
+            kept = self._uncrowded(laid, at, near)
+            standing = [
+                laid.base[at][i] + np.arange(1, kept[i] + 1)[:, None] * laid.step[at][i] for i in np.flatnonzero(kept)
+            ]
+            if standing:
+                distances = self._nearest(self._points[in_space], np.vstack(standing))
+                gains[at] = np.maximum(self._distances[in_space] - distances, 0).sum()
+        return gains
+
+    def _nearest(self, points: Floats, samples: Floats) -> Floats:
+        """Measure each point's (m, 2 or 3) distance to the nearest of the samples (q, 3)."""
+        nearest = np.full(len(points), np.inf)
+        step = max(BLOCK // max(len(points), 1), 1)
+        self.pairs += len(points) * len(samples)
+        columns = [np.ascontiguousarray(column) for column in points.T]
+        scratch = np.empty((2, min(step, max(len(samples), 1)), len(points)))
+        for start in range(0, len(samples), step):
+            block = samples[start : start + step]
+            np.minimum(nearest, _squares(columns, block, scratch[:, : len(block)]).min(axis=0), out=nearest)
+        return np.sqrt(nearest)
+
+
+def _squares(columns: list[Floats], samples: Floats, scratch: NDArray[np.float64]) -> Floats:
+    """Square the distances (q, m) of points, given by columns (m,), to samples (q, 3), component by component."""
+    total, part = scratch
+    for axis, column in enumerate(columns):
+        target = total if axis == 0 else part
+        np.subtract(column, samples[:, axis, None], out=target)
+        np.multiply(target, target, out=target)
+        if axis:
+            np.add(total, part, out=total)
+    return total

@@ -1,0 +1,67 @@
+"""The first stem: where it enters the crown, and how it goes on to the crown's top."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.grow.branches import successors_by_length
+from treestroke.core.grow.crown import in_mask
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+
+JOINT_SHARE = 0.02
+"""Of the crown's height: between the joints of a stem that is carried on."""
+SLACK = 0.03
+
+
+def stem_of(skeleton: Skeleton) -> Indices:
+    """List the joints of the first stem from its root to its tip, along the limb that bears most."""
+    successors = successors_by_length(skeleton)
+    joints = [0]
+    while successors[joints[-1]] >= 0:
+        joints.append(int(successors[joints[-1]]))
+    return np.array(joints, dtype=np.int64)
+
+
+def foot_of(skeleton: Skeleton, mask: NDArray[np.bool_]) -> Floats:
+    """Find where the first stem (px) enters the foliage (height, width); its tip where it never does."""
+    stem = stem_of(skeleton)
+    inside = in_mask(skeleton.points[stem], mask)
+    return np.array(skeleton.points[stem[int(np.argmax(inside)) if inside.any() else -1]])
+
+
+def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], envelope: Envelope, share: float) -> Skeleton:
+    """Carry the first stem (px) on to a share of the crown's height, where no joint reaches that height.
+
+    It goes straight to the envelope's middle, or as near to the top as it can without leaving the foliage once it
+    is inside. The new joints have radius 0: unknown.
+    """
+    rows = np.flatnonzero(mask.any(axis=1))
+    height = float(rows[-1] - rows[0] + 1)
+    highest = (rows[-1] + 1 - float(skeleton.points[:, 1].min())) / height
+    stem = stem_of(skeleton)
+    for aim in np.arange(share, highest + SLACK, -0.05):
+        y = rows[-1] + 1 - aim * height
+        top = np.array([envelope.middle_px[int(np.clip(y, 0, len(mask) - 1))], y, 0.0])
+        way = _way(skeleton.points[stem[-1]], top, JOINT_SHARE * height)
+        inside = in_mask(way, mask)
+        if inside.any() and inside[int(np.argmax(inside)) :].all():
+            return _carried_on(skeleton, int(stem[-1]), way)
+    return skeleton
+
+
+def _way(start: Floats, end: Floats, step: float) -> Floats:
+    """Place points (k, 3) at most ``step`` apart on the way to ``end``, without the start."""
+    count = max(int(np.ceil(np.sqrt(((end - start) ** 2).sum()) / step)), 1)
+    return start + (end - start) * (np.arange(1, count + 1) / count)[:, None]
+
+
+def _carried_on(skeleton: Skeleton, tip: int, way: Floats) -> Skeleton:
+    """Append joints of unknown radius behind a tip."""
+    first = len(skeleton)
+    parents = np.concatenate([[tip], np.arange(first, first + len(way) - 1)])
+    return Skeleton(
+        np.vstack([skeleton.points, way]),
+        np.concatenate([skeleton.radii, np.zeros(len(way))]),
+        np.concatenate([skeleton.parents, parents]),
+    )

@@ -1,0 +1,112 @@
+"""How sprays sit on their branches."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.leaf.leaves import Floats, Indices
+from treestroke.core.skeleton.measure import edge_lengths
+from treestroke.core.skeleton.skeleton import Skeleton
+
+THIN = 0.25
+"""Branches thinner than this share of the thickest bear leaves."""
+SCATTER = 0.016
+"""How far a spray's foot may stand off its branch, as a share of the tree's height (side twigs that are not drawn)."""
+DROOP = 0.25
+"""Weight of gravity in a spray's direction."""
+
+
+@dataclass(frozen=True, eq=False)
+class Seats:
+    """n places on branches, evenly spaced along them.
+
+    Attributes
+    ----------
+    points
+        (n, 3) places, metres.
+    directions
+        (n, 3) unit direction of the branch, outward.
+    joints
+        (n,) index of the joint that ends the edge.
+    """
+
+    points: Floats
+    directions: Floats
+    joints: Indices
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def at(self, index: Indices | NDArray[np.bool_]) -> "Seats":
+        """Pick some of the places."""
+        return Seats(self.points[index], self.directions[index], self.joints[index])
+
+
+def thin_edges(skeleton: Skeleton) -> NDArray[np.bool_]:
+    """Mark the joints (n,) whose edge is thin enough to bear leaves; all, if none is."""
+    thin = skeleton.radii < THIN * skeleton.radii.max()
+    return np.asarray(thin if (edge_lengths(skeleton) * thin).any() else np.ones_like(thin))
+
+
+def seats_along(skeleton: Skeleton, bearing: NDArray[np.bool_], count: int, rng: np.random.Generator) -> Seats:
+    """Spread places over the bearing edges (n,), each having as many as its length asks."""
+    lengths = edge_lengths(skeleton)
+    ends = np.cumsum(lengths * bearing)
+    if ends[-1] <= 0 or count <= 0:
+        return Seats(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, dtype=np.int64))
+    along = (np.arange(count) + rng.random(count)) * ends[-1] / count
+    joints = np.minimum(np.searchsorted(ends, along, side="right"), len(skeleton) - 1)
+    end, start = skeleton.points[joints], skeleton.points[skeleton.parents[joints]]
+    share = np.clip((ends[joints] - along) / np.maximum(lengths[joints], 1e-12), 0, 1)[:, None]
+    return Seats(end + share * (start - end), _unit(end - start), joints)
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Cards without colour: centres, half-extent vectors rights and ups (n, 3), metres, and lift (n,), -1 to 1."""
+
+    centres: Floats
+    rights: Floats
+    ups: Floats
+    lift: Floats
+
+
+def pose_on_branches(
+    seats: Seats, half_sizes: Floats, height: float, crown_middle: Floats, rng: np.random.Generator
+) -> Poses:
+    """Set a spray on each seat: foot near the branch, outward along it, drooping a little, facing out and up."""
+    around = rng.normal(size=seats.points.shape)
+    along = (around * seats.directions).sum(axis=1, keepdims=True)
+    around = _unit(around - along * seats.directions)
+    offset = height * SCATTER * np.sqrt(rng.random((len(seats), 1)))
+    axis = 0.7 * seats.directions + rng.uniform(0.4, 1.2, (len(seats), 1)) * around
+    axis[:, 1] -= DROOP
+    axis = _unit(axis)
+    centres = seats.points + offset * around + 0.8 * half_sizes[:, None] * axis
+    return Poses(centres, *_frames(axis, _unit(centres - crown_middle), half_sizes, rng), around[:, 1])
+
+
+def pose_over(
+    seats: Seats, centres: Floats, half_sizes: Floats, crown_middle: Floats, rng: np.random.Generator
+) -> Poses:
+    """Set a spray at each centre (n, 3) that is to be covered: as if it hung from its seat, and turned to be seen."""
+    way = centres - seats.points
+    axis = _unit(0.6 * seats.directions + _unit(way) + rng.normal(0, 0.5, way.shape))
+    outward = _unit(centres - crown_middle)
+    outward[:, 2] += np.where(outward[:, 2] < 0, -1.0, 1.0)
+    return Poses(centres, *_frames(axis, outward, half_sizes, rng), _unit(way)[:, 1])
+
+
+def _frames(axis: Floats, outward: Floats, half_sizes: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Turn cards about their axis to face outward and up, each a bit otherwise: rights and ups."""
+    facing = 0.75 * outward + rng.normal(0, 0.45, axis.shape)
+    facing[:, 1] += 0.35
+    right = _unit(np.cross(axis, facing))
+    return right * half_sizes[:, None], axis * half_sizes[:, None]
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Scale vectors (n, 3) to length 1; a zero vector points up."""
+    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
+    return np.where(length > 1e-12, vectors / np.maximum(length, 1e-12), np.array([0.0, 1.0, 0.0]))

@@ -1,0 +1,56 @@
+"""Leaves as triangles: two for each card."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.mesh import Mesh
+from treestroke.core.leaf.atlas import Atlas
+from treestroke.core.leaf.leaves import Floats, Leaves
+
+CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+"""Corners of a card in half-extents, counter-clockwise from its lower left: x right, y up."""
+ROUNDNESS = 0.6
+"""Weight of the direction out of the crown in a normal, against the card's own: the crown shades as a volume."""
+
+
+def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
+    """Build two triangles a card (4 vertices each), in the order of the leaves.
+
+    Normals lean out of the crown, whose middle is that of the cards; both corners and cards differ, so that a clump
+    is rounded. Shades become vertex brightness.
+    """
+    m = len(leaves)
+    corners = leaves.centres[:, None] + CORNERS[:, :1] * leaves.rights[:, None] + CORNERS[:, 1:] * leaves.ups[:, None]
+    positions = corners.reshape(-1, 3)
+    first = 4 * np.arange(m, dtype=np.uint32)[:, None, None]
+    triangles = (first + np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)).reshape(-1, 3)
+    normals = _normals(leaves, positions) if m else positions
+    return Mesh(
+        positions.astype(np.float32),
+        normals.astype(np.float32),
+        _uvs(leaves, atlas),
+        triangles,
+        np.repeat(leaves.shades, 4).astype(np.float32),
+    )
+
+
+def _normals(leaves: Leaves, positions: Floats) -> Floats:
+    """Blend each card's normal with the direction out of the crown's ellipsoid (4 m, 3)."""
+    low, high = leaves.centres.min(axis=0), leaves.centres.max(axis=0)
+    outward = _unit((positions - (low + high) / 2) / np.maximum((high - low) / 2, 1e-6))
+    facing = np.repeat(_unit(np.cross(leaves.rights, leaves.ups)), 4, axis=0)
+    return _unit(ROUNDNESS * outward + (1 - ROUNDNESS) * facing)
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Scale vectors (n, 3) to length 1; a zero vector points up."""
+    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
+    return np.where(length > 1e-9, vectors / np.maximum(length, 1e-9), np.array([0.0, 1.0, 0.0]))
+
+
+def _uvs(leaves: Leaves, atlas: Atlas) -> NDArray[np.float32]:
+    """Texture coordinates (4 m, 2): the tile's box, mirrored where the card is flipped."""
+    left, top, right, bottom = atlas.boxes[leaves.tiles].T
+    left, right = np.where(leaves.flips, right, left), np.where(leaves.flips, left, right)
+    u, v = np.stack([left, right, right, left], axis=1), np.stack([bottom, bottom, top, top], axis=1)
+    return np.stack([u, v], axis=2).reshape(-1, 2).astype(np.float32)

@@ -1,0 +1,67 @@
+"""What part of the foliage the cards hide, by the tiles' own outlines."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.leaf.grid import FoliageGrid
+from treestroke.core.leaf.leaves import Floats, Indices, Leaves
+
+DOTS_ACROSS = 12
+"""A tile is looked at in 12 x 12 dots: about one a grid cell for a card of usual size."""
+SURE_ALPHA = 160
+"""Alpha of a dot that is sure to be drawn: a mip level, cut at 0.5, loses some of the others."""
+PROBES = 24
+"""Opaque dots of a tile that are tried against the foliage's outline."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """The opaque dots of the atlas's tiles, in half-extents of a card: x right, y up, -1 to 1.
+
+    Attributes
+    ----------
+    dots
+        k arrays (n, 2), all opaque dots.
+    probes
+        (k, PROBES, 2) some of them, spread over the tile.
+    """
+
+    dots: tuple[Floats, ...]
+    probes: Floats
+
+
+def outlines_of(alphas: NDArray[np.uint8]) -> Outlines:
+    """Find the opaque dots of tiles (k, side, side) of alpha."""
+    dots = []
+    for alpha in alphas:
+        coarse = cv2.resize(alpha, (DOTS_ACROSS, DOTS_ACROSS), interpolation=cv2.INTER_AREA)
+        row, column = np.nonzero(coarse >= min(SURE_ALPHA, int(coarse.max())))
+        x, y = (column + 0.5) * 2 / DOTS_ACROSS - 1, 1 - (row + 0.5) * 2 / DOTS_ACROSS
+        dots.append(np.stack([x, y], axis=1))
+    spread = [np.linspace(0, len(d) - 1, PROBES).round().astype(np.int64) for d in dots]
+    return Outlines(tuple(dots), np.stack([d[index] for d, index in zip(dots, spread, strict=True)]))
+
+
+def share_inside(leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:
+    """Share of each card's opaque dots that project into the foliage (m,)."""
+    cells = _cells(leaves, outlines.probes[leaves.tiles], grid)
+    return np.asarray(grid.inside.ravel()[cells].mean(axis=1))
+
+
+def cover(covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> None:
+    """Mark in ``covered``, flat as the grid's cells, what the cards hide."""
+    for tile, dots in enumerate(outlines.dots):
+        covered[_cells(leaves.select(leaves.tiles == tile), dots[None], grid)] = True
+
+
+def _cells(leaves: Leaves, dots: Floats, grid: FoliageGrid) -> Indices:
+    """Grid cells (m, p) of dots (m or 1, p, 2) on cards."""
+    across = dots[..., 0] * np.where(leaves.flips, -1.0, 1.0)[:, None]
+    x, y = (
+        leaves.centres[:, axis, None] + across * leaves.rights[:, axis, None] + dots[..., 1] * leaves.ups[:, axis, None]
+        for axis in (0, 1)
+    )
+    return grid.flat_cells(x, y)

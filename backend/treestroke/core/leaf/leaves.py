@@ -1,0 +1,66 @@
+"""Leaves: the cards of one tree, as arrays."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Leaves:
+    """m flat cards; each shows one tile of the atlas, a spray that grows along ``ups``.
+
+    Attributes
+    ----------
+    centres
+        (m, 3) middle of each card, metres, world.
+    rights, ups
+        (m, 3) half its width and half its height, metres, at right angles; right x up looks outward.
+    tiles
+        (m,) index of its tile in the atlas.
+    flips
+        (m,) whether it shows the tile mirrored.
+    shades
+        (m,) brightness, 0 to 1.
+    joints
+        (m,) index of the skeleton's joint at whose edge it hangs.
+    """
+
+    centres: Floats
+    rights: Floats
+    ups: Floats
+    tiles: Indices
+    flips: NDArray[np.bool_]
+    shades: Floats
+    joints: Indices
+
+    def __post_init__(self) -> None:
+        m = len(self.centres)
+        if any(getattr(self, name).shape != (m, 3) for name in ("centres", "rights", "ups")):
+            raise ValueError("centres, rights and ups must be (m, 3)")
+        if any(getattr(self, name).shape != (m,) for name in ("tiles", "flips", "shades", "joints")):
+            raise ValueError(f"{m} cards need as many tiles, flips, shades and joints")
+
+    def __len__(self) -> int:
+        return len(self.centres)
+
+    def select(self, kept: NDArray[np.bool_]) -> "Leaves":
+        """Keep the marked cards (m,)."""
+        return Leaves(*(getattr(self, field.name)[kept] for field in fields(self)))
+
+
+def join_leaves(parts: Sequence[Leaves]) -> Leaves:
+    """Put cards together, in the order given; no parts give no cards."""
+    if not parts:
+        return no_leaves()
+    return Leaves(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Leaves)))
+
+
+def no_leaves() -> Leaves:
+    """Bear nothing."""
+    vectors, indices = np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
+    return Leaves(vectors, vectors, vectors, indices, np.zeros(0, dtype=np.bool_), np.zeros(0), indices)

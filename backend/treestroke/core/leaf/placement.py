@@ -1,0 +1,101 @@
+"""Leaves on the branches, inside the foliage that the photo shows, until it is covered.
+
+Source: Tan et al. 2008, section 4: cards around the branches in proportion to their length, only those that
+project inside the foliage stay. Ours are sprays of several leaves, so that 25,000 of them fill a crown, turned and
+shrunk at its outline; what stays uncovered gets further cards from the nearest branch.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.leaf.arrangement import Seats, pose_on_branches, seats_along, thin_edges
+from treestroke.core.leaf.atlas import Atlas, Kind
+from treestroke.core.leaf.crown import Crown, crown_of
+from treestroke.core.leaf.gaps import cover_gaps
+from treestroke.core.leaf.grid import foliage_grid
+from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.progress import Report, silent
+from treestroke.core.skeleton.skeleton import Skeleton
+
+LAYERS = 10.0
+"""Cards' opaque area over the foliage's area in the photo, at density 1 (a leaf area index)."""
+RESERVE = 0.2
+"""Share of the cards that is kept for what the first ones leave uncovered."""
+SHRINKING = (1.0, 0.8, 0.6, 0.45)
+"""Sizes at which a card that would leave the foliage is tried again, each time turned anew."""
+
+
+@dataclass(frozen=True)
+class LeafParams:
+    """How many cards a tree bears, and how large.
+
+    Attributes
+    ----------
+    size
+        Factor on the side of a card (1.7 to 2.9 % of the crown's width), 0.3 to 3.
+    density
+        Factor on the number of cards, 0 to 3; 0 bears none, under 1 leaves part of the foliage uncovered.
+    max_cards
+        Most cards, whatever size and density.
+    kind
+        What the twigs bear; ``bare`` bears nothing.
+    """
+
+    size: float = 1.0
+    density: float = 1.0
+    max_cards: int = 25_000
+    kind: Kind = "leaves"
+
+    def __post_init__(self) -> None:
+        if not 0.3 <= self.size <= 3:
+            raise ValueError(f"size must be 0.3 to 3, got {self.size}")
+        if not 0 <= self.density <= 3:
+            raise ValueError(f"density must be 0 to 3, got {self.density}")
+        if self.max_cards < 0 or self.kind not in ("leaves", "needles", "bare"):
+            raise ValueError(f"max_cards must not be negative and kind one of Kind, got {self}")
+
+
+def place_leaves(
+    skeleton: Skeleton,
+    mask: NDArray[np.bool_],
+    envelope: Envelope,
+    photo: NDArray[np.uint8],
+    atlas: Atlas,
+    params: LeafParams,
+    rng: np.random.Generator,
+    report: Report = silent,
+) -> Leaves:
+    """Hang cards on a grown tree.
+
+    The skeleton is in metres; mask (h, w) is the foliage in the photo (h, w, 3), envelope the crown's solid. Every
+    card's centre projects into the mask and its leaves at most by a few per cent outside; nearly all cards stand
+    nearer to a branch than 4.5 % of the tree's height. A bare tree, density 0 or an empty mask gives none.
+    """
+    if params.kind == "bare" or params.density == 0 or params.max_cards == 0 or not mask.any():
+        return no_leaves()
+    grid = foliage_grid(photo, mask, envelope.camera)
+    crown = crown_of(grid, envelope, atlas, params.size, rng)
+    wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
+    count = round(min((1 - RESERVE) * params.max_cards, wanted))
+    leaves = _on_branches(seats_along(skeleton, thin_edges(skeleton), count, rng), crown, rng)
+    report("leaf", 0.5)
+    patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(leaves), rng)
+    report("leaf", 1.0)
+    return join_leaves([leaves, *patches])
+
+
+def _on_branches(seats: Seats, crown: Crown, rng: np.random.Generator) -> Leaves:
+    """Hang a card on each seat; those that would leave the foliage are turned and shrunk a few times."""
+    found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
+    for scale in SHRINKING:
+        if len(order) == 0:
+            break
+        tried = seats.at(order)
+        poses = pose_on_branches(tried, scale * full[order], crown.height, crown.middle, rng)
+        leaves, kept = crown.dressed(poses, tried, rng)
+        found.append(leaves)
+        order = order[~kept]
+    return join_leaves(found)

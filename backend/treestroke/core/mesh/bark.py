@@ -1,0 +1,196 @@
+"""Bark texture from the trunk's own pixels."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+
+from treestroke.core.imaging.quilting import QuiltParams, quilt
+from treestroke.core.mesh.grain import bark_grain
+
+Floats = NDArray[np.float64]
+
+TEXTURE_SIZE = (512, 256)
+"""Rows, columns; the width stands for a third of the trunk's circumference."""
+_PX_PER_RADIAN = TEXTURE_SIZE[1] / (2.0 * np.pi / 3.0)
+_SEEN_RAD = 0.87  # of the trunk's front half, to either side; beyond, pixels are squeezed and often not bark
+_MOST_ROWS = 1024  # px, eight trunk radii
+_DARK = 0.01  # linear light added before logarithms, so that black noise does not become contrast
+_LIGHT = (0.022, 0.55)  # linear, of the mean: a silhouette is lifted, glaring sun dimmed to leave room for detail
+_WARM_GREY = np.array([1.08, 0.98, 0.9])
+_SMOOTH = (70.0, 45.0)  # px along and across; slower changes are light, not bark
+_OUTLIER = 3.5  # deviations from the trunk's colour, from which on a pixel is leaf, grass or sky
+_COLOUR_KEPT = 0.5  # of the differences in hue; much of them is the camera's noise and light through leaves
+_GRAIN = 0.22  # deviation of log light of fissures that are our own
+_CONTRAST = (0.16, 0.42)  # least and greatest deviation of log light in the texture
+
+
+@dataclass(frozen=True)
+class BarkParams:
+    """How bark is read from the photo.
+
+    Attributes
+    ----------
+    smallest_radius_px
+        Trunk stretches thinner than this show no bark; 0 as radius means hidden.
+    hidden_colour
+        sRGB colour of bark where no trunk can be seen.
+    """
+
+    smallest_radius_px: float = 2.5
+    hidden_colour: tuple[int, int, int] = (104, 93, 82)
+
+    def __post_init__(self) -> None:
+        if not self.smallest_radius_px > 0 or not all(0 <= c <= 255 for c in self.hidden_colour):
+            raise ValueError(f"bark needs a positive radius and an 8-bit colour, got {self}")
+
+
+def bark_texture(
+    photo: NDArray[np.uint8], trunk_px: Floats, radii_px: Floats, params: BarkParams, rng: np.random.Generator
+) -> NDArray[np.uint8]:
+    """Make a bark texture (512, 256, 3) uint8 sRGB that repeats in both directions and holds no light of the photo.
+
+    The trunk's front is unrolled, cleaned of pixels that are not bark, freed of slow changes of light (its
+    mean colour stays), and quilted. The fewer pixels the trunk has, the more fissures of our own are added
+    to its colours; where none is to be seen they stand alone, in ``hidden_colour``.
+
+    Parameters
+    ----------
+    photo
+        (h, w, 3) sRGB.
+    trunk_px, radii_px
+        (n, 2) the visible trunk's axis from the root up, photo points, and (n,) its radius there, px; n >= 2.
+    """
+    grain = bark_grain(TEXTURE_SIZE, rng)[..., None]
+    found = _unrolled(photo, trunk_px, radii_px, params)
+    if found is None:
+        colour = _linear(np.array(params.hidden_colour, dtype=np.float64))
+        return _painted(_GRAIN * grain, colour)
+    strip, pixels_per_pixel = found
+    clean = _bark_like(strip)
+    strip, clean = _clean_run(strip, clean)
+    if len(strip) < _PX_PER_RADIAN or clean.mean() < 0.5:
+        return _painted(_GRAIN * grain, _mean_colour(strip, clean))
+    detail = _flattened(strip, clean)
+    quilted = quilt(*_tall_enough(detail, clean), QuiltParams(TEXTURE_SIZE), rng)
+    # an enlarged strip holds nothing finer than a photo pixel: give it fissures in its own contrast
+    added = np.clip((pixels_per_pixel - 2.0) / 8.0, 0.0, 1.0)
+    return _painted(_evened(quilted) + added * _GRAIN * grain, _mean_colour(strip, clean))
+
+
+def _unrolled(
+    photo: NDArray[np.uint8], trunk_px: Floats, radii_px: Floats, params: BarkParams
+) -> tuple[Floats, float] | None:
+    """Unroll the trunk's front to a strip (h, w, 3) of linear light, top first, and say how much it was enlarged."""
+    step = np.linalg.norm(np.diff(trunk_px, axis=0), axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(step)])
+    shown = radii_px >= params.smallest_radius_px
+    if arc[-1] <= 0 or not shown.any():
+        return None
+    radius = float(np.median(radii_px[shown]))
+    rows = int(min(arc[-1] / radius * _PX_PER_RADIAN, _MOST_ROWS))
+    at = np.linspace(rows * radius / _PX_PER_RADIAN, 0.0, max(rows, 1))
+    here = np.stack([np.interp(at, arc, trunk_px[:, k]) for k in range(2)], axis=1)
+    way = np.gradient(here, axis=0) if rows > 1 else np.array([[0.0, 1.0]])
+    way /= np.maximum(np.linalg.norm(way, axis=1, keepdims=True), 1e-9)
+    right = np.stack([way[:, 1], -way[:, 0]], axis=1)
+    columns = round(2 * _SEEN_RAD * _PX_PER_RADIAN)
+    aside = np.sin(np.linspace(-_SEEN_RAD, _SEEN_RAD, columns))
+    reach = np.interp(at, arc, np.where(shown, radii_px, 0.0))
+    place = here[:, None, :] + aside[None, :, None] * (reach[:, None] * right)[:, None, :]
+    # photo points name pixel corners, OpenCV pixel centres
+    x, y = (place - 0.5).astype(np.float32).transpose(2, 0, 1)
+    strip = cv2.remap(photo, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    kept = reach >= params.smallest_radius_px
+    return _linear(strip[kept].astype(np.float64)), _PX_PER_RADIAN / radius
+
+
+def _bark_like(strip: Floats) -> NDArray[np.bool_]:
+    """Tell (h, w) which pixels of a strip have the colours of its middle's lower half."""
+    logs = _log(strip)
+    core = logs[len(logs) // 2 :, logs.shape[1] // 3 : -logs.shape[1] // 3].reshape(-1, 3)
+    middle = np.median(core, axis=0)
+    spread = np.maximum(1.4826 * np.median(np.abs(core - middle), axis=0), 0.12)
+    chroma = _opponent(logs - middle)
+    chroma_spread = np.maximum(1.4826 * np.median(np.abs(_opponent(core - middle)), axis=0), 0.05)
+    like = (np.abs(logs - middle) < _OUTLIER * spread).all(axis=2)
+    return np.asarray(like & (np.abs(chroma) < _OUTLIER * chroma_spread).all(axis=2))
+
+
+def _opponent(logs: Floats) -> Floats:
+    """Red over green and blue over green (..., 2), in logarithms."""
+    return logs[..., (0, 2)] - logs[..., (1, 1)]
+
+
+def _clean_run(strip: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.bool_]]:
+    """Keep the longest run of rows that are mostly bark."""
+    share = gaussian_filter(clean.mean(axis=1), 6.0, mode="nearest")
+    bounds = np.flatnonzero(np.diff(np.concatenate([[False], share > 0.6, [False]]).astype(np.int8)))
+    if bounds.size == 0:
+        return strip[:0], clean[:0]
+    longest = int(np.argmax(bounds[1::2] - bounds[::2]))
+    run = slice(int(bounds[2 * longest]), int(bounds[2 * longest + 1]))
+    return strip[run], clean[run]
+
+
+def _flattened(strip: Floats, clean: NDArray[np.bool_]) -> Floats:
+    """Take slow changes of light off a strip: log light (h, w, 3), mean 0; pixels that are not bark are 0."""
+    logs = _log(strip)
+    weight = gaussian_filter(cv2.erode(clean.astype(np.float64), np.ones((7, 7))), 3.0, mode="nearest")
+    slow = _slow(logs * weight[..., None]) / np.maximum(_slow(weight), 1e-3)[..., None]
+    detail = (logs - slow) * weight[..., None]
+    # cylinder shading that the smoothing leaves at the strip's sides
+    detail -= detail.sum(axis=0) / np.maximum(weight.sum(axis=0), 1.0)[:, None]
+    light = detail.mean(axis=2, keepdims=True)
+    return np.asarray(light + _COLOUR_KEPT * (detail - light))
+
+
+def _slow(values: Floats) -> Floats:
+    """Blur values (h, w) or (h, w, c) widely, on an eighth of their size."""
+    size = (max(values.shape[1] // 8, 1), max(values.shape[0] // 8, 1))
+    small = cv2.resize(values, size, interpolation=cv2.INTER_AREA)
+    along, across = _SMOOTH
+    small = cv2.GaussianBlur(small, (0, 0), sigmaX=across / 8, sigmaY=along / 8, borderType=cv2.BORDER_REPLICATE)
+    return np.asarray(cv2.resize(small, values.shape[1::-1], interpolation=cv2.INTER_LINEAR), dtype=np.float64)
+
+
+def _tall_enough(detail: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.bool_]]:
+    """Mirror a short strip upward until patches have room to differ."""
+    while len(detail) < 1.5 * QuiltParams().patch[0]:
+        detail, clean = np.concatenate([detail[::-1], detail]), np.concatenate([clean[::-1], clean])
+    return detail, clean
+
+
+def _evened(detail: Floats) -> Floats:
+    """Bring contrast (h, w, 3) into the range that bark has."""
+    spread = float(detail.mean(axis=2).std())
+    return detail * float(np.clip(spread, *_CONTRAST) / max(spread, 0.5 * _CONTRAST[0]))
+
+
+def _mean_colour(strip: Floats, clean: NDArray[np.bool_]) -> Floats:
+    """Mean linear colour (3,) of a strip's bark, lifted where it is all but black."""
+    colour = np.exp(np.mean(_log(strip[clean]), axis=0)) - _DARK
+    return np.asarray(np.maximum(colour, 0.0))
+
+
+def _painted(detail: Floats, colour: Floats) -> NDArray[np.uint8]:
+    """Multiply a mean colour (3,), linear, by detail (h, w, 1 or 3) in log light; to sRGB."""
+    light = float(colour @ (0.2126, 0.7152, 0.0722))
+    colour = colour * min(1.0, _LIGHT[1] / max(light, 1e-9)) + max(_LIGHT[0] - light, 0.0) * _WARM_GREY
+    factor = np.exp(detail)
+    linear = np.clip(colour * factor / factor.mean(axis=(0, 1)), 0.0, 1.0)
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return np.asarray(np.rint(255.0 * srgb), dtype=np.uint8)
+
+
+def _linear(srgb: Floats) -> Floats:
+    """Turn sRGB, 0 to 255, to linear light, 0 to 1."""
+    c = srgb / 255.0
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+
+
+def _log(linear: Floats) -> Floats:
+    """Logarithm of light, bounded below."""
+    return np.log(linear + _DARK)

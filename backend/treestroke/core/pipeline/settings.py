@@ -1,0 +1,112 @@
+"""The settings of one model: the one table for command line, library and documents."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from treestroke.core.errors import SettingsError
+
+MAX_SEED = 2**63 - 1
+
+
+@dataclass(frozen=True)
+class Span:
+    """Numbers from ``low`` to ``high``, both included; whole ones only where ``whole``."""
+
+    low: float
+    high: float
+    whole: bool = False
+
+    def __str__(self) -> str:
+        return f"{'a whole number ' if self.whole else ''}from {self.low:g} to {self.high:g}"
+
+    def holds(self, value: Any) -> bool:
+        """Tell whether a value is such a number; a truth value is none."""
+        kinds = int | np.integer if self.whole else int | float | np.integer | np.floating
+        return isinstance(value, kinds) and not isinstance(value, bool) and bool(self.low <= value <= self.high)
+
+    def plain(self, value: Any) -> float:
+        """Give a number as Python's own."""
+        return int(value) if self.whole else float(value)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of a few names."""
+
+    names: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return ", ".join(self.names)
+
+    def holds(self, value: object) -> bool:
+        """Tell whether a value is one of the names."""
+        return isinstance(value, str) and value in self.names
+
+    def plain(self, value: str) -> str:
+        """Give a name as Python's own."""
+        return str(value)
+
+
+def _setting(default: object, allowed: Span | Choice, meaning: str) -> Any:
+    return field(default=default, metadata={"allowed": allowed, "meaning": meaning})
+
+
+@dataclass(frozen=True)
+class ModelSettings:
+    """What a person may choose about a model; each field's metadata holds what is ``allowed`` and its ``meaning``.
+
+    Raises
+    ------
+    SettingsError
+        A value is not allowed.
+    """
+
+    height: float = _setting(10.0, Span(0.1, 150), "metres, from the root to the foliage's top")
+    library: str = _setting(
+        "auto", Choice(("auto", "visible", "type1", "type2", "both")), "subtrees that growth may use"
+    )
+    iterations: int = _setting(300, Span(0, 2000, whole=True), "rounds of growth")
+    foliage: str = _setting("auto", Choice(("auto", "leaves", "needles", "bare")), "what the twigs bear")
+    leaf_size: float = _setting(1.0, Span(0.3, 3), "factor on the size of the leaves")
+    leaf_density: float = _setting(1.0, Span(0, 3), "factor on the number of leaves")
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            value, allowed = getattr(self, entry.name), entry.metadata["allowed"]
+            if not allowed.holds(value):
+                raise SettingsError(f"{entry.name}: {value!r} is not allowed; give {allowed}")
+            object.__setattr__(self, entry.name, allowed.plain(value))
+
+
+def settings_from(values: Mapping[str, Any]) -> ModelSettings:
+    """Make settings from names and values; what is absent takes its default.
+
+    Raises
+    ------
+    SettingsError
+        A name is unknown or a value is not allowed.
+    """
+    known = [entry.name for entry in fields(ModelSettings)]
+    for name in values:
+        if name not in known:
+            raise SettingsError(f"{name}: there is no such setting; the settings are {', '.join(known)}")
+    return ModelSettings(**values)
+
+
+SEED = Span(0, MAX_SEED, whole=True)
+
+
+def check_seed(seed: Any) -> int:
+    """Give a seed back as an int.
+
+    Raises
+    ------
+    SettingsError
+        It is no whole number from 0 to 2^63 - 1.
+    """
+    if not SEED.holds(seed):
+        raise SettingsError(f"seed: {seed!r} is not allowed; give a whole number from 0 to {MAX_SEED}")
+    return int(seed)

@@ -1,0 +1,187 @@
+"""Foliage from one crown stroke: colour mixtures and a graph cut.
+
+Source: Tan et al. 2008, section 2, "Foliage extraction". Where the paper takes the four most green or red of
+ten components for leaves, we ask where a component's pixels lie: leaves fill the crown's middle, background
+also fills the ring around the stroke. Colour is a prior on top of that, so that yellow autumn, white blossom
+and bare twigs work too.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.imaging.grid_cut import cut_grid
+from treestroke.core.imaging.mixture import (
+    Floats,
+    Mixture,
+    fit_mixture,
+    join_mixtures,
+    log_components,
+    log_density,
+    table_colours,
+    table_index,
+)
+from treestroke.core.imaging.outline import fill_outline
+
+Mask = NDArray[np.bool_]
+Photo = NDArray[np.uint8]
+
+REFERENCE_SIDE = 1500
+"""Long side of a photo, px, for which the paper gives its pixel constants."""
+
+
+@dataclass(frozen=True)
+class FoliageParams:
+    """How foliage is told from its background.
+
+    Attributes
+    ----------
+    components
+        Gaussians over the crown's colours.
+    dilation_px
+        How far beyond the stroke foliage is looked for, px at a long side of 1500.
+    smoothness
+        The paper's lambda: cost of a border between two pixels times the difference of their colours.
+    samples
+        Pixels that a mixture is fitted to.
+    cut_pixels
+        Pixels of the coarse graph; finer borders are cut in a band.
+    """
+
+    components: int = 10
+    dilation_px: float = 10.0
+    smoothness: float = 60.0
+    samples: int = 6000
+    cut_pixels: int = 120_000
+
+    def __post_init__(self) -> None:
+        if self.components < 2 or self.samples < 100 or self.cut_pixels < 1000:
+            raise ValueError(f"foliage needs 2 components, 100 samples and 1000 pixels at least: {self}")
+        if self.dilation_px < 0 or self.smoothness < 0:
+            raise ValueError(f"dilation and smoothness cannot be negative: {self}")
+
+
+@dataclass(frozen=True, eq=False)
+class Foliage:
+    """What the crown stroke gave.
+
+    Attributes
+    ----------
+    mask
+        (h, w) leaf pixels (of a bare tree: twigs).
+    region
+        (h, w) where foliage was looked for: the crown, a little dilated.
+    leaf, ground
+        Colour models of the foliage and of all else near it.
+    """
+
+    mask: Mask
+    region: Mask
+    leaf: Mixture
+    ground: Mixture
+
+
+def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = FoliageParams()) -> Foliage:
+    """Find the foliage inside a crown stroke (n, 3 points at least), px, on a photo (h, w, 3), sRGB.
+
+    The mask is never empty: where nothing looks like a leaf it is the crown itself.
+    """
+    height, width = photo.shape[:2]
+    crown = fill_outline(crown_px, height, width)
+    box = _surroundings(crown)
+    inside, pixels = crown[box], np.ascontiguousarray(photo[box])
+    grow_px = params.dilation_px * max(height, width) / REFERENCE_SIDE
+    region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= grow_px
+    leaf, ground = _colour_models(pixels, inside, params)
+    odds = _log_odds(leaf, ground, pixels) + _place_prior(inside)
+    found = cut_grid(pixels, odds, region, params.smoothness, params.cut_pixels)
+    if not found.any():
+        found = inside
+    mask, whole = np.zeros_like(crown), np.zeros_like(crown)
+    mask[box], whole[box] = found, region
+    return Foliage(mask, whole, leaf, ground)
+
+
+def _surroundings(crown: Mask) -> tuple[slice, slice]:
+    """Give the crown's box with a fifth of its size around it."""
+    rows, columns = np.flatnonzero(crown.any(axis=1)), np.flatnonzero(crown.any(axis=0))
+    edge = max(4, int(0.2 * max(len(rows), len(columns))))
+    top, left = max(0, rows[0] - edge), max(0, columns[0] - edge)
+    return slice(top, rows[-1] + 1 + edge), slice(left, columns[-1] + 1 + edge)
+
+
+def _colour_models(pixels: Photo, inside: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
+    """Split the crown's mixture in leaf and ground, and let the ring around the crown join the ground."""
+    depth = _depth(inside)
+    crown = _sample(pixels, inside, params.samples)
+    mixture = fit_mixture(crown, params.components)
+    ring = _sample(pixels, ~inside, params.samples)
+    is_leaf = _leaf_components(mixture, crown, _sample(pixels, depth > 0.45, params.samples), ring)
+    leaf = mixture.select(is_leaf)
+    outer = fit_mixture(ring, 6) if len(ring) else mixture.select(~is_leaf)
+    if is_leaf.all():
+        return leaf, outer
+    share = float(mixture.weights[~is_leaf].sum())
+    return leaf, join_mixtures([mixture.select(~is_leaf), outer], [max(share, 0.3), 0.5])
+
+
+def _sample(pixels: Photo, where: Mask, count: int) -> NDArray[np.uint8]:
+    """Take at most ``count`` pixels, evenly spaced in reading order."""
+    index = np.flatnonzero(where.ravel())
+    step = max(1, len(index) // count)
+    return pixels.reshape(-1, 3)[index[step // 2 :: step]]
+
+
+def _depth(inside: Mask) -> Floats:
+    """Depth of each pixel inside the crown: 0 at its border and outside, 1 at its innermost."""
+    padded = cv2.copyMakeBorder(inside.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    away = cv2.distanceTransform(padded, cv2.DIST_L2, 5)[1:-1, 1:-1]
+    return np.asarray(away / max(float(away.max()), 1.0), dtype=np.float64)
+
+
+def _leaf_components(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -> Mask:
+    """Choose the components that are leaves, at least one (k,).
+
+    A component speaks for leaves by how much commoner it is in the crown's core than in the ring around the
+    crown, and by its hue.
+    """
+    shares = [_shares(mixture, colours) for colours in (crown, core, ring)]
+    place = np.log((0.3 * shares[0] + 0.7 * shares[1] + 0.004) / (shares[2] + 0.004))
+    votes = np.clip(place, -2.0, 2.0) + _hue_prior(mixture.means)
+    chosen = votes > 0
+    if not chosen.any():
+        chosen[int(votes.argmax())] = True
+    return chosen
+
+
+def _shares(mixture: Mixture, colours: Photo) -> Floats:
+    """Share of the colours that each component explains (k,)."""
+    if len(colours) == 0:
+        return np.zeros(len(mixture))
+    parts = log_components(mixture, colours.astype(np.float64))
+    parts = np.exp(parts - parts.max(axis=1, keepdims=True))
+    return np.asarray((parts / parts.sum(axis=1, keepdims=True)).mean(axis=0))
+
+
+def _hue_prior(means: Floats) -> Floats:
+    """How much a colour (k, 3) looks like a leaf (k,): green, yellow and red do, sky does not."""
+    red, green, blue = means.T
+    brightness = means.max(axis=1)
+    vegetation = (np.maximum(red, green) - blue) / np.maximum(brightness, 40.0)
+    sky = (blue - np.minimum(red, green)) / np.maximum(brightness, 40.0)
+    return 1.5 * np.clip(vegetation, 0, 0.6) - 2.5 * np.clip(sky - 0.08, 0, 0.6) * (brightness > 70)
+
+
+def _log_odds(leaf: Mixture, ground: Mixture, pixels: Photo) -> NDArray[np.float32]:
+    """Log odds that each pixel (h, w) is a leaf, by its colour, within +-8."""
+    colours = table_colours()
+    table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -8.0, 8.0)
+    return table.astype(np.float32)[table_index(pixels)]
+
+
+def _place_prior(inside: Mask) -> NDArray[np.float32]:
+    """Log odds by place (h, w): the stroke is loose, so its rim and what lies beyond it is rather ground."""
+    depth = _depth(inside)
+    return np.where(inside, 1.2 - 2.2 * np.exp(-depth / 0.06), -2.0).astype(np.float32)

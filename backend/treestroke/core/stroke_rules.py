@@ -1,0 +1,169 @@
+"""What strokes must hold to describe a tree, and how a near miss is mended."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.errors import StrokesError
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.imaging.outline import crosses_itself, fill_outline
+from treestroke.core.strokes import MendedStrokes, Stroke, Strokes, StrokeWarning
+
+MAX_STROKES = 200
+MAX_POINTS = 10_000
+MIN_CROWN_SHARE = 0.005
+"""Of the photo's area."""
+TOUCH_SHARE = 0.02
+"""Of the photo's long side: as near as a loose stroke comes to what it is meant to touch."""
+STEM_SHARE = 0.03
+"""Of the tree's height: a later stroke that starts this near the root is a stem of its own."""
+
+
+def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
+    """Check strokes against a photo of the given size, px, and mend what can be mended.
+
+    Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
+    nearest of them by one more point at its start, with a warning; a crown that crosses itself is kept (fill it
+    with `fill_outline`), with a warning.
+
+    Raises
+    ------
+    StrokesError
+        Too many strokes or points, a value that is not finite, too few distinct points, a crown that is too small,
+        or a trunk that neither touches nor points into the crown. The message names the stroke.
+    """
+    _check_counts(strokes)
+    inside = Strokes(
+        crown=_clamped(strokes.crown, "crown", width, height, 3),
+        branches=tuple(_clamped(s, f"branches/{i}", width, height, 2) for i, s in enumerate(strokes.branches)),
+        erase=tuple(_clamped(s, f"erase/{i}", width, height, 2) for i, s in enumerate(strokes.erase)),
+    )
+    crown = fill_outline(inside.crown.points, height, width)
+    _check_crown(crown)
+    warnings = _crossing(inside.crown, width, height)
+    if not inside.branches:
+        return MendedStrokes(inside, warnings)
+    _check_trunk(inside, crown)
+    branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
+    return MendedStrokes(replace(inside, branches=branches), warnings + joined)
+
+
+def require_trunk(strokes: Strokes) -> None:
+    """Refuse strokes without a branch, which can be traced but not modelled.
+
+    Raises
+    ------
+    StrokesError
+        There is no branch stroke.
+    """
+    if not strokes.branches:
+        raise StrokesError("branches: there is none; draw one stroke from the tree's root up its trunk")
+
+
+def _check_counts(strokes: Strokes) -> None:
+    count = 1 + len(strokes.branches) + len(strokes.erase)
+    if count > MAX_STROKES:
+        raise StrokesError(f"strokes: there are {count}, at most {MAX_STROKES} are allowed; leave some out")
+
+
+def _clamped(stroke: Stroke, pointer: str, width: int, height: int, least: int) -> Stroke:
+    """Check one stroke by itself and move its points into the photo."""
+    points = np.asarray(stroke.points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise StrokesError(f"{pointer}: points must be pairs of x and y; give [[x, y], ...]")
+    if len(points) > MAX_POINTS:
+        raise StrokesError(
+            f"{pointer}: it has {len(points)} points, at most {MAX_POINTS} are allowed; draw it with fewer"
+        )
+    if not np.isfinite(points).all():
+        raise StrokesError(f"{pointer}: a coordinate is not a finite number; give pixels of the photo")
+    if stroke.width is not None and not (np.isfinite(stroke.width) and stroke.width > 0):
+        raise StrokesError(f"{pointer}: width is {stroke.width}; give pixels above 0 or leave it out")
+    points = np.clip(points, 0.0, (float(width), float(height)))
+    distinct = len(np.unique(points, axis=0))
+    if distinct < least:
+        raise StrokesError(
+            f"{pointer}: it has {distinct} distinct point{'s' * (distinct != 1)} inside the photo, "
+            f"at least {least} are needed; draw it longer"
+        )
+    return Stroke(points, stroke.width)
+
+
+def _check_crown(crown: NDArray[np.bool_]) -> None:
+    share = np.count_nonzero(crown) / crown.size
+    if share < MIN_CROWN_SHARE:
+        raise StrokesError(
+            f"crown: it encloses {share:.2%} of the photo, at least {MIN_CROWN_SHARE:.1%} is needed; "
+            "draw it around the whole foliage"
+        )
+
+
+def _crossing(crown: Stroke, width: int, height: int) -> tuple[StrokeWarning, ...]:
+    if not crosses_itself(crown.points, height, width):
+        return ()
+    return (StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken"),)
+
+
+def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_]) -> None:
+    """Refuse a trunk that neither touches the crown, give or take a loose hand, nor points into it."""
+    height, width = crown.shape
+    step = max(1.0, max(width, height) / 1500)
+    drawn = _resampled(strokes.branches[0].points, step)
+    way = np.vstack([drawn, _ray(drawn, step, float(np.hypot(width, height)))])
+    column, row = np.floor(way).astype(np.int64).T
+    seen = (column >= 0) & (column < width) & (row >= 0) & (row < height)
+    if crown[row[seen], column[seen]].any():
+        return
+    outline = np.vstack([strokes.crown.points, strokes.crown.points[:1]])
+    if _nearest(outline, drawn)[1].min() > TOUCH_SHARE * max(width, height):
+        raise StrokesError(
+            "branches/0: the trunk neither touches nor points into the crown; draw it from the root up to the foliage"
+        )
+
+
+def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], tuple[StrokeWarning, ...]]:
+    root = strokes.branches[0].points[0]
+    stem_reach = STEM_SHARE * abs(root[1] - strokes.crown.points[:, 1].min())
+    branches, warnings = [strokes.branches[0]], []
+    for index, stroke in enumerate(strokes.branches[1:], start=1):
+        start = stroke.points[:1]
+        found = [_nearest(earlier.points, start) for earlier in branches]
+        parent = int(np.argmin([gap[0] for _, gap in found]))
+        joint, gap = found[parent][0][0], float(found[parent][1][0])
+        if gap > reach and np.hypot(*(start[0] - root)) > stem_reach:
+            stroke = replace(stroke, points=np.vstack([joint, stroke.points]))
+            detail = f"it starts {gap:.0f} px from every earlier branch and was joined to branches/{parent}"
+            warnings.append(StrokeWarning("branch_joined", f"branches/{index}", detail))
+        branches.append(stroke)
+    return tuple(branches), tuple(warnings)
+
+
+def _nearest(line: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """Find the nearest place (m, 2) on a polyline (n, 2) to each of the points (m, 2), and its distance (m,)."""
+    start, along = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((along**2).sum(axis=1), 1e-12)
+    nearest, gaps = np.empty_like(points), np.empty(len(points))
+    for index, point in enumerate(points):
+        share = np.clip(((point - start) * along).sum(axis=1) / square, 0.0, 1.0)
+        place = start + share[:, None] * along
+        gap = np.hypot(*(place - point).T)
+        best = int(gap.argmin())
+        nearest[index], gaps[index] = place[best], gap[best]
+    return nearest, gaps
+
+
+def _resampled(line: Floats, step: float) -> Floats:
+    """Put points at most ``step`` px apart on a polyline (n, 2)."""
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    at = np.linspace(0.0, length[-1], int(np.ceil(length[-1] / step)) + 1)
+    return np.stack([np.interp(at, length, line[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _ray(drawn: Floats, step: float, reach: float) -> Floats:
+    """Go on beyond a resampled line's end, in the direction of its last fifth (one jittery point decides nothing)."""
+    tail = drawn[-1] - drawn[len(drawn) - 1 - max(1, len(drawn) // 5)]
+    if not tail.any():
+        tail = drawn[-1] - drawn[0]
+    norm = max(float(np.hypot(*tail)), 1e-9)
+    return np.asarray(drawn[-1] + np.arange(0.0, reach, step)[:, None] / norm * tail)

@@ -1,0 +1,36 @@
+"""The time that each stage takes, seen from outside the core."""
+
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from treestroke.core.progress import Report
+
+
+class Stopwatch:
+    """A progress report that charges the time between calls to the stage under way, and passes the calls on."""
+
+    def __init__(self, report: Report) -> None:
+        self.seconds: defaultdict[str, float] = defaultdict(float)
+        self._report = report
+        self._stage = ""
+        self._since = time.perf_counter()
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Charge the time since the last call; a new stage's name begins that stage."""
+        self._charge(stage)
+        self._report(stage, fraction)
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time one stage that does not report by itself."""
+        self(name, 0.0)
+        yield
+        self(name, 1.0)
+
+    def _charge(self, stage: str) -> None:
+        now = time.perf_counter()
+        if self._stage:
+            self.seconds[self._stage] += now - self._since
+        self._stage, self._since = stage, now

@@ -1,0 +1,96 @@
+"""What a caller may hand in as photo, strokes and settings, brought to values."""
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from treestroke.codec.image import MAX_BYTES, Picture, check_size, decode_photo
+from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
+from treestroke.codec.strokes import parse_strokes, strokes_from
+from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
+from treestroke.core.pipeline.settings import ModelSettings, settings_from
+from treestroke.core.strokes import Strokes
+
+PhotoLike = str | os.PathLike[str] | bytes | Picture
+StrokesLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Strokes
+SettingsLike = Mapping[str, Any] | ModelSettings | None
+
+
+def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeError]) -> bytes:
+    """Read a file that the person named, at most one byte more than ``limit``.
+
+    Raises
+    ------
+    TreestrokeError
+        Of the given kind, where the file does not exist or may not be read.
+    """
+    try:
+        with Path(path).open("rb") as file:
+            return file.read(limit + 1)
+    except FileNotFoundError as error:
+        raise kind(f"{os.fspath(path)}: there is no such file; check the path") from error
+    except (IsADirectoryError, NotADirectoryError, PermissionError) as error:
+        raise kind(f"{os.fspath(path)}: it cannot be read ({error.strerror}); name a file that can") from error
+    except ValueError as error:
+        raise kind(f"{os.fspath(path)!r}: this is no path ({error}); check it") from error
+
+
+def load_photo(photo: PhotoLike) -> Picture:
+    """Bring a photo (path, encoded bytes, or upright sRGB pixels (h, w, 3) uint8) to pixels.
+
+    Raises
+    ------
+    PhotoError
+        As `decode_photo`; or the file cannot be read; or the array is no such picture.
+    """
+    if isinstance(photo, np.ndarray):
+        if photo.ndim != 3 or photo.shape[2] != 3 or photo.dtype != np.uint8:
+            raise PhotoError(f"photo: an array must be (h, w, 3) uint8, not {photo.shape} {photo.dtype}; convert it")
+        check_size(photo.shape[1], photo.shape[0], "photo")
+        return np.ascontiguousarray(photo)
+    if isinstance(photo, bytes):
+        return decode_photo(photo, "photo")
+    return decode_photo(read_input(photo, MAX_BYTES, PhotoError), os.fspath(photo))
+
+
+def load_strokes(strokes: StrokesLike) -> Strokes:
+    """Bring strokes (path, JSON bytes, plain mapping or values) to values.
+
+    Raises
+    ------
+    StrokesError
+        As `parse_strokes`; or the file cannot be read.
+    """
+    if isinstance(strokes, Strokes):
+        return strokes
+    if isinstance(strokes, Mapping):
+        return strokes_from(strokes)
+    if isinstance(strokes, bytes):
+        return parse_strokes(strokes, "strokes")
+    return parse_strokes(read_input(strokes, MAX_TEXT_BYTES, StrokesError), os.fspath(strokes))
+
+
+def load_settings(settings: SettingsLike) -> ModelSettings:
+    """Bring settings (names and values, or absent) to values.
+
+    Raises
+    ------
+    SettingsError
+        As `settings_from`.
+    """
+    return settings if isinstance(settings, ModelSettings) else settings_from(settings or {})
+
+
+def load_project(path: str | os.PathLike[str]) -> Project:
+    """Open a project file.
+
+    Raises
+    ------
+    TreestrokeError
+        As `read_project`; or the file cannot be read.
+    """
+    data = read_input(path, MAX_BYTES + MAX_TEXT_BYTES, TreestrokeError)
+    return read_project(data, os.fspath(path))

@@ -1,0 +1,58 @@
+import json
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+import treestroke
+from treestroke.core.pipeline.settings import ModelSettings
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_readme_s_settings_are_the_table() -> None:
+    rows = re.findall(
+        r"^\| `(\w+)` \| (\S+) \| (from .*?|a whole .*?|auto.*?) \| (.*?) \|$", (ROOT / "README.md").read_text(), re.M
+    )
+    table = [
+        (
+            f.name,
+            f"{f.default:g}" if isinstance(f.default, float) else str(f.default),
+            str(f.metadata["allowed"]),
+            f.metadata["meaning"],
+        )
+        for f in fields(ModelSettings)
+    ]
+    assert rows == table
+
+
+@pytest.mark.parametrize("name", ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"])
+def test_every_link_leads_somewhere(name: str) -> None:
+    links = re.findall(r"\]\(([^)#]+)\)", (ROOT / name).read_text())
+    assert [link for link in links if not (ROOT / link).exists()] == []
+
+
+def test_every_make_target_is_documented() -> None:
+    targets = re.findall(r"^([a-z]+): \$\(STAMP\)", (ROOT / "Makefile").read_text(), re.M)
+    written = (ROOT / "README.md").read_text() + (ROOT / "CONTRIBUTING.md").read_text()
+    assert [t for t in targets if t != "setup" and f"`make {t}`" not in written] == []
+
+
+def test_every_example_has_strokes_and_a_source() -> None:
+    photos = sorted((ROOT / "examples").glob("*.jpg"))
+    sources = (ROOT / "examples" / "SOURCES.md").read_text()
+    assert photos
+    for photo in photos:
+        assert json.loads(photo.with_suffix(".strokes.json").read_text())["branches"]
+        assert f"| {photo.name} |" in sources
+
+
+def test_every_test_photo_has_a_source() -> None:
+    sources = (ROOT / "tests" / "data" / "SOURCES.md").read_text()
+    photos = [p.name for p in (ROOT / "tests" / "data").glob("*.jpg")]
+    assert [name for name in photos if f"| {name} |" not in sources] == []
+
+
+def test_every_public_name_can_be_had() -> None:
+    assert all(getattr(treestroke, name) is not None for name in treestroke.__all__)

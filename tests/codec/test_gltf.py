@@ -1,0 +1,133 @@
+import json
+from io import BytesIO
+
+import numpy as np
+import pygltflib
+import pytest
+import trimesh
+from PIL import Image
+from tests.builders import oak, stick
+
+from treestroke.codec.gltf import encode_glb
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.mesh import Mesh, Surface
+from treestroke.core.mesh.tubes import TubeParams, tubes
+
+CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+
+
+def bark(texture_height: int = 8) -> Surface:
+    return Surface(tubes(stick(), TubeParams()), np.full((texture_height, 4, 3), 90, np.uint8))
+
+
+def leaves(count: int = 2) -> Surface:
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+    positions = np.concatenate([square + np.array([0, 0, k]) for k in range(count)]).astype(np.float32)
+    faces = np.concatenate([np.array([[0, 1, 2], [0, 2, 3]]) + 4 * k for k in range(count)]).astype(np.uint32)
+    shades = np.tile(np.array([0.0, 0.5, 1.0, 1.0], np.float32), count)
+    uvs = np.tile(np.array([[0, 1], [1, 1], [1, 0], [0, 0.25]], np.float32), (count, 1))
+    normals = np.tile(np.array([0, 0, 1], np.float32), (4 * count, 1))
+    atlas = np.zeros((4, 4, 4), np.uint8)
+    atlas[1:3, 1:3] = (10, 200, 30, 255)
+    return Surface(Mesh(positions, normals, uvs, faces, shades), atlas)
+
+
+def document(glb: bytes) -> dict:
+    length = int.from_bytes(glb[12:16], "little")
+    return json.loads(glb[20 : 20 + length])
+
+
+def values(glb: bytes, index: int) -> np.ndarray:
+    """Read an accessor by pygltflib, independently of the writer."""
+    gltf = pygltflib.GLTF2.load_from_bytes(glb)
+    row = gltf.accessors[index]
+    view = gltf.bufferViews[row.bufferView]
+    kind = {5121: np.uint8, 5123: np.uint16, 5125: np.uint32, 5126: np.float32}[row.componentType]
+    width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}[row.type]
+    read = np.frombuffer(gltf.binary_blob(), kind, row.count * width, view.byteOffset)
+    return read.reshape(row.count, width)
+
+
+def test_the_header_tells_the_length() -> None:
+    glb = encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1")
+    assert glb[:4] == b"glTF"
+    assert int.from_bytes(glb[8:12], "little") == len(glb)
+    assert len(glb) % 4 == 0
+
+
+def test_geometry_returns_unchanged() -> None:
+    surface = Surface(tubes(oak(), TubeParams()), np.zeros((4, 4, 3), np.uint8))
+    glb = encode_glb(surface, None, CAMERA, generator="treestroke 1")
+    primitive = document(glb)["meshes"][0]["primitives"][0]
+    assert np.array_equal(values(glb, primitive["attributes"]["POSITION"]), surface.mesh.positions)
+    assert np.array_equal(values(glb, primitive["attributes"]["NORMAL"]), surface.mesh.normals)
+    assert np.array_equal(values(glb, primitive["attributes"]["TEXCOORD_0"]), surface.mesh.uvs)
+    assert np.array_equal(values(glb, primitive["indices"]).reshape(-1, 3), surface.mesh.triangles)
+
+
+def test_trimesh_reads_both_parts_by_name() -> None:
+    glb = encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1")
+    scene = trimesh.load(BytesIO(glb), file_type="glb", process=False)
+    assert set(scene.geometry) == {"bark", "leaf"}
+    assert len(scene.geometry["leaf"].faces) == 4
+    positions = bark().mesh.positions
+    assert np.allclose(scene.geometry["bark"].bounds, [positions.min(axis=0), positions.max(axis=0)])
+
+
+def test_the_scene_tells_where_the_photo_stood() -> None:
+    scene = document(encode_glb(bark(), None, CAMERA, generator="treestroke 1"))["scenes"][0]
+    photo = {"width": 640, "height": 480, "metres_per_pixel": 0.01, "root": [320.5, 450.25]}
+    assert scene == {"nodes": [0], "extras": {"photo": photo}}
+
+
+def test_materials_are_named_and_leaves_are_cut_out() -> None:
+    wood, leaf = document(encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1"))["materials"]
+    assert (wood["name"], leaf["name"]) == ("bark", "leaf")
+    assert "alphaMode" not in wood
+    assert (leaf["alphaMode"], leaf["alphaCutoff"], leaf["doubleSided"]) == ("MASK", 0.5, True)
+
+
+def test_bark_repeats_and_leaves_clamp() -> None:
+    samplers = document(encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1"))["samplers"]
+    assert [s["wrapS"] for s in samplers] == [10497, 33071]
+
+
+def test_leaf_coordinates_and_shades_are_normalised_integers() -> None:
+    glb = encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1")
+    attributes = document(glb)["meshes"][1]["primitives"][0]["attributes"]
+    rows = document(glb)["accessors"]
+    assert [rows[attributes[a]]["normalized"] for a in ("TEXCOORD_0", "COLOR_0")] == [True, True]
+    assert values(glb, attributes["TEXCOORD_0"])[:4].tolist() == [[0, 65535], [65535, 65535], [65535, 0], [0, 16384]]
+    assert values(glb, attributes["COLOR_0"])[:2].tolist() == [[0, 0, 0, 255], [128, 128, 128, 255]]
+
+
+def test_bark_without_shades_has_no_colours() -> None:
+    glb = encode_glb(bark(), None, CAMERA, generator="treestroke 1")
+    assert "COLOR_0" not in document(glb)["meshes"][0]["primitives"][0]["attributes"]
+
+
+def test_the_leaf_atlas_keeps_its_alpha_and_its_colours() -> None:
+    glb = encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1")
+    gltf = pygltflib.GLTF2.load_from_bytes(glb)
+    view = gltf.bufferViews[gltf.images[1].bufferView]
+    content = gltf.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
+    assert np.array_equal(np.asarray(Image.open(BytesIO(content))), leaves().texture)
+
+
+@pytest.mark.parametrize(("count", "width"), [(16_383, 5123), (16_384, 5125)])
+def test_indices_are_as_narrow_as_they_can_be(count: int, width: int) -> None:
+    glb = encode_glb(bark(), leaves(count), CAMERA, generator="treestroke 1")
+    book = document(glb)
+    assert book["accessors"][book["meshes"][1]["primitives"][0]["indices"]]["componentType"] == width
+
+
+def test_views_are_aligned_and_positions_bounded() -> None:
+    book = document(encode_glb(bark(7), leaves(), CAMERA, generator="treestroke 1"))
+    assert all(view["byteOffset"] % 4 == 0 for view in book["bufferViews"])
+    positions = book["accessors"][book["meshes"][1]["primitives"][0]["attributes"]["POSITION"]]
+    assert (positions["min"], positions["max"]) == ([0, 0, 0], [1, 1, 1])
+
+
+def test_equal_surfaces_give_equal_bytes() -> None:
+    first, second = (encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1") for _ in range(2))
+    assert first == second

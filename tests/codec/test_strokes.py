@@ -1,0 +1,100 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from treestroke.codec.strokes import encode_strokes, parse_strokes, strokes_from
+from treestroke.core.errors import StrokesError
+
+SQUARE = [[10, 10], [90, 10], [90, 60], [10, 60]]
+GOOD = {"crown": {"points": SQUARE}, "branches": [{"points": [[50, 95], [50, 60]], "width": 4}]}
+
+
+def test_a_real_stroke_file_comes_back_as_it_was(maple_strokes: Path) -> None:
+    read = parse_strokes(maple_strokes.read_bytes(), "strokes")
+    again = parse_strokes(encode_strokes(read), "strokes")
+    assert np.array_equal(read.crown.points, again.crown.points)
+    assert [b.points.tolist() for b in read.branches] == [b.points.tolist() for b in again.branches]
+
+
+def test_branches_and_erase_may_be_absent() -> None:
+    strokes = strokes_from({"crown": {"points": SQUARE}})
+    assert strokes.branches == strokes.erase == ()
+
+
+def test_a_width_is_kept() -> None:
+    assert strokes_from(GOOD).branches[0].width == 4.0
+
+
+def test_a_byte_order_mark_is_forgiven() -> None:
+    assert parse_strokes(b"\xef\xbb\xbf" + json.dumps(GOOD).encode(), "strokes").branches
+
+
+@pytest.mark.parametrize(
+    ("value", "where"),
+    [
+        ([], "strokes"),
+        ({}, "crown"),
+        ({**GOOD, "leaves": []}, "'leaves'"),
+        ({**GOOD, "crown": SQUARE}, "crown"),
+        ({**GOOD, "crown": {}}, "crown"),
+        ({**GOOD, "crown": {"points": SQUARE, "width": 3}}, "'width'"),
+        ({**GOOD, "branches": {}}, "branches"),
+        ({**GOOD, "branches": [{"points": [[1, 2], [3]]}]}, "branches/0/points/1"),
+        ({**GOOD, "branches": [{"points": [[1, 2], ["3", 4]]}]}, "branches/0/points/1"),
+        ({**GOOD, "branches": [{"points": [[1, 2], [True, 4]]}]}, "branches/0/points/1"),
+        ({**GOOD, "branches": [{"points": [[1, 2], [None, 4]]}]}, "branches/0/points/1"),
+        ({**GOOD, "branches": [{"points": "line"}]}, "branches/0/points"),
+        ({**GOOD, "branches": [{"points": SQUARE, "width": "3"}]}, "branches/0/width"),
+        ({**GOOD, "branches": [{"points": SQUARE, "colour": 1}]}, "branches/0"),
+        ({**GOOD, "erase": [{"points": SQUARE, "width": 3}]}, "erase/0"),
+        ({**GOOD, "erase": None}, "erase"),
+    ],
+)
+def test_a_malformed_part_is_refused_by_name(value: object, where: str) -> None:
+    with pytest.raises(StrokesError, match=where) as refused:
+        parse_strokes(json.dumps(value), "oak.json")
+    assert str(refused.value).startswith("oak.json: ")
+
+
+@pytest.mark.parametrize("token", ["NaN", "Infinity", "-Infinity", "1e999", "1" + "0" * 400])
+def test_a_number_that_is_not_finite_is_refused(token: str) -> None:
+    with pytest.raises(StrokesError, match="no number|not finite"):
+        parse_strokes('{"crown": {"points": [[1, 2], [3, 4], [5, TOKEN]]}}'.replace("TOKEN", token), "strokes")
+
+
+@pytest.mark.parametrize("text", ["", "{", b"\xff\xfe\x00", "[" * 100_000, '{"crown": 1,}'])
+def test_what_is_no_json_is_refused_in_one_line(text: str | bytes) -> None:
+    with pytest.raises(StrokesError, match="no valid JSON") as refused:
+        parse_strokes(text, "strokes")
+    assert "\n" not in str(refused.value)
+
+
+def test_too_many_strokes_are_refused() -> None:
+    with pytest.raises(StrokesError, match="201, at most 200"):
+        strokes_from({**GOOD, "branches": GOOD["branches"] * 200})
+
+
+def test_too_many_points_are_refused() -> None:
+    with pytest.raises(StrokesError, match="branches/0: it has 10001 points"):
+        strokes_from({**GOOD, "branches": [{"points": [[1, 1]] * 10_001}]})
+
+
+json_values = st.recursive(
+    st.none() | st.booleans() | st.floats() | st.text(max_size=5),
+    lambda inner: (
+        st.lists(inner, max_size=3) | st.dictionaries(st.sampled_from(["crown", "points", "width", "x"]), inner)
+    ),
+    max_leaves=8,
+)
+
+
+@given(json_values)
+def test_any_json_is_read_or_refused_but_never_breaks(value: object) -> None:
+    try:
+        strokes_from(value)
+    except StrokesError as error:
+        assert "\n" not in str(error)

@@ -1,0 +1,51 @@
+"""A round green tree before a blue sky, seen in 300 x 400 px, 10 m high."""
+
+import cv2
+import numpy as np
+import pytest
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
+from treestroke.core.leaf.atlas import Atlas, leaf_atlas
+from treestroke.core.skeleton.skeleton import Skeleton
+
+SKY, GREEN = (110, 160, 230), (70, 110, 40)
+
+
+@pytest.fixture(scope="session")
+def mask() -> np.ndarray:
+    disc = cv2.circle(np.zeros((400, 300), np.uint8), (150, 150), 120, 1, -1)
+    return disc > 0
+
+
+@pytest.fixture(scope="session")
+def photo(mask: np.ndarray) -> np.ndarray:
+    picture = np.where(mask[..., None], np.uint8(GREEN), np.uint8(SKY))
+    noise = np.random.default_rng(1).normal(0, 14, mask.shape)[..., None]
+    return np.clip(picture + noise, 0, 255).astype(np.uint8)
+
+
+@pytest.fixture(scope="session")
+def camera() -> Camera:
+    return Camera(300, 400, 10 / 360, (150.0, 390.0))
+
+
+@pytest.fixture(scope="session")
+def envelope(mask: np.ndarray, camera: Camera) -> Envelope:
+    return envelope_of_mask(mask, camera)
+
+
+@pytest.fixture(scope="session")
+def tree() -> Skeleton:
+    """A stem to the crown's middle and 300 limbs from there through the whole ball, thin in their outer half."""
+    rng, fork = np.random.default_rng(2), np.array([0.0, 6.65, 0.0])
+    ends = rng.normal(size=(300, 3))
+    ends *= 3.25 * rng.random((300, 1)) ** (1 / 3) / np.linalg.norm(ends, axis=1, keepdims=True)
+    points = np.vstack([np.zeros(3), fork, fork + 0.6 * ends, fork + ends])
+    radii = np.repeat([0.3, 0.2, 0.1, 0.01], [1, 1, 300, 300])
+    return Skeleton(points, radii, np.concatenate([[-1, 0], np.full(300, 1), np.arange(2, 302)]))
+
+
+@pytest.fixture(scope="session")
+def atlas(photo: np.ndarray, mask: np.ndarray) -> Atlas:
+    return leaf_atlas(photo, mask, "leaves", np.random.default_rng(0))

@@ -1,0 +1,139 @@
+from dataclasses import fields
+
+import cv2
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from treestroke.core.leaf.atlas import tile_alphas
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.leaf.placement import LeafParams, place_leaves
+
+HEIGHT = 10.0
+
+
+def place(scene, params=None, seed=0):
+    tree, mask, envelope, photo, atlas = scene
+    return place_leaves(tree, mask, envelope, photo, atlas, params or LeafParams(), np.random.default_rng(seed))
+
+
+@pytest.fixture(scope="module")
+def scene(tree, mask, envelope, photo, atlas):
+    return tree, mask, envelope, photo, atlas
+
+
+@pytest.fixture(scope="module")
+def leaves(scene) -> Leaves:
+    return place(scene)
+
+
+def shown(leaves, atlas, camera) -> np.ndarray:
+    """Draw the cards' opaque texels, 24 x 24 a tile, at twice the photo's resolution; halve by majority."""
+    canvas = np.zeros((2 * camera.height, 2 * camera.width), np.uint8)
+    for tile, alpha in enumerate(tile_alphas(atlas)):
+        row, column = np.nonzero(cv2.resize(alpha, (24, 24), interpolation=cv2.INTER_AREA) > 127)
+        part = leaves.select(leaves.tiles == tile)
+        x = ((column + 0.5) / 12 - 1)[:, None] * np.where(part.flips, -1, 1)
+        y = (1 - (row + 0.5) / 12)[:, None]
+        points = part.centres + x[..., None] * part.rights + y[..., None] * part.ups
+        pixels = (2 * camera.pixels_from_world(points.reshape(-1, 3))).astype(int)
+        canvas[pixels[:, 1], pixels[:, 0]] = 1
+    return cv2.resize(canvas * 255, (camera.width, camera.height), interpolation=cv2.INTER_AREA) > 127
+
+
+def test_every_centre_projects_into_the_foliage(leaves, mask, camera):
+    pixels = np.floor(camera.pixels_from_world(leaves.centres)).astype(int)
+    assert mask[pixels[:, 1], pixels[:, 0]].all()
+
+
+def test_the_foliage_is_covered_and_little_else(leaves, mask, atlas, camera):
+    drawn = shown(leaves, atlas, camera)
+    assert (drawn & mask).sum() >= 0.95 * mask.sum()
+    assert (drawn & ~mask).sum() <= 0.02 * drawn.sum()
+
+
+def test_a_big_gap_stays_open(tree, mask, envelope, photo, atlas, camera):
+    gap = cv2.circle(np.zeros(mask.shape, np.uint8), (190, 130), 35, 1, -1) > 0
+    drawn = shown(place((tree, mask & ~gap, envelope, photo, atlas)), atlas, camera)
+    assert (drawn & gap).sum() <= 0.06 * gap.sum()
+
+
+def test_rights_and_ups_are_at_right_angles(leaves):
+    assert np.abs((leaves.rights * leaves.ups).sum(axis=1)).max() < 1e-9
+
+
+def test_most_sides_are_1_5_to_3_per_cent_of_the_crowns_width(leaves, envelope, camera):
+    width = 2 * envelope.radius_px.max() * camera.metres_per_pixel
+    share = 2 * np.linalg.norm(leaves.ups, axis=1) / width
+    assert share.max() <= 0.03
+    assert (share >= 0.015).mean() >= 0.75
+
+
+def test_cards_keep_to_their_branches(leaves, tree):
+    steps = np.linspace(0, 1, 60)[:, None, None]
+    along = tree.points[tree.parents[1:]] + steps * (tree.points[1:] - tree.points[tree.parents[1:]])
+    distance = cKDTree(along.reshape(-1, 3)).query(leaves.centres)[0]
+    assert np.quantile(distance, 0.95) <= 0.05 * HEIGHT
+    assert distance.max() <= 0.1 * HEIGHT
+
+
+def test_the_crown_is_as_deep_as_wide(leaves):
+    low, high = np.percentile(leaves.centres, [2, 98], axis=0)
+    assert 0.8 <= (high - low)[2] / (high - low)[0] <= 1.1
+
+
+def test_cards_face_out_of_the_crown(leaves):
+    facing = np.cross(leaves.rights, leaves.ups)
+    outward = leaves.centres - leaves.centres.mean(axis=0)
+    assert ((facing * outward).sum(axis=1) > 0).mean() > 0.8
+
+
+def test_the_inside_is_darker_than_the_outside(leaves, envelope):
+    reach = envelope.reach(leaves.centres)
+    assert leaves.shades[reach < 0.3].mean() < leaves.shades[reach > 0.8].mean() - 0.15
+    assert leaves.shades.min() >= 0.55
+    assert leaves.shades.max() <= 1
+
+
+def test_the_front_takes_the_photos_colour_and_the_back_is_no_mirror(tree, mask, envelope, atlas, photo):
+    stripes = photo.copy()
+    stripes[mask & ((np.arange(300) // 40 % 2) == 0)] = (200, 60, 30)
+    two = np.where(np.arange(16)[:, None] % 2, (200.0, 60.0, 30.0), (70.0, 110.0, 40.0))
+    coloured = type(atlas)(atlas.image, atlas.boxes, two)
+    leaves = place((tree, mask, envelope, stripes, coloured))
+    pixels = envelope.camera.pixels_from_world(leaves.centres).astype(int)
+    agrees = (stripes[pixels[:, 1], pixels[:, 0], 0] > 140) == (leaves.tiles % 2 == 1)
+    depth = leaves.centres[:, 2] / np.maximum(envelope.half_depth(leaves.centres), 1e-9)
+    assert agrees[depth > 0.5].mean() > 0.9
+    assert agrees[depth < -0.3].mean() < 0.75
+
+
+@pytest.mark.parametrize("params", [LeafParams(kind="bare"), LeafParams(density=0), LeafParams(max_cards=0)])
+def test_some_trees_bear_nothing(scene, params):
+    assert len(place(scene, params)) == 0
+
+
+def test_an_empty_mask_bears_nothing(tree, mask, envelope, photo, atlas):
+    assert len(place((tree, np.zeros_like(mask), envelope, photo, atlas))) == 0
+
+
+@pytest.mark.parametrize("size", [0.3, 3.0])
+@pytest.mark.parametrize("density", [0.3, 3.0])
+def test_cards_stay_within_the_budget(scene, size, density):
+    leaves = place(scene, LeafParams(size=size, density=density, max_cards=3000))
+    assert 0 < len(leaves) <= 3000
+
+
+def test_density_scales_the_number_of_cards(scene, leaves):
+    assert len(place(scene, LeafParams(density=0.3))) < 0.5 * len(leaves)
+
+
+def test_the_same_seed_places_the_same_leaves(scene, leaves):
+    again = place(scene)
+    assert all(np.array_equal(getattr(again, f.name), getattr(leaves, f.name)) for f in fields(Leaves))
+
+
+@pytest.mark.parametrize("wrong", [{"size": 0.2}, {"density": 3.1}, {"max_cards": -1}, {"kind": "fruit"}])
+def test_params_out_of_range_are_refused(wrong):
+    with pytest.raises(ValueError, match="must"):
+        LeafParams(**wrong)

@@ -1,0 +1,63 @@
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from treestroke.core.errors import SettingsError
+from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, check_seed, settings_from
+
+
+def test_nothing_given_means_the_defaults() -> None:
+    assert settings_from({}) == ModelSettings(10.0, "auto", 300, "auto", 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"),
+    [("height", 0.1, 150), ("iterations", 0, 2000), ("leaf_size", 0.3, 3), ("leaf_density", 0, 3)],
+)
+def test_numbers_are_held_to_their_range(name: str, low: float, high: float) -> None:
+    step = 1 if name == "iterations" else 0.01
+    for allowed in (low, high):
+        assert getattr(settings_from({name: allowed}), name) == allowed
+    for beyond in (low - step, high + step):
+        with pytest.raises(SettingsError, match=f"^{name}: .* give .*from {low:g} to {high:g}$"):
+            settings_from({name: beyond})
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), True, "5", None, [5]])
+@pytest.mark.parametrize("name", ["height", "iterations"])
+def test_what_is_no_number_is_refused(name: str, value: object) -> None:
+    with pytest.raises(SettingsError, match=f"^{name}: "):
+        settings_from({name: value})
+
+
+def test_iterations_are_whole() -> None:
+    with pytest.raises(SettingsError, match="whole number"):
+        settings_from({"iterations": 2.5})
+
+
+@pytest.mark.parametrize(("name", "value"), [("library", "type3"), ("foliage", "Leaves"), ("library", 1)])
+def test_a_choice_is_one_of_its_names(name: str, value: object) -> None:
+    with pytest.raises(SettingsError, match=f"^{name}: .*auto, "):
+        settings_from({name: value})
+
+
+def test_an_unknown_name_is_refused_with_the_known_ones() -> None:
+    with pytest.raises(SettingsError, match=r"^wind: .*height, library, iterations, foliage, leaf_size, leaf_density$"):
+        settings_from({"wind": 1})
+
+
+def test_values_take_their_setting_s_own_type() -> None:
+    settings = settings_from({"height": np.float32(12), "iterations": np.int64(5)})
+    assert [type(getattr(settings, f.name)) for f in fields(settings)] == [float, str, int, str, float, float]
+
+
+@pytest.mark.parametrize("seed", [0, MAX_SEED, np.int64(7)])
+def test_a_seed_in_range_is_taken(seed: int) -> None:
+    assert check_seed(seed) == seed
+
+
+@pytest.mark.parametrize("seed", [-1, MAX_SEED + 1, 1.0, "1", True, None])
+def test_another_seed_is_refused(seed: object) -> None:
+    with pytest.raises(SettingsError, match="^seed: "):
+        check_seed(seed)

@@ -1,0 +1,96 @@
+import numpy as np
+import pytest
+
+from treestroke.core.errors import StrokesError
+from treestroke.core.stroke_rules import mend_strokes, require_trunk
+from treestroke.core.strokes import MendedStrokes, Stroke, Strokes
+
+WIDTH, HEIGHT = 400, 300
+CROWN = [[100, 40], [300, 40], [300, 160], [100, 160]]
+TRUNK = [[200, 290], [200, 150]]
+
+
+def mend(crown: object = CROWN, branches: object = (TRUNK,), erase: object = ()) -> MendedStrokes:
+    strokes = Strokes(
+        Stroke(np.array(crown, float)), *(tuple(Stroke(np.array(p, float)) for p in s) for s in (branches, erase))
+    )
+    return mend_strokes(strokes, WIDTH, HEIGHT)
+
+
+def test_good_strokes_stay_as_they_are() -> None:
+    mended = mend(branches=(TRUNK, [[203, 200], [280, 120]]), erase=([[1, 2], [3, 4]],))
+    assert mended.warnings == ()
+    assert mended.strokes.branches[1].points.tolist() == [[203, 200], [280, 120]]
+
+
+def test_points_outside_are_clamped_to_the_photo() -> None:
+    mended = mend(crown=[[-50, -50], [450, -50], [450, 160], [-50, 160]])
+    assert mended.strokes.crown.points.tolist() == [[0, 0], [400, 0], [400, 160], [0, 160]]
+
+
+@pytest.mark.parametrize(
+    ("strokes", "message"),
+    [
+        ({"crown": [[10, 10], [90, 90], [10, 10]]}, "^crown: it has 2 distinct points"),
+        ({"crown": [[10, 10], [20, 10], [20, 20], [10, 20]]}, r"^crown: it encloses 0\.0"),
+        ({"crown": [[10, 10], [50, 50], [90, 90]]}, r"^crown: it encloses 0\.00%"),
+        ({"branches": ([[200, 290], [200, 290]],)}, "^branches/0: it has 1 distinct point "),
+        ({"branches": (TRUNK, [[500, 50], [600, 50]])}, "^branches/1: it has 1 distinct point "),
+        ({"erase": ([[5, 5], [5, 5]],)}, "^erase/0: it has 1 distinct point "),
+        ({"branches": ([[200, 290], [np.nan, 150]],)}, "^branches/0: a coordinate is not a finite"),
+        ({"branches": ([[200, 290], [200, np.inf]],)}, "^branches/0: a coordinate is not a finite"),
+        ({"branches": ([[20, 290], [20, 180]],)}, "^branches/0: the trunk neither touches nor points into the crown"),
+        ({"branches": ([[200, 200], [200, 290]],)}, "^branches/0: the trunk neither touches nor points into the crown"),
+        ({"branches": (TRUNK,) * 200}, "^strokes: there are 201"),
+        ({"branches": ([[200, 290], *([[200, 150]] * 10_000)],)}, "^branches/0: it has 10001 points"),
+    ],
+)
+def test_unusable_strokes_are_refused_by_name(strokes: dict[str, object], message: str) -> None:
+    with pytest.raises(StrokesError, match=message):
+        mend(**strokes)
+
+
+def test_a_width_that_is_not_positive_is_refused() -> None:
+    strokes = Strokes(Stroke(np.array(CROWN, float)), (Stroke(np.array(TRUNK, float), width=0.0),))
+    with pytest.raises(StrokesError, match="^branches/0: width"):
+        mend_strokes(strokes, WIDTH, HEIGHT)
+
+
+def test_a_trunk_that_points_into_the_crown_from_afar_is_taken() -> None:
+    assert mend(branches=([[200, 290], [201, 260]],)).warnings == ()
+
+
+def test_a_trunk_may_pass_the_crown_by_a_loose_hand() -> None:
+    assert mend(branches=([[304, 290], [304, 30]],)).warnings == ()
+
+
+def test_a_branch_that_hangs_in_the_air_is_joined_to_the_nearest() -> None:
+    mended = mend(branches=(TRUNK, [[230, 180], [280, 120]]))
+    assert mended.strokes.branches[1].points.tolist() == [[200, 180], [230, 180], [280, 120]]
+    assert [(w.code, w.stroke) for w in mended.warnings] == [("branch_joined", "branches/1")]
+
+
+def test_a_branch_may_be_joined_to_another_branch() -> None:
+    mended = mend(branches=(TRUNK, [[200, 180], [280, 120]], [[280, 140], [290, 100]]))
+    assert "branches/1" in mended.warnings[0].detail
+
+
+def test_a_second_stem_beside_the_root_is_not_joined() -> None:
+    small = np.array([[190, 140], [210, 140], [210, 160], [190, 160]]) * 1.0
+    mended = mend(crown=np.vstack([small, [[100, 10], [300, 10]]]), branches=(TRUNK, [[208.2, 290], [240, 150]]))
+    assert mended.warnings == ()
+    assert len(mended.strokes.branches[1].points) == 2
+
+
+def test_a_crown_that_crosses_itself_is_kept_with_a_warning() -> None:
+    eight = [[100, 40], [300, 160], [300, 40], [100, 160]]
+    mended = mend(crown=eight, branches=([[150, 290], [150, 150]],))
+    assert mended.strokes.crown.points.tolist() == eight
+    assert [(w.code, w.stroke) for w in mended.warnings] == [("crown_crosses_itself", "crown")]
+
+
+def test_a_model_needs_a_trunk_but_a_trace_does_not() -> None:
+    mended = mend(branches=())
+    assert mended.strokes.branches == ()
+    with pytest.raises(StrokesError, match="branches"):
+        require_trunk(mended.strokes)

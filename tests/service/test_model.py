@@ -1,0 +1,62 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import treestroke
+from treestroke.service.model import STAGES, Model
+
+QUICK = {"iterations": 5}
+
+
+@pytest.fixture(scope="module")
+def maple(maple_photo: Path, maple_strokes: Path) -> Model:
+    return treestroke.model(maple_photo, maple_strokes, QUICK, seed=1)
+
+
+def test_the_report_has_the_contract_s_fields(maple: Model) -> None:
+    report = maple.report
+    assert set(report) == {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
+    assert set(report["seconds"]) == set(STAGES)
+    assert set(report["counts"]) == {"iterations", "branches", "leaves", "triangles", "bytes"}
+    assert set(report["score"]) == {"silhouette_iou", "attractors_reached", "depth_over_width"}
+    assert all(type(count) is int for count in report["counts"].values())
+
+
+def test_every_stage_took_some_time(maple: Model) -> None:
+    assert min(maple.report["seconds"].values()) > 0
+
+
+def test_auto_foliage_is_named(maple: Model) -> None:
+    assert maple.report["settings"]["foliage"] == "leaves"
+
+
+def test_the_same_input_gives_the_same_bytes_however_it_is_handed_in(
+    maple: Model, maple_photo: Path, maple_strokes: Path
+) -> None:
+    pixels = treestroke.trace(maple_photo, maple_strokes).photo
+    assert treestroke.model(pixels, maple_strokes, treestroke.ModelSettings(**QUICK), 1).glb == maple.glb
+
+
+def test_another_seed_gives_another_tree(maple: Model, maple_photo: Path, maple_strokes: Path) -> None:
+    assert treestroke.model(maple_photo, maple_strokes, QUICK, seed=2).glb != maple.glb
+
+
+def test_progress_goes_through_the_stages_in_order(maple_photo: Path, maple_strokes: Path) -> None:
+    seen: list[tuple[str, float]] = []
+    treestroke.model(maple_photo, maple_strokes, QUICK, report=lambda stage, fraction: seen.append((stage, fraction)))
+    assert list(dict.fromkeys(stage for stage, _ in seen)) == list(STAGES)
+    assert all(0.0 <= fraction <= 1.0 for _, fraction in seen)
+
+
+def test_the_preview_is_a_picture(maple: Model) -> None:
+    picture = maple.preview()
+    assert picture.dtype == np.uint8
+    assert picture.std() > 10
+
+
+def test_strokes_without_a_trunk_are_refused(maple_photo: Path, maple_strokes: Path) -> None:
+    crown = treestroke.trace(maple_photo, maple_strokes)
+    points = [[0, 0], [crown.photo.shape[1], 0], [300, 400]]
+    with pytest.raises(treestroke.StrokesError, match="branches"):
+        treestroke.model(maple_photo, {"crown": {"points": points}})

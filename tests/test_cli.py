@@ -1,0 +1,260 @@
+"""The command line, in process: exit codes, single lines, and files whole or not at all."""
+
+import json
+import resource
+import signal
+import zipfile
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+import treestroke
+from treestroke.cli import main
+from treestroke.codec.image import decode_photo
+
+QUICK = ["--iterations", "5"]
+
+
+@pytest.fixture
+def run(tmp_path: Path, maple_photo: Path, maple_strokes: Path, capsys: pytest.CaptureFixture[str]):
+    """Run ``model`` on the maple with changes; give the exit code, the lines on stderr and the files left behind."""
+
+    def run(*more: str, photo: object = maple_photo, strokes: object = maple_strokes, out: str = "tree.glb"):
+        code = main(["model", str(photo), "--strokes", str(strokes), "--out", str(tmp_path / out), *QUICK, *more])
+        return code, capsys.readouterr().err.splitlines(), sorted(p.name for p in tmp_path.iterdir())
+
+    return run
+
+
+def strokes_file(tmp_path: Path, maple_strokes: Path, **changes: object) -> Path:
+    path = tmp_path.parent / f"{tmp_path.name}.strokes.json"
+    path.write_text(json.dumps({**json.loads(maple_strokes.read_text()), **changes}))
+    return path
+
+
+def picture_file(tmp_path: Path, image: Image.Image, ending: str = "png") -> Path:
+    path = tmp_path.parent / f"{tmp_path.name}.{ending}"
+    image.save(path)
+    return path
+
+
+def test_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as left:
+        main(["--version"])
+    assert left.value.code == 0
+    assert capsys.readouterr().out == f"treestroke {treestroke.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        [],
+        ["grow"],
+        ["model"],
+        ["model", "photo.jpg"],
+        ["model", "photo.jpg", "--out", "x.glb"],
+        ["model", "photo.jpg", "--strokes", "s.json", "--out", "x.glb", "--wind", "3"],
+        ["model", "photo.jpg", "--strokes", "s.json", "--out", "x.glb", "--heigh", "3"],
+        ["model", "photo.jpg", "other.jpg", "--strokes", "s.json", "--out", "x.glb"],
+        ["model", "photo.jpg", "--strokes", "s.json", "--out"],
+        ["model", "a.treestroke", "--strokes", "s.json", "--out", "x.glb"],
+        ["trace", "photo.jpg"],
+        ["trace", "photo.jpg", "--strokes", "s.json", "--seed", "1"],
+    ],
+)
+def test_wrong_usage_is_one_line_and_exit_2(argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(argv) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert len(said.err.splitlines()) == 1
+    assert said.err.startswith("treestroke: ")
+
+
+@pytest.mark.parametrize(
+    ("flags", "name"),
+    [
+        (["--height", "0"], "height"),
+        (["--height", "tall"], "height"),
+        (["--height", "nan"], "height"),
+        (["--iterations", "2.5"], "iterations"),
+        (["--iterations", "2001"], "iterations"),
+        (["--library", "type3"], "library"),
+        (["--foliage", "moss"], "foliage"),
+        (["--leaf-size", "0.1"], "leaf_size"),
+        (["--leaf_density", "4"], "leaf_density"),
+        (["--seed", "-1"], "seed"),
+        (["--seed", "9223372036854775808"], "seed"),
+        (["--seed", "1.5"], "seed"),
+    ],
+)
+def test_a_setting_out_of_range_is_refused_by_name(run, flags: list[str], name: str) -> None:
+    code, lines, left = run(*flags)
+    assert (code, left) == (2, [])
+    assert len(lines) == 1
+    assert f"treestroke: {name}: " in lines[0]
+
+
+@pytest.mark.parametrize("photo", ["missing.jpg", ".", "SOURCES.md"])
+def test_a_photo_that_cannot_be_read_is_refused(run, maple_photo: Path, photo: str) -> None:
+    code, lines, left = run(photo=maple_photo.parent / photo)
+    assert (code, len(lines), left) == (2, 1, [])
+    assert photo in lines[0] or "examples" in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("image", "ending"),
+    [
+        (Image.new("RGB", (63, 200)), "png"),
+        (Image.new("L", (16_400, 64)), "png"),
+        (Image.new("1", (8_000, 6_300)), "png"),
+        (Image.new("RGB", (200, 200)), "gif"),
+        (Image.new("RGB", (200, 200)), "tiff"),
+    ],
+)
+def test_a_photo_out_of_bounds_is_refused(run, tmp_path: Path, image: Image.Image, ending: str) -> None:
+    code, lines, left = run(photo=picture_file(tmp_path, image, ending))
+    assert (code, len(lines), left) == (2, 1, [])
+
+
+def test_a_photo_cut_short_is_refused(run, tmp_path: Path, maple_photo: Path) -> None:
+    short = tmp_path.parent / f"{tmp_path.name}.jpg"
+    short.write_bytes(maple_photo.read_bytes()[:50_000])
+    code, lines, left = run(photo=short)
+    assert (code, len(lines), left) == (2, 1, [])
+
+
+LINE = [[340, 580], [345, 300]]
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [
+        ({"crown": {"points": [[0, 0], [1, 1]]}}, "crown"),
+        ({"crown": {"points": [[0, 0], [9, 0], [9, 9]]}}, "crown"),
+        ({"crown": {"points": [[0, 0], [float("nan"), 0], [9, 9]]}}, "NaN"),
+        ({"crown": None}, "crown"),
+        ({"leaves": []}, "leaves"),
+        ({"branches": []}, "branches"),
+        ({"branches": [{"points": [[340, 580], [340, 580]]}]}, "branches/0"),
+        ({"branches": [{"points": [[340, 580], ["a", 0]]}]}, "branches/0"),
+        ({"branches": [{"points": [[2, 580], [1, 599]]}]}, "branches/0"),
+        ({"branches": [{"points": LINE}] * 200}, "at most 200"),
+        ({"branches": [{"points": LINE * 5_001}]}, "branches/0"),
+        ({"branches": [{"points": LINE, "colour": "red"}]}, "colour"),
+    ],
+)
+def test_strokes_that_describe_no_tree_are_refused(
+    run, tmp_path: Path, maple_strokes: Path, changes: dict, where: str
+) -> None:
+    code, lines, left = run(strokes=strokes_file(tmp_path, maple_strokes, **changes))
+    assert (code, len(lines), left) == (2, 1, [])
+    assert where in lines[0]
+
+
+def test_a_stroke_file_that_is_missing_or_no_json_is_refused(run, tmp_path: Path, maple_photo: Path) -> None:
+    for strokes in (tmp_path / "missing.json", maple_photo):
+        code, lines, left = run(strokes=strokes)
+        assert (code, len(lines), left) == (2, 1, [])
+
+
+@pytest.mark.parametrize("out", ["missing/tree.glb", "."])
+def test_a_place_that_no_file_can_have_is_refused(run, out: str) -> None:
+    code, lines, left = run(out=out)
+    assert (code, len(lines), left) == (2, 1, [])
+
+
+def test_an_input_is_not_written_over(run, tmp_path: Path, maple_photo: Path) -> None:
+    copy = tmp_path / "photo.jpg"
+    copy.write_bytes(maple_photo.read_bytes())
+    code, lines, left = run(photo=copy, out="photo.jpg")
+    assert (code, len(lines), left) == (2, 1, ["photo.jpg"])
+    assert copy.read_bytes() == maple_photo.read_bytes()
+
+
+def test_a_model_is_written_with_report_and_preview(run, tmp_path: Path) -> None:
+    code, lines, left = run("--report", str(tmp_path / "r.json"), "--preview", str(tmp_path / "p.png"), "--seed", "3")
+    assert (code, lines, left) == (0, [], ["p.png", "r.json", "tree.glb"])
+    assert (tmp_path / "tree.glb").read_bytes()[:4] == b"glTF"
+    report = json.loads((tmp_path / "r.json").read_text())
+    assert report["seed"] == 3
+    assert report["settings"]["iterations"] == 5
+    assert report["counts"]["bytes"] == (tmp_path / "tree.glb").stat().st_size
+    assert decode_photo((tmp_path / "p.png").read_bytes(), "preview").shape[0] == 620
+
+
+def test_command_line_and_library_give_the_same_bytes(
+    run, tmp_path: Path, maple_photo: Path, maple_strokes: Path
+) -> None:
+    run("--leaf-size", "1.5")
+    by_library = treestroke.model(maple_photo.read_bytes(), maple_strokes, {"leaf_size": 1.5, "iterations": 5})
+    assert (tmp_path / "tree.glb").read_bytes() == by_library.glb
+
+
+def test_a_project_file_gives_the_same_bytes(run, tmp_path: Path, maple_photo: Path, maple_strokes: Path) -> None:
+    project = tmp_path / "maple.treestroke"
+    with zipfile.ZipFile(project, "w") as archive:
+        archive.write(maple_photo, "photo.jpg")
+        archive.write(maple_strokes, "strokes.json")
+        archive.writestr("settings.json", json.dumps({"iterations": 5, "seed": 4}))
+    assert main(["model", str(project), "--out", str(tmp_path / "a.glb")]) == 0
+    run("--seed", "4")
+    assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "tree.glb").read_bytes()
+
+
+def test_trace_answers_in_the_contract_s_shape(tmp_path: Path, maple_photo: Path, maple_strokes: Path) -> None:
+    out, overlay = tmp_path / "t.json", tmp_path / "o.png"
+    argv = ["trace", str(maple_photo), "--strokes", str(maple_strokes), "--out", str(out), "--overlay", str(overlay)]
+    assert main(argv) == 0
+    answer = json.loads(out.read_text())
+    assert set(answer) == {"foliage", "skeleton", "warnings"}
+    skeleton = answer["skeleton"]
+    assert {len(skeleton[key]) for key in ("points", "radii", "parents", "stroke")} == {len(skeleton["points"])}
+    assert decode_photo(overlay.read_bytes(), "overlay").shape == decode_photo(maple_photo.read_bytes(), "photo").shape
+
+
+def test_trace_without_out_prints_its_answer(
+    tmp_path: Path, maple_photo: Path, maple_strokes: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    strokes = strokes_file(tmp_path, maple_strokes, branches=[])
+    assert main(["trace", str(maple_photo), "--strokes", str(strokes)]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["foliage"]
+    assert answer["skeleton"]["points"] == []
+
+
+def test_a_full_disk_is_exit_1_and_leaves_the_old_file_whole(run, tmp_path: Path) -> None:
+    (tmp_path / "tree.glb").write_bytes(b"old")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        code, lines, left = run()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        signal.signal(signal.SIGXFSZ, handler)
+    assert (code, len(lines), left) == (1, 1, ["tree.glb"])
+    assert (tmp_path / "tree.glb").read_bytes() == b"old"
+
+
+def test_a_full_device_is_exit_1(maple_photo: Path, maple_strokes: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    argv = ["model", str(maple_photo), "--strokes", str(maple_strokes), "--out", "/dev/full", *QUICK]
+    assert main(argv) == 1
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert Path("/dev/full").is_char_device()
+
+
+def test_debug_shows_the_trace(maple_photo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["trace", str(maple_photo), "--strokes", "missing.json", "--debug"]) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_an_interrupt_is_exit_130_and_leaves_nothing(run) -> None:
+    before = signal.signal(signal.SIGALRM, signal.default_int_handler)
+    signal.setitimer(signal.ITIMER_REAL, 0.02)
+    try:
+        code, lines, left = run("--iterations", "2000")
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert (code, len(lines), left) == (130, 1, [])
