@@ -25,7 +25,7 @@
 typedef struct { double x, y, z; } Vec;
 typedef struct { Vec base, step; int samples, kept; } Segment;
 typedef struct { double *x, *y, *z, *d; int n, room; } Points;
-typedef struct { uint16_t *kept; double *bound[2]; int *fresh[2], *exact[2]; int seen[2], placed; } Visit;
+typedef struct { uint16_t *kept; double *bound[2]; int *fresh[2], *exact[2]; int seen[2], placed; Vec centre; double radius; } Visit;
 typedef struct { int parent; double fraction, root; Vec lever; } Shoot;
 typedef struct { int branch, placement; double gain; } Found;
 typedef struct { Visit *visit; Points near; int branch, gathered, top; double bound; } Slot;
@@ -353,6 +353,7 @@ static void rescan(const Engine *e, Slot *slot, int solid) {
 static int first_visit(Engine *e, Slot *slot, int solid) {
     if (!slot->visit) slot->visit = e->visits[slot->branch] = new_visit(e);
     if (!slot->visit) return failed();
+    ball(e, slot->branch, &slot->visit->centre, &slot->visit->radius);
     for (int i = 0; i < e->subtrees * e->angles; i++) evaluate(e, slot, solid, i, 0);
     slot->visit->seen[solid] = slot->visit->placed = 1;
     return 0;
@@ -465,10 +466,8 @@ static void raise_bounds(Engine *e, const Points *p, int i) {
     for (int b = 0; b < e->branches; b++) {
         Visit *v = e->visits[b];
         if (!v || !v->seen[1]) continue;
-        Vec c, at = {p->x[i], p->y[i], p->z[i]};
-        double r;
-        ball(e, b, &c, &r);
-        double most = (p->d[i] - fmax(0, norm(sub(at, c)) - r)) * (1 + 1e-9);
+        Vec at = {p->x[i], p->y[i], p->z[i]};
+        double most = (p->d[i] - fmax(0, norm(sub(at, v->centre)) - v->radius)) * (1 + 1e-9);
         for (int k = 0; k < e->subtrees * e->angles && most > 0; k++) v->bound[1][k] += most;
     }
 }

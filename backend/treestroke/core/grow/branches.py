@@ -23,31 +23,48 @@ class Chain:
     generation: int
 
 
-def successors_by_length(skeleton: Skeleton) -> Indices:
-    """Give each joint's child that bears the most length (n,), -1 at a tip: limbs go on that way."""
-    return heaviest_children(skeleton, accumulate_to_root(skeleton, edge_lengths(skeleton)))
+def successors_by_wood(skeleton: Skeleton) -> Indices:
+    """Give the child with which each joint's limb goes on (n,), -1 at a tip, in a frame with y down.
+
+    A limb follows the most wood (length times radius); the stems follow the way to their highest joint, so that a
+    long low limb does not take the leader's place.
+    """
+    wood = edge_lengths(skeleton) * (skeleton.radii + 1e-3 * skeleton.radii.max())
+    successors = heaviest_children(skeleton, accumulate_to_root(skeleton, wood))
+    highest: dict[int, int] = {}
+    root = np.arange(len(skeleton))
+    for joint, parent in enumerate(skeleton.parents.tolist()):
+        root[joint] = root[parent] if parent >= 0 else joint
+        best = highest.setdefault(int(root[joint]), joint)
+        if skeleton.points[joint, 1] < skeleton.points[best, 1]:
+            highest[int(root[joint])] = joint
+    for joint in highest.values():
+        while skeleton.parents[joint] >= 0:
+            successors[skeleton.parents[joint]] = joint
+            joint = int(skeleton.parents[joint])
+    return successors
 
 
-def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: float) -> list[Chain]:
+def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[float, float]) -> list[Chain]:
     """Split a skeleton (any unit) where it forks, turns, enters the crown, or has gone on for long.
 
-    ``inside`` (n,) marks the joints in the crown, ``longest`` (the skeleton's unit) bounds a chain there; a joint
-    where the direction turns by 30 degrees ends a chain. No chain is shorter than a tenth of ``longest`` for the
+    ``inside`` (n,) marks the joints in the crown, ``longest`` (the skeleton's unit) bounds a chain there, first of a
+    stem, second of a limb; a joint where the direction turns by 30 degrees ends a chain. No chain is shorter than a tenth of ``longest`` for the
     sake of a fork or a turn. Chains come parents first.
     """
-    successors = successors_by_length(skeleton)
+    successors = successors_by_wood(skeleton)
     order: dict[int, int] = {}
     chains = []
     for limb in limbs(skeleton, successors):
-        generation = 1 if skeleton.parents[limb[0]] < 0 and limb[0] not in order else order[int(limb[0])] + 1
+        generation = order.get(int(limb[0]), 0) + 1
         for joint in limb.tolist():
             order.setdefault(joint, generation)
-        cuts = _cuts(skeleton, limb, inside, longest, np.radians(TURN_DEG))
+        cuts = _cuts(skeleton, limb, inside, longest[min(generation, 2) - 1])
         chains += [Chain(limb[a : b + 1], generation) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
     return chains
 
 
-def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest: float, turn: float) -> list[int]:
+def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest: float) -> list[int]:
     """Place the ends of a limb's chains, as positions in ``limb``."""
     if len(limb) < 2:
         return []
@@ -56,7 +73,7 @@ def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest:
     cuts = [0]
     for i in range(1, len(limb) - 1):
         crosses = inside[limb[i]] != inside[limb[i - 1]]
-        bends = counts[limb[i]] > 1 or _turn(skeleton.points[limb], arc, cuts[-1], i, longest) >= turn
+        bends = counts[limb[i]] > 1 or _turn(skeleton.points[limb], arc, cuts[-1], i, longest) >= TURN_DEG
         if crosses or (bends and min(arc[i] - arc[cuts[-1]], arc[-1] - arc[i]) >= 0.1 * longest):
             cuts.append(i)
     cuts.append(len(limb) - 1)
@@ -64,11 +81,11 @@ def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest:
 
 
 def _turn(points: Floats, arc: Floats, start: int, at: int, longest: float) -> float:
-    """Measure the angle between the way since ``start`` and the way ahead of ``at``, radians."""
+    """Measure the angle between the way since ``start`` and the way ahead of ``at``, degrees."""
     ahead = min(int(np.searchsorted(arc, arc[at] + STRAIGHT_SHARE * longest)), len(arc) - 1)
     before, after = points[at] - points[start], points[max(ahead, at + 1)] - points[at]
     lengths = np.sqrt((before**2).sum() * (after**2).sum())
-    return float(np.arccos(np.clip(before @ after / lengths, -1, 1))) if lengths > 0 else 0.0
+    return float(np.degrees(np.arccos(np.clip(before @ after / lengths, -1, 1)))) if lengths > 0 else 0.0
 
 
 def _even(cuts: list[int], arc: Floats, inside: NDArray[np.bool_], longest: float) -> list[int]:

@@ -158,32 +158,41 @@ class PlainEvaluator:
         ends = laid.base + laid.step * laid.kept[..., None]
         low = np.minimum(laid.base, ends)[laid.kept > 0].min(axis=0, initial=np.inf) - self._rules.closeness
         high = np.maximum(laid.base, ends)[laid.kept > 0].max(axis=0, initial=-np.inf) + self._rules.closeness
-        return self._wood[((self._wood >= low) & (self._wood <= high)).all(axis=1)]
+        return np.asfortranarray(self._wood[((self._wood >= low) & (self._wood <= high)).all(axis=1)])
 
     def _uncrowded(self, laid: _Laid, at: tuple[int, int], near: Floats) -> Indices:
         """Drop the shoots (k,) of a placement whose outer half crowds the tree, and what they bear."""
         kept = laid.kept[at].copy()
+        shoot, order, points = _samples(laid, at, kept)
+        outer = 2 * order >= kept[shoot]
+        kept[shoot[outer][self._crowded(points[outer], near)]] = 0
         for i in np.flatnonzero(kept).tolist():
             parent = int(self._library.parents[at[0], i])
-            outer = np.arange((kept[i] + 1) // 2, kept[i] + 1)
-            points = laid.base[at][i] + outer[:, None] * laid.step[at][i]
-            apart = points[:, None] - near
-            if (parent >= 0 and kept[parent] == 0) or (_dot(apart, apart) < self._rules.closeness**2).any():
+            if parent >= 0 and kept[parent] == 0:
                 kept[i] = 0
         return kept
+
+    def _crowded(self, points: Floats, near: Floats) -> NDArray[np.bool_]:
+        """Tell which points (q, 3) lie too close to one of the tree's samples."""
+        if len(points) == 0 or len(near) == 0:
+            return np.zeros(len(points), dtype=bool)
+        limit = self._rules.closeness
+        low, high = points.min(axis=0) - limit, points.max(axis=0) + limit
+        within = np.logical_and.reduce([(c >= a) & (c <= b) for c, a, b in zip(near.T, low, high, strict=True)])
+        columns = [column[within] for column in near.T]
+        scratch = np.empty((2, len(points), len(columns[0])))
+        return np.asarray((_squares(columns, points, scratch) < limit * limit).any(axis=1))
 
     def _gains(self, branch: int, in_space: bool) -> Floats:
         """Measure the gain of every placement (s, a) on a branch."""
         laid = self._lay(branch)
         near = self._surroundings(branch, laid)
         gains = np.zeros(laid.kept.shape[:2])
-        for at in np.ndindex(*gains.shape):
-            kept = self._uncrowded(laid, at, near)
-            standing = [
-                laid.base[at][i] + np.arange(1, kept[i] + 1)[:, None] * laid.step[at][i] for i in np.flatnonzero(kept)
-            ]
-            if standing:
-                distances = self._nearest(self._points[in_space], np.vstack(standing))
+        for subtree, angle in np.argwhere(laid.kept.any(axis=2)).tolist():
+            at = subtree, angle
+            samples = _samples(laid, at, self._uncrowded(laid, at, near))[2]
+            if len(samples):
+                distances = self._nearest(self._points[in_space], samples)
                 gains[at] = np.maximum(self._distances[in_space] - distances, 0).sum()
         return gains
 
@@ -198,6 +207,13 @@ class PlainEvaluator:
             block = samples[start : start + step]
             np.minimum(nearest, _squares(columns, block, scratch[:, : len(block)]).min(axis=0), out=nearest)
         return np.sqrt(nearest)
+
+
+def _samples(laid: _Laid, at: tuple[int, int], kept: Indices) -> tuple[Indices, Indices, Floats]:
+    """Place the kept samples (q,) of a placement: their shoot, their number on it from 1, their points (q, 3)."""
+    shoot = np.repeat(np.arange(len(kept)), kept)
+    order = np.arange(1, len(shoot) + 1) - np.repeat(np.cumsum(kept) - kept, kept)
+    return shoot, order, laid.base[at][shoot] + order[:, None] * laid.step[at][shoot]
 
 
 def _squares(columns: list[Floats], samples: Floats, scratch: NDArray[np.float64]) -> Floats:

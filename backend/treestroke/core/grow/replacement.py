@@ -6,6 +6,7 @@ again and again; a shoot that leaves the crown is clipped, and the crown bounds 
 go; subtrees on a stem are stretched toward the crown's edge.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -28,6 +29,8 @@ MOST_STRETCH = 6.0
 THINNING = 0.75
 """A shoot's radius over its bearer's, for the order of candidates (the paper's rule)."""
 REACHED_PX = 10.0
+NARROW = 0.15
+"""Of the crown's greatest radius: a lower section narrower than this is a stem that the foliage mask took in."""
 PATIENCE = 10.0
 """Times a branch may stand as a candidate in vain before it stands as if it were one generation later."""
 
@@ -56,8 +59,8 @@ class GrowthParams:
         A shoot clipped at the crown's edge to less than this share of its length is dropped.
     inward_cosine
         Least cosine between a shoot and the way from the crown's foot to its middle.
-    longest_chain
-        Longest piece of a visible limb that is one branch, as a share of the crown's height.
+    stem_piece, limb_piece
+        Longest piece of a visible stem or limb that is one branch, as a share of the crown's height.
     leader
         Share of the crown's height to which the first stem is carried on where no visible limb reaches it.
     tip_px
@@ -73,7 +76,8 @@ class GrowthParams:
     closeness_px: float = 10.0
     keep_share: float = 0.5
     inward_cosine: float = 0.0
-    longest_chain: float = 0.2
+    stem_piece: float = 0.2
+    limb_piece: float = 0.2
     leader: float = 0.65
     tip_px: float = 0.9
 
@@ -82,8 +86,8 @@ class GrowthParams:
             raise ValueError(f"growth needs iterations >= 0 and attractors, candidates and angles >= 1, got {self}")
         if self.mode not in ("alternating", "image", "space"):
             raise ValueError(f"the mode is alternating, image or space, not {self.mode!r}")
-        if min(self.spacing_px, self.closeness_px, self.tip_px, self.longest_chain) <= 0:
-            raise ValueError(f"spacing, closeness, tip and chain must be positive, got {self}")
+        if min(self.spacing_px, self.closeness_px, self.tip_px, self.stem_piece, self.limb_piece) <= 0:
+            raise ValueError(f"spacing, closeness, tip and pieces must be positive, got {self}")
         if not (0 < self.keep_share <= 1 and -1 <= self.inward_cosine <= 1 and 0 <= self.leader <= 1):
             raise ValueError(f"keep share, inward cosine or leader is out of range in {self}")
 
@@ -113,9 +117,9 @@ class Grown:
 def growth_for(kind: Kind, iterations: int = 300) -> GrowthParams:
     """Fit the figures to what the twigs bear: a conifer has one leader and many whorls, a bare tree finer twigs."""
     if kind == "needles":
-        return GrowthParams(iterations, longest_chain=0.07, leader=0.98, inward_cosine=-0.35)
+        return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":
-        return GrowthParams(iterations, attractors=4000, closeness_px=6.0, tip_px=0.6, longest_chain=0.14)
+        return GrowthParams(iterations, attractors=4000, closeness_px=6.0, tip_px=0.6, limb_piece=0.14)
     return GrowthParams(iterations)
 
 
@@ -159,27 +163,19 @@ def grow(
 
 
 class _Growth:
-    """The growing tree: its branches as lists, and the evaluator that measures them."""
+    """The growing tree: its branches as columns, filled up to ``count``, and the evaluator that measures them."""
 
-    def __init__(
-        self, visible: Skeleton, crown: Crown, library: tuple[Subtree, ...], params: GrowthParams
-    ) -> None:
+    def __init__(self, visible: Skeleton, crown: Crown, library: tuple[Subtree, ...], params: GrowthParams) -> None:
         self.params, self.crown, self.library = params, crown, library
-        unit = crown.unit
-        rules = Rules(
-            params.spacing_px * unit, params.closeness_px * unit, params.keep_share, params.inward_cosine, params.angles
-        )
-        self.evaluator: Evaluator = evaluator_for(crown, library, rules)
+        self.evaluator: Evaluator = evaluator_for(crown, library, _rules(params, crown.unit))
         self.chains = _chains(visible, crown, params)
-        self.bases = [visible.points[chain.joints[0]] for chain in self.chains]
-        self.tips = [visible.points[chain.joints[-1]] for chain in self.chains]
-        self.generation = [chain.generation for chain in self.chains]
-        thickest = max(float(visible.radii.max()), 1e-9)
-        self.radius = [float(visible.radii[chain.joints].mean()) / thickest for chain in self.chains]
-        self.bearer, self.fraction = [-1] * len(self.chains), [0.0] * len(self.chains)
-        self.born = [0] * len(self.chains)
-        self.stood: list[float] = [0.0] * len(self.chains)
-        self.open = [self._may_bear(i) for i in range(len(self.chains))]
+        self.count = len(self.chains)
+        room = self.count + params.iterations * max(len(subtree.parents) for subtree in library)
+        self.bases, self.tips = np.zeros((2, room, 3))
+        self.radius, self.fraction, self.stood = np.zeros((3, room))
+        self.generation, self.bearer, self.born = np.full((3, room), -1)
+        self.open = np.zeros(room, dtype=bool)
+        self._add_chains(visible)
         self._tell_evaluator(0)
         self.evaluator.add_attractors(crown.grid(params.attractors))
         self._turn_tips(0)
@@ -197,18 +193,30 @@ class _Growth:
 
     def table(self) -> BranchTable:
         """Give the branches as arrays."""
-        return BranchTable(
-            np.array(self.bearer, dtype=np.int64),
-            np.array(self.fraction),
-            np.array(self.tips),
-            np.array(self.born, dtype=np.int64),
-        )
+        own = slice(0, self.count)
+        return BranchTable(self.bearer[own], self.fraction[own], self.tips[own], self.born[own])
 
-    def _may_bear(self, branch: int) -> bool:
-        """Tell whether a branch may be replaced: some samples long, and ending in the crown."""
+    def _add_chains(self, visible: Skeleton) -> None:
+        """Fill the columns with the visible branches."""
+        known = _known_radii(visible)
+        for i, chain in enumerate(self.chains):
+            self.bases[i], self.tips[i] = visible.points[chain.joints[[0, -1]]]
+            self.radius[i], self.generation[i] = known[chain.joints].mean(), chain.generation
+            middle = (self.bases[i] + self.tips[i]) / 2
+            grows = in_mask(np.array([self.tips[i], middle]), self.crown.mask).all()
+            self.open[i] = grows and self._is_long(i) and not self._under_the_crown(float(middle[1]))
+        self.born[: self.count] = 0
+
+    def _is_long(self, branch: int) -> bool:
+        """Tell whether a branch is some samples long, so that it may be replaced."""
         way = self.tips[branch] - self.bases[branch]
-        long_enough = float(np.sqrt((way**2).sum())) >= 2 * self.params.spacing_px * self.crown.unit
-        return long_enough and bool(in_mask(self.tips[branch][None], self.crown.mask)[0])
+        return math.sqrt(float(way @ way)) >= 2 * self.params.spacing_px * self.crown.unit
+
+    def _under_the_crown(self, y: float) -> bool:
+        """Tell whether the crown is no wider at a height (y, px) than a stem might be, with its bulk above."""
+        radius = self.crown.radius
+        narrow = radius[int(np.clip(y, 0, len(radius) - 1))] < NARROW * float(radius.max())
+        return bool(narrow and y > int(np.argmax(radius)))
 
     def _choose(self, iteration: int, rng: np.random.Generator) -> Choice:
         """Find the best placement by this iteration's cost, or else by the other."""
@@ -222,65 +230,77 @@ class _Growth:
 
     def _candidates(self, rng: np.random.Generator) -> Indices:
         """Walk the branches from thick to thin, taking each with a probability inverse to its generation."""
-        left = np.flatnonzero(self.open)
-        left = left[np.argsort(-np.array(self.radius)[left], kind="stable")]
-        late = np.array(self.generation)[left] + np.array(self.stood)[left] / PATIENCE
+        left = np.flatnonzero(self.open[: self.count])
+        left = left[np.argsort(-self.radius[left], kind="stable")]
         chosen = np.zeros(0, dtype=np.int64)
         while len(left) and len(chosen) < self.params.candidates:
-            takes = rng.random(len(left)) * late < 1
+            takes = rng.random(len(left)) * (self.generation[left] + self.stood[left] / PATIENCE) < 1
             chosen = np.concatenate([chosen, left[takes]])
-            left, late = left[~takes], late[~takes]
+            left = left[~takes]
         chosen = np.sort(chosen[: self.params.candidates])
-        for branch in chosen.tolist():
-            self.stood[branch] += 1
+        self.stood[chosen] += 1
         return chosen
 
     def _replace(self, choice: Choice, iteration: int) -> None:
         """Let a branch bear the shoots of a placement."""
-        first = len(self.bases)
+        first = self.count
         self.open[choice.branch] = False
-        shoots = self.evaluator.place(choice)
-        for shoot in shoots:
+        for shoot in self.evaluator.place(choice):
             self._add(shoot, choice.branch if shoot.parent < 0 else first + shoot.parent, iteration)
-        if shoots:
+        if self.count > first:
             self._tell_evaluator(first)
             self._turn_tips(first)
 
     def _add(self, shoot: Shoot, bearer: int, iteration: int) -> None:
-        """Append one shoot to the lists."""
-        self.bases.append(shoot.base)
-        self.tips.append(shoot.tip)
-        self.bearer.append(bearer)
-        self.fraction.append(min(shoot.fraction, 1.0))
-        self.generation.append(self.generation[bearer] + 1)
-        self.radius.append(self.radius[bearer] * THINNING)
-        self.born.append(iteration)
-        self.stood.append(0.0)
-        self.open.append(self._may_bear(len(self.bases) - 1))
+        """Fill the next row with a shoot."""
+        i = self.count
+        self.bases[i], self.tips[i] = shoot.base, shoot.tip
+        self.bearer[i], self.fraction[i], self.born[i] = bearer, min(shoot.fraction, 1.0), iteration
+        self.generation[i] = self.generation[bearer] + 1
+        self.radius[i] = self.radius[bearer] * THINNING
+        self.open[i] = self._is_long(i)
+        self.count += 1
 
     def _tell_evaluator(self, first: int) -> None:
         """Hand the branches from ``first`` on to the evaluator."""
-        scales = np.array([self._scales(branch) for branch in range(first, len(self.bases))])
-        self.evaluator.add_branches(np.array(self.bases[first:]), np.array(self.tips[first:]), scales)
+        own = slice(first, self.count)
+        scales = np.array([[tree.bearer != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
+        for stem in np.flatnonzero(self.generation[own] == 1).tolist():
+            scales[stem] = self._stem_scales(first + stem)
+        self.evaluator.add_branches(self.bases[own], self.tips[own], scales)
 
-    def _scales(self, branch: int) -> Floats:
+    def _stem_scales(self, branch: int) -> Floats:
         """Stretch each subtree (s,) on a stem so that its longest shoot would reach the crown's edge; 0 forbids it."""
-        stem = self.generation[branch] == 1
-        middle = (self.bases[branch] + self.tips[branch]) / 2
-        length = float(np.sqrt(((self.tips[branch] - self.bases[branch]) ** 2).sum()))
+        middle, way = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
         row = int(np.clip(middle[1], 0, len(self.crown.radius) - 1))
-        reach = float(self.crown.radius[row]) / max(length, 1e-9)
-        scales = [float(np.clip(reach / tree.longest, 1, MOST_STRETCH)) if stem else 1.0 for tree in self.library]
-        allowed = [tree.bearer in ("any", "stem" if stem else "limb") for tree in self.library]
-        return np.where(allowed, scales, 0.0)
+        reach = float(self.crown.radius[row]) / max(math.sqrt(float(way @ way)), 1e-9)
+        stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
+        return np.where([tree.bearer != "limb" for tree in self.library], stretch, 0.0)
 
     def _turn_tips(self, first: int) -> None:
         """Add the tips from ``first`` on, turned by a quarter, to the attractors in space."""
-        self.evaluator.add_attractors(self.crown.turned(np.array(self.tips[first:])))
+        self.evaluator.add_attractors(self.crown.turned(self.tips[first : self.count]))
+
+
+def _rules(params: GrowthParams, unit: float) -> Rules:
+    """Scale the figures of a placement to the photo."""
+    return Rules(
+        params.spacing_px * unit, params.closeness_px * unit, params.keep_share, params.inward_cosine, params.angles
+    )
 
 
 def _chains(visible: Skeleton, crown: Crown, params: GrowthParams) -> list[Chain]:
     """Split the visible tree into chains, px."""
     rows = np.flatnonzero(crown.mask.any(axis=1))
-    longest = params.longest_chain * (rows[-1] - rows[0] + 1)
+    height = float(rows[-1] - rows[0] + 1)
+    longest = params.stem_piece * height, params.limb_piece * height
     return split_chains(visible, in_mask(visible.points, crown.mask), longest)
+
+
+def _known_radii(visible: Skeleton) -> Floats:
+    """Give joints (n,) of unknown radius their parent's."""
+    radii = visible.radii.copy()
+    for joint, parent in enumerate(visible.parents.tolist()):
+        if radii[joint] == 0 and parent >= 0:
+            radii[joint] = radii[parent]
+    return radii

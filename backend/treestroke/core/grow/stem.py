@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.grow.branches import successors_by_length
+from treestroke.core.grow.branches import successors_by_wood
 from treestroke.core.grow.crown import in_mask
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 
@@ -15,8 +15,8 @@ SLACK = 0.03
 
 
 def stem_of(skeleton: Skeleton) -> Indices:
-    """List the joints of the first stem from its root to its tip, along the limb that bears most."""
-    successors = successors_by_length(skeleton)
+    """List the joints of the first stem from its root to its tip, the way to its highest joint."""
+    successors = successors_by_wood(skeleton)
     joints = [0]
     while successors[joints[-1]] >= 0:
         joints.append(int(successors[joints[-1]]))

@@ -52,7 +52,7 @@ class FoliageParams:
 
     components: int = 10
     dilation_px: float = 10.0
-    smoothness: float = 60.0
+    smoothness: float = 30.0
     samples: int = 6000
     cut_pixels: int = 120_000
 
@@ -95,8 +95,12 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
     grow_px = params.dilation_px * max(height, width) / REFERENCE_SIDE
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= grow_px
     leaf, ground = _colour_models(pixels, inside, params)
-    odds = _log_odds(leaf, ground, pixels) + _place_prior(inside)
-    found = cut_grid(pixels, odds, region, params.smoothness, params.cut_pixels)
+    place = _place_prior(inside)
+    found = cut_grid(pixels, _log_odds(leaf, ground, pixels) + place, region, params.smoothness, params.cut_pixels)
+    if found.any():
+        leaf, ground = _refit(pixels, found, region, params)
+        odds = _log_odds(leaf, ground, pixels) + place
+        found = cut_grid(pixels, odds, region, params.smoothness, params.cut_pixels)
     if not found.any():
         found = inside
     mask, whole = np.zeros_like(crown), np.zeros_like(crown)
@@ -113,18 +117,28 @@ def _surroundings(crown: Mask) -> tuple[slice, slice]:
 
 
 def _colour_models(pixels: Photo, inside: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
-    """Split the crown's mixture in leaf and ground, and let the ring around the crown join the ground."""
-    depth = _depth(inside)
-    crown = _sample(pixels, inside, params.samples)
+    """Share the crown's components out between leaf and ground, and let the ring around the crown join the ground."""
+    crown, ring = _sample(pixels, inside, params.samples), _sample(pixels, ~inside, params.samples)
+    core = _sample(pixels, _depth(inside) > 0.45, params.samples)
     mixture = fit_mixture(crown, params.components)
-    ring = _sample(pixels, ~inside, params.samples)
-    is_leaf = _leaf_components(mixture, crown, _sample(pixels, depth > 0.45, params.samples), ring)
-    leaf = mixture.select(is_leaf)
-    outer = fit_mixture(ring, 6) if len(ring) else mixture.select(~is_leaf)
-    if is_leaf.all():
-        return leaf, outer
-    share = float(mixture.weights[~is_leaf].sum())
-    return leaf, join_mixtures([mixture.select(~is_leaf), outer], [max(share, 0.3), 0.5])
+    belief = _leaf_belief(mixture, crown, core, ring)
+    share = float((mixture.weights * (1 - belief)).sum())
+    grounds = [(_weighted(mixture, 1 - belief), max(share, 0.15))]
+    if len(ring):
+        grounds.append((fit_mixture(ring, params.components // 2), 0.5))
+    return _weighted(mixture, belief), join_mixtures([m for m, _ in grounds], [share for _, share in grounds])
+
+
+def _weighted(mixture: Mixture, belief: Floats) -> Mixture:
+    """Weigh each component by a belief (k,) in it."""
+    weights = mixture.weights * belief
+    return Mixture(weights / weights.sum(), mixture.means, mixture.covariances)
+
+
+def _refit(pixels: Photo, found: Mask, region: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
+    """Fit leaf and ground anew to what the first cut told apart."""
+    leaf, ground = _sample(pixels, found, params.samples), _sample(pixels, ~found, params.samples)
+    return fit_mixture(leaf, params.components // 2), fit_mixture(ground, params.components // 2 + 2)
 
 
 def _sample(pixels: Photo, where: Mask, count: int) -> NDArray[np.uint8]:
@@ -141,8 +155,8 @@ def _depth(inside: Mask) -> Floats:
     return np.asarray(away / max(float(away.max()), 1.0), dtype=np.float64)
 
 
-def _leaf_components(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -> Mask:
-    """Choose the components that are leaves, at least one (k,).
+def _leaf_belief(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -> Floats:
+    """Belief (k,), 0 to 1, that a component is leaves.
 
     A component speaks for leaves by how much commoner it is in the crown's core than in the ring around the
     crown, and by its hue.
@@ -150,10 +164,7 @@ def _leaf_components(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -
     shares = [_shares(mixture, colours) for colours in (crown, core, ring)]
     place = np.log((0.3 * shares[0] + 0.7 * shares[1] + 0.004) / (shares[2] + 0.004))
     votes = np.clip(place, -2.0, 2.0) + _hue_prior(mixture.means)
-    chosen = votes > 0
-    if not chosen.any():
-        chosen[int(votes.argmax())] = True
-    return chosen
+    return np.asarray(1 / (1 + np.exp(-4.0 * (votes - 0.2))))
 
 
 def _shares(mixture: Mixture, colours: Photo) -> Floats:
@@ -171,7 +182,7 @@ def _hue_prior(means: Floats) -> Floats:
     brightness = means.max(axis=1)
     vegetation = (np.maximum(red, green) - blue) / np.maximum(brightness, 40.0)
     sky = (blue - np.minimum(red, green)) / np.maximum(brightness, 40.0)
-    return 1.5 * np.clip(vegetation, 0, 0.6) - 2.5 * np.clip(sky - 0.08, 0, 0.6) * (brightness > 70)
+    return 1.5 * np.clip(vegetation, 0, 0.6) - 6.0 * np.clip(sky - 0.2, 0, 0.6) * (brightness > 60)
 
 
 def _log_odds(leaf: Mixture, ground: Mixture, pixels: Photo) -> NDArray[np.float32]:
@@ -184,4 +195,4 @@ def _log_odds(leaf: Mixture, ground: Mixture, pixels: Photo) -> NDArray[np.float
 def _place_prior(inside: Mask) -> NDArray[np.float32]:
     """Log odds by place (h, w): the stroke is loose, so its rim and what lies beyond it is rather ground."""
     depth = _depth(inside)
-    return np.where(inside, 1.2 - 2.2 * np.exp(-depth / 0.06), -2.0).astype(np.float32)
+    return np.where(inside, 0.3 - 1.5 * np.exp(-depth / 0.06), -2.0).astype(np.float32)

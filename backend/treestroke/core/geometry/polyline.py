@@ -1,0 +1,58 @@
+"""Chains of points."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+def arc_lengths(points: Floats) -> Floats:
+    """Length along a chain (n, d) up to each of its points (n,), 0 at the first."""
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def resample(points: Floats, step: float) -> Floats:
+    """Walk a chain (n, d), n >= 1, in equal steps of about ``step``; both ends stay."""
+    arc = arc_lengths(points)
+    count = max(1, round(float(arc[-1]) / step))
+    at = np.linspace(0.0, arc[-1], count + 1)
+    return np.stack([np.interp(at, arc, column) for column in points.T], axis=1)
+
+
+def directions(points: Floats) -> Floats:
+    """Unit tangents (n, d) of a chain of two points or more, by central differences."""
+    tangents = np.gradient(points, axis=0)
+    return np.asarray(tangents / np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-12))
+
+
+def normals(points: Floats) -> Floats:
+    """Unit normals (n, 2) of a chain in the plane: its tangents turned a quarter from x toward y."""
+    tangents = directions(points)
+    return np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
+
+
+def simplified(points: Floats, tolerance: float) -> Indices:
+    """Choose the points of a chain (n, d) that keep it within ``tolerance`` (Douglas and Peucker 1973); ends stay."""
+    kept = np.zeros(len(points), dtype=bool)
+    kept[[0, -1]] = True
+    spans = [(0, len(points) - 1)]
+    while spans:
+        start, end = spans.pop()
+        if end - start < 2:
+            continue
+        away = distances_to_segment(points[start + 1 : end], points[start], points[end])
+        furthest = int(away.argmax())
+        if away[furthest] > tolerance:
+            middle = start + 1 + furthest
+            kept[middle] = True
+            spans += [(start, middle), (middle, end)]
+    return np.flatnonzero(kept)
+
+
+def distances_to_segment(points: Floats, start: Floats, end: Floats) -> Floats:
+    """Distance of points (n, d) from the straight piece between two points (n,)."""
+    way = end - start
+    along = np.clip((points - start) @ way / max(float(way @ way), 1e-12), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(points - start - along[:, None] * way, axis=1))

@@ -1,0 +1,98 @@
+"""Give a traced tree depth: turn each limb out of the picture, away from the others.
+
+Source: Tan et al. 2008, section 3.1, after Okabe, Owada and Igarashi 2005: from root to tips, greedily, each branch is
+turned so that the distances among branches are as large as possible. Unbounded, this throws limbs far in front of
+the crown, so slopes are limited and depth stays inside the crown turned about its middle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.polyline import Floats, Indices
+from treestroke.core.skeleton.measure import edge_lengths
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
+
+
+@dataclass(frozen=True)
+class LiftParams:
+    """How far limbs may turn out of the picture.
+
+    Attributes
+    ----------
+    steepest
+        Greatest slope of a limb's depth against its length in the picture.
+    slopes
+        Slopes tried, evenly spaced from -steepest to steepest.
+    inside
+        Share of the envelope's half depth that a limb may use.
+    """
+
+    steepest: float = 1.0
+    slopes: int = 9
+    inside: float = 0.8
+
+    def __post_init__(self) -> None:
+        if self.steepest < 0 or self.slopes < 1 or not 0 <= self.inside <= 1:
+            raise ValueError(f"lifting needs a slope >= 0, a slope to try and a share of the depth, got {self}")
+
+
+def lift(
+    skeleton: Skeleton,
+    envelope: Envelope,
+    rng: np.random.Generator,
+    params: LiftParams = LiftParams(),
+) -> Skeleton:
+    """Lift a traced skeleton (2D, px) to the world (3D, metres), radii too.
+
+    Each joint still projects onto its pixel. The first stem stays in the picture's plane; every other limb takes
+    the slope that keeps its joints furthest from all limbs before it, longest limbs first among siblings;
+    ``rng`` decides to which side when both are equal.
+    """
+    camera = envelope.camera
+    flat = Skeleton(camera.world_from_pixels(skeleton.points), skeleton.radii * camera.metres_per_pixel, skeleton.parents)
+    weights = accumulate_to_root(flat, edge_lengths(flat))
+    chains = limbs(flat, heaviest_children(flat, weights))
+    depth = np.zeros(len(flat))
+    placed = [flat.points[chains[0]]]
+    for chain in _by_order(flat, chains[1:], weights):
+        first = int(flat.parents[chain[0]] >= 0 or len(chain) > 1)
+        options = _options(flat.points[chain], float(depth[chain[0]]), envelope, params)
+        best = options[_furthest(options, placed, rng)]
+        depth[chain[first:]] = best[first:, 2]
+        placed.append(best)
+    return Skeleton(np.column_stack([flat.points[:, :2], depth]), flat.radii, flat.parents)
+
+
+def _by_order(flat: Skeleton, chains: list[Indices], weights: Floats) -> list[Indices]:
+    """Sort limbs so that each comes after its bearer, the heaviest first where that leaves a choice."""
+    owner = {int(joint): number for number, chain in enumerate(chains) for joint in chain[1:]}
+    level = np.zeros(len(chains), dtype=np.int64)
+    for number, chain in enumerate(chains):
+        bearer = owner.get(int(chain[0]), -1)
+        level[number] = 0 if bearer < 0 else level[bearer] + 1
+    order = sorted(range(len(chains)), key=lambda n: (level[n], -weights[chains[n][min(1, len(chains[n]) - 1)]], n))
+    return [chains[n] for n in order]
+
+
+def _options(points: Floats, start: float, envelope: Envelope, params: LiftParams) -> Floats:
+    """Give the limb's joints (slopes, n, 3) at each slope, bounded by the envelope."""
+    steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    slopes = np.linspace(-params.steepest, params.steepest, params.slopes)
+    most = np.maximum(params.inside * envelope.half_depth(points), abs(start))
+    depth = np.clip(start + slopes[:, None] * along, -most, most)
+    lifted = np.broadcast_to(points, (len(slopes), *points.shape)).copy()
+    lifted[:, :, 2] = depth
+    return lifted
+
+
+def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -> int:
+    """Choose the option (k, n, 3) whose outer joints keep most distance from all that is placed; ties by lot."""
+    others = np.concatenate(placed)
+    outer = options[:, options.shape[1] // 2 :]
+    gaps = np.linalg.norm(outer[:, :, None] - others, axis=-1).min(axis=-1).mean(axis=-1)
+    best = np.flatnonzero(gaps >= gaps.max() * (1 - 1e-9))
+    return int(best[rng.integers(len(best))])

@@ -1,0 +1,63 @@
+"""What a tree's twigs bear, judged by its picture: leaves, needles or nothing."""
+
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.polyline import distances_to_segment
+
+Kind = Literal["leaves", "needles", "bare"]
+Mask = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+DARKNESS = 95.0
+"""Greatest mean brightness of needles, 0 to 255."""
+TALLNESS = 1.2
+"""Least height of a conifer's crown over its width, for a crown that does not taper."""
+
+
+def foliage_kind(photo: NDArray[np.uint8], mask: Mask, crown: Mask, trunk_px: Floats) -> Kind:
+    """Judge by the foliage mask (h, w), the crown's inside (h, w) and the trunk stroke (n, 2), px.
+
+    Bare: even in its heart the crown is thin lines with something else between them. Needles: dull dark green, in a
+    crown that is tall or tapers to a top above a trunk that runs through it. Leaves: all else.
+    """
+    if not mask.any() or _thinness(mask, crown) > 0.5:
+        return "bare"
+    return "needles" if _is_dull_green(photo, mask) and _is_spire(mask, trunk_px) else "leaves"
+
+
+def _thinness(mask: Mask, crown: Mask) -> float:
+    """Share of the mask (0 to 1) that vanishes when it is opened by 1 % of the crown's size."""
+    size = max(3, int(0.02 * np.sqrt(crown.sum())) | 1)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, kernel)
+    return 1.0 - float(opened.sum()) / float(mask.sum())
+
+
+def _is_dull_green(photo: NDArray[np.uint8], mask: Mask) -> bool:
+    """Tell whether the foliage is dark and green without being vivid."""
+    red, green, blue = np.median(photo[mask].astype(np.float64), axis=0)
+    return bool(max(red, green, blue) < DARKNESS and green >= blue and green > 0.97 * red)
+
+
+def _is_spire(mask: Mask, trunk_px: Floats) -> bool:
+    """Tell whether the crown is tall, or tapers upward, and a straight trunk runs up through most of it."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    widths = np.array([np.ptp(np.flatnonzero(mask[row])) + 1 for row in rows], dtype=np.float64)
+    height, width = float(len(rows)), float(np.percentile(widths, 90))
+    quarter = max(1, len(rows) // 4)
+    taper = widths[:quarter].mean() / max(widths[-2 * quarter :].mean(), 1.0)
+    reach = (rows[-1] - trunk_px[:, 1].min()) / max(height, 1.0)
+    tall = height > TALLNESS * width or (taper < 0.5 and height > 0.9 * width)
+    return bool(reach > 0.55 and tall and _is_upright(trunk_px))
+
+
+def _is_upright(trunk_px: Floats) -> bool:
+    """Tell whether a trunk stroke is straight and leans by less than 10 degrees."""
+    way = trunk_px[-1] - trunk_px[0]
+    length = float(np.hypot(*way))
+    aside = distances_to_segment(trunk_px, trunk_px[0], trunk_px[-1]).max()
+    return bool(abs(way[0]) < 0.17 * length and aside < 0.04 * length)

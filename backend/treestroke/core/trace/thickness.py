@@ -1,0 +1,46 @@
+"""How thick a branch is, measured where the photo shows it."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from treestroke.core.geometry.polyline import Floats, normals
+from treestroke.core.imaging.sampling import sample_nearest
+
+
+def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tuple[Floats, Floats]:
+    """Measure the half-width and the middle of the wood (h, w) across a line (n, 2).
+
+    Across the line, the run of wood pixels that holds the line is followed to both sides (gaps of a pixel are
+    forgiven); a run that goes on beyond ``most_px`` on either side is no branch (dark leaves beside it).
+
+    Returns
+    -------
+    Half-widths (n,), px, and signed offsets (n,), px, from the line to the run's middle along the line's normals;
+    both NaN where no branch is seen.
+    """
+    reach = max(2, int(np.ceil(most_px)))
+    offsets = np.arange(-reach, reach + 1)
+    across = sample_nearest(wood, line_px[:, None] + offsets[:, None] * normals(line_px)[:, None], False)
+    left, right = _run(across[:, reach::-1]), _run(across[:, reach:])
+    seen = (left + right > 0) & (left < reach) & (right < reach)
+    return _steady(np.where(seen, (left + right) / 2.0, np.nan)), _steady(np.where(seen, (right - left) / 2.0, np.nan))
+
+
+def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Length (n,) of the run of wood that starts in the first column, one-pixel gaps forgiven."""
+    closed = seen | np.roll(seen, -1, axis=1) | (np.arange(seen.shape[1]) == 0)
+    closed[:, -1] = seen[:, -1]
+    length = np.where(closed.all(axis=1), seen.shape[1], closed.argmin(axis=1))
+    return np.where(seen[:, :2].any(axis=1), length, 0).astype(np.int64)
+
+
+def _steady(widths: Floats) -> Floats:
+    """Take the median of the measurements around each place; NaN where fewer than half of them measured anything."""
+    window = min(len(widths), 9)
+    seen = ~np.isnan(widths)
+    if not seen.any():
+        return widths
+    filled = np.interp(np.arange(len(widths)), np.flatnonzero(seen), widths[seen])
+    share = np.convolve(seen.astype(float), np.ones(window) / window, mode="same")
+    return np.where(share >= 0.5, median_filter(filled, window, mode="nearest"), np.nan)
