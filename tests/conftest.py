@@ -1,10 +1,20 @@
 """Real photos for all tests."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from treestroke.service.threads import one_thread
+
 EXAMPLES = Path(__file__).parents[1] / "examples"
+DATA = Path(__file__).parent / "data"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _as_the_service_computes() -> Iterator[None]:
+    with one_thread():
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -67,7 +67,7 @@ static Vec cross(Vec a, Vec b) {
 }
 
 static Segment segment(const Engine *e, Vec base, Vec along) {
-    double samples = rint(norm(along) / e->spacing);
+    double samples = (norm(along) / e->spacing + ROUND) - ROUND;
     samples = samples < 1 ? 1 : samples > 60000 ? 60000 : samples;
     Vec step = {along.x / samples, along.y / samples, along.z / samples};
     Segment s = {base, step, (int)samples, (int)samples};
@@ -75,10 +75,9 @@ static Segment segment(const Engine *e, Vec base, Vec along) {
 }
 
 static int inside(const Engine *e, Vec p) {
-    double column = floor(p.x), row = floor(p.y);
-    if (!(column >= 0 && row >= 0 && column < e->width && row < e->height)) return 0;
-    int r = (int)row;
-    if (!e->mask[(size_t)r * e->width + (int)column]) return 0;
+    if (!(p.x >= 0 && p.y >= 0 && p.x < e->width && p.y < e->height)) return 0;
+    int r = (int)p.y; /* rounds down, as it is not negative */
+    if (!e->mask[(size_t)r * e->width + (int)p.x]) return 0;
     double x = p.x - e->middle[r];
     return x * x + p.z * p.z <= e->radius[r] * e->radius[r];
 }
@@ -197,11 +196,20 @@ WIDE static void nearest_solid(const double *x, const double *y, const double *z
     }
 }
 
-WIDE static void improvements(const double *d, const double *best, double *gain, int n) {
+/* Pick the attractors that come nearer, as most do not and roots are dear; then measure by how much. */
+static int nearer(const double *d, double *best, double *before, int n) {
+    int count = 0;
     for (int i = 0; i < n; i++) {
-        double g = d[i] - sqrt(best[i]);
-        gain[i] = g > 0 ? g : 0;
+        double q = best[i], old = d[i];
+        best[count] = q;
+        before[count] = old;
+        count += q < old * old;
     }
+    return count;
+}
+
+WIDE static void improvements(const double *best, double *gain, int n) {
+    for (int i = 0; i < n; i++) gain[i] -= sqrt(best[i]);
 }
 
 static double total(const double *gain, int n) {
@@ -275,11 +283,14 @@ static double gain_of(Engine *e, const Points *near, int solid, const Segment *s
         nearest(near, solid, e->best, shoots[i]);
     }
     if (!any) return 0;
-    improvements(near->d, e->best, e->gain, near->n);
-    return total(e->gain, near->n);
+    int n = nearer(near->d, e->best, e->gain, near->n);
+    improvements(e->best, e->gain, n);
+    return total(e->gain, n);
 }
 
 /* ---- closeness ---- */
+
+static int down(double x) { int i = (int)x; return i - (x < i); }
 
 static unsigned cell(int x, int y, int z) {
     return ((unsigned)x * 73856093u ^ (unsigned)y * 19349663u ^ (unsigned)z * 83492791u) % BUCKETS;
@@ -295,7 +306,7 @@ static int remember(Engine *e, Vec p) {
         if (!grid || !next) return failed();
         e->grid_room = room;
     }
-    unsigned at = cell((int)floor(p.x / e->closeness), (int)floor(p.y / e->closeness), (int)floor(p.z / e->closeness));
+    unsigned at = cell(down(p.x / e->closeness), down(p.y / e->closeness), down(p.z / e->closeness));
     e->grid[e->filled] = p;
     e->next[e->filled] = e->bucket[at];
     e->bucket[at] = e->filled++;
@@ -303,7 +314,7 @@ static int remember(Engine *e, Vec p) {
 }
 
 static int crowded(const Engine *e, Vec p) {
-    int x = (int)floor(p.x / e->closeness), y = (int)floor(p.y / e->closeness), z = (int)floor(p.z / e->closeness);
+    int x = down(p.x / e->closeness), y = down(p.y / e->closeness), z = down(p.z / e->closeness);
     double limit = e->closeness * e->closeness;
     for (int i = 0; i < 27; i++)
         for (int k = e->bucket[cell(x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1)]; k >= 0; k = e->next[k]) {

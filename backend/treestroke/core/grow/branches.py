@@ -1,6 +1,7 @@
 """Branches: the straight pieces that growth sees instead of the skeleton's dense joints."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_child
 
 TURN_DEG = 30.0
 STRAIGHT_SHARE = 0.03
-"""Of the longest chain's limit: how far ahead a turn is measured, as the sharpest bends of a traced stroke are noise."""
+"""Of the longest chain's limit: how far ahead a turn is measured, as the sharp bends of a traced stroke are noise."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +50,8 @@ def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[f
     """Split a skeleton (any unit) where it forks, turns, enters the crown, or has gone on for long.
 
     ``inside`` (n,) marks the joints in the crown, ``longest`` (the skeleton's unit) bounds a chain there, first of a
-    stem, second of a limb; a joint where the direction turns by 30 degrees ends a chain. No chain is shorter than a tenth of ``longest`` for the
-    sake of a fork or a turn. Chains come parents first.
+    stem, second of a limb; a joint where the direction turns by 30 degrees ends a chain. No chain is shorter than a
+    tenth of ``longest`` for the sake of a fork or a turn. Chains come parents first.
     """
     successors = successors_by_wood(skeleton)
     order: dict[int, int] = {}
@@ -60,7 +61,7 @@ def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[f
         for joint in limb.tolist():
             order.setdefault(joint, generation)
         cuts = _cuts(skeleton, limb, inside, longest[min(generation, 2) - 1])
-        chains += [Chain(limb[a : b + 1], generation) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+        chains += [Chain(limb[a : b + 1], generation) for a, b in pairwise(cuts)]
     return chains
 
 
@@ -91,7 +92,7 @@ def _turn(points: Floats, arc: Floats, start: int, at: int, longest: float) -> f
 def _even(cuts: list[int], arc: Floats, inside: NDArray[np.bool_], longest: float) -> list[int]:
     """Cut what is too long and lies inside into equal parts, at joints."""
     found = [0]
-    for a, b in zip(cuts[:-1], cuts[1:], strict=True):
+    for a, b in pairwise(cuts):
         parts = int(np.ceil((arc[b] - arc[a]) / longest)) if inside[(a + b) // 2] else 1
         aims = arc[a] + (arc[b] - arc[a]) * np.arange(1, parts) / max(parts, 1)
         found += [int(at) for at in np.searchsorted(arc, aims)] + [b]

@@ -50,7 +50,7 @@ class Crown:
         row = np.clip(np.floor(points[:, 1]).astype(np.int64), 0, len(self.middle) - 1)
         x = self.middle[row] - points[:, 2]
         turned = np.stack([x, points[:, 1], points[:, 0] - self.middle[row]], axis=1)
-        return turned[self.inside(turned)]
+        return np.asarray(turned[self.inside(turned)])
 
     def grid(self, count: int) -> Floats:
         """Spread about ``count`` points (m, 2), px, evenly over the foliage, rows first."""
@@ -59,7 +59,7 @@ class Crown:
         x, y = np.meshgrid(np.arange(step / 2, width, step), np.arange(step / 2, height, step))
         points = np.stack([x.ravel(), y.ravel()], axis=1)
         cells = np.floor(points).astype(np.int64)
-        return points[self.mask[cells[:, 1], cells[:, 0]]]
+        return np.asarray(points[self.mask[cells[:, 1], cells[:, 0]]])
 
 
 def crown_of(mask: NDArray[np.bool_], envelope: Envelope, foot: Floats) -> Crown:
@@ -68,10 +68,10 @@ def crown_of(mask: NDArray[np.bool_], envelope: Envelope, foot: Floats) -> Crown
     Raises
     ------
     ValueError
-        The mask is empty or does not fit the envelope's camera.
+        The mask does not fit the envelope's camera.
     """
-    if mask.shape != (envelope.camera.height, envelope.camera.width) or not mask.any():
-        raise ValueError(f"growth needs foliage of the camera's size, got a mask {mask.shape} of {mask.sum()} px")
+    if mask.shape != (envelope.camera.height, envelope.camera.width):
+        raise ValueError(f"the foliage mask {mask.shape} does not fit the camera {envelope.camera}")
     unit = max(2 * float(envelope.radius_px.max()) / REFERENCE_WIDTH, 1e-3)
     return Crown(np.ascontiguousarray(mask), envelope.middle_px, envelope.radius_px, foot, unit)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Floats
 from treestroke.core.grow.branches import Chain
@@ -113,9 +114,7 @@ def _bend(
     return curves
 
 
-def _bend_level(
-    curves: _Curves, shoots: Indices, base: Floats, tips: Floats, bearing: Floats, noise: Floats
-) -> None:
+def _bend_level(curves: _Curves, shoots: Indices, base: Floats, tips: Floats, bearing: Floats, noise: Floats) -> None:
     """Set the curves of shoots (m,) that leave bearers of the given directions (m, 3)."""
     chord = tips - base
     length, direction = np.sqrt((chord**2).sum(axis=1, keepdims=True)), _unit(chord)
@@ -149,13 +148,13 @@ def _on_curves(curves: _Curves, branch: Indices, along: Floats) -> Floats:
     t = along[:, None]
     bezier = 3 * t * (1 - t) ** 2 * curves.start[branch] + 3 * t**2 * (1 - t) * curves.end[branch]
     waver = np.sin(2 * np.pi * t) * curves.wave[branch] + np.sin(3 * np.pi * t) * curves.ripple[branch]
-    return curves.base[branch] + t * curves.chord[branch] + bezier + waver
+    return np.asarray(curves.base[branch] + t * curves.chord[branch] + bezier + waver)
 
 
 def _arc(points: Floats) -> Floats:
     """Give each point's (k, 3) position along its polyline, 0 to 1."""
     arc = np.concatenate([[0.0], np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))])
-    return arc / arc[-1] if arc[-1] > 0 else np.linspace(0, 1, len(points))
+    return np.asarray(arc / arc[-1]) if arc[-1] > 0 else np.linspace(0, 1, len(points))
 
 
 def _on_chains(visible: Skeleton, chains: list[Chain], branch: Indices, along: Floats) -> Floats:
@@ -184,7 +183,8 @@ def _spots(table: BranchTable, chain_count: int, curves: _Curves, unit: float) -
     branch, along, fork = branch[order], along[order], fork[order]
     gap = np.full(len(table.bearer), 0.05)
     gap[shoots] = 0.4 / pieces
-    return _Spots(*(column[_kept_spots(branch, along, fork, gap)] for column in (branch, along, fork)))
+    kept = _kept_spots(branch, along, fork, gap)
+    return _Spots(branch[kept], along[kept], fork[kept])
 
 
 def _kept_spots(branch: Indices, along: Floats, fork: Indices, gap: Floats) -> Indices:
@@ -199,40 +199,41 @@ def _kept_spots(branch: Indices, along: Floats, fork: Indices, gap: Floats) -> I
 
 
 def _join(
-    visible: Skeleton,
-    seen: int,
-    chains: list[Chain],
-    table: BranchTable,
-    curves: _Curves,
-    spots: _Spots,
-    crown: Crown,
+    visible: Skeleton, seen: int, chains: list[Chain], table: BranchTable, curves: _Curves, spots: _Spots, crown: Crown
 ) -> Form:
     """Put the visible joints, those that shoots need on them, and the shoots' own joints into one tree."""
     on_chain = spots.branch < len(chains)
-    chain_spots = _Spots(*(column[on_chain] for column in spots))
+    chain_spots = _Spots(spots.branch[on_chain], spots.along[on_chain], spots.fork[on_chain])
     trunk, homes = _visible_form(visible, seen, chains, chain_spots)
     branch, along = spots.branch[~on_chain], spots.along[~on_chain]
     points = _on_curves(curves, branch, along)
     keep = in_mask(points, crown.mask)
-    first = len(trunk.points)
-    number = np.concatenate([homes, first + np.cumsum(keep) - 1])
-    parents = np.empty(len(branch), dtype=np.int64)
-    key = {spot: i for i, spot in enumerate(zip(chain_spots.branch.tolist(), chain_spots.along.tolist(), strict=True))}
-    offset = len(homes)
-    last = -1
-    for i, (b, t) in enumerate(zip(branch.tolist(), along.tolist(), strict=True)):
-        key[b, t] = offset + i
-        starts = i == 0 or branch[i - 1] != b
-        last = int(number[key[int(table.bearer[b]), float(table.fraction[b])]]) if starts else last
-        parents[i] = last
-        last = int(number[offset + i]) if keep[i] else last
-        number[offset + i] = last
+    parents = _parents(spots, table, homes, keep, len(trunk.points))
     return Form(
         np.vstack([trunk.points, points[keep]]),
         np.concatenate([trunk.parents, parents[keep]]),
         np.concatenate([trunk.born, table.born[branch[keep]]]),
         np.concatenate([trunk.measured, np.zeros(int(keep.sum()))]),
     )
+
+
+def _parents(spots: _Spots, table: BranchTable, homes: Indices, keep: NDArray[np.bool_], first: int) -> Indices:
+    """Find the parent of each joint on a shoot (m,); what stands on a joint that is not kept goes to the one before.
+
+    ``homes`` are the joints at the spots on visible branches, ``first`` is the number of the first shoot's joint.
+    """
+    branches, along = spots.branch.tolist(), spots.along.tolist()
+    joint_at = dict(zip(zip(branches, along, strict=False), homes.tolist(), strict=False))
+    bearer, fraction = table.bearer.tolist(), table.fraction.tolist()
+    parents, last, branch = [], -1, -1
+    for b, t, kept in zip(branches[len(homes) :], along[len(homes) :], keep.tolist(), strict=True):
+        if b != branch:
+            branch, last = b, joint_at[bearer[b], fraction[b]]
+        parents.append(last)
+        if kept:
+            last, first = first, first + 1
+        joint_at[b, t] = last
+    return np.array(parents, dtype=np.int64)
 
 
 def _visible_form(visible: Skeleton, seen: int, chains: list[Chain], spots: _Spots) -> tuple[Form, Indices]:
@@ -274,4 +275,4 @@ def _inserted(visible: Skeleton, seen: int, owner: Indices, share: Floats) -> tu
 def _unit(vectors: Floats) -> Floats:
     """Scale vectors (n, 3) to length 1; those without length stay."""
     length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
-    return vectors / np.maximum(length, 1e-12)
+    return np.asarray(vectors / np.maximum(length, 1e-12))

@@ -10,7 +10,6 @@ from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
 
-LibraryName = Literal["auto", "visible", "type1", "type2", "both"]
 Kind = Literal["leaves", "needles", "bare"]
 Bearer = Literal["any", "stem", "limb"]
 
@@ -65,7 +64,7 @@ def _subtree(rows: tuple[Row, ...], bearer: Bearer = "any") -> Subtree:
     """Build a subtree from rows of (parent, fraction, angle from the support, azimuth, length), degrees."""
     parent, fraction, lean, azimuth, length = (np.array(column) for column in zip(*rows, strict=True))
     lean, azimuth = np.radians(lean), np.radians(azimuth)
-    directions = [np.sin(lean) * np.cos(azimuth), np.cos(lean), np.sin(lean) * np.sin(azimuth)]
+    directions = np.array([np.sin(lean) * np.cos(azimuth), np.cos(lean), np.sin(lean) * np.sin(azimuth)])
     return Subtree(parent.astype(np.int64), fraction.astype(np.float64), (directions * length).T.copy(), bearer)
 
 
@@ -202,7 +201,7 @@ def _subtree_of(skeleton: Skeleton, chain: Indices, borne: list[Indices]) -> Sub
     return Subtree(np.full(len(borne), -1), np.clip(fractions, 0.05, 1.0), local)
 
 
-def choose_library(name: LibraryName, kind: Kind, skeleton: Skeleton) -> tuple[Subtree, ...]:
+def choose_library(name: str, kind: Kind, skeleton: Skeleton) -> tuple[Subtree, ...]:
     """Choose at most 8 subtrees by the setting's name, what the twigs bear and the visible tree (3D, metres).
 
     ``auto`` takes up to three visible subtrees beside the predefined ones, and none where fewer than three are

@@ -98,7 +98,7 @@ class PlainEvaluator:
     def place(self, choice: Choice) -> list[Shoot]:
         """List the shoots that stand, see `Evaluator`."""
         laid, at = self._lay(choice.branch), (choice.subtree, choice.angle)
-        kept = self._uncrowded(laid, at, self._surroundings(choice.branch, laid))
+        kept = self._uncrowded(laid, at, self._surroundings(laid))
         standing = np.flatnonzero(kept)
         order = {int(shoot): i for i, shoot in enumerate(standing)}
         shoots = []
@@ -151,9 +151,9 @@ class PlainEvaluator:
         kept = np.where(inside.all(axis=1), len(count), np.argmin(inside, axis=1))
         out = (base + along * 0.5) - self._crown.foot
         limit = self._rules.inward_cosine * (np.sqrt(_dot(along, along)) * np.sqrt(_dot(out, out)))
-        return np.where((_dot(along, out) >= limit) & (kept >= self._rules.keep * samples), kept, 0)
+        return np.asarray(np.where((_dot(along, out) >= limit) & (kept >= self._rules.keep * samples), kept, 0))
 
-    def _surroundings(self, branch: int, laid: _Laid) -> Floats:
+    def _surroundings(self, laid: _Laid) -> Floats:
         """Take the tree's samples near the shoots of a branch."""
         ends = laid.base + laid.step * laid.kept[..., None]
         low = np.minimum(laid.base, ends)[laid.kept > 0].min(axis=0, initial=np.inf) - self._rules.closeness
@@ -170,7 +170,7 @@ class PlainEvaluator:
             parent = int(self._library.parents[at[0], i])
             if parent >= 0 and kept[parent] == 0:
                 kept[i] = 0
-        return kept
+        return np.asarray(kept)
 
     def _crowded(self, points: Floats, near: Floats) -> NDArray[np.bool_]:
         """Tell which points (q, 3) lie too close to one of the tree's samples."""
@@ -186,7 +186,7 @@ class PlainEvaluator:
     def _gains(self, branch: int, in_space: bool) -> Floats:
         """Measure the gain of every placement (s, a) on a branch."""
         laid = self._lay(branch)
-        near = self._surroundings(branch, laid)
+        near = self._surroundings(laid)
         gains = np.zeros(laid.kept.shape[:2])
         for subtree, angle in np.argwhere(laid.kept.any(axis=2)).tolist():
             at = subtree, angle
@@ -206,7 +206,7 @@ class PlainEvaluator:
         for start in range(0, len(samples), step):
             block = samples[start : start + step]
             np.minimum(nearest, _squares(columns, block, scratch[:, : len(block)]).min(axis=0), out=nearest)
-        return np.sqrt(nearest)
+        return np.asarray(np.sqrt(nearest))
 
 
 def _samples(laid: _Laid, at: tuple[int, int], kept: Indices) -> tuple[Indices, Indices, Floats]:
@@ -225,4 +225,4 @@ def _squares(columns: list[Floats], samples: Floats, scratch: NDArray[np.float64
         np.multiply(target, target, out=target)
         if axis:
             np.add(total, part, out=total)
-    return total
+    return np.asarray(total)

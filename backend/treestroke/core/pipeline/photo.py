@@ -12,7 +12,8 @@ from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.library import choose_library
-from treestroke.core.grow.replacement import Grown, grow, growth_for
+from treestroke.core.grow.params import growth_for
+from treestroke.core.grow.replacement import Grown, grow
 from treestroke.core.imaging.mixture import join_mixtures
 from treestroke.core.leaf.atlas import leaf_atlas
 from treestroke.core.leaf.cards import cards
@@ -34,7 +35,7 @@ Mask = NDArray[np.bool_]
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
-CLOSED_SHARE = 0.012
+CLOSED_SHARE = {"leaves": 0.012, "needles": 0.012, "bare": 0.05}
 """Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
 
 
@@ -124,7 +125,7 @@ def model_photo(
     report("trace", 0.0)
     traced = _trace(sight, foliage)
     report("lift", 0.0)
-    crown = _closed(foliage.mask)
+    crown = _closed(foliage.mask, kind)
     camera = _camera(sight, foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
     lifted = lift(traced.skeleton, envelope, rng)
@@ -208,9 +209,9 @@ def _kind(sight: _Sight, foliage: Foliage, settings: ModelSettings) -> Kind:
     return kinds[settings.foliage]
 
 
-def _closed(mask: Mask) -> Mask:
+def _closed(mask: Mask, kind: Kind) -> Mask:
     """Close small holes and bays of a foliage mask."""
-    size = max(3, int(2 * CLOSED_SHARE * np.sqrt(mask.sum())) | 1)
+    size = max(3, int(2 * CLOSED_SHARE[kind] * np.sqrt(mask.sum())) | 1)
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     edge = cv2.copyMakeBorder(mask.astype(np.uint8), size, size, size, size, cv2.BORDER_CONSTANT, value=0)
     return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)

@@ -12,6 +12,10 @@ Kind = Literal["leaves", "needles", "bare"]
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
+THIN = 0.5
+"""Share of the foliage that is lines thinner than 1 % of the crown, over which a tree is bare."""
+TWIG_CONTRAST = 85.0
+"""Mean height of fine lines over what is behind them, 0 to 510, over which a colourless crown is bare."""
 DARKNESS = 95.0
 """Greatest mean brightness of needles, 0 to 255."""
 TALLNESS = 1.2
@@ -21,20 +25,37 @@ TALLNESS = 1.2
 def foliage_kind(photo: NDArray[np.uint8], mask: Mask, crown: Mask, trunk_px: Floats) -> Kind:
     """Judge by the foliage mask (h, w), the crown's inside (h, w) and the trunk stroke (n, 2), px.
 
-    Bare: even in its heart the crown is thin lines with something else between them. Needles: dull dark green, in a
+    Bare: the crown is thin lines, or a web of colourless ones with something else between them. Needles: dull dark green, in a
     crown that is tall or tapers to a top above a trunk that runs through it. Leaves: all else.
     """
-    if not mask.any() or _thinness(mask, crown) > 0.5:
+    if not mask.any() or _thinness(mask, crown) > THIN or _is_twiggy(photo, mask, crown):
         return "bare"
     return "needles" if _is_dull_green(photo, mask) and _is_spire(mask, trunk_px) else "leaves"
 
 
 def _thinness(mask: Mask, crown: Mask) -> float:
     """Share of the mask (0 to 1) that vanishes when it is opened by 1 % of the crown's size."""
-    size = max(3, int(0.02 * np.sqrt(crown.sum())) | 1)
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
-    opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, kernel)
+    opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, _disc(0.02, crown))
     return 1.0 - float(opened.sum()) / float(mask.sum())
+
+
+def _is_twiggy(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> bool:
+    """Tell whether the crown is a web of colourless fine lines, none of them white as blossom is."""
+    colours = photo[mask].astype(np.float64)
+    brightness = colours.max(axis=1)
+    green_or_red = (colours[:, :2].max(axis=1) - colours[:, 2]) / np.maximum(brightness, 40.0)
+    if np.median(green_or_red) > 0.25 or (brightness > 200).mean() > 0.15:
+        return False
+    grey, kernel = cv2.cvtColor(photo, cv2.COLOR_RGB2GRAY), _disc(0.012, crown)
+    lines = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)[mask].astype(np.float64)
+    lines += cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)[mask]
+    return bool(lines.mean() > TWIG_CONTRAST)
+
+
+def _disc(share: float, crown: Mask) -> NDArray[np.uint8]:
+    """Give a disc as wide as a share of the crown's size."""
+    size = max(3, int(share * np.sqrt(crown.sum())) | 1)
+    return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)), dtype=np.uint8)
 
 
 def _is_dull_green(photo: NDArray[np.uint8], mask: Mask) -> bool:

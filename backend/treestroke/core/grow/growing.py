@@ -1,0 +1,171 @@
+"""The growing tree: candidates, choice and replacement, one iteration after another."""
+
+import math
+
+import numpy as np
+
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.grow.branches import Chain, split_chains
+from treestroke.core.grow.crown import Crown, in_mask
+from treestroke.core.grow.evaluator import Choice, Evaluator, Rules, Shoot
+from treestroke.core.grow.form import BranchTable
+from treestroke.core.grow.library import Subtree
+from treestroke.core.grow.params import GrowthParams
+from treestroke.core.progress import Report
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+
+MOST_STRETCH = 6.0
+THINNING = 0.75
+"""A shoot's radius over its bearer's, for the order of candidates (the paper's rule)."""
+NARROW = 0.15
+"""Of the crown's greatest radius: a lower section narrower than this is a stem that the foliage mask took in."""
+PATIENCE = 10.0
+"""Times a branch may stand as a candidate in vain before it stands as if it were one generation later."""
+
+
+class Growing:
+    """The growing tree: its branches as columns, filled up to ``count``, and the evaluator that measures them."""
+
+    def __init__(
+        self, visible: Skeleton, crown: Crown, library: tuple[Subtree, ...], params: GrowthParams, evaluator: Evaluator
+    ) -> None:
+        self.params, self.crown, self.library = params, crown, library
+        self.evaluator = evaluator
+        self.chains = _chains(visible, crown, params)
+        self.count = len(self.chains)
+        room = self.count + params.iterations * max(len(subtree.parents) for subtree in library)
+        self.bases, self.tips = np.zeros((2, room, 3))
+        self.radius, self.fraction, self.stood = np.zeros((3, room))
+        self.generation, self.bearer, self.born = np.full((3, room), -1)
+        self.open = np.zeros(room, dtype=bool)
+        self._add_chains(visible)
+        self._tell_evaluator(0)
+        self.evaluator.add_attractors(crown.grid(params.attractors))
+        self._turn_tips(0)
+
+    def run(self, rng: np.random.Generator, report: Report) -> list[tuple[int, int, int]]:
+        """Replace branch after branch; list what was chosen."""
+        choices = []
+        for iteration in range(1, self.params.iterations + 1):
+            choice = self._choose(iteration, rng)
+            if choice.branch >= 0:
+                choices.append((choice.branch, choice.subtree, choice.angle))
+                self._replace(choice, iteration)
+            report("grow", iteration / self.params.iterations)
+        return choices
+
+    def table(self) -> BranchTable:
+        """Give the branches as arrays."""
+        own = slice(0, self.count)
+        # Rounded, so that shoots that stand together share a joint.
+        return BranchTable(self.bearer[own], np.round(self.fraction[own], 6), self.tips[own], self.born[own])
+
+    def _add_chains(self, visible: Skeleton) -> None:
+        """Fill the columns with the visible branches; a stem counts as thick up to its top, so that it comes first."""
+        known = _known_radii(visible)
+        for i, chain in enumerate(self.chains):
+            self.bases[i], self.tips[i] = visible.points[chain.joints[[0, -1]]]
+            self.radius[i], self.generation[i] = known[chain.joints].mean(), chain.generation
+            self.radius[i] = known.max() if chain.generation == 1 else self.radius[i]
+            middle = (self.bases[i] + self.tips[i]) / 2
+            grows = in_mask(np.array([self.tips[i], middle]), self.crown.mask).all()
+            self.open[i] = grows and self._is_long(i) and not self._under_the_crown(float(middle[1]))
+        self.born[: self.count] = 0
+
+    def _is_long(self, branch: int) -> bool:
+        """Tell whether a branch is some samples long, so that it may be replaced."""
+        way = self.tips[branch] - self.bases[branch]
+        return math.sqrt(float(way @ way)) >= 2 * self.params.spacing_px * self.crown.unit
+
+    def _under_the_crown(self, y: float) -> bool:
+        """Tell whether the crown is no wider at a height (y, px) than a stem might be, with its bulk above."""
+        radius = self.crown.radius
+        narrow = radius[int(np.clip(y, 0, len(radius) - 1))] < NARROW * float(radius.max())
+        return bool(narrow and y > int(np.argmax(radius)))
+
+    def _choose(self, iteration: int, rng: np.random.Generator) -> Choice:
+        """Find the best placement by this iteration's cost, or else by the other."""
+        candidates = self._candidates(rng)
+        orders = {"image": (False,), "space": (True,), "alternating": (iteration % 2 == 0, iteration % 2 == 1)}
+        choice = Choice(-1, 0, 0, 0.0)
+        for in_space in orders[self.params.mode]:
+            if choice.branch < 0:
+                choice = self.evaluator.best(candidates, in_space)
+        return choice
+
+    def _candidates(self, rng: np.random.Generator) -> Indices:
+        """Walk the branches from thick to thin, taking each with a probability inverse to its generation."""
+        left = np.flatnonzero(self.open[: self.count])
+        left = left[np.argsort(-self.radius[left], kind="stable")]
+        chosen = np.zeros(0, dtype=np.int64)
+        while len(left) and len(chosen) < self.params.candidates:
+            takes = rng.random(len(left)) * (self.generation[left] + self.stood[left] / PATIENCE) < 1
+            chosen = np.concatenate([chosen, left[takes]])
+            left = left[~takes]
+        chosen = np.sort(chosen[: self.params.candidates])
+        self.stood[chosen] += 1
+        return chosen
+
+    def _replace(self, choice: Choice, iteration: int) -> None:
+        """Let a branch bear the shoots of a placement."""
+        first = self.count
+        self.open[choice.branch] = False
+        for shoot in self.evaluator.place(choice):
+            self._add(shoot, choice.branch if shoot.parent < 0 else first + shoot.parent, iteration)
+        if self.count > first:
+            self._tell_evaluator(first)
+            self._turn_tips(first)
+
+    def _add(self, shoot: Shoot, bearer: int, iteration: int) -> None:
+        """Fill the next row with a shoot."""
+        i = self.count
+        self.bases[i], self.tips[i] = shoot.base, shoot.tip
+        self.bearer[i], self.fraction[i], self.born[i] = bearer, min(shoot.fraction, 1.0), iteration
+        self.generation[i] = self.generation[bearer] + 1
+        self.radius[i] = self.radius[bearer] * THINNING
+        self.open[i] = self._is_long(i)
+        self.count += 1
+
+    def _tell_evaluator(self, first: int) -> None:
+        """Hand the branches from ``first`` on to the evaluator."""
+        own = slice(first, self.count)
+        scales = np.array([[tree.bearer != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
+        for stem in np.flatnonzero(self.generation[own] == 1).tolist():
+            scales[stem] = self._stem_scales(first + stem)
+        self.evaluator.add_branches(self.bases[own], self.tips[own], scales)
+
+    def _stem_scales(self, branch: int) -> Floats:
+        """Stretch each subtree (s,) on a stem so that its longest shoot would reach the crown's edge; 0 forbids it."""
+        middle, way = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
+        row = int(np.clip(middle[1], 0, len(self.crown.radius) - 1))
+        reach = float(self.crown.radius[row]) / max(math.sqrt(float(way @ way)), 1e-9)
+        stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
+        return np.where([tree.bearer != "limb" for tree in self.library], stretch, 0.0)
+
+    def _turn_tips(self, first: int) -> None:
+        """Add the tips from ``first`` on, turned by a quarter, to the attractors in space."""
+        self.evaluator.add_attractors(self.crown.turned(self.tips[first : self.count]))
+
+
+def rules_for(params: GrowthParams, unit: float) -> Rules:
+    """Scale the figures of a placement to the photo."""
+    return Rules(
+        params.spacing_px * unit, params.closeness_px * unit, params.keep_share, params.inward_cosine, params.angles
+    )
+
+
+def _chains(visible: Skeleton, crown: Crown, params: GrowthParams) -> list[Chain]:
+    """Split the visible tree into chains, px."""
+    rows = np.flatnonzero(crown.mask.any(axis=1))
+    height = float(rows[-1] - rows[0] + 1)
+    longest = params.stem_piece * height, params.limb_piece * height
+    return split_chains(visible, in_mask(visible.points, crown.mask), longest)
+
+
+def _known_radii(visible: Skeleton) -> Floats:
+    """Give joints (n,) of unknown radius their parent's."""
+    radii = visible.radii.copy()
+    for joint, parent in enumerate(visible.parents.tolist()):
+        if radii[joint] == 0 and parent >= 0:
+            radii[joint] = radii[parent]
+    return radii

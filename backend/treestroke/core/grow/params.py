@@ -1,0 +1,72 @@
+"""The figures of growth, and what fits which kind of tree."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from treestroke.core.grow.library import Kind
+
+
+@dataclass(frozen=True)
+class GrowthParams:
+    """How to grow; px are those of a crown 1,000 px wide.
+
+    Attributes
+    ----------
+    iterations
+        Replacements tried.
+    attractors
+        Image attractors, about.
+    candidates
+        Branches compared in an iteration.
+    angles
+        Turns of each subtree about its branch.
+    mode
+        Attractors in use: those of the image, those in space, or both in alternation.
+    spacing_px
+        Between the samples of a branch.
+    closeness_px
+        Least distance of a shoot's outer half from the rest of the tree.
+    keep_share
+        A shoot clipped at the crown's edge to less than this share of its length is dropped.
+    inward_cosine
+        Least cosine between a shoot and the way from the crown's foot to its middle.
+    stem_piece, limb_piece
+        Longest piece of a visible stem or limb that is one branch, as a share of the crown's height.
+    leader
+        Share of the crown's height to which the first stem is carried on where no visible limb reaches it.
+    tip_px
+        Radius of the thinnest twigs.
+    """
+
+    iterations: int = 300
+    attractors: int = 2000
+    candidates: int = 20
+    angles: int = 12
+    mode: Literal["alternating", "image", "space"] = "alternating"
+    spacing_px: float = 6.0
+    closeness_px: float = 10.0
+    keep_share: float = 0.5
+    inward_cosine: float = 0.0
+    stem_piece: float = 0.2
+    limb_piece: float = 0.2
+    leader: float = 0.65
+    tip_px: float = 0.9
+
+    def __post_init__(self) -> None:
+        if self.iterations < 0 or min(self.attractors, self.candidates, self.angles) < 1:
+            raise ValueError(f"growth needs iterations >= 0 and attractors, candidates and angles >= 1, got {self}")
+        if self.mode not in ("alternating", "image", "space"):
+            raise ValueError(f"the mode is alternating, image or space, not {self.mode!r}")
+        if min(self.spacing_px, self.closeness_px, self.tip_px, self.stem_piece, self.limb_piece) <= 0:
+            raise ValueError(f"spacing, closeness, tip and pieces must be positive, got {self}")
+        if not (0 < self.keep_share <= 1 and -1 <= self.inward_cosine <= 1 and 0 <= self.leader <= 1):
+            raise ValueError(f"keep share, inward cosine or leader is out of range in {self}")
+
+
+def growth_for(kind: Kind, iterations: int = 300) -> GrowthParams:
+    """Fit the figures to what the twigs bear: a conifer has one leader and many whorls, a bare tree finer twigs."""
+    if kind == "needles":
+        return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
+    if kind == "bare":
+        return GrowthParams(iterations, attractors=4000, closeness_px=6.0, tip_px=0.6, limb_piece=0.14)
+    return GrowthParams(iterations)

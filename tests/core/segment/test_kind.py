@@ -1,0 +1,89 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.conftest import DATA, EXAMPLES
+from tests.pictures import disc, leaves_on_sky, ring, wood_mask, wood_photo
+from treestroke.codec.image import decode_photo
+from treestroke.core.segment.foliage import segment_foliage
+from treestroke.core.segment.kind import foliage_kind
+from treestroke.service.inputs import load_strokes
+
+DULL, VIVID = (50, 62, 40), (90, 150, 40)
+TRUNK = np.array([[150.0, 290.0], [150.0, 200.0], [150.0, 60.0]])
+SHORT_TRUNK = np.array([[150.0, 290.0], [150.0, 230.0]])
+
+
+def spire(half_width: float = 55.0) -> np.ndarray:
+    picture = np.zeros((300, 300), np.uint8)
+    corners = np.array([[150, 20], [150 - half_width, 260], [150 + half_width, 260]], np.int32)
+    return cv2.fillPoly(picture, [corners], 1) > 0
+
+
+def fan(twigs: int = 25) -> np.ndarray:
+    ends = ring(120, (150.0, 150.0), twigs)
+    return wood_mask([([(150, 150), tuple(end)], 2.0) for end in ends], 300, 300)
+
+
+@pytest.mark.parametrize(
+    ("mask", "colour", "trunk", "kind"),
+    [
+        (spire(), DULL, TRUNK, "needles"),
+        (spire(), VIVID, TRUNK, "leaves"),
+        (spire(), DULL, SHORT_TRUNK, "leaves"),
+        (disc(300, 110), DULL, TRUNK, "leaves"),
+        (disc(300, 110), (200, 60, 40), TRUNK, "leaves"),
+    ],
+    ids=["dull spire", "vivid spire", "spire without leader", "dull ball", "red ball"],
+)
+def test_colour_and_shape_tell_needles_from_leaves(
+    mask: np.ndarray, colour: tuple[int, int, int], trunk: np.ndarray, kind: str
+) -> None:
+    assert foliage_kind(leaves_on_sky(mask, colour), mask, mask, trunk) == kind
+
+
+def test_a_leaning_trunk_bears_no_needles() -> None:
+    leaning = TRUNK + np.array([[0, 0], [30, 0], [60, 0]])
+    assert foliage_kind(leaves_on_sky(spire(), DULL), spire(), spire(), leaning) == "leaves"
+
+
+def test_a_fan_of_twigs_is_bare() -> None:
+    assert foliage_kind(wood_photo(fan()), fan(), disc(300, 125), TRUNK) == "bare"
+
+
+def test_no_foliage_at_all_is_bare() -> None:
+    none = np.zeros((300, 300), dtype=bool)
+    assert foliage_kind(wood_photo(none), none, disc(300, 125), TRUNK) == "bare"
+
+
+KINDS = {
+    "burr_oak_dusk": "leaves",
+    "oak_02": "leaves",
+    "osage_orange_autumn": "leaves",
+    "sugar_maple_autumn": "leaves",
+    "beech_round": "leaves",
+    "bigleaf_maple_bare": "bare",
+    "boxelder_lawn": "leaves",
+    "cherry_blossom": "leaves",
+    "elm_house": "leaves",
+    "loblolly_pines.tree1": "needles",
+    "loblolly_pines.tree2": "needles",
+    "loblolly_pines.tree3": "needles",
+    "ponderosa_slope": "needles",
+    "redbud_park": "leaves",
+    "silver_maple_row.tree1": "leaves",
+    "silver_maple_row.tree2": "leaves",
+    "silver_maple_row.tree3": "needles",
+    "white_ash_street": "leaves",
+}
+
+
+@pytest.mark.parametrize(("name", "kind"), KINDS.items())
+def test_each_photo_s_kind_is_seen(name: str, kind: str) -> None:
+    folder: Path = next(place for place in (EXAMPLES, DATA) if (place / f"{name}.strokes.json").exists())
+    photo = decode_photo((folder / f"{name.split('.')[0]}.jpg").read_bytes(), name)
+    strokes = load_strokes(folder / f"{name}.strokes.json")
+    found = segment_foliage(photo, strokes.crown.points)
+    assert foliage_kind(photo, found.mask, found.region, strokes.branches[0].points) == kind
