@@ -74,18 +74,19 @@ def test_a_trunk_alone_fills_the_crown_from_all_sides() -> None:
     assert sectors.min() / sectors.max() >= 0.35
 
 
-def depth_over_width(case: Case, mode: Literal["image", "alternating"], seed: int) -> float:
-    """Grow with nothing but the visible tree's own subtrees; compare the spreads (standard deviations)."""
-    library = visible_subtrees(case.skeleton)
-    params = GrowthParams(80, mode=mode)
-    tree = grow(case.skeleton, case.mask, case.envelope, library, params, np.random.default_rng(seed))
-    return float(new_points(case, tree)[:, 2].std() / new_points(case, tree)[:, 0].std())
+def depth_over_width(case: Case, mode: Literal["image", "alternating"]) -> float:
+    """Grow with nothing but the visible tree's own subtrees; compare the spreads, mean of four seeds."""
+    library, found = visible_subtrees(case.skeleton), []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        tree = grow(case.skeleton, case.mask, case.envelope, library, GrowthParams(60, mode=mode), rng)
+        found.append(new_points(case, tree)[:, 2].std() / new_points(case, tree)[:, 0].std())
+    return float(np.mean(found))
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_image_attractors_alone_leave_a_flat_tree_flat(seed: int) -> None:
+def test_image_attractors_alone_leave_a_flat_tree_half_as_deep() -> None:
     case = limbed_case(depth_deg=0.0)
-    assert depth_over_width(case, "image", seed) < 0.5 * depth_over_width(case, "alternating", seed)
+    assert depth_over_width(case, "image") < 0.5 * depth_over_width(case, "alternating")
 
 
 def test_a_conifer_keeps_one_leader_up_to_the_top() -> None:

@@ -21,6 +21,7 @@
 #define BUCKETS 65536
 #define ROUND 6755399441055744.0 /* 1.5 * 2^52: adding and taking it away rounds to the nearest integer, ties to even */
 #define TIE 1e-9
+#define COARSE 1.0 /* groups bound gains well where attractors are farther off than groups are wide */
 
 typedef struct { double x, y, z; } Vec;
 typedef struct { Vec base, step; int samples, kept; } Segment;
@@ -28,6 +29,7 @@ typedef struct { double *x, *y, *z, *d; int n, room; } Points;
 typedef struct { uint16_t *kept; double *bound[2]; int *fresh[2], *exact[2]; int seen[2], placed; Vec centre; double radius; } Visit;
 typedef struct { int parent; double fraction, root; Vec lever; } Shoot;
 typedef struct { int branch, placement; double gain; } Found;
+typedef struct { double *x, *y, *low, *high, *slope, *sum, *size; int n; } Groups;
 typedef struct { Visit *visit; Points near; int branch, gathered, top; double bound; } Slot;
 
 typedef struct {
@@ -39,6 +41,9 @@ typedef struct {
     int *count;
     Shoot *library;
     Points points[2]; /* 0 in the image, 1 in space */
+    double *away; /* of each image attractor from its group's middle */
+    int *first; /* index of each group's first attractor, then their count */
+    Groups groups, near_groups;
     Segment *wood;
     Visit **visits;
     int branches, room;
@@ -288,6 +293,81 @@ static double gain_of(Engine *e, const Points *near, int solid, const Segment *s
     return total(e->gain, n);
 }
 
+/* ---- a coarse bound: groups of neighbouring image attractors instead of each ----
+ *
+ * With D the distance of a group's middle to a placement, an attractor `away` from the middle gains at most
+ * d + away - D, or nothing. Summed over a group that is sum - size * D up to low = min(d + away), 0 from
+ * high = max(d + away) on, and convex between: below the chord.
+ */
+
+static void middle_of(Engine *e, int k) {
+    const Points *p = &e->points[0];
+    double x = 0, y = 0, size = e->first[k + 1] - e->first[k];
+    for (int i = e->first[k]; i < e->first[k + 1]; i++) { x += p->x[i] / size; y += p->y[i] / size; }
+    for (int i = e->first[k]; i < e->first[k + 1]; i++)
+        e->away[i] = sqrt((p->x[i] - x) * (p->x[i] - x) + (p->y[i] - y) * (p->y[i] - y)) * (1 + TIE);
+    e->groups.x[k] = x; e->groups.y[k] = y; e->groups.size[k] = size;
+}
+
+static void weigh_groups(Engine *e) {
+    Groups *g = &e->groups;
+    const double *d = e->points[0].d;
+    for (int k = 0; k < g->n; k++) {
+        double low = 1e300, high = 0, sum = 0;
+        for (int i = e->first[k]; i < e->first[k + 1]; i++) {
+            double far = d[i] + e->away[i];
+            low = fmin(low, far);
+            high = fmax(high, far);
+            sum += far;
+        }
+        g->low[k] = low; g->high[k] = high; g->sum[k] = sum;
+        g->slope[k] = high > low ? fmax(0, sum - g->size[k] * low) / (high - low) : 0;
+    }
+}
+
+/* Collect the groups within reach of a branch; none where they are too coarse to tell anything. */
+static int gather_groups(Engine *e, int branch) {
+    const Groups *all = &e->groups;
+    Groups *near = &e->near_groups;
+    Vec c;
+    double r, total = 0, loose = 0;
+    ball(e, branch, &c, &r);
+    near->n = 0;
+    for (int k = 0; k < all->n; k++) {
+        double x = all->x[k] - c.x, y = all->y[k] - c.y, reach = all->high[k] + r;
+        if (x * x + y * y >= reach * reach) continue;
+        int n = near->n++;
+        near->x[n] = all->x[k]; near->y[n] = all->y[k]; near->low[n] = all->low[k]; near->high[n] = all->high[k];
+        near->slope[n] = all->slope[k]; near->sum[n] = all->sum[k]; near->size[n] = all->size[k];
+        total += all->sum[k];
+        loose += all->size[k] * e->away[e->first[k]];
+    }
+    if (total < COARSE * loose) near->n = 0;
+    return near->n;
+}
+
+WIDE static void most_gains(const Groups *g, const double *best, double *gain) {
+    for (int k = 0; k < g->n; k++) {
+        double d = sqrt(best[k]), within = g->sum[k] - g->size[k] * d, beyond = (g->high[k] - d) * g->slope[k];
+        beyond = beyond > 0 ? beyond : 0;
+        gain[k] = d <= g->low[k] ? within : beyond;
+    }
+}
+
+static double most_gain(Engine *e, const Segment *shoots, int count) {
+    const Groups *g = &e->near_groups;
+    int any = 0;
+    clear(e->best, g->n);
+    for (int i = 0; i < count; i++) {
+        if (!shoots[i].kept) continue;
+        any = 1;
+        nearest_flat(g->x, g->y, e->best, g->n, shoots[i]);
+    }
+    if (!any) return 0;
+    most_gains(g, e->best, e->gain);
+    return total(e->gain, g->n) * (1 + TIE) + TIE;
+}
+
 /* ---- closeness ---- */
 
 static int down(double x) { int i = (int)x; return i - (x < i); }
@@ -365,7 +445,13 @@ static int first_visit(Engine *e, Slot *slot, int solid) {
     if (!slot->visit) slot->visit = e->visits[slot->branch] = new_visit(e);
     if (!slot->visit) return failed();
     ball(e, slot->branch, &slot->visit->centre, &slot->visit->radius);
-    for (int i = 0; i < e->subtrees * e->angles; i++) evaluate(e, slot, solid, i, 0);
+    int coarse = !solid && gather_groups(e, slot->branch);
+    for (int i = 0; i < e->subtrees * e->angles; i++) {
+        Segment shoots[MAX_SHOOTS];
+        if (!coarse) { evaluate(e, slot, solid, i, 0); continue; }
+        lay(e, slot->branch, i, slot->visit->kept + (size_t)i * e->shoots, slot->visit->placed, shoots);
+        slot->visit->bound[solid][i] = most_gain(e, shoots, e->count[i / e->angles]);
+    }
     slot->visit->seen[solid] = slot->visit->placed = 1;
     return 0;
 }
@@ -390,6 +476,7 @@ static int open_slots(Engine *e, const int64_t *candidates, int n, int solid) {
         e->slots = slots;
         e->slot_count = n;
     }
+    if (!solid) weigh_groups(e);
     for (int i = 0; i < n; i++) {
         Slot *slot = &e->slots[i];
         slot->branch = (int)candidates[i];
@@ -546,7 +633,11 @@ static void engine_free(PyObject *self) {
         Points *p = i < 2 ? &e->points[i] : &e->slots[i - 2].near;
         free(p->x); free(p->y); free(p->z); free(p->d);
     }
-    void *owned[] = {e->mask, e->middle, e->radius, e->scale, e->turned, e->base, e->tip, e->count, e->library, e->wood,
+    for (int i = 0; i < 2; i++) {
+        Groups *g = i ? &e->near_groups : &e->groups;
+        free(g->x); free(g->y); free(g->low); free(g->high); free(g->slope); free(g->sum); free(g->size);
+    }
+    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->scale, e->turned, e->base, e->tip, e->count, e->library, e->wood,
                      e->visits, e->grid, e->next, e->slots, e->best, e->gain, e->found};
     for (size_t i = 0; i < sizeof(owned) / sizeof(*owned); i++) free(owned[i]);
     PyTypeObject *type = Py_TYPE(self);
@@ -629,6 +720,32 @@ static PyObject *add_attractors(PyObject *self, PyObject *args) {
     Py_RETURN_NONE;
 }
 
+/* Take the image attractors in groups of neighbours: each group's first index, and the count of all at the end. */
+static PyObject *group(PyObject *self, PyObject *args) {
+    Engine *e = (Engine *)self;
+    const Points *p = &e->points[0];
+    PyObject *starts;
+    Py_ssize_t n = 0;
+    if (!PyArg_ParseTuple(args, "O", &starts)) return NULL;
+    int64_t *start = copied(starts, 8, -1, &n);
+    int bad = !start || n < 2 || start[0] != 0 || start[n - 1] != p->n || e->first != NULL;
+    for (int k = 0; !bad && k + 1 < n; k++) bad = start[k] >= start[k + 1];
+    if (bad) { free(start); return PyErr_Format(PyExc_ValueError, "the groups do not cover the image attractors"); }
+    e->first = malloc(sizeof(int) * n);
+    e->away = malloc(sizeof(double) * p->n);
+    double **columns[] = {&e->groups.x, &e->groups.y, &e->groups.low, &e->groups.high, &e->groups.slope,
+                          &e->groups.sum, &e->groups.size, &e->near_groups.x, &e->near_groups.y, &e->near_groups.low,
+                          &e->near_groups.high, &e->near_groups.slope, &e->near_groups.sum, &e->near_groups.size};
+    int good = e->first && e->away;
+    for (int i = 0; i < 14; i++) good = (*columns[i] = calloc(n, sizeof(double))) && good;
+    for (int k = 0; good && k < n; k++) e->first[k] = (int)start[k];
+    free(start);
+    if (!good) return PyErr_NoMemory();
+    e->groups.n = (int)n - 1;
+    for (int k = 0; k < e->groups.n; k++) middle_of(e, k);
+    Py_RETURN_NONE;
+}
+
 static PyObject *best(PyObject *self, PyObject *args) {
     Engine *e = (Engine *)self;
     PyObject *candidates;
@@ -682,6 +799,7 @@ static PyObject *distances(PyObject *self, PyObject *Py_UNUSED(args)) {
 static PyMethodDef methods[] = {
     {"add_branches", add_branches, METH_VARARGS, "Add wood: bases (k, 3), tips (k, 3), scales (k, subtrees)."},
     {"add_attractors", add_attractors, METH_VARARGS, "Add attractors (m, 3), in space or in the image."},
+    {"group", group, METH_VARARGS, "Take the image attractors in groups: first indices, then their count."},
     {"best", best, METH_VARARGS, "Find (branch, subtree, angle, gain) of the best placement; branch -1 without gain."},
     {"place", place, METH_VARARGS, "List (parent, fraction, base, tip) of the shoots of a placement."},
     {"distances", distances, METH_NOARGS, "Give the image attractors' distances as bytes of float64."},

@@ -9,10 +9,22 @@ from treestroke.core.grow.evaluator import Choice, Rules, Shoot, turn_library
 from treestroke.core.grow.library import Subtree
 from treestroke.core.skeleton.skeleton import Indices
 
+GROUP_SIDE = 2.0
+"""Side of the cells that group the image attractors, in mean distances between them."""
+
 
 def _floats(array: Floats) -> Floats:
     """Make an array fit for the extension."""
     return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _neighbours(points: Floats) -> tuple[Indices, Indices]:
+    """Order points (m, 2) so that neighbours stand together; give the order and where each group starts, and m."""
+    side = max(GROUP_SIDE * float(np.sqrt(np.prod(np.ptp(points, axis=0)) / len(points))), 1e-9)
+    cells = np.floor((points - points.min(axis=0)) / side).astype(np.int64)
+    order = np.lexsort((cells[:, 0], cells[:, 1]))
+    new = (np.diff(cells[order], axis=0) != 0).any(axis=1)
+    return order, np.concatenate([[0], np.flatnonzero(new) + 1, [len(points)]])
 
 
 class CompiledEvaluator:
@@ -20,6 +32,7 @@ class CompiledEvaluator:
 
     def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
         turned = turn_library(library, rules.angles)
+        self._order = np.zeros(0, dtype=np.int64)
         self._engine = Engine(
             crown.mask.shape,
             np.ascontiguousarray(crown.mask, dtype=np.uint8),
@@ -41,10 +54,14 @@ class CompiledEvaluator:
         self._engine.add_branches(_floats(bases), _floats(tips), _floats(scales))
 
     def add_attractors(self, points: Floats) -> None:
-        """Add attractors, see `Evaluator`."""
-        in_space = points.shape[1] == 3
-        solid = points if in_space else np.column_stack([points, np.zeros(len(points))])
-        self._engine.add_attractors(_floats(solid), in_space)
+        """Add attractors, see `Evaluator`; those of the image once, at the start."""
+        if points.shape[1] == 3:
+            self._engine.add_attractors(_floats(points), True)
+        elif len(points):
+            self._order, starts = _neighbours(points)
+            ordered = points[self._order]
+            self._engine.add_attractors(_floats(np.column_stack([ordered, np.zeros(len(points))])), False)
+            self._engine.group(starts)
 
     def best(self, candidates: Indices, in_space: bool) -> Choice:
         """Find the best placement, see `Evaluator`."""
@@ -57,4 +74,6 @@ class CompiledEvaluator:
 
     def image_distances(self) -> Floats:
         """Give the image attractors' distances, see `Evaluator`."""
-        return np.frombuffer(self._engine.distances(), dtype=np.float64)
+        distances = np.empty(len(self._order))
+        distances[self._order] = np.frombuffer(self._engine.distances(), dtype=np.float64)
+        return distances

@@ -16,6 +16,10 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
 
 
+UPRIGHT = 0.4
+"""Share of the steepest slope that an upright limb may take: the law of gravity holds in depth too."""
+
+
 @dataclass(frozen=True)
 class LiftParams:
     """How far limbs may turn out of the picture.
@@ -41,20 +45,23 @@ class LiftParams:
 
 def lift(
     skeleton: Skeleton,
+    stroke: Indices,
     envelope: Envelope,
     rng: np.random.Generator,
     params: LiftParams = LiftParams(),
 ) -> Skeleton:
     """Lift a traced skeleton (2D, px) to the world (3D, metres), radii too.
 
-    Each joint still projects onto its pixel. The first stem stays in the picture's plane; every other limb takes
-    the slope that keeps its joints furthest from all limbs before it, longest limbs first among siblings;
-    ``rng`` decides to which side when both are equal.
+    ``stroke`` (n,) tells which stroke each joint follows: a limb goes on along its own stroke. Each joint still
+    projects onto its pixel. The first stem stays in the picture's plane; every other limb takes the slope that keeps
+    its joints furthest from all limbs before it, heaviest limbs first among siblings; ``rng`` decides to which side
+    when both are equal.
     """
     camera = envelope.camera
     flat = Skeleton(camera.world_from_pixels(skeleton.points), skeleton.radii * camera.metres_per_pixel, skeleton.parents)
     weights = accumulate_to_root(flat, edge_lengths(flat))
-    chains = limbs(flat, heaviest_children(flat, weights))
+    same = stroke == stroke[np.maximum(flat.parents, 0)]
+    chains = limbs(flat, heaviest_children(flat, np.where(same, weights + weights.max(), weights)))
     depth = np.zeros(len(flat))
     placed = [flat.points[chains[0]]]
     for chain in _by_order(flat, chains[1:], weights):
@@ -81,12 +88,19 @@ def _options(points: Floats, start: float, envelope: Envelope, params: LiftParam
     """Give the limb's joints (slopes, n, 3) at each slope, bounded by the envelope."""
     steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
-    slopes = np.linspace(-params.steepest, params.steepest, params.slopes)
+    slopes = np.linspace(-params.steepest, params.steepest, params.slopes) * _leaning(points)
     most = np.maximum(params.inside * envelope.half_depth(points), abs(start))
-    depth = np.clip(start + slopes[:, None] * along, -most, most)
+    eased = along**2 / (along + 0.25 * along[-1] + 1e-9)
+    depth = np.clip(start + slopes[:, None] * eased, -most, most)
     lifted = np.broadcast_to(points, (len(slopes), *points.shape)).copy()
     lifted[:, :, 2] = depth
     return lifted
+
+
+def _leaning(points: Floats) -> float:
+    """Give the share of the steepest slope that suits a limb: upright leaders lean little, level limbs reach far."""
+    way = points[-1, :2] - points[0, :2]
+    return float(UPRIGHT + (1 - UPRIGHT) * abs(way[0]) / max(float(np.hypot(*way)), 1e-9))
 
 
 def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -> int:

@@ -14,7 +14,6 @@ from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import Grown, grow
-from treestroke.core.imaging.mixture import join_mixtures
 from treestroke.core.leaf.atlas import leaf_atlas
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.placement import LeafParams, place_leaves
@@ -35,7 +34,7 @@ Mask = NDArray[np.bool_]
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
-CLOSED_SHARE = {"leaves": 0.012, "needles": 0.012, "bare": 0.05}
+CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
 """Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
 
 
@@ -128,7 +127,7 @@ def model_photo(
     crown = _closed(foliage.mask, kind)
     camera = _camera(sight, foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
-    lifted = lift(traced.skeleton, envelope, rng)
+    lifted = lift(traced.skeleton, traced.stroke, envelope, rng)
     report("grow", 0.0)
     library = choose_library(settings.library, kind, lifted)
     grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
@@ -171,8 +170,8 @@ def _look(photo: Photo, strokes: Strokes) -> _Sight:
 
 def _trace(sight: _Sight, foliage: Foliage) -> Traced:
     """Trace the visible branches of a photo whose foliage is known."""
-    rest = join_mixtures([foliage.leaf, foliage.ground], [0.5, 0.5])
-    return trace_branches(sight.photo, sight.strokes, foliage.leaf, rest, _height_px(sight, foliage.mask))
+    height_px = _height_px(sight, foliage.mask)
+    return trace_branches(sight.photo, sight.strokes, foliage.leaf, foliage.ground, foliage.region, height_px)
 
 
 def _height_px(sight: _Sight, mask: Mask) -> float:
@@ -232,7 +231,8 @@ def _leaf(
     if kind == "bare" or settings.leaf_density == 0 or not foliage.mask.any():
         return None, 0
     mask = foliage.mask & ~_visible_wood(traced, foliage.mask)
-    atlas = leaf_atlas(sight.photo, foliage.mask, kind, rng)
+    coloured = foliage.pure if foliage.pure.sum() > 0.1 * foliage.mask.sum() else foliage.mask
+    atlas = leaf_atlas(sight.photo, coloured, kind, rng)
     params = LeafParams(settings.leaf_size, settings.leaf_density, kind=kind)
     leaves = place_leaves(grown.skeleton, mask, envelope, sight.photo, atlas, params, rng, report)
     return (Surface(cards(leaves, atlas), atlas.image), len(leaves)) if len(leaves) else (None, 0)

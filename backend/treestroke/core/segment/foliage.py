@@ -32,6 +32,12 @@ REFERENCE_SIDE = 1500
 """Long side of a photo, px, for which the paper gives its pixel constants."""
 
 
+BLUR_PX = 2.0
+"""Blur of the odds before mixtures are fitted anew: a cheap stand-in for the cut."""
+PURE_ODDS = 2.0
+"""Log odds over which a pixel's colour alone tells a leaf."""
+
+
 @dataclass(frozen=True)
 class FoliageParams:
     """How foliage is told from its background.
@@ -46,6 +52,8 @@ class FoliageParams:
         The paper's lambda: cost of a border between two pixels times the difference of their colours.
     samples
         Pixels that a mixture is fitted to.
+    refits
+        How often the mixtures are fitted anew to what they told apart.
     cut_pixels
         Pixels of the coarse graph; finer borders are cut in a band.
     pore_share
@@ -55,7 +63,8 @@ class FoliageParams:
     components: int = 10
     dilation_px: float = 10.0
     smoothness: float = 30.0
-    samples: int = 6000
+    samples: int = 3000
+    refits: int = 2
     cut_pixels: int = 120_000
     pore_share: float = 0.015
 
@@ -74,6 +83,8 @@ class Foliage:
     ----------
     mask
         (h, w) leaf pixels (of a bare tree: twigs).
+    pure
+        (h, w) those that by their own colour are leaves beyond doubt, nothing shining through.
     region
         (h, w) where foliage was looked for: the crown, a little dilated.
     leaf, ground
@@ -81,6 +92,7 @@ class Foliage:
     """
 
     mask: Mask
+    pure: Mask
     region: Mask
     leaf: Mixture
     ground: Mixture
@@ -99,15 +111,20 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= grow_px
     leaf, ground = _colour_models(pixels, inside, params)
     place = _place_prior(inside)
-    found = cut_grid(pixels, _log_odds(leaf, ground, pixels) + place, region, params.smoothness, params.cut_pixels)
-    if found.any():
-        leaf, ground = _refit(pixels, found, region, params)
-        odds = _log_odds(leaf, ground, pixels) + place
-        found = cut_grid(pixels, odds, region, params.smoothness, params.cut_pixels)
+    for _ in range(params.refits):
+        leaf, ground = _refit(pixels, _log_odds(leaf, ground, pixels) + place, inside, params) or (leaf, ground)
+    odds = _log_odds(leaf, ground, pixels)
+    found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
+    pure = found & (odds > PURE_ODDS)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
-    mask, whole = np.zeros_like(crown), np.zeros_like(crown)
-    mask[box], whole[box] = found, region
-    return Foliage(mask, whole, leaf, ground)
+    return Foliage(*(_framed(part, box, crown) for part in (found, pure, region)), leaf, ground)
+
+
+def _framed(part: Mask, box: tuple[slice, slice], frame: Mask) -> Mask:
+    """Set a box's mask back in its frame."""
+    whole = np.zeros_like(frame)
+    whole[box] = part
+    return whole
 
 
 def _without_pores(found: Mask, width_px: float) -> Mask:
@@ -145,8 +162,17 @@ def _weighted(mixture: Mixture, belief: Floats) -> Mixture:
     return Mixture(weights / weights.sum(), mixture.means, mixture.covariances)
 
 
-def _refit(pixels: Photo, found: Mask, region: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
-    """Fit leaf and ground anew to what the first cut told apart."""
+def _refit(
+    pixels: Photo, odds: NDArray[np.float32], inside: Mask, params: FoliageParams
+) -> tuple[Mixture, Mixture] | None:
+    """Fit leaf and ground anew to what the blurred odds tell apart; None where that is no leaf at all.
+
+    This is what makes the answer hold still when the hand trembles: the first guess depends on where the stroke
+    runs, its fixed point hardly does.
+    """
+    found = inside & (cv2.GaussianBlur(odds, (0, 0), BLUR_PX) > 0)
+    if not found.any() or found.all():
+        return None
     leaf, ground = _sample(pixels, found, params.samples), _sample(pixels, ~found, params.samples)
     return fit_mixture(leaf, params.components // 2), fit_mixture(ground, params.components // 2 + 2)
 

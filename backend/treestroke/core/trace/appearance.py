@@ -6,10 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import Floats, normals, resample
-from treestroke.core.imaging.mixture import Mixture, distance, fit_mixture, log_density, table_colours, table_index
+from treestroke.core.imaging.mixture import (
+    Mixture,
+    distance,
+    fit_mixture,
+    join_mixtures,
+    log_density,
+    table_colours,
+    table_index,
+)
 from treestroke.core.imaging.sampling import sample_nearest
 
 Photo = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 Odds = NDArray[np.float32]
 
 COMPONENTS = 5
@@ -18,19 +27,28 @@ LEAF_LIKE = 1.0
 SAMPLES = 2500
 
 
-def branch_odds(photo: Photo, lines_px: Sequence[Floats], breadth_px: float, leaf: Mixture, rest: Mixture) -> Odds:
+def branch_odds(
+    photo: Photo, lines_px: Sequence[Floats], breadth_px: float, leaf: Mixture, ground: Mixture, crown: Mask
+) -> Odds:
     """Log odds (h, w) that each pixel is branch rather than anything else, within +-6.
 
-    Branch: a mixture of 5 components of the pixels within ``breadth_px`` of the lines (n, 2), without the
-    components that lie too close to one of ``leaf`` (the stroke crosses leaves). Not branch: ``rest``.
+    Branch: a mixture of 5 components of the pixels within ``breadth_px`` of the lines (n, 2). Inside the crown (h, w)
+    it goes without the components that lie too close to one of ``leaf`` (the stroke crosses leaves), and all else is
+    leaf or ground; outside there are no leaves, so that a trunk as dark as its leaves is seen against the ground.
     Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
-    model = _branch_model(_pixels_under(photo, lines_px, breadth_px), leaf)
-    if model is None:
-        return np.full(photo.shape[:2], -6.0, np.float32)
+    model = fit_mixture(_pixels_under(photo, lines_px, breadth_px), COMPONENTS)
+    among_leaves = _unlike(model, leaf)
+    rest = join_mixtures([leaf, ground], [0.5, 0.5])
+    inside = _odds(among_leaves, rest) if among_leaves is not None else np.full(len(table_colours()), -6.0, np.float32)
+    index = table_index(photo)
+    return np.where(crown, inside[index], _odds(model, ground)[index])
+
+
+def _odds(branch: Mixture, rest: Mixture) -> Odds:
+    """Tabulate the log odds of a branch by colour."""
     colours = table_colours()
-    table = np.clip(log_density(model, colours) - log_density(rest, colours), -6.0, 6.0)
-    return table.astype(np.float32)[table_index(photo)]
+    return np.clip(log_density(branch, colours) - log_density(rest, colours), -6.0, 6.0).astype(np.float32)
 
 
 def _pixels_under(photo: Photo, lines_px: Sequence[Floats], breadth_px: float) -> Photo:
@@ -45,9 +63,8 @@ def _pixels_under(photo: Photo, lines_px: Sequence[Floats], breadth_px: float) -
     return np.asarray(pixels[:: max(1, len(pixels) // SAMPLES)], dtype=np.uint8)
 
 
-def _branch_model(pixels: Photo, leaf: Mixture) -> Mixture | None:
-    """Fit the branch's mixture without leaf-like components; None where nothing else is left."""
-    model = fit_mixture(pixels, COMPONENTS)
+def _unlike(model: Mixture, leaf: Mixture) -> Mixture | None:
+    """Keep the components that are unlike leaves; None where there are none."""
     common = leaf.weights > 0.05
     solid = leaf.select(common) if common.any() else leaf
     kept = np.array([distance(solid, mean) > LEAF_LIKE for mean in model.means])

@@ -22,6 +22,10 @@ from treestroke.core.trace.snapping import blurred, snap
 from treestroke.core.trace.thickness import half_widths
 
 REFERENCE_SIDE = 1500
+CONE, TAPER = 1.1, 0.75
+"""A limb lies within a cone: neighbours of its own colour widen what is measured, never the limb itself."""
+STEADY = 4.0
+"""Steps of a line over which its place in the wood is averaged."""
 GRAIN = 1.5
 """Bark's grain, px at a long side of 1500: colours are judged together over it."""
 SWELLING = 1.8
@@ -55,7 +59,7 @@ class TraceParams:
     tolerance_share: float = 0.002
     stem_share: float = 0.03
     trunk_share: float = 0.017
-    thickest_share: float = 0.05
+    thickest_share: float = 0.065
     thinnest_px: float = 1.5
 
     def __post_init__(self) -> None:
@@ -86,17 +90,18 @@ def trace_branches(
     photo: NDArray[np.uint8],
     strokes: Strokes,
     leaf: Mixture,
-    rest: Mixture,
+    ground: Mixture,
+    crown: NDArray[np.bool_],
     height_px: float,
     params: TraceParams = TraceParams(),
 ) -> Traced:
     """Trace the branches under and beside the branch strokes (one at least) of a photo (h, w, 3), sRGB.
 
-    ``leaf`` and ``rest`` are the colours of leaves and of all that is no branch; ``height_px`` is the tree's height,
-    px. Every stroke is followed over its whole length; what the tracer finds beside them hangs together with them.
+    ``leaf`` and ``ground`` are the colours of leaves and of what is behind them, ``crown`` (h, w) is where leaves may
+    be; ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; what the tracer finds beside them hangs together with them.
     """
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
-    odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), leaf, rest)
+    odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), leaf, ground, crown)
     wood = cv2.GaussianBlur(odds, (0, 0), max(0.7, GRAIN * unit)) > 0
     draft = Draft()
     _follow_strokes(draft, strokes.branches, odds, wood, height_px, params)
@@ -121,10 +126,8 @@ def _follow_strokes(
     evidence = cv2.GaussianBlur(odds, (0, 0), max(0.8, 0.3 * reach))
     root = branches[0].points[0]
     for index, stroke in enumerate(branches):
-        line = _centred(snap(stroke.points, evidence, reach, step), wood, params.thickest_share * height_px)
+        line = _centred(snap(stroke.points, evidence, reach, step), wood, params.thickest_share * height_px, index == 0)
         stem = index == 0 or float(np.linalg.norm(stroke.points[0] - root)) <= params.stem_share * height_px
-        if index == 0:
-            line = np.concatenate([root[None], line[1:]])
         parent = -1 if stem else draft.nearest(line[0])
         bearer = params.trunk_share * height_px / 0.75 if stem else draft.radii[parent]
         most = params.thickest_share * height_px if stem else 1.2 * bearer
@@ -136,10 +139,13 @@ def _follow_strokes(
         draft.grow(parent, line, radii, stroke=index)
 
 
-def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float) -> Floats:
-    """Move a line (n, 2) to the middle of the wood that it runs in, where that is seen."""
+def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float, rooted: bool) -> Floats:
+    """Move a line (n, 2) to the middle of the wood that it runs in, where that is seen; a root stays where it is."""
     _, middles = half_widths(line, wood, most_px)
-    return line + blurred(np.nan_to_num(middles), 2.0)[:, None] * normals(line)
+    aside = blurred(np.nan_to_num(middles), STEADY)
+    if rooted:
+        aside *= np.minimum(arc_lengths(line) / (3 * most_px), 1.0)
+    return line + aside[:, None] * normals(line)
 
 
 def _radii(line: Floats, width: float | None, measured: Floats, bearer: float) -> Floats:
@@ -152,6 +158,7 @@ def _radii(line: Floats, width: float | None, measured: Floats, bearer: float) -
         return 0.75 * bearer * (1 - 0.7 * share)
     seen = np.minimum(measured[places], SWELLING * np.median(measured[places]))
     radii = np.interp(np.arange(len(line)), places, isotonic_regression(seen, increasing=False).x)
+    radii = np.minimum(radii, CONE * radii[0] * (1 - TAPER * share))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
     return radii

@@ -1,0 +1,63 @@
+"""A person's hand shakes: every stroke point moved by up to 0.7 % of the photo's long side changes little."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from tests.conftest import DATA, EXAMPLES
+from tests.pictures import overlap
+from treestroke.core.geometry.polyline import resample
+from treestroke.core.pipeline.photo import PhotoTrace, trace_photo
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.strokes import Stroke, Strokes
+from treestroke.service.inputs import load_photo, load_strokes
+
+TREMOR = 0.007
+JITTERS = 10
+OAK, MAPLE, OSAGE = (EXAMPLES / name for name in ("burr_oak_dusk", "sugar_maple_autumn", "osage_orange_autumn"))
+FORKED = DATA / "bigleaf_maple_bare"
+"""A photo on which a branch without stroke is found."""
+
+
+def shaken(strokes: Strokes, amount_px: float, rng: np.random.Generator) -> Strokes:
+    def moved(stroke: Stroke) -> Stroke:
+        return Stroke(stroke.points + rng.uniform(-amount_px, amount_px, stroke.points.shape), stroke.width)
+
+    return Strokes(moved(strokes.crown), tuple(map(moved, strokes.branches)), tuple(map(moved, strokes.erase)))
+
+
+@cache
+def traces(tree: Path) -> tuple[PhotoTrace, list[PhotoTrace]]:
+    """Trace a photo once as drawn and ten times with a shaking hand."""
+    photo, strokes = load_photo(tree.with_suffix(".jpg")), load_strokes(tree.with_suffix(".strokes.json"))
+    rng, amount = np.random.default_rng(0), TREMOR * max(photo.shape[:2])
+    return trace_photo(photo, strokes), [trace_photo(photo, shaken(strokes, amount, rng)) for _ in range(JITTERS)]
+
+
+def walked(skeleton: Skeleton | None) -> np.ndarray:
+    """Give a point for each px of a skeleton's length."""
+    assert skeleton is not None
+    edges = [(skeleton.points[p], skeleton.points[j]) for j, p in enumerate(skeleton.parents.tolist()) if p >= 0]
+    return np.concatenate([resample(np.stack(edge), 1.0)[1:] for edge in edges])
+
+
+@pytest.mark.parametrize("tree", [OAK, MAPLE, OSAGE], ids=lambda tree: tree.name)
+def test_a_shaking_hand_finds_the_same_foliage(tree: Path) -> None:
+    steady, others = traces(tree)
+    assert np.median([overlap(other.foliage, steady.foliage) for other in others]) >= 0.95
+
+
+@pytest.mark.parametrize("tree", [OAK, MAPLE, OSAGE, FORKED], ids=lambda tree: tree.name)
+def test_a_shaking_hand_traces_the_same_branches(tree: Path) -> None:
+    steady, others = traces(tree)
+    line = walked(steady.skeleton)
+    height_px = line[:, 1].max() - np.flatnonzero(steady.foliage.any(axis=1))[0]
+    near = [(cKDTree(walked(o.skeleton)).query(line)[0] <= 0.01 * height_px).mean() for o in others]
+    assert np.median(near) >= 0.9
+
+
+def test_a_branch_without_stroke_is_found_on_a_photo() -> None:
+    assert (traces(FORKED)[0].stroke < 0).any()

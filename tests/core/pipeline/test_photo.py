@@ -1,0 +1,131 @@
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from tests.conftest import DATA, EXAMPLES
+from treestroke.core.pipeline.photo import TreeModel, model_photo, trace_photo
+from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.strokes import Stroke, Strokes
+from treestroke.service.inputs import load_photo, load_strokes
+
+QUICK = ModelSettings(iterations=30)
+STAGES = ["foliage", "trace", "lift", "grow", "leaf", "mesh"]
+
+
+def given(tree: Path) -> tuple[np.ndarray, Strokes]:
+    return load_photo(tree.with_suffix(".jpg")), load_strokes(tree.with_suffix(".strokes.json"))
+
+
+def modelled(tree: Path, settings: ModelSettings = QUICK, seed: int = 0) -> TreeModel:
+    return model_photo(*given(tree), settings, np.random.default_rng(seed))
+
+
+def enlarged(strokes: Strokes, factor: float) -> Strokes:
+    def larger(stroke: Stroke) -> Stroke:
+        return Stroke(stroke.points * factor, stroke.width)
+
+    return Strokes(larger(strokes.crown), tuple(map(larger, strokes.branches)), tuple(map(larger, strokes.erase)))
+
+
+MAPLE = EXAMPLES / "sugar_maple_autumn"
+
+
+@pytest.fixture(scope="module")
+def maple() -> TreeModel:
+    return modelled(MAPLE)
+
+
+def test_the_same_seed_gives_the_same_arrays(maple: TreeModel) -> None:
+    again = modelled(MAPLE)
+    assert maple.leaf is not None
+    assert again.leaf is not None
+    for one, other in ((maple.bark, again.bark), (maple.leaf, again.leaf)):
+        for name in ("positions", "normals", "uvs", "triangles"):
+            assert np.array_equal(getattr(one.mesh, name), getattr(other.mesh, name))
+        assert np.array_equal(one.texture, other.texture)
+
+
+def test_another_seed_gives_another_tree(maple: TreeModel) -> None:
+    other = modelled(MAPLE, seed=1)
+    assert not np.array_equal(other.bark.mesh.positions, maple.bark.mesh.positions)
+
+
+def test_the_root_stands_at_the_origin_and_the_tree_is_as_high_as_asked(maple: TreeModel) -> None:
+    assert maple.grown.skeleton.points[0] == pytest.approx(np.zeros(3), abs=1e-9)
+    assert maple.leaf is not None
+    assert maple.leaf.mesh.positions[:, 1].max() == pytest.approx(10.0, abs=1.0)
+
+
+def test_height_scales_the_whole_tree(maple: TreeModel) -> None:
+    double = modelled(MAPLE, ModelSettings(iterations=30, height=20.0))
+    assert double.camera.metres_per_pixel == pytest.approx(2 * maple.camera.metres_per_pixel)
+    assert double.grown.skeleton.points == pytest.approx(2 * maple.grown.skeleton.points, abs=1e-6)
+
+
+@pytest.fixture(scope="module")
+def huge() -> TreeModel:
+    photo, strokes = given(MAPLE)
+    factor = 6000 / max(photo.shape[:2])
+    size = (6000, round(photo.shape[0] * factor))
+    large = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_CUBIC), dtype=np.uint8)
+    return model_photo(large, enlarged(strokes, factor), QUICK, np.random.default_rng(0))
+
+
+def test_a_large_photo_gives_its_camera_in_its_own_pixels(maple: TreeModel, huge: TreeModel) -> None:
+    factor = 6000 / maple.camera.width
+    assert (huge.camera.width, huge.camera.height) == (6000, round(maple.camera.height * factor))
+    assert huge.camera.metres_per_pixel * factor == pytest.approx(maple.camera.metres_per_pixel, rel=0.02)
+    assert huge.camera.root_px == pytest.approx(tuple(factor * v for v in maple.camera.root_px), rel=0.01)
+
+
+def test_a_large_photo_gives_a_tree_of_the_same_shape(maple: TreeModel, huge: TreeModel) -> None:
+    assert maple.leaf is not None
+    assert huge.leaf is not None
+    spans = [np.ptp(np.percentile(model.leaf.mesh.positions, [2, 98], axis=0), axis=0) for model in (maple, huge)]
+    assert spans[1] == pytest.approx(spans[0], rel=0.1)
+    assert huge.leaves == pytest.approx(maple.leaves, rel=0.3)
+
+
+def test_a_large_photo_s_trace_is_in_its_own_pixels() -> None:
+    photo, strokes = given(MAPLE)
+    large = np.asarray(cv2.resize(photo, None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC), dtype=np.uint8)
+    small, traced = trace_photo(photo, strokes), trace_photo(large, enlarged(strokes, 4))
+    assert traced.foliage.shape == large.shape[:2]
+    assert traced.skeleton is not None
+    assert small.skeleton is not None
+    assert traced.skeleton.points[0] / 4 == pytest.approx(small.skeleton.points[0], abs=1.0)
+    assert traced.foliage.mean() == pytest.approx(small.foliage.mean(), rel=0.05)
+
+
+@pytest.mark.parametrize("settings", [ModelSettings(iterations=30, foliage="bare"), ModelSettings(iterations=30, leaf_density=0)])
+def test_a_tree_without_leaves_has_none(settings: ModelSettings) -> None:
+    model = modelled(MAPLE, settings)
+    assert (model.leaf, model.leaves) == (None, 0)
+    assert len(model.bark.mesh.triangles) > 100
+
+
+@pytest.mark.parametrize(
+    ("tree", "kind"),
+    [(MAPLE, "leaves"), (DATA / "ponderosa_slope", "needles"), (DATA / "bigleaf_maple_bare", "bare")],
+    ids=lambda value: getattr(value, "name", value),
+)
+def test_the_kind_is_seen_and_can_be_overruled(tree: Path, kind: str) -> None:
+    settings = ModelSettings(iterations=0)
+    assert modelled(tree, settings).foliage_kind == kind
+    assert modelled(tree, ModelSettings(iterations=0, foliage="needles")).foliage_kind == "needles"
+
+
+def test_progress_names_the_stages_in_order() -> None:
+    seen: list[str] = []
+    model_photo(*given(MAPLE), ModelSettings(iterations=5), np.random.default_rng(0), lambda stage, _: seen.append(stage))
+    assert list(dict.fromkeys(seen)) == STAGES
+
+
+def test_without_a_branch_stroke_the_foliage_alone_is_traced() -> None:
+    photo, strokes = given(MAPLE)
+    traced = trace_photo(photo, Strokes(strokes.crown))
+    assert traced.skeleton is None
+    assert len(traced.stroke) == 0
+    assert np.array_equal(traced.foliage, trace_photo(photo, strokes).foliage)

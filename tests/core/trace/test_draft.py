@@ -1,0 +1,88 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.strategies import skeletons
+from treestroke.core.geometry.polyline import distances_to_segment
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.skeleton.traverse import child_counts
+from treestroke.core.trace.draft import Draft, simplify, without, without_spurs
+
+TREES = skeletons(dimensions=2, stems=False)
+STEM = np.array([[0.0, 90.0], [0.0, 60.0], [0.0, 30.0], [0.0, 0.0]])
+
+
+def drafted(spur_px: float) -> Draft:
+    """Draw a stem of 90 px and a found side of the given length at its second joint."""
+    draft = Draft()
+    draft.grow(-1, STEM, 5.0, stroke=0)
+    draft.grow(1, np.array([[0.0, 60.0], [spur_px / 2, 60.0], [spur_px, 60.0]]), 2.0, stroke=-1)
+    return draft
+
+
+def off_line(points: np.ndarray, tree: Skeleton) -> np.ndarray:
+    edges = [(tree.points[p], tree.points[j]) for j, p in enumerate(tree.parents.tolist()) if p >= 0]
+    return np.min([distances_to_segment(points, start, end) for start, end in edges], axis=0)
+
+
+def test_a_chain_from_a_parent_begins_with_the_parent() -> None:
+    tree = drafted(20.0).skeleton()
+    assert tree.parents.tolist() == [-1, 0, 1, 2, 1, 4]
+    assert tree.points[4:].tolist() == [[10, 60], [20, 60]]
+    assert tree.radii.tolist() == [5, 5, 5, 5, 2, 2]
+
+
+def test_growing_returns_the_last_joint() -> None:
+    draft = Draft()
+    assert draft.grow(-1, STEM, 5.0, stroke=0) == 3
+    assert draft.grow(3, STEM[-1:], 5.0, stroke=0) == 3
+
+
+def test_the_nearest_joint_is_found() -> None:
+    assert drafted(20.0).nearest(np.array([17.0, 70.0])) == 5
+
+
+@given(TREES, st.data())
+def test_what_is_dropped_goes_with_all_its_descendants(tree: Skeleton, data: st.DataObject) -> None:
+    dropped = data.draw(st.sets(st.integers(1, max(1, len(tree) - 1)))) if len(tree) > 1 else set()
+    kept, number = without(tree, np.arange(len(tree)), np.array(sorted(dropped), dtype=np.int64))
+    for joint in range(len(tree)):
+        way = [joint]
+        while tree.parents[way[-1]] >= 0:
+            way.append(int(tree.parents[way[-1]]))
+        assert (joint in number) == dropped.isdisjoint(way)
+    assert np.array_equal(number[kept.parents[1:]], tree.parents[number][1:])
+
+
+@pytest.mark.parametrize(("spur_px", "joints"), [(20.0, 4), (40.0, 6)])
+def test_a_found_branch_stays_when_it_is_long_enough(spur_px: float, joints: int) -> None:
+    draft = drafted(spur_px)
+    tree, stroke = without_spurs(draft.skeleton(), np.array(draft.stroke), 30.0)
+    assert len(tree) == len(stroke) == joints
+
+
+def test_a_short_stroked_branch_is_no_spur() -> None:
+    draft = drafted(2.0)
+    tree, _ = without_spurs(draft.skeleton(), np.array([0, 0, 0, 0, 1, 1]), 30.0)
+    assert len(tree) == 6
+
+
+@given(TREES, st.floats(0.0, 40.0))
+def test_simplifying_keeps_forks_and_ends(tree: Skeleton, tolerance: float) -> None:
+    kept, number = simplify(tree, np.arange(len(tree)), tolerance)
+    assert np.isin(np.flatnonzero((child_counts(tree) != 1) | (tree.parents < 0)), number).all()
+    assert np.array_equal(kept.points, tree.points[number])
+    assert np.array_equal(child_counts(kept), child_counts(tree)[number])
+
+
+@given(skeletons(dimensions=2, stems=False).filter(lambda tree: len(tree) > 1), st.floats(0.1, 40.0))
+def test_simplifying_moves_the_line_by_no_more_than_its_tolerance(tree: Skeleton, tolerance: float) -> None:
+    kept, _ = simplify(tree, np.zeros(len(tree), dtype=np.int64), tolerance)
+    assert off_line(tree.points, kept).max() <= tolerance + 1e-6
+
+
+def test_a_straight_stem_is_two_joints() -> None:
+    tree, stroke = simplify(Skeleton(STEM, np.ones(4), np.arange(4) - 1), np.zeros(4, dtype=np.int64), 0.5)
+    assert tree.points.tolist() == [[0, 90], [0, 0]]
+    assert stroke.tolist() == [0, 0]

@@ -1,0 +1,153 @@
+"""A drawn tree: a stem, an arm to the left and one to the right, dark on a light ground."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from tests.pictures import GROUND, wood_mask, wood_photo
+from treestroke.core.geometry.polyline import resample
+from treestroke.core.imaging.mixture import Mixture
+from treestroke.core.imaging.outline import fill_outline
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.strokes import Stroke, Strokes
+from treestroke.core.trace.tracing import Traced, TraceParams, trace_branches
+
+SIZE, HEIGHT = 450, 400.0
+STEM = [(220.0, 430.0), (220.0, 240.0)]
+LEFT, RIGHT = [(220.0, 240.0), (90.0, 100.0)], [(220.0, 240.0), (350.0, 100.0)]
+TREE = wood_mask([(STEM, 11.0), (LEFT, 7.0), (RIGHT, 7.0)], SIZE, SIZE)
+CROWN = Stroke(np.array([[60.0, 40.0], [380.0, 40.0], [380.0, 250.0], [60.0, 250.0]]))
+INSIDE = fill_outline(CROWN.points, SIZE, SIZE)
+Line = Sequence[Sequence[float]]
+
+
+def around(colour: tuple[int, int, int], deviation: float) -> Mixture:
+    return Mixture(np.ones(1), np.array([colour], float), np.eye(3)[None] * deviation**2)
+
+
+LEAVES = around((70, 120, 40), 15.0)
+BEHIND = around(GROUND, 8.0)
+
+
+def stroked(*lines: Line, erase: Sequence[Line] = (), width: float | None = None) -> Strokes:
+    branches = tuple(Stroke(np.array(line, float), width) for line in lines)
+    return Strokes(CROWN, branches, tuple(Stroke(np.array(line, float)) for line in erase))
+
+
+def trace(strokes: Strokes, wood: np.ndarray = TREE, params: TraceParams = TraceParams()) -> Traced:
+    return trace_branches(wood_photo(wood), strokes, LEAVES, BEHIND, INSIDE, HEIGHT, params)
+
+
+def drawn(skeleton: Skeleton, edges: np.ndarray) -> np.ndarray:
+    """Walk the edges that end in the given joints, a point each px."""
+    ends = [(skeleton.points[skeleton.parents[j]], skeleton.points[j]) for j in edges if skeleton.parents[j] >= 0]
+    return np.concatenate([resample(np.stack(pair), 1.0) for pair in ends] or [np.full((1, 2), np.inf)])
+
+
+def covered(line: Line, traced: Traced, found_only: bool = True, within: float = 6.0) -> float:
+    """Share of a line that runs near a traced edge."""
+    edges = np.flatnonzero(traced.stroke < 0) if found_only else np.arange(len(traced.stroke))
+    near = drawn(traced.skeleton, edges)
+    away = cKDTree(near[np.isfinite(near).all(axis=1)].reshape(-1, 2)).query(resample(np.array(line, float), 2.0))[0]
+    return float((away <= within).mean())
+
+
+def test_the_root_is_where_the_first_stroke_begins() -> None:
+    traced = trace(stroked(STEM))
+    assert traced.skeleton.points[0] == pytest.approx(np.array(STEM[0]))
+    assert (traced.stroke[0], traced.skeleton.parents[0]) == (0, -1)
+
+
+@pytest.mark.parametrize("arm", [LEFT, RIGHT], ids=["left", "right"])
+def test_an_arm_without_stroke_is_found(arm: Line) -> None:
+    assert covered(arm, trace(stroked(STEM))) > 0.8
+
+
+def test_an_arm_with_a_stroke_is_not_found_again() -> None:
+    traced = trace(stroked(STEM, LEFT))
+    assert covered(LEFT, traced) < 0.2
+    assert covered(RIGHT, traced) > 0.8
+    assert set(traced.stroke.tolist()) == {-1, 0, 1}
+
+
+@pytest.mark.parametrize("lines", [(STEM,), (STEM, LEFT), (STEM, RIGHT, LEFT), ([*STEM, LEFT[1]], RIGHT)])
+def test_every_stroke_is_followed_over_its_whole_length(lines: tuple[Line, ...]) -> None:
+    traced = trace(stroked(*lines))
+    assert [covered(line, traced, found_only=False, within=0.02 * HEIGHT) for line in lines] == [1.0] * len(lines)
+
+
+def test_a_stroke_over_nothing_is_followed_too() -> None:
+    lost = [(220.0, 300.0), (300.0, 280.0), (400.0, 300.0)]
+    traced = trace(stroked(STEM, lost))
+    assert covered(lost, traced, found_only=False, within=0.02 * HEIGHT) == 1.0
+    assert not traced.measured[np.flatnonzero(traced.stroke == 1)[-1]]
+
+
+def test_an_erase_stroke_drops_a_found_branch_with_its_descendants() -> None:
+    twig = [(150.0, 165.0), (160.0, 50.0)]
+    wood = TREE | wood_mask([(twig, 6.0)], SIZE, SIZE)
+    across_left = [(160.0, 220.0), (210.0, 180.0)]
+    before, after = trace(stroked(STEM), wood), trace(stroked(STEM, erase=[across_left]), wood)
+    assert min(covered(LEFT, before), covered(RIGHT, before), covered(twig, before, within=9.0)) > 0.6
+    assert covered(LEFT, after) < 0.35
+    assert covered(twig, after, within=9.0) == 0.0
+    assert covered(RIGHT, after) > 0.8
+
+
+def test_an_erase_stroke_does_not_drop_a_stroked_branch() -> None:
+    across_left = [(160.0, 220.0), (210.0, 180.0)]
+    kept, crossed = (trace(stroked(STEM, LEFT, erase=erase)) for erase in ([], [across_left]))
+    assert np.array_equal(kept.skeleton.points[kept.stroke >= 0], crossed.skeleton.points[crossed.stroke >= 0])
+
+
+def test_thickness_is_measured_where_the_photo_shows_it() -> None:
+    traced = trace(stroked(STEM, LEFT))
+    foot = [traced.skeleton.radii[traced.stroke == number][0] for number in (0, 1)]
+    assert foot == pytest.approx([6.0, 3.75], abs=0.75)
+
+
+def test_a_given_width_is_used() -> None:
+    traced = trace(stroked(STEM, width=40.0))
+    radii = traced.skeleton.radii[traced.stroke == 0]
+    assert radii[0] == 20.0
+    assert (np.diff(radii) <= 0).all()
+
+
+def test_no_branch_swells_outward_along_its_stroke() -> None:
+    traced = trace(stroked(STEM, LEFT, RIGHT))
+    for number in range(3):
+        assert (np.diff(traced.skeleton.radii[traced.stroke == number]) <= 1e-9).all()
+
+
+def test_a_later_stroke_beside_the_root_is_a_second_stem() -> None:
+    second = [(229.0, 431.0), (300.0, 240.0)]
+    traced = trace(stroked(STEM, second), TREE | wood_mask([(second, 8.0)], SIZE, SIZE))
+    roots = np.flatnonzero(traced.skeleton.parents < 0)
+    assert traced.stroke[roots].tolist() == [0, 1]
+
+
+def test_a_later_stroke_away_from_the_root_is_joined_to_what_it_leaves() -> None:
+    traced = trace(stroked(STEM, LEFT, [(140.0, 152.0), (50.0, 150.0)]))
+    assert np.count_nonzero(traced.skeleton.parents < 0) == 1
+    first = np.flatnonzero(traced.stroke == 2)[0]
+    assert traced.stroke[traced.skeleton.parents[first]] == 1
+
+
+def test_radii_and_strokes_match_the_joints() -> None:
+    traced = trace(stroked(STEM, LEFT))
+    assert len(traced.skeleton) == len(traced.stroke) == len(traced.measured)
+    assert (traced.skeleton.radii >= TraceParams().thinnest_px * HEIGHT / 1500 * 0.999).all()
+
+
+def test_the_same_photo_gives_the_same_trace() -> None:
+    first, second = (trace(stroked(STEM)) for _ in range(2))
+    assert np.array_equal(first.skeleton.points, second.skeleton.points)
+    assert np.array_equal(first.skeleton.radii, second.skeleton.radii)
+
+
+@pytest.mark.parametrize("changes", [{"circle_px": 0.0}, {"snap_share": -0.1}, {"thinnest_px": 0.0}, {"tolerance_share": -1.0}])
+def test_parameters_out_of_range_are_refused(changes: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="must be positive"):
+        TraceParams(**changes)
