@@ -25,7 +25,9 @@ check: $(STAMP)
 	$(BIN)/lint-imports
 
 bench: $(STAMP)
-	$(BIN)/python -m pytest -q tests --benchmark-only
+	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \
+	    --benchmark-sort=fullname
+	@$(BIN)/python -m tests.benchmarks.growth_ratio
 
 golden: $(STAMP)
 	$(BIN)/python -m pytest -q -m golden

@@ -1,6 +1,7 @@
 """Drawn pictures: a disc of leaves on a sky, wood as dark bars on a light ground."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import cv2
 import numpy as np
@@ -34,7 +35,7 @@ def ring(radius: float, centre: tuple[float, float], points: int = 40) -> np.nda
     return np.array(centre) + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
 
 
-def wood_mask(lines: Sequence[tuple[Sequence[Sequence[float]], float]], height: int, width: int) -> np.ndarray:
+def wood_mask(lines: Sequence[tuple[Any, float]], height: int, width: int) -> np.ndarray:
     """Draw lines of wood, each (points, thickness px), four times finer than the pixels (h, w)."""
     fine = np.zeros((4 * height, 4 * width), np.uint8)
     for points, thickness in lines:

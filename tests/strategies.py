@@ -12,7 +12,9 @@ def skeletons(draw: st.DrawFn, dimensions: int = 3, most: int = 20, stems: bool 
     chosen = draw(st.lists(st.integers(0, 10_000), max_size=most - 1))
     parents = [-1] + [pick % (joint + stems) - stems for joint, pick in enumerate(chosen, start=1)]
     rng = np.random.default_rng(draw(st.integers(0, 999)))
-    return Skeleton(rng.uniform(-50, 50, (len(parents), dimensions)), rng.uniform(0, 2, len(parents)), np.array(parents))
+    return Skeleton(
+        rng.uniform(-50, 50, (len(parents), dimensions)), rng.uniform(0, 2, len(parents)), np.array(parents)
+    )
 
 
 @st.composite

@@ -34,7 +34,7 @@ class Strokes:
 
 @dataclass(frozen=True)
 class StrokeWarning:
-    """Something that was mended: ``code`` for programs, ``stroke`` (its pointer, as in ``branches/1``), ``detail`` for people."""
+    """Something mended: ``code`` for programs, ``stroke`` (a pointer such as ``branches/1``), ``detail`` for people."""
 
     code: str
     stroke: str

@@ -3,12 +3,14 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from treestroke import __version__
 from treestroke.codec.gltf import encode_glb
 from treestroke.codec.preview import draw_preview
+from treestroke.codec.silhouette import likeness, silhouette
 from treestroke.core.pipeline.photo import TreeModel, model_photo
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.progress import Report, silent
@@ -18,6 +20,7 @@ from treestroke.service.inputs import PhotoLike, SettingsLike, StrokesLike, load
 from treestroke.service.threads import one_thread
 
 ENGINE = f"treestroke {__version__}"
+SCORED_HEIGHT = 500
 STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "write")
 
 
@@ -88,6 +91,14 @@ def _report(tree: TreeModel, size: int, settings: ModelSettings, seed: int, watc
             "triangles": sum(len(surface.mesh.triangles) for surface in surfaces),
             "bytes": size,
         },
-        "score": tree.score,
+        "score": {"silhouette_iou": _silhouette_iou(tree), **tree.score},
         "warnings": [asdict(warning) for warning in tree.warnings],
     }
+
+
+def _silhouette_iou(tree: TreeModel) -> float:
+    """Compare the front view with the foliage and branches that were found, at a size that costs little."""
+    seen = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.likeness)))
+    size = (seen.shape[1], seen.shape[0])
+    wanted = cv2.resize(tree.likeness.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
+    return likeness(seen, wanted)

@@ -30,7 +30,9 @@ def test_each_point_may_have_its_own_depth() -> None:
     assert world[:, 2].tolist() == [1.0, 2.0, 3.0]
 
 
-@pytest.mark.parametrize(("width", "height", "scale"), [(0, 9, 1.0), (9, 0, 1.0), (9, 9, 0.0), (9, 9, -1.0), (9, 9, np.nan)])
+@pytest.mark.parametrize(
+    ("width", "height", "scale"), [(0, 9, 1.0), (9, 0, 1.0), (9, 9, 0.0), (9, 9, -1.0), (9, 9, np.nan)]
+)
 def test_a_camera_without_size_or_scale_is_refused(width: int, height: int, scale: float) -> None:
     with pytest.raises(ValueError, match="a size and a positive scale"):
         Camera(width, height, scale, (0.0, 0.0))

@@ -1,17 +1,26 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from treestroke.core.geometry.polyline import arc_lengths, directions, distances_to_segment, normals, resample, simplified
+from treestroke.core.geometry.polyline import (
+    arc_lengths,
+    directions,
+    distances_to_segment,
+    normals,
+    resample,
+    simplified,
+)
 
 CORNER = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]])
 CHAINS = st.integers(2, 20).flatmap(lambda n: arrays(np.float64, (n, 2), elements=st.floats(-100, 100, width=32)))
 
 
 def away_from_line(points: np.ndarray, line: np.ndarray) -> np.ndarray:
-    pieces = [distances_to_segment(points, a, b) for a, b in zip(line[:-1], line[1:], strict=True)]
+    pieces = [distances_to_segment(points, a, b) for a, b in pairwise(line)]
     return np.min(pieces, axis=0)
 
 
@@ -49,7 +58,7 @@ def test_a_simplified_line_stays_within_tolerance(line: np.ndarray, tolerance: f
     kept = simplified(line, tolerance)
     assert kept[0] == 0
     assert kept[-1] == len(line) - 1
-    for start, end in zip(kept[:-1], kept[1:], strict=True):
+    for start, end in pairwise(kept):
         assert distances_to_segment(line[start : end + 1], line[start], line[end]).max() <= tolerance + 1e-6
 
 

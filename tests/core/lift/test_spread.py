@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,6 +10,7 @@ from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 from treestroke.core.lift.spread import LiftParams, lift
 from treestroke.core.skeleton.skeleton import Skeleton
 
+DEFAULT = LiftParams()
 CAMERA = Camera(400, 400, 0.025, (200.0, 390.0))
 
 
@@ -32,10 +35,12 @@ def tree_of(limbs: list[list[tuple[float, float]]]) -> Skeleton:
 
 LEFT = [(150.0, 190.0), (100.0, 160.0)]
 TWINS = tree_of([LEFT, [(x + 4.0, y - 3.0) for x, y in LEFT]])
-SPRAY = tree_of([LEFT, [(250.0, 190.0), (300.0, 150.0)], [(160.0, 210.0), (90.0, 215.0)], [(240.0, 205.0), (310.0, 210.0)]])
+SPRAY = tree_of(
+    [LEFT, [(250.0, 190.0), (300.0, 150.0)], [(160.0, 210.0), (90.0, 215.0)], [(240.0, 205.0), (310.0, 210.0)]]
+)
 
 
-def lifted(tree: Skeleton, seed: int = 0, params: LiftParams = LiftParams()) -> Skeleton:
+def lifted(tree: Skeleton, seed: int = 0, params: LiftParams = DEFAULT) -> Skeleton:
     """Lift a tree whose stem alone was stroked."""
     stroke = np.where(np.arange(len(tree)) < 5, 0, -1)
     return lift(tree, stroke, ENVELOPE, np.random.default_rng(seed), params)
@@ -107,6 +112,6 @@ def test_without_slope_the_tree_is_flat() -> None:
 
 
 @pytest.mark.parametrize("changes", [{"steepest": -1.0}, {"slopes": 0}, {"inside": 1.5}, {"inside": -0.1}])
-def test_parameters_out_of_range_are_refused(changes: dict[str, float]) -> None:
+def test_parameters_out_of_range_are_refused(changes: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="lifting needs"):
         LiftParams(**changes)

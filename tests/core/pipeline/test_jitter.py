@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-
 from tests.conftest import DATA, EXAMPLES
 from tests.pictures import overlap
+
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.pipeline.photo import PhotoTrace, trace_photo
 from treestroke.core.skeleton.skeleton import Skeleton

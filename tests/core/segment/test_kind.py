@@ -3,9 +3,9 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-
 from tests.conftest import DATA, EXAMPLES
 from tests.pictures import disc, leaves_on_sky, ring, wood_mask, wood_photo
+
 from treestroke.codec.image import decode_photo
 from treestroke.core.segment.foliage import segment_foliage
 from treestroke.core.segment.kind import foliage_kind

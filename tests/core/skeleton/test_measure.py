@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from hypothesis import given
-
 from tests.builders import fork, oak, stick
 from tests.strategies import skeletons
+
 from treestroke.core.skeleton.measure import edge_lengths, generations, path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children

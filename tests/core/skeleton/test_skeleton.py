@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from hypothesis import given
-
 from tests.builders import fork, oak, stick
 from tests.strategies import skeletons
+
 from treestroke.core.skeleton.skeleton import Skeleton
 
 POINTS = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 2.0]])
@@ -39,7 +39,9 @@ def test_several_stems_are_one_skeleton() -> None:
     assert len(Skeleton(POINTS, RADII, np.array([-1, -1, 1]))) == 3
 
 
-@pytest.mark.parametrize("points", [np.zeros((0, 3)), np.zeros(3), np.zeros((3, 4)), np.zeros((3, 1)), np.zeros((3, 2, 1))])
+@pytest.mark.parametrize(
+    "points", [np.zeros((0, 3)), np.zeros(3), np.zeros((3, 4)), np.zeros((3, 1)), np.zeros((3, 2, 1))]
+)
 def test_points_of_another_shape_are_refused(points: np.ndarray) -> None:
     with pytest.raises(ValueError, match=r"points must be \(n, 2\) or \(n, 3\)"):
         Skeleton(points, RADII[: len(points)], PARENTS[: len(points)])
@@ -53,7 +55,13 @@ def test_columns_of_different_length_are_refused(radii: np.ndarray, parents: np.
 
 @pytest.mark.parametrize(
     ("points", "radii"),
-    [(POINTS * np.nan, RADII), (POINTS + np.inf, RADII), (POINTS, RADII * np.nan), (POINTS, -RADII), (POINTS, RADII * np.inf)],
+    [
+        (POINTS * np.nan, RADII),
+        (POINTS + np.inf, RADII),
+        (POINTS, RADII * np.nan),
+        (POINTS, -RADII),
+        (POINTS, RADII * np.inf),
+    ],
 )
 def test_numbers_that_measure_nothing_are_refused(points: np.ndarray, radii: np.ndarray) -> None:
     with pytest.raises(ValueError, match="finite, radii not negative"):

@@ -1,8 +1,10 @@
+from itertools import pairwise
+
 import numpy as np
 from hypothesis import given
-
 from tests.builders import fork, oak, stick
 from tests.strategies import skeletons, weighed_skeletons
+
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, child_counts, children, heaviest_children, limbs
 
@@ -50,7 +52,7 @@ def test_the_heaviest_child_is_the_first_of_greatest_weight(drawn: tuple[Skeleto
 def test_limbs_hold_every_edge_once(drawn: tuple[Skeleton, np.ndarray]) -> None:
     tree, weights = drawn
     found = limbs(tree, heaviest_children(tree, weights))
-    edges = [(int(a), int(b)) for limb in found for a, b in zip(limb[:-1], limb[1:], strict=True)]
+    edges = [(int(a), int(b)) for limb in found for a, b in pairwise(limb)]
     assert sorted(edges) == sorted((p, j) for j, p in enumerate(tree.parents.tolist()) if p >= 0)
 
 

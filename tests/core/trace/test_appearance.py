@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-
 from tests.pictures import GROUND, WOOD, noisy, wood_mask, wood_photo
+
 from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.trace.appearance import branch_odds
 
@@ -53,7 +53,7 @@ def test_below_the_crown_a_trunk_of_its_leaves_colour_is_seen_against_the_ground
     assert (odds[100:][TRUNK[100:]] > 0).mean() > 0.95
 
 
-@pytest.mark.parametrize("line", [LINE, LINE + [95.0, 0.0], LINE[:1].repeat(2, axis=0)])
+@pytest.mark.parametrize("line", [LINE, LINE + np.array([95.0, 0.0]), LINE[:1].repeat(2, axis=0)])
 def test_odds_are_bounded_wherever_the_line_runs(line: np.ndarray) -> None:
     odds = branch_odds(wood_photo(TRUNK), [line], 3.0, LEAVES, BEHIND, CROWN)
     assert odds.shape == (200, 200)

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-
 from tests.pictures import disc, wood_mask
+
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.trace.circle import Circle, trace_forks
 from treestroke.core.trace.draft import Draft
@@ -24,7 +24,9 @@ def traced(wood: np.ndarray) -> Draft:
 def covered(line: list[tuple[float, float]], draft: Draft, within: float) -> float:
     """Share of a line with a found joint's edge near it."""
     found = [resample(np.stack([draft.points[p], draft.points[j]]), 1.0) for j, p in enumerate(draft.parents)]
-    near = np.concatenate([piece for piece, stroke in zip(found, draft.stroke, strict=True) if stroke < 0] or [[[0, 0]]])
+    near = np.concatenate(
+        [piece for piece, stroke in zip(found, draft.stroke, strict=True) if stroke < 0] or [[[0, 0]]]
+    )
     places = resample(np.array(line), 2.0)
     return float((np.linalg.norm(places[:, None] - near, axis=-1).min(axis=1) <= within).mean())
 

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
 from tests.strategies import skeletons
+
 from treestroke.core.geometry.polyline import distances_to_segment
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts

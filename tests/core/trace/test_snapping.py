@@ -1,8 +1,10 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
-
 from tests.pictures import wood_mask
+
 from treestroke.core.geometry.polyline import distances_to_segment, resample
 from treestroke.core.trace.snapping import blurred, snap
 
@@ -16,7 +18,7 @@ def odds_of(line: np.ndarray, thickness: float = 8.0) -> np.ndarray:
 
 
 def away(points: np.ndarray, line: np.ndarray) -> np.ndarray:
-    return np.min([distances_to_segment(points, a, b) for a, b in zip(line[:-1], line[1:], strict=True)], axis=0)
+    return np.min([distances_to_segment(points, a, b) for a, b in pairwise(line)], axis=0)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -28,14 +30,14 @@ def test_a_jittered_stroke_comes_back_to_its_line(seed: int) -> None:
 
 @pytest.mark.parametrize("aside", [-4.0, 4.0])
 def test_a_stroke_beside_its_line_is_pulled_onto_it(aside: float) -> None:
-    found = snap(STRAIGHT + [aside, 0.0], odds_of(STRAIGHT), 6.0, 2.0)
+    found = snap(STRAIGHT + np.array([aside, 0.0]), odds_of(STRAIGHT), 6.0, 2.0)
     assert np.median(away(found, STRAIGHT)) < 1.0
 
 
 def test_a_bend_is_followed() -> None:
     y = np.linspace(280, 20, 30)
     bend = np.stack([150 + 30 * np.sin(y / 60), y], axis=1)
-    assert away(snap(bend + [3.0, 0.0], odds_of(bend), 6.0, 2.0)[5:-5], bend).max() < 2.0
+    assert away(snap(bend + np.array([3.0, 0.0]), odds_of(bend), 6.0, 2.0)[5:-5], bend).max() < 2.0
 
 
 def test_without_evidence_the_stroke_stays() -> None:
@@ -43,7 +45,7 @@ def test_without_evidence_the_stroke_stays() -> None:
 
 
 def test_no_point_is_moved_beyond_reach() -> None:
-    found = snap(STRAIGHT, odds_of(STRAIGHT + [9.0, 0.0]), 6.0, 2.0)
+    found = snap(STRAIGHT, odds_of(STRAIGHT + np.array([9.0, 0.0])), 6.0, 2.0)
     assert away(found, STRAIGHT).max() <= 6.0 + 1e-6
 
 

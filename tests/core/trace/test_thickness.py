@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
-
 from tests.pictures import disc, wood_mask
+
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.trace.thickness import half_widths
 
@@ -24,14 +24,14 @@ def band(line: np.ndarray, thickness: float) -> np.ndarray:
 @pytest.mark.parametrize("thickness", [4.0, 6.0, 10.0, 17.0, 30.0])
 @pytest.mark.parametrize("line", [UPRIGHT, ASLANT], ids=["upright", "aslant"])
 def test_a_band_s_half_width_is_measured_without_bias(line: np.ndarray, thickness: float) -> None:
-    shifted = [line + [shift, 0.0] for shift in np.linspace(0.0, 1.0, 11)]
+    shifted = [line + np.array([shift, 0.0]) for shift in np.linspace(0.0, 1.0, 11)]
     widths = [np.median(half_widths(moved, band(moved, thickness), 25.0)[0]) for moved in shifted]
     assert np.mean(widths) == pytest.approx(thickness / 2, abs=0.2)
 
 
 @pytest.mark.parametrize("aside", [-3.0, 2.0, 5.0])
 def test_the_offset_leads_to_the_bar_s_middle(aside: float) -> None:
-    _, offsets = half_widths(UPRIGHT - [aside, 0.0], bar(UPRIGHT, 16.0), 20.0)
+    _, offsets = half_widths(UPRIGHT - np.array([aside, 0.0]), bar(UPRIGHT, 16.0), 20.0)
     assert np.median(offsets[5:-5]) == pytest.approx(aside, abs=0.75)
 
 

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
-
 from tests.pictures import GROUND, wood_mask, wood_photo
+
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.imaging.outline import fill_outline
@@ -36,8 +36,8 @@ def stroked(*lines: Line, erase: Sequence[Line] = (), width: float | None = None
     return Strokes(CROWN, branches, tuple(Stroke(np.array(line, float)) for line in erase))
 
 
-def trace(strokes: Strokes, wood: np.ndarray = TREE, params: TraceParams = TraceParams()) -> Traced:
-    return trace_branches(wood_photo(wood), strokes, LEAVES, BEHIND, INSIDE, HEIGHT, params)
+def trace(strokes: Strokes, wood: np.ndarray = TREE) -> Traced:
+    return trace_branches(wood_photo(wood), strokes, LEAVES, BEHIND, INSIDE, HEIGHT)
 
 
 def drawn(skeleton: Skeleton, edges: np.ndarray) -> np.ndarray:
@@ -147,7 +147,9 @@ def test_the_same_photo_gives_the_same_trace() -> None:
     assert np.array_equal(first.skeleton.radii, second.skeleton.radii)
 
 
-@pytest.mark.parametrize("changes", [{"circle_px": 0.0}, {"snap_share": -0.1}, {"thinnest_px": 0.0}, {"tolerance_share": -1.0}])
+@pytest.mark.parametrize(
+    "changes", [{"circle_px": 0.0}, {"snap_share": -0.1}, {"thinnest_px": 0.0}, {"tolerance_share": -1.0}]
+)
 def test_parameters_out_of_range_are_refused(changes: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must be positive"):
         TraceParams(**changes)

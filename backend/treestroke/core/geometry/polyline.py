@@ -22,13 +22,13 @@ def resample(points: Floats, step: float) -> Floats:
 
 
 def directions(points: Floats) -> Floats:
-    """Unit tangents (n, d) of a chain of two points or more, by central differences."""
+    """Give the unit tangents (n, d) of a chain of two points or more, by central differences."""
     tangents = np.gradient(points, axis=0)
     return np.asarray(tangents / np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-12))
 
 
 def normals(points: Floats) -> Floats:
-    """Unit normals (n, 2) of a chain in the plane: its tangents turned a quarter from x toward y."""
+    """Give the unit normals (n, 2) of a chain in the plane: its tangents turned a quarter from x toward y."""
     tangents = directions(points)
     return np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
 

@@ -35,23 +35,16 @@ def cut_grid(pixels: Photo, odds: Energies, region: Mask, smoothness: float, coa
     return np.zeros_like(region) if labels is None else labels
 
 
-def _pyramid(
-    pixels: Photo, odds: Energies, region: Mask, coarse_pixels: int
-) -> list[tuple[Photo, Energies, Mask]]:
+def _pyramid(pixels: Photo, odds: Energies, region: Mask, coarse_pixels: int) -> list[tuple[Photo, Energies, Mask]]:
     """Halve the problem until it is small enough; coarsest first."""
     levels = [(pixels, odds, region)]
     while levels[0][2].sum() > coarse_pixels:
         pixels, odds, region = levels[0]
         size = (max(1, region.shape[1] // 2), max(1, region.shape[0] // 2))
         half = cv2.resize(region.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
-        levels.insert(
-            0,
-            (
-                cv2.resize(pixels, size, interpolation=cv2.INTER_AREA),
-                cv2.resize(odds, size, interpolation=cv2.INTER_AREA),
-                half,
-            ),
-        )
+        fewer = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        milder = np.asarray(cv2.resize(odds, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
+        levels.insert(0, (fewer, milder, half))
     return levels
 
 
@@ -62,9 +55,7 @@ def _border_band(labels: Mask) -> Mask:
     return np.asarray(cv2.dilate(grey, kernel) != cv2.erode(grey, kernel))
 
 
-def _cut(
-    pixels: Photo, odds: Energies, region: Mask, band: Mask, known: Mask | None, smoothness: float
-) -> Mask:
+def _cut(pixels: Photo, odds: Energies, region: Mask, band: Mask, known: Mask | None, smoothness: float) -> Mask:
     """Solve the band's pixels; the others keep their known label (outside the region: False)."""
     labels = region & known if known is not None else np.zeros_like(region)
     count = int(band.sum())

@@ -49,8 +49,8 @@ def thin_edges(skeleton: Skeleton) -> NDArray[np.bool_]:
     return np.asarray(thin if (edge_lengths(skeleton) * thin).any() else np.ones_like(thin))
 
 
-def seats_along(skeleton: Skeleton, bearing: NDArray[np.bool_], count: int, rng: np.random.Generator) -> Seats:
-    """Spread places over the bearing edges (n,), each having as many as its length asks."""
+def seats_along(skeleton: Skeleton, bearing: Floats, count: int, rng: np.random.Generator) -> Seats:
+    """Spread places over edges, each having as many as its length times its weight ``bearing`` (n,) asks."""
     lengths = edge_lengths(skeleton)
     ends = np.cumsum(lengths * bearing)
     if ends[-1] <= 0 or count <= 0:

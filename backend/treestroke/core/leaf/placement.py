@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.leaf.arrangement import Seats, pose_on_branches, seats_along, thin_edges
 from treestroke.core.leaf.atlas import Atlas, Kind
@@ -80,11 +81,22 @@ def place_leaves(
     crown = crown_of(grid, envelope, atlas, params.size, rng)
     wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    leaves = _on_branches(seats_along(skeleton, thin_edges(skeleton), count, rng), crown, rng)
+    bearing = thin_edges(skeleton) * (_evenness(skeleton, envelope) if params.kind == "needles" else 1.0)
+    leaves = _on_branches(seats_along(skeleton, bearing, count, rng), crown, rng)
     report("leaf", 0.5)
     patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(leaves), rng)
     report("leaf", 1.0)
     return join_leaves([leaves, *patches])
+
+
+def _evenness(skeleton: Skeleton, envelope: Envelope) -> Floats:
+    """Weigh joints (n,) by the inverse of the crown's radius there.
+
+    Whorls get longer downward faster than a conifer's foliage gets denser: by length alone its skirt would take all.
+    """
+    row = np.floor(envelope.camera.pixels_from_world(skeleton.points)[:, 1]).astype(np.int64)
+    radius = envelope.radius_px[np.clip(row, 0, len(envelope.radius_px) - 1)]
+    return np.asarray(1.0 / np.maximum(radius, 0.1 * envelope.radius_px.max()))
 
 
 def _on_branches(seats: Seats, crown: Crown, rng: np.random.Generator) -> Leaves:

@@ -15,7 +15,6 @@ from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
 
-
 UPRIGHT = 0.4
 """Share of the steepest slope that an upright limb may take: the law of gravity holds in depth too."""
 
@@ -58,13 +57,15 @@ def lift(
     when both are equal.
     """
     camera = envelope.camera
-    flat = Skeleton(camera.world_from_pixels(skeleton.points), skeleton.radii * camera.metres_per_pixel, skeleton.parents)
+    flat = Skeleton(
+        camera.world_from_pixels(skeleton.points), skeleton.radii * camera.metres_per_pixel, skeleton.parents
+    )
     weights = accumulate_to_root(flat, edge_lengths(flat))
     same = stroke == stroke[np.maximum(flat.parents, 0)]
     chains = limbs(flat, heaviest_children(flat, np.where(same, weights + weights.max(), weights)))
     depth = np.zeros(len(flat))
     placed = [flat.points[chains[0]]]
-    for chain in _by_order(flat, chains[1:], weights):
+    for chain in _by_order(chains[1:], weights):
         first = int(flat.parents[chain[0]] >= 0 or len(chain) > 1)
         options = _options(flat.points[chain], float(depth[chain[0]]), envelope, params)
         best = options[_furthest(options, placed, rng)]
@@ -73,7 +74,7 @@ def lift(
     return Skeleton(np.column_stack([flat.points[:, :2], depth]), flat.radii, flat.parents)
 
 
-def _by_order(flat: Skeleton, chains: list[Indices], weights: Floats) -> list[Indices]:
+def _by_order(chains: list[Indices], weights: Floats) -> list[Indices]:
     """Sort limbs so that each comes after its bearer, the heaviest first where that leaves a choice."""
     owner = {int(joint): number for number, chain in enumerate(chains) for joint in chain[1:]}
     level = np.zeros(len(chains), dtype=np.int64)

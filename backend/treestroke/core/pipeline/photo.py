@@ -46,6 +46,8 @@ class PhotoTrace:
     ----------
     foliage
         (h, w) leaf pixels.
+    found
+        The foliage with its colour models, at the working size.
     skeleton
         The visible branches; None without a branch stroke.
     stroke
@@ -55,6 +57,7 @@ class PhotoTrace:
     """
 
     foliage: Mask
+    found: Foliage
     skeleton: Skeleton | None
     stroke: Indices
     warnings: tuple[StrokeWarning, ...]
@@ -62,12 +65,16 @@ class PhotoTrace:
 
 @dataclass(frozen=True, eq=False)
 class TreeModel:
-    """A finished tree: its surfaces in the world's frame, and what it was made from."""
+    """A finished tree: its surfaces in the world's frame, and what it was made from.
+
+    ``likeness`` (h, w), at the working size, is what the front view should cover: foliage and traced branches.
+    """
 
     camera: Camera
     grown: Grown
     bark: Surface
     leaf: Surface | None
+    likeness: Mask
     foliage_kind: Kind
     iterations: int
     branches: int
@@ -86,8 +93,11 @@ class _Sight:
     warnings: tuple[StrokeWarning, ...]
 
 
-def trace_photo(photo: Photo, strokes: Strokes) -> PhotoTrace:
+def trace_photo(photo: Photo, strokes: Strokes, known: Foliage | None = None) -> PhotoTrace:
     """Find the foliage and the visible branches of a photo (h, w, 3), sRGB.
+
+    ``known`` is what an earlier trace ``found`` in the same photo with the same crown: it is kept, so that one more
+    branch stroke is answered at once.
 
     Raises
     ------
@@ -95,14 +105,14 @@ def trace_photo(photo: Photo, strokes: Strokes) -> PhotoTrace:
         The strokes do not describe a tree.
     """
     sight = _look(photo, strokes)
-    foliage = segment_foliage(sight.photo, sight.strokes.crown.points)
+    foliage = known or segment_foliage(sight.photo, sight.strokes.crown.points)
     size = (photo.shape[1], photo.shape[0])
     mask = cv2.resize(foliage.mask.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST).astype(bool)
     if not strokes.branches:
-        return PhotoTrace(mask, None, np.empty(0, dtype=np.int64), sight.warnings)
+        return PhotoTrace(mask, foliage, None, np.empty(0, dtype=np.int64), sight.warnings)
     traced = _trace(sight, foliage)
     full = Skeleton(traced.skeleton.points / sight.scale, traced.skeleton.radii / sight.scale, traced.skeleton.parents)
-    return PhotoTrace(mask, full, traced.stroke, sight.warnings)
+    return PhotoTrace(mask, foliage, full, traced.stroke, sight.warnings)
 
 
 def model_photo(
@@ -141,6 +151,7 @@ def model_photo(
         grown=grown,
         bark=bark,
         leaf=leaf,
+        likeness=foliage.mask | _drawn(traced.skeleton, np.ones(len(traced.skeleton), dtype=bool), foliage.mask.shape),
         foliage_kind=kind,
         iterations=settings.iterations,
         branches=_branch_count(grown.skeleton),
@@ -230,7 +241,7 @@ def _leaf(
     """Hang leaves on the grown tree: their surface and their number."""
     if kind == "bare" or settings.leaf_density == 0 or not foliage.mask.any():
         return None, 0
-    mask = foliage.mask & ~_visible_wood(traced, foliage.mask)
+    mask = foliage.mask & ~_drawn(traced.skeleton, traced.measured, foliage.mask.shape)
     coloured = foliage.pure if foliage.pure.sum() > 0.1 * foliage.mask.sum() else foliage.mask
     atlas = leaf_atlas(sight.photo, coloured, kind, rng)
     params = LeafParams(settings.leaf_size, settings.leaf_density, kind=kind)
@@ -238,15 +249,13 @@ def _leaf(
     return (Surface(cards(leaves, atlas), atlas.image), len(leaves)) if len(leaves) else (None, 0)
 
 
-def _visible_wood(traced: Traced, mask: Mask) -> Mask:
-    """Draw the branches where the photo shows them: no leaf hangs there."""
-    drawn = np.zeros(mask.shape, np.uint8)
-    tree = traced.skeleton
+def _drawn(tree: Skeleton, shown: Mask, shape: tuple[int, ...]) -> Mask:
+    """Draw a traced skeleton's edges whose both joints are ``shown`` (n,), as wide as the wood."""
+    drawn = np.zeros(shape, np.uint8)
     for joint, parent in enumerate(tree.parents.tolist()):
-        if parent >= 0 and traced.measured[joint] and traced.measured[parent]:
+        if parent >= 0 and shown[joint] and shown[parent]:
             ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
-            width = max(1, int(tree.radii[joint] + tree.radii[parent]))
-            cv2.line(drawn, ends[0], ends[1], 1, width, cv2.LINE_8, 4)
+            cv2.line(drawn, ends[0], ends[1], 1, max(1, int(tree.radii[joint] + tree.radii[parent])), cv2.LINE_8, 4)
     return drawn.astype(bool)
 
 

@@ -64,7 +64,7 @@ class FoliageParams:
     dilation_px: float = 10.0
     smoothness: float = 30.0
     samples: int = 3000
-    refits: int = 2
+    refits: int = 1
     cut_pixels: int = 120_000
     pore_share: float = 0.015
 
@@ -200,7 +200,7 @@ def _leaf_belief(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -> Fl
     shares = [_shares(mixture, colours) for colours in (crown, core, ring)]
     place = np.log((0.3 * shares[0] + 0.7 * shares[1] + 0.004) / (shares[2] + 0.004))
     votes = np.clip(place, -2.0, 2.0) + _hue_prior(mixture.means)
-    return np.asarray(1 / (1 + np.exp(-4.0 * (votes - 0.2))))
+    return np.asarray(1 / (1 + np.exp(-4.0 * votes)))
 
 
 def _shares(mixture: Mixture, colours: Photo) -> Floats:

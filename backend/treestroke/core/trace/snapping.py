@@ -10,7 +10,7 @@ from treestroke.core.imaging.sampling import sample_nearest
 OFFSETS = 21
 EVIDENCE = 0.5
 STRAY = 1.2
-BEND = 120.0
+BEND = 200.0
 """Weights of colour, distance from the stroke and bending, tuned on strokes jittered by 0.7 % of the photo."""
 
 

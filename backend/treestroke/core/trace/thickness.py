@@ -23,8 +23,9 @@ def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tup
     offsets = np.arange(-reach, reach + 1)
     across = sample_nearest(wood, line_px[:, None] + offsets[:, None] * normals(line_px)[:, None], False)
     left, right = _run(across[:, reach::-1]), _run(across[:, reach:])
+    # Both runs count the pixel under the line.
     seen = (left + right > 0) & (left < reach) & (right < reach)
-    return _steady(np.where(seen, (left + right) / 2.0, np.nan)), _steady(np.where(seen, (right - left) / 2.0, np.nan))
+    return _steady(np.where(seen, (left + right - 1) / 2.0, np.nan)), _steady(np.where(seen, (right - left) / 2.0, np.nan))
 
 
 def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:

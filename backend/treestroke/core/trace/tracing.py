@@ -22,8 +22,8 @@ from treestroke.core.trace.snapping import blurred, snap
 from treestroke.core.trace.thickness import half_widths
 
 REFERENCE_SIDE = 1500
-CONE, TAPER = 1.1, 0.75
-"""A limb lies within a cone: neighbours of its own colour widen what is measured, never the limb itself."""
+CONE, TAPER = 1.25, 0.75
+"""A limb lies within a cone that has lost the taper at the tree's height: neighbours of its own colour widen what is measured, never the limb itself."""
 STEADY = 4.0
 """Steps of a line over which its place in the wood is averaged."""
 GRAIN = 1.5
@@ -126,12 +126,13 @@ def _follow_strokes(
     evidence = cv2.GaussianBlur(odds, (0, 0), max(0.8, 0.3 * reach))
     root = branches[0].points[0]
     for index, stroke in enumerate(branches):
-        line = _centred(snap(stroke.points, evidence, reach, step), wood, params.thickest_share * height_px, index == 0)
+        start = root if index == 0 else None
+        line = _centred(snap(stroke.points, evidence, reach, step), wood, params.thickest_share * height_px, start)
         stem = index == 0 or float(np.linalg.norm(stroke.points[0] - root)) <= params.stem_share * height_px
         parent = -1 if stem else draft.nearest(line[0])
         bearer = params.trunk_share * height_px / 0.75 if stem else draft.radii[parent]
         most = params.thickest_share * height_px if stem else 1.2 * bearer
-        radii = _radii(line, stroke.width, half_widths(line, wood, most)[0], bearer)
+        radii = _radii(line, stroke.width, half_widths(line, wood, most)[0], bearer, height_px)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
         if parent >= 0:
             line = np.concatenate([draft.points[parent][None], line])
@@ -139,16 +140,17 @@ def _follow_strokes(
         draft.grow(parent, line, radii, stroke=index)
 
 
-def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float, rooted: bool) -> Floats:
-    """Move a line (n, 2) to the middle of the wood that it runs in, where that is seen; a root stays where it is."""
+def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float, root: Floats | None) -> Floats:
+    """Move a line (n, 2) to the middle of the wood that it runs in, where that is seen; it begins at its root."""
     _, middles = half_widths(line, wood, most_px)
-    aside = blurred(np.nan_to_num(middles), STEADY)
-    if rooted:
-        aside *= np.minimum(arc_lengths(line) / (3 * most_px), 1.0)
-    return line + aside[:, None] * normals(line)
+    moved = line + blurred(np.nan_to_num(middles), STEADY)[:, None] * normals(line)
+    if root is None:
+        return moved
+    hold = np.maximum(1 - arc_lengths(line) / (3 * most_px), 0.0)[:, None]
+    return np.asarray(moved + hold * (root - moved[0]))
 
 
-def _radii(line: Floats, width: float | None, measured: Floats, bearer: float) -> Floats:
+def _radii(line: Floats, width: float | None, measured: Floats, bearer: float, height_px: float) -> Floats:
     """Radius (n,) along a line: drawn, else measured, else 75 % of its bearer's; it tapers and never swells outward."""
     share = arc_lengths(line) / max(float(arc_lengths(line)[-1]), 1e-9)
     if width is not None:
@@ -158,7 +160,7 @@ def _radii(line: Floats, width: float | None, measured: Floats, bearer: float) -
         return 0.75 * bearer * (1 - 0.7 * share)
     seen = np.minimum(measured[places], SWELLING * np.median(measured[places]))
     radii = np.interp(np.arange(len(line)), places, isotonic_regression(seen, increasing=False).x)
-    radii = np.minimum(radii, CONE * radii[0] * (1 - TAPER * share))
+    radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
     return radii

@@ -1,0 +1,146 @@
+"""How long each stage takes on two bundled photos of 1200 px, one thread, settings as they come."""
+
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import count
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from pytest_benchmark.fixture import BenchmarkFixture
+from tests.conftest import EXAMPLES
+
+import treestroke
+from treestroke.codec.gltf import encode_glb
+from treestroke.codec.image import decode_photo
+from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
+from treestroke.core.geometry.mesh import Surface
+from treestroke.core.grow.library import choose_library
+from treestroke.core.grow.params import growth_for
+from treestroke.core.grow.replacement import grow
+from treestroke.core.leaf.atlas import leaf_atlas
+from treestroke.core.leaf.cards import cards
+from treestroke.core.leaf.placement import LeafParams, place_leaves
+from treestroke.core.lift.spread import lift
+from treestroke.core.mesh.bark import BarkParams, bark_texture
+from treestroke.core.mesh.tubes import tubes
+from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.strokes import Strokes
+from treestroke.service.inputs import load_strokes
+from treestroke.service.model import Model
+from treestroke.service.trace import Trace
+
+pytestmark = pytest.mark.parametrize("subject", ["burr_oak_dusk", "oak_02"], indirect=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """What the stages of one example take in; the photo is small enough to be worked on at its own size."""
+
+    encoded: bytes
+    strokes: Strokes
+    trace: Trace
+    skeleton: Skeleton
+    model: Model
+    envelope: Envelope
+
+    @property
+    def photo(self) -> NDArray[np.uint8]:
+        return self.trace.photo
+
+    @property
+    def tree(self) -> TreeModel:
+        return self.model.tree
+
+
+@cache
+def _subject(name: str) -> Subject:
+    encoded, strokes = (EXAMPLES / f"{name}.jpg").read_bytes(), load_strokes(EXAMPLES / f"{name}.strokes.json")
+    trace, model = treestroke.trace(encoded, strokes), treestroke.model(encoded, strokes)
+    assert trace.skeleton is not None
+    envelope = envelope_of_mask(trace.foliage, model.tree.camera)
+    return Subject(encoded, strokes, trace, trace.skeleton, model, envelope)
+
+
+@pytest.fixture
+def subject(request: pytest.FixtureRequest) -> Subject:
+    return _subject(request.param)
+
+
+def _lifted(subject: Subject) -> Skeleton:
+    return lift(subject.skeleton, subject.trace.stroke, subject.envelope, np.random.default_rng(0))
+
+
+def test_decoding(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    photo = benchmark.pedantic(decode_photo, (subject.encoded, "photo"), rounds=5)
+    assert np.array_equal(photo, subject.photo)
+
+
+def test_finding_the_foliage_of_a_new_crown(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    crown_alone = replace(subject.strokes, branches=())
+    found = benchmark.pedantic(treestroke.trace, (subject.photo, crown_alone), rounds=3)
+    assert np.array_equal(found.foliage, subject.trace.foliage)
+
+
+def test_tracing_one_more_branch_stroke(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    before = treestroke.trace(subject.photo, replace(subject.strokes, branches=subject.strokes.branches[:-1]))
+    arguments = {"photo": subject.photo, "strokes": subject.strokes, "after": before}
+    found = benchmark.pedantic(treestroke.trace, kwargs=arguments, rounds=5)
+    assert np.array_equal(found.skeleton.points, subject.skeleton.points)
+
+
+def test_lifting(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    assert len(benchmark.pedantic(_lifted, (subject,), rounds=5)) == len(subject.skeleton)
+
+
+def test_growing(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    lifted, kind = _lifted(subject), subject.tree.foliage_kind
+    mask, library = subject.trace.foliage, choose_library("auto", kind, lifted)
+
+    def run() -> int:
+        rng = np.random.default_rng(0)
+        return len(grow(lifted, mask, subject.envelope, library, growth_for(kind), rng).choices)
+
+    assert benchmark.pedantic(run, rounds=5) > 200
+
+
+def test_drawing_the_leaf_atlas_and_hanging_the_leaves(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    photo, mask, kind = subject.photo, subject.trace.foliage, subject.tree.foliage_kind
+
+    def run() -> int:
+        rng = np.random.default_rng(0)
+        atlas = leaf_atlas(photo, mask, kind, rng)
+        skeleton = subject.tree.grown.skeleton
+        leaves = place_leaves(skeleton, mask, subject.envelope, photo, atlas, LeafParams(kind=kind), rng)
+        return len(Surface(cards(leaves, atlas), atlas.image).mesh.triangles)
+
+    assert benchmark.pedantic(run, rounds=3) > 10_000
+
+
+def test_wrapping_the_branches_in_tubes(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    mesh = benchmark.pedantic(tubes, (subject.tree.grown.skeleton,), rounds=5)
+    assert np.array_equal(mesh.positions, subject.tree.bark.mesh.positions)
+
+
+def test_making_the_bark_texture(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    trunk = subject.trace.stroke == 0
+    axis, radii = subject.skeleton.points[trunk], subject.skeleton.radii[trunk]
+    arguments = subject.photo, axis, radii, BarkParams(), np.random.default_rng(0)
+    assert benchmark.pedantic(bark_texture, arguments, rounds=5).shape == (512, 256, 3)
+
+
+def test_encoding_the_glb(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    arguments = subject.tree.bark, subject.tree.leaf, subject.tree.camera
+    generator = {"generator": "treestroke"}
+    assert benchmark.pedantic(encode_glb, arguments, generator, rounds=5)[:4] == b"glTF"
+
+
+def test_drawing_the_preview(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    assert benchmark.pedantic(subject.model.preview, rounds=2).dtype == np.uint8
+
+
+def test_the_whole_model(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    seeds = count(1)
+    model = benchmark.pedantic(lambda: treestroke.model(subject.encoded, subject.strokes, seed=next(seeds)), rounds=2)
+    assert model.report["counts"]["leaves"] > 5000

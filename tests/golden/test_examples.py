@@ -1,0 +1,47 @@
+"""Summary numbers of the examples, so that a change of shape is seen; a wanted change updates them here."""
+
+from functools import cache
+from typing import Any
+
+import pytest
+from tests.conftest import EXAMPLES
+
+import treestroke
+
+pytestmark = pytest.mark.golden
+
+# branches, leaves, attractors_reached, depth_over_width
+NUMBERS = {
+    "burr_oak_dusk": (1177, 14124, 0.966, 0.924),
+    "sugar_maple_autumn": (1075, 19313, 0.943, 0.972),
+    "osage_orange_autumn": (1141, 21267, 0.918, 0.920),
+    "oak_02": (1059, 15190, 0.957, 0.949),
+}
+LEAST_SILHOUETTE_IOU = 0.75
+
+
+@cache
+def report(name: str) -> dict[str, Any]:
+    model = treestroke.model(EXAMPLES / f"{name}.jpg", EXAMPLES / f"{name}.strokes.json", {"iterations": 300})
+    return model.report
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_counts_are_as_they_were(name: str) -> None:
+    branches, leaves, _, _ = NUMBERS[name]
+    counts = report(name)["counts"]
+    assert (counts["branches"], counts["leaves"]) == pytest.approx((branches, leaves), rel=0.25)
+    assert counts["triangles"] < 200_000
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_the_crown_is_reached_and_as_deep_as_it_was(name: str) -> None:
+    _, _, reached, depth = NUMBERS[name]
+    score = report(name)["score"]
+    assert score["attractors_reached"] == pytest.approx(reached, abs=0.05)
+    assert score["depth_over_width"] == pytest.approx(depth, abs=0.15)
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_the_front_view_shows_the_photo_s_silhouette(name: str) -> None:
+    assert report(name)["score"]["silhouette_iou"] > LEAST_SILHOUETTE_IOU
