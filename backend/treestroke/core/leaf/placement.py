@@ -81,7 +81,9 @@ def place_leaves(
     crown = crown_of(grid, envelope, atlas, params.size, rng)
     wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    bearing = thin_edges(skeleton) * (_evenness(skeleton, envelope) if params.kind == "needles" else 1.0)
+    bearing = thin_edges(skeleton).astype(np.float64)
+    if params.kind == "needles":
+        bearing *= _evenness(skeleton, envelope)
     leaves = _on_branches(seats_along(skeleton, bearing, count, rng), crown, rng)
     report("leaf", 0.5)
     patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(leaves), rng)

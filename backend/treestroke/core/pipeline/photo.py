@@ -1,7 +1,6 @@
 """System A: a 3D tree from one photo and a few strokes (Tan et al. 2008). The recipe reads top to bottom."""
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import cv2
 import numpy as np

@@ -62,9 +62,9 @@ class FoliageParams:
 
     components: int = 10
     dilation_px: float = 10.0
-    smoothness: float = 30.0
+    smoothness: float = 60.0
     samples: int = 3000
-    refits: int = 1
+    refits: int = 2
     cut_pixels: int = 120_000
     pore_share: float = 0.015
 
@@ -117,7 +117,8 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
     found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
     pure = found & (odds > PURE_ODDS)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
-    return Foliage(*(_framed(part, box, crown) for part in (found, pure, region)), leaf, ground)
+    mask, sure, searched = (_framed(part, box, crown) for part in (found, pure, region))
+    return Foliage(mask, sure, searched, leaf, ground)
 
 
 def _framed(part: Mask, box: tuple[slice, slice], frame: Mask) -> Mask:
@@ -218,7 +219,7 @@ def _hue_prior(means: Floats) -> Floats:
     brightness = means.max(axis=1)
     vegetation = (np.maximum(red, green) - blue) / np.maximum(brightness, 40.0)
     sky = (blue - np.minimum(red, green)) / np.maximum(brightness, 40.0)
-    return 1.5 * np.clip(vegetation, 0, 0.6) - 6.0 * np.clip(sky - 0.2, 0, 0.6) * (brightness > 60)
+    return np.asarray(1.5 * np.clip(vegetation, 0, 0.6) - 6.0 * np.clip(sky - 0.2, 0, 0.6) * (brightness > 60))
 
 
 def _log_odds(leaf: Mixture, ground: Mixture, pixels: Photo) -> NDArray[np.float32]:

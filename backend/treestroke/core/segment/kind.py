@@ -25,8 +25,8 @@ TALLNESS = 1.2
 def foliage_kind(photo: NDArray[np.uint8], mask: Mask, crown: Mask, trunk_px: Floats) -> Kind:
     """Judge by the foliage mask (h, w), the crown's inside (h, w) and the trunk stroke (n, 2), px.
 
-    Bare: the crown is thin lines, or a web of colourless ones with something else between them. Needles: dull dark green, in a
-    crown that is tall or tapers to a top above a trunk that runs through it. Leaves: all else.
+    Bare: the crown is thin lines, or a web of colourless ones with something else between them. Needles: dull dark
+    green, in a crown that is tall or tapers to a top above a trunk that runs through it. Leaves: all else.
     """
     if not mask.any() or _thinness(mask, crown) > THIN or _is_twiggy(photo, mask, crown):
         return "bare"

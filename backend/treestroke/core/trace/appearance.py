@@ -24,7 +24,11 @@ Odds = NDArray[np.float32]
 COMPONENTS = 5
 LEAF_LIKE = 1.0
 """Mahalanobis distance under which a branch component is taken for foliage that the stroke crosses."""
+WOOD_LIKE = 3.0
+"""Mahalanobis distance from bare wood beyond which a component is no wood."""
 SAMPLES = 2500
+FEWEST = 100
+"""Pixels of bare wood under the strokes from which it has a mixture of its own."""
 
 
 def branch_odds(
@@ -34,15 +38,18 @@ def branch_odds(
 
     Branch: a mixture of 5 components of the pixels within ``breadth_px`` of the lines (n, 2). Inside the crown (h, w)
     it goes without the components that lie too close to one of ``leaf`` (the stroke crosses leaves), and all else is
-    leaf or ground; outside there are no leaves, so that a trunk as dark as its leaves is seen against the ground.
+    leaf or ground; outside there are no leaves and the mixture is that of the bare wood there, so that a trunk as dark
+    as its leaves is seen against the ground.
     Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
-    model = fit_mixture(_pixels_under(photo, lines_px, breadth_px), COMPONENTS)
-    among_leaves = _unlike(model, leaf)
+    pixels, in_crown = _pixels_under(photo, lines_px, breadth_px, crown)
+    model = fit_mixture(_thinned(pixels), COMPONENTS)
+    bare = fit_mixture(_thinned(pixels[~in_crown]), COMPONENTS) if (~in_crown).sum() >= FEWEST else model
+    among_leaves = _like(_unlike(model, leaf), bare)
     rest = join_mixtures([leaf, ground], [0.5, 0.5])
     inside = _odds(among_leaves, rest) if among_leaves is not None else np.full(len(table_colours()), -6.0, np.float32)
     index = table_index(photo)
-    return np.where(crown, inside[index], _odds(model, ground)[index])
+    return np.where(crown, inside[index], _odds(bare, ground)[index])
 
 
 def _odds(branch: Mixture, rest: Mixture) -> Odds:
@@ -51,16 +58,20 @@ def _odds(branch: Mixture, rest: Mixture) -> Odds:
     return np.clip(log_density(branch, colours) - log_density(rest, colours), -6.0, 6.0).astype(np.float32)
 
 
-def _pixels_under(photo: Photo, lines_px: Sequence[Floats], breadth_px: float) -> Photo:
-    """Pixels along the lines and up to ``breadth_px`` beside them (n, 3)."""
+def _pixels_under(
+    photo: Photo, lines_px: Sequence[Floats], breadth_px: float, crown: Mask
+) -> tuple[Photo, NDArray[np.bool_]]:
+    """Read the pixels along the lines and up to ``breadth_px`` beside them (n, 3); tell which lie in the crown (n,)."""
     offsets = np.arange(-np.floor(breadth_px), np.floor(breadth_px) + 1)
-    found = []
-    for line in lines_px:
-        walked = resample(line, 1.0)
-        spread = walked[:, None] + offsets[:, None] * normals(walked)[:, None]
-        found.append(sample_nearest(photo, spread, 0).reshape(-1, 3))
-    pixels = np.concatenate(found)
-    return np.asarray(pixels[:: max(1, len(pixels) // SAMPLES)], dtype=np.uint8)
+    walked = [resample(line, 1.0) for line in lines_px]
+    places = [(w[:, None] + offsets[:, None] * normals(w)[:, None]).reshape(-1, 2) for w in walked]
+    spread = np.concatenate(places)
+    return np.asarray(sample_nearest(photo, spread, 0), dtype=np.uint8), sample_nearest(crown, spread, False)
+
+
+def _thinned(pixels: Photo) -> Photo:
+    """Take evenly spaced ones of many pixels."""
+    return pixels[:: max(1, len(pixels) // SAMPLES)]
 
 
 def _unlike(model: Mixture, leaf: Mixture) -> Mixture | None:
@@ -68,4 +79,12 @@ def _unlike(model: Mixture, leaf: Mixture) -> Mixture | None:
     common = leaf.weights > 0.05
     solid = leaf.select(common) if common.any() else leaf
     kept = np.array([distance(solid, mean) > LEAF_LIKE for mean in model.means])
+    return model.select(kept) if kept.any() else None
+
+
+def _like(model: Mixture | None, bare: Mixture) -> Mixture | None:
+    """Keep the components that look like bare wood: a stroke in the crown crosses sky, too."""
+    if model is None:
+        return None
+    kept = np.array([distance(bare, mean) < WOOD_LIKE for mean in model.means])
     return model.select(kept) if kept.any() else None

@@ -53,10 +53,11 @@ def trace_forks(draft: Draft, circle: Circle, seeds: list[int]) -> None:
         if not queue:
             return
         joint = queue.popleft()
-        for end in circle.arcs(draft.points[joint]):
+        arcs = circle.arcs(draft.points[joint])
+        for end in arcs[_are_new(arcs, draft, circle.radius_px)]:
             way = resample(np.stack([draft.points[joint], end]), 1.0)
             breadth = _breadth(way, draft.radii[joint], circle)
-            if breadth > 0 and _is_new(end, draft, circle.radius_px):
+            if breadth > 0:
                 queue.append(draft.grow(joint, resample(way, circle.radius_px / 4), breadth, stroke=-1))
 
 
@@ -73,7 +74,7 @@ def _breadth(way: Floats, bearer_px: float, circle: Circle) -> float:
     return float(np.median(widths[seen])) if seen.mean() >= RIBBON_SHARE else 0.0
 
 
-def _is_new(end: Floats, draft: Draft, radius_px: float) -> bool:
-    """Tell whether an arc's middle lies apart from everything traced so far."""
-    away = np.linalg.norm(np.array(draft.points) - end, axis=1)
-    return bool((away > np.maximum(APART * radius_px, 1.5 * np.array(draft.radii))).all())
+def _are_new(ends: Floats, draft: Draft, radius_px: float) -> NDArray[np.bool_]:
+    """Tell which arcs' middles (k, 2) lie apart from everything traced so far."""
+    away = np.linalg.norm(ends[:, None] - np.array(draft.points), axis=2)
+    return np.asarray((away > np.maximum(APART * radius_px, 1.5 * np.array(draft.radii))).all(axis=1))

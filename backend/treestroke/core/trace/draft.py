@@ -1,6 +1,7 @@
 """A skeleton while it is being traced."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import Floats, Indices, simplified
 from treestroke.core.skeleton.measure import edge_lengths
@@ -76,7 +77,7 @@ def simplify(skeleton: Skeleton, stroke: Indices, tolerance_px: float) -> tuple[
     return _kept(skeleton, stroke, kept)
 
 
-def _kept(skeleton: Skeleton, stroke: Indices, kept: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> tuple[Skeleton, Indices]:
+def _kept(skeleton: Skeleton, stroke: Indices, kept: NDArray[np.bool_]) -> tuple[Skeleton, Indices]:
     """Keep some joints; each is joined to its nearest kept ancestor."""
     ancestor = np.full(len(skeleton) + 1, -1, dtype=np.int64)
     for joint, parent in enumerate(skeleton.parents.tolist()):

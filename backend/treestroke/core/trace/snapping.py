@@ -10,7 +10,7 @@ from treestroke.core.imaging.sampling import sample_nearest
 OFFSETS = 21
 EVIDENCE = 0.5
 STRAY = 1.2
-BEND = 200.0
+BEND = 400.0
 """Weights of colour, distance from the stroke and bending, tuned on strokes jittered by 0.7 % of the photo."""
 
 
@@ -26,7 +26,8 @@ def snap(line_px: Floats, odds: NDArray[np.float32], reach_px: float, step_px: f
     side = normals(smooth)
     places = smooth[:, None] + offsets[:, None] * side[:, None]
     cost = -EVIDENCE * sample_nearest(odds, places, -6.0) + STRAY * (offsets / reach_px) ** 2
-    chosen = offsets[_cheapest(cost, BEND * (step_px / reach_px) * np.subtract.outer(offsets, offsets) ** 2 / reach_px**2)]
+    bending = BEND * (step_px / reach_px) * np.subtract.outer(offsets, offsets) ** 2 / reach_px**2
+    chosen = offsets[_cheapest(cost, bending)]
     return _steadied(smooth + blurred(chosen, 2.0)[:, None] * side, step_px, step_px)
 
 

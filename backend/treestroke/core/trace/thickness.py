@@ -25,7 +25,8 @@ def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tup
     left, right = _run(across[:, reach::-1]), _run(across[:, reach:])
     # Both runs count the pixel under the line.
     seen = (left + right > 0) & (left < reach) & (right < reach)
-    return _steady(np.where(seen, (left + right - 1) / 2.0, np.nan)), _steady(np.where(seen, (right - left) / 2.0, np.nan))
+    halves, middles = (left + right - 1) / 2.0, (right - left) / 2.0
+    return _steady(np.where(seen, halves, np.nan)), _steady(np.where(seen, middles, np.nan))
 
 
 def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:

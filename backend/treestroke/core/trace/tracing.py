@@ -23,9 +23,14 @@ from treestroke.core.trace.thickness import half_widths
 
 REFERENCE_SIDE = 1500
 CONE, TAPER = 1.25, 0.75
-"""A limb lies within a cone that has lost the taper at the tree's height: neighbours of its own colour widen what is measured, never the limb itself."""
+"""A limb lies within a cone that has lost the taper at the tree's height: neighbours of its own colour widen what is
+measured, never the limb itself."""
 STEADY = 4.0
 """Steps of a line over which its place in the wood is averaged."""
+LEAST = 0.35
+"""Of the radius that is expected unseen: less is a sliver of the branch between leaves."""
+FEWEST_SEEN = 4
+"""Places along a line where its width must be seen for it to count."""
 GRAIN = 1.5
 """Bark's grain, px at a long side of 1500: colours are judged together over it."""
 SWELLING = 1.8
@@ -98,7 +103,8 @@ def trace_branches(
     """Trace the branches under and beside the branch strokes (one at least) of a photo (h, w, 3), sRGB.
 
     ``leaf`` and ``ground`` are the colours of leaves and of what is behind them, ``crown`` (h, w) is where leaves may
-    be; ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; what the tracer finds beside them hangs together with them.
+    be; ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; what the tracer finds
+    beside them hangs together with them.
     """
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
     odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), leaf, ground, crown)
@@ -123,7 +129,7 @@ def _follow_strokes(
 ) -> None:
     """Add each stroke's line, pulled onto its branch, to the draft."""
     reach, step = params.snap_share * height_px, max(1.0, 0.006 * height_px)
-    evidence = cv2.GaussianBlur(odds, (0, 0), max(0.8, 0.3 * reach))
+    evidence = np.asarray(cv2.GaussianBlur(odds, (0, 0), max(0.8, 0.3 * reach)), dtype=np.float32)
     root = branches[0].points[0]
     for index, stroke in enumerate(branches):
         start = root if index == 0 else None
@@ -155,15 +161,16 @@ def _radii(line: Floats, width: float | None, measured: Floats, bearer: float, h
     share = arc_lengths(line) / max(float(arc_lengths(line)[-1]), 1e-9)
     if width is not None:
         return width / 2 * (1 - 0.6 * share)
+    expected = 0.75 * bearer * (1 - 0.7 * share)
     places = np.flatnonzero(~np.isnan(measured))
-    if len(places) < 0.1 * len(line):
-        return 0.75 * bearer * (1 - 0.7 * share)
+    if len(places) < FEWEST_SEEN:
+        return expected
     seen = np.minimum(measured[places], SWELLING * np.median(measured[places]))
     radii = np.interp(np.arange(len(line)), places, isotonic_regression(seen, increasing=False).x)
     radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
-    return radii
+    return np.maximum(radii, LEAST * expected)
 
 
 def _seeds(draft: Draft, radius_px: float) -> list[int]:
