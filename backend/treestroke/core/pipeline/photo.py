@@ -33,6 +33,8 @@ Mask = NDArray[np.bool_]
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
+BARE_BREADTH = 0.5
+"""Of a visible branch's width: there no leaf hangs before it; more would show sky where the tree's own wood is thinner."""
 CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
 """Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
 
@@ -133,7 +135,8 @@ def model_photo(
     report("trace", 0.0)
     traced = _trace(sight, foliage)
     report("lift", 0.0)
-    crown = _closed(foliage.mask, kind)
+    wood = _drawn(traced.skeleton, np.ones(len(traced.skeleton), dtype=bool), foliage.mask.shape)
+    crown = _closed(foliage.mask | (wood & foliage.region), kind)
     camera = _camera(sight, foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
     lifted = lift(traced.skeleton, traced.stroke, envelope, rng)
@@ -150,7 +153,7 @@ def model_photo(
         grown=grown,
         bark=bark,
         leaf=leaf,
-        likeness=foliage.mask | _drawn(traced.skeleton, np.ones(len(traced.skeleton), dtype=bool), foliage.mask.shape),
+        likeness=foliage.mask | wood,
         foliage_kind=kind,
         iterations=settings.iterations,
         branches=_branch_count(grown.skeleton),
@@ -240,7 +243,7 @@ def _leaf(
     """Hang leaves on the grown tree: their surface and their number."""
     if kind == "bare" or settings.leaf_density == 0 or not foliage.mask.any():
         return None, 0
-    mask = foliage.mask & ~_drawn(traced.skeleton, traced.measured, foliage.mask.shape)
+    mask = foliage.mask & ~_drawn(traced.skeleton, traced.measured, foliage.mask.shape, BARE_BREADTH)
     coloured = foliage.pure if foliage.pure.sum() > 0.1 * foliage.mask.sum() else foliage.mask
     atlas = leaf_atlas(sight.photo, coloured, kind, rng)
     params = LeafParams(settings.leaf_size, settings.leaf_density, kind=kind)
@@ -248,13 +251,14 @@ def _leaf(
     return (Surface(cards(leaves, atlas), atlas.image), len(leaves)) if len(leaves) else (None, 0)
 
 
-def _drawn(tree: Skeleton, shown: Mask, shape: tuple[int, ...]) -> Mask:
-    """Draw a traced skeleton's edges whose both joints are ``shown`` (n,), as wide as the wood."""
+def _drawn(tree: Skeleton, shown: Mask, shape: tuple[int, ...], breadth: float = 1.0) -> Mask:
+    """Draw a traced skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood."""
     drawn = np.zeros(shape, np.uint8)
     for joint, parent in enumerate(tree.parents.tolist()):
         if parent >= 0 and shown[joint] and shown[parent]:
             ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
-            cv2.line(drawn, ends[0], ends[1], 1, max(1, int(tree.radii[joint] + tree.radii[parent])), cv2.LINE_8, 4)
+            width = max(1, int(breadth * (tree.radii[joint] + tree.radii[parent])))
+            cv2.line(drawn, ends[0], ends[1], 1, width, cv2.LINE_8, 4)
     return drawn.astype(bool)
 
 

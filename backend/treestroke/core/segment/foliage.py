@@ -115,10 +115,15 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
         leaf, ground = _refit(pixels, _log_odds(leaf, ground, pixels) + place, inside, params) or (leaf, ground)
     odds = _log_odds(leaf, ground, pixels)
     found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
-    pure = found & (odds > PURE_ODDS)
+    pure = found & (odds > PURE_ODDS) & ~_bluish(pixels)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
     mask, sure, searched = (_framed(part, box, crown) for part in (found, pure, region))
     return Foliage(mask, sure, searched, leaf, ground)
+
+
+def _bluish(pixels: Photo) -> Mask:
+    """Tell where blue outshines red and green: sky shines through, or on."""
+    return np.asarray(pixels[..., 2] > 1.04 * pixels[..., :2].max(axis=-1))
 
 
 def _framed(part: Mask, box: tuple[slice, slice], frame: Mask) -> Mask:
