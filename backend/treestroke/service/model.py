@@ -20,7 +20,7 @@ from treestroke.service.inputs import PhotoLike, SettingsLike, StrokesLike, load
 from treestroke.service.threads import one_thread
 
 ENGINE = f"treestroke {__version__}"
-SCORED_HEIGHT = 500
+SCORED_HEIGHT = 400
 STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "write")
 
 

@@ -50,7 +50,7 @@ def fit_mixture(colours: NDArray[np.uint8], components: int) -> Mixture:
     distinct = len(np.unique(samples, axis=0))
     if distinct < 2 * components:
         components = max(1, distinct // 2)
-    model = GaussianMixture(components, reg_covar=4.0, max_iter=60, tol=3e-3, random_state=0)
+    model = GaussianMixture(components, reg_covar=4.0, max_iter=60, tol=3e-3, init_params="k-means++", random_state=0)
     model.fit(samples if len(samples) > 1 else np.repeat(samples, 2, axis=0))
     return Mixture(model.weights_, model.means_, model.covariances_)
 

@@ -34,7 +34,7 @@ Mask = NDArray[np.bool_]
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
 BARE_BREADTH = 0.5
-"""Of a visible branch's width: there no leaf hangs before it; more would show sky where the tree's own wood is thinner."""
+"""Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
 CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
 """Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
 

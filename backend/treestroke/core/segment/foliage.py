@@ -34,6 +34,8 @@ REFERENCE_SIDE = 1500
 
 BLUR_PX = 2.0
 """Blur of the odds before mixtures are fitted anew: a cheap stand-in for the cut."""
+GLARE = 2.5
+"""Times the foliage's usual brightness over which a pixel is none of it."""
 PURE_ODDS = 2.0
 """Log odds over which a pixel's colour alone tells a leaf."""
 
@@ -115,10 +117,17 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
         leaf, ground = _refit(pixels, _log_odds(leaf, ground, pixels) + place, inside, params) or (leaf, ground)
     odds = _log_odds(leaf, ground, pixels)
     found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
-    pure = found & (odds > PURE_ODDS) & ~_bluish(pixels)
+    pure = _alike(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
     mask, sure, searched = (_framed(part, box, crown) for part in (found, pure, region))
     return Foliage(mask, sure, searched, leaf, ground)
+
+
+def _alike(pure: Mask, pixels: Photo) -> Mask:
+    """Drop the pixels that glare among dark foliage: a cloud between the leaves."""
+    brightness = pixels.max(axis=-1)
+    usual = float(np.median(brightness[pure])) if pure.any() else 255.0
+    return np.asarray(pure & (brightness <= GLARE * usual + 30))
 
 
 def _bluish(pixels: Photo) -> Mask:

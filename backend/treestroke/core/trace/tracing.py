@@ -170,7 +170,7 @@ def _radii(line: Floats, width: float | None, measured: Floats, bearer: float, h
     radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
-    return np.maximum(radii, LEAST * expected)
+    return np.asarray(np.maximum(radii, LEAST * expected))
 
 
 def _seeds(draft: Draft, radius_px: float) -> list[int]:
