@@ -14,6 +14,8 @@ MAX_STROKES = 200
 MAX_POINTS = 10_000
 MIN_CROWN_SHARE = 0.005
 """Of the photo's area."""
+CHECKED_SIDE = 1500
+"""Long side, px, of the picture in which strokes are checked, whatever the photo's size."""
 TOUCH_SHARE = 0.02
 """Of the photo's long side: as near as a loose stroke comes to what it is meant to touch."""
 STEM_SHARE = 0.03
@@ -39,12 +41,14 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
         branches=tuple(_clamped(s, f"branches/{i}", width, height, 2) for i, s in enumerate(strokes.branches)),
         erase=tuple(_clamped(s, f"erase/{i}", width, height, 2) for i, s in enumerate(strokes.erase)),
     )
-    crown = fill_outline(inside.crown.points, height, width)
+    coarse = min(1.0, CHECKED_SIDE / max(width, height))
+    size = max(1, round(height * coarse)), max(1, round(width * coarse))
+    crown = fill_outline(inside.crown.points * coarse, *size)
     _check_crown(crown)
-    warnings = _crossing(inside.crown, width, height)
+    warnings = _crossing(inside.crown.points * coarse, *size)
     if not inside.branches:
         return MendedStrokes(inside, warnings)
-    _check_trunk(inside, crown)
+    _check_trunk(inside, crown, coarse, max(width, height))
     branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
     return MendedStrokes(replace(inside, branches=branches), warnings + joined)
 
@@ -99,24 +103,26 @@ def _check_crown(crown: NDArray[np.bool_]) -> None:
         )
 
 
-def _crossing(crown: Stroke, width: int, height: int) -> tuple[StrokeWarning, ...]:
-    if not crosses_itself(crown.points, height, width):
+def _crossing(crown: Floats, height: int, width: int) -> tuple[StrokeWarning, ...]:
+    if not crosses_itself(crown, height, width):
         return ()
     return (StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken"),)
 
 
-def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_]) -> None:
-    """Refuse a trunk that neither touches the crown, give or take a loose hand, nor points into it."""
+def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side: int) -> None:
+    """Refuse a trunk that neither touches the crown, give or take a loose hand, nor points into it.
+
+    The crown is drawn ``coarse`` times as large as the photo, whose long side is ``side`` px.
+    """
     height, width = crown.shape
-    step = max(1.0, max(width, height) / 1500)
-    drawn = _resampled(strokes.branches[0].points, step)
-    way = np.vstack([drawn, _ray(drawn, step, float(np.hypot(width, height)))])
-    column, row = np.floor(way).astype(np.int64).T
+    drawn = _resampled(strokes.branches[0].points, 1.0 / coarse)
+    way = np.vstack([drawn, _ray(drawn, 1.0 / coarse, 1.5 * side)])
+    column, row = np.floor(way * coarse).astype(np.int64).T
     seen = (column >= 0) & (column < width) & (row >= 0) & (row < height)
     if crown[row[seen], column[seen]].any():
         return
     outline = np.vstack([strokes.crown.points, strokes.crown.points[:1]])
-    if _nearest(outline, drawn)[1].min() > TOUCH_SHARE * max(width, height):
+    if _nearest(outline, drawn)[1].min() > TOUCH_SHARE * side:
         raise StrokesError(
             "branches/0: the trunk neither touches nor points into the crown; draw it from the root up to the foliage"
         )
