@@ -117,7 +117,7 @@ TYPE_2 = (
     ),
 )
 
-# Conifers: whorls about the stem, flat sprays along the limbs.
+# Conifers: whorls about the stem, a flat spray along the limbs.
 WHORLS = (
     _subtree(
         (
@@ -151,16 +151,6 @@ SPRAYS = (
             (-1, 0.74, 47, 9, 0.33),
             (-1, 0.82, 45, 183, 0.28),
             (-1, 0.96, 33, 348, 0.24),
-        ),
-        "limb",
-    ),
-    _subtree(
-        (
-            (-1, 0.3, 55, 22, 0.55),
-            (-1, 0.45, 52, 158, 0.5),
-            (-1, 0.63, 50, 335, 0.41),
-            (-1, 0.77, 46, 203, 0.34),
-            (-1, 0.97, 22, 65, 0.42),
         ),
         "limb",
     ),
@@ -205,7 +195,8 @@ def choose_library(name: str, kind: Kind, skeleton: Skeleton) -> tuple[Subtree, 
     """Choose at most 8 subtrees by the setting's name, what the twigs bear and the visible tree (3D, metres).
 
     ``auto`` takes up to three visible subtrees beside the predefined ones, and none where fewer than three are
-    visible; ``visible`` falls back to the predefined ones where nothing visible forks. A conifer has its own.
+    visible; ``visible`` falls back to the predefined ones where nothing visible forks. A conifer has whorls and
+    sprays of its own, with both types beside them: by those alone its crown stays half empty.
 
     Raises
     ------
@@ -221,5 +212,5 @@ def choose_library(name: str, kind: Kind, skeleton: Skeleton) -> tuple[Subtree, 
     if name != "auto":
         raise ValueError(f"the library is auto, visible, type1, type2 or both, not {name!r}")
     if kind == "needles":
-        return WHORLS + SPRAYS
+        return WHORLS + SPRAYS + TYPE_1[:2] + TYPE_2
     return ((visible[:2] if len(visible) >= FEW_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]

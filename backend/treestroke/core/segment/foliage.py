@@ -34,9 +34,9 @@ REFERENCE_SIDE = 1500
 
 BLUR_PX = 2.0
 """Blur of the odds before mixtures are fitted anew: a cheap stand-in for the cut."""
-GLARE = 2.5
+GLARE = 4.0
 """Times the foliage's usual brightness over which a pixel is none of it."""
-PURE_ODDS = 2.0
+PURE_ODDS = 0.0
 """Log odds over which a pixel's colour alone tells a leaf."""
 
 
@@ -86,7 +86,7 @@ class Foliage:
     mask
         (h, w) leaf pixels (of a bare tree: twigs).
     pure
-        (h, w) those that by their own colour are leaves beyond doubt, nothing shining through.
+        (h, w) those that by their own colour are leaves, with nothing shining through.
     region
         (h, w) where foliage was looked for: the crown, a little dilated.
     leaf, ground
