@@ -23,6 +23,7 @@ from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.kind import Kind, foliage_kind
+from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import mend_strokes
 from treestroke.core.strokes import Stroke, Strokes, StrokeWarning
@@ -33,6 +34,8 @@ Mask = NDArray[np.bool_]
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
+JOINT_SHARE = 0.015
+"""Of the tree's height: joints this near let growth cut a straight trunk where it likes."""
 BARE_BREADTH = 0.5
 """Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
 CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
@@ -139,7 +142,8 @@ def model_photo(
     crown = _closed(foliage.mask | (wood & foliage.region), kind)
     camera = _camera(sight, foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
-    lifted = lift(traced.skeleton, traced.stroke, envelope, rng)
+    dense, owner = densified(traced.skeleton, JOINT_SHARE * _height_px(sight, foliage.mask))
+    lifted = lift(dense, traced.stroke[owner], envelope, rng)
     report("grow", 0.0)
     library = choose_library(settings.library, kind, lifted)
     grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
