@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Floats
+from treestroke.core.geometry.polyline import resample
 from treestroke.core.imaging.outline import crosses_itself, fill_outline
 from treestroke.core.strokes import MendedStrokes, Stroke, Strokes, StrokeWarning
 
@@ -115,7 +116,7 @@ def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side
     The crown is drawn ``coarse`` times as large as the photo, whose long side is ``side`` px.
     """
     height, width = crown.shape
-    drawn = _resampled(strokes.branches[0].points, 1.0 / coarse)
+    drawn = resample(strokes.branches[0].points, 1.0 / coarse)
     way = np.vstack([drawn, _ray(drawn, 1.0 / coarse, 1.5 * side)])
     column, row = np.floor(way * coarse).astype(np.int64).T
     seen = (column >= 0) & (column < width) & (row >= 0) & (row < height)
@@ -157,13 +158,6 @@ def _nearest(line: Floats, points: Floats) -> tuple[Floats, Floats]:
         best = int(gap.argmin())
         nearest[index], gaps[index] = place[best], gap[best]
     return nearest, gaps
-
-
-def _resampled(line: Floats, step: float) -> Floats:
-    """Put points at most ``step`` px apart on a polyline (n, 2)."""
-    length = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
-    at = np.linspace(0.0, length[-1], int(np.ceil(length[-1] / step)) + 1)
-    return np.stack([np.interp(at, length, line[:, axis]) for axis in (0, 1)], axis=1)
 
 
 def _ray(drawn: Floats, step: float, reach: float) -> Floats:
