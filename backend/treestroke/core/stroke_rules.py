@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.imaging.outline import crosses_itself, fill_outline
+from treestroke.core.imaging.outline import filled_and_crossing
 from treestroke.core.strokes import MendedStrokes, Stroke, Strokes, StrokeWarning
 
 MAX_STROKES = 200
@@ -21,6 +21,7 @@ TOUCH_SHARE = 0.02
 """Of the photo's long side: as near as a loose stroke comes to what it is meant to touch."""
 STEM_SHARE = 0.03
 """Of the tree's height: a later stroke that starts this near the root is a stem of its own."""
+CROSSING = StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken")
 
 
 def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
@@ -44,9 +45,9 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     )
     coarse = min(1.0, CHECKED_SIDE / max(width, height))
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
-    crown = fill_outline(inside.crown.points * coarse, *size)
+    crown, crossing = filled_and_crossing(inside.crown.points * coarse, *size)
     _check_crown(crown)
-    warnings = _crossing(inside.crown.points * coarse, *size)
+    warnings = (CROSSING,) if crossing else ()
     if not inside.branches:
         return MendedStrokes(inside, warnings)
     _check_trunk(inside, crown, coarse, max(width, height))
@@ -102,12 +103,6 @@ def _check_crown(crown: NDArray[np.bool_]) -> None:
             f"crown: it encloses {share:.2%} of the photo, at least {MIN_CROWN_SHARE:.1%} is needed; "
             "draw it around the whole foliage"
         )
-
-
-def _crossing(crown: Floats, height: int, width: int) -> tuple[StrokeWarning, ...]:
-    if not crosses_itself(crown, height, width):
-        return ()
-    return (StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken"),)
 
 
 def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side: int) -> None:

@@ -1,7 +1,11 @@
+from pathlib import Path
+
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from sklearn.mixture import GaussianMixture
 
 from treestroke.core.imaging.mixture import (
     Mixture,
@@ -88,3 +92,10 @@ def test_distance_is_in_deviations_of_the_nearest_component() -> None:
 def test_every_colour_finds_its_cell_in_the_table() -> None:
     colours = np.random.default_rng(3).integers(0, 256, (20, 30, 3), dtype=np.uint8)
     assert np.abs(table_colours()[table_index(colours)] - colours).max() <= 4
+
+
+def test_fits_are_as_likely_as_those_of_scikit_learn(maple_photo: Path) -> None:
+    colours = cv2.imread(str(maple_photo)).reshape(-1, 3)
+    learnt, unseen = colours[::400], colours[200::400].astype(float)
+    oracle = GaussianMixture(8, reg_covar=4.0, tol=3e-3, random_state=0).fit(learnt.astype(float))
+    assert log_density(fit_mixture(learnt, 8), unseen).mean() > oracle.score(unseen) - 0.05

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from treestroke.core.imaging.outline import crosses_itself, fill_outline, rings_of_mask, winding_numbers
+from treestroke.core.imaging.outline import fill_outline, filled_and_crossing, rings_of_mask, winding_numbers
 
 SQUARE = np.array([[10.0, 10.0], [30.0, 10.0], [30.0, 30.0], [10.0, 30.0]])
 EIGHT = np.array([[10.0, 10.0], [30.0, 30.0], [30.0, 10.0], [10.0, 30.0]])
@@ -52,7 +52,7 @@ def test_loops_that_turn_against_each_other_are_one_union() -> None:
     ("points", "crosses"), [(SQUARE, False), (SQUARE[::-1], False), (EIGHT, True), (np.vstack([SQUARE, SQUARE]), True)]
 )
 def test_crossing_is_found(points: np.ndarray, crosses: bool) -> None:
-    assert crosses_itself(points, 40, 40) is crosses
+    assert filled_and_crossing(points, 40, 40)[1] is crosses
 
 
 def test_a_point_outside_the_picture_does_no_harm() -> None:

@@ -5,12 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from sklearn.mixture import GaussianMixture
 
 Floats = NDArray[np.float64]
 
 TABLE_BITS = 5
 """Colours are looked up in a table of 2^5 steps a channel: 32,768 densities stand for millions of pixels."""
+FLOOR = 4.0
+"""Added to every variance: no component is narrower than the camera's noise."""
+MOST_ROUNDS = 60
+ENOUGH = 3e-3
+"""Fitting ends when a round raises the mean log likelihood by less."""
+MIDDLE = 127.5
+"""Colours are taken about the middle of their range, so that squares lose no digits."""
+_ROWS, _COLUMNS = np.triu_indices(3)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,18 +48,50 @@ class Mixture:
 
 
 def fit_mixture(colours: NDArray[np.uint8], components: int) -> Mixture:
-    """Fit a mixture to colours (n, 3), by expectation maximisation from a k-means start.
+    """Fit a mixture to colours (n, 3), by expectation maximisation from a k-means++ start.
 
     Fewer distinct colours than components give fewer components. The start is seeded, so equal colours
     give an equal mixture.
+    Source: Dempster, Laird and Rubin 1977; the start: Arthur and Vassilvitskii 2007.
     """
     samples = colours.reshape(-1, 3).astype(np.float64)
-    distinct = len(np.unique(samples, axis=0))
+    distinct = len(np.unique(samples @ (1.0, 256.0, 65536.0)))
     if distinct < 2 * components:
         components = max(1, distinct // 2)
-    model = GaussianMixture(components, reg_covar=4.0, max_iter=60, tol=3e-3, init_params="k-means++", random_state=0)
-    model.fit(samples if len(samples) > 1 else np.repeat(samples, 2, axis=0))
-    return Mixture(model.weights_, model.means_, model.covariances_)
+    terms = _terms(samples)
+    share, before = _nearest_seed(samples, components), -np.inf
+    for _ in range(MOST_ROUNDS):
+        mixture = _most_likely(share, terms)
+        parts = log_components(mixture, samples)
+        total = log_sum(parts)
+        likelihood = float(total.mean())
+        if likelihood - before < ENOUGH:
+            break
+        share, before = np.exp(parts - total[:, None]), likelihood
+    return mixture
+
+
+def _nearest_seed(samples: Floats, count: int) -> Floats:
+    """Give each sample (n, 3) whole (n, k) to the nearest of k seeds among them, drawn far from each other."""
+    rng = np.random.default_rng(0)
+    chosen = [int(rng.integers(len(samples)))]
+    away = ((samples - samples[chosen[0]]) ** 2).sum(axis=1)[:, None]
+    while len(chosen) < count:
+        nearest = np.cumsum(away.min(axis=1))
+        chosen.append(int(np.searchsorted(nearest, rng.uniform(0, nearest[-1]), side="right")))
+        away = np.column_stack([away, ((samples - samples[chosen[-1]]) ** 2).sum(axis=1)])
+    return np.asarray(np.eye(count)[away.argmin(axis=1)])
+
+
+def _most_likely(share: Floats, terms: Floats) -> Mixture:
+    """Give the mixture whose components hold these shares (n, k) of samples with these terms (10, n)."""
+    count = share.sum(axis=0) + 1e-9
+    moments = (terms @ share).T / count[:, None]
+    means = moments[:, 1:4]
+    squares = np.empty((len(count), 3, 3))
+    squares[:, _ROWS, _COLUMNS] = squares[:, _COLUMNS, _ROWS] = moments[:, 4:]
+    covariances = squares - means[:, :, None] * means[:, None, :] + FLOOR * np.eye(3)
+    return Mixture(count / count.sum(), means + MIDDLE, covariances)
 
 
 def join_mixtures(mixtures: Sequence[Mixture], shares: Sequence[float]) -> Mixture:
@@ -65,18 +104,28 @@ def join_mixtures(mixtures: Sequence[Mixture], shares: Sequence[float]) -> Mixtu
 
 def log_components(mixture: Mixture, colours: Floats) -> Floats:
     """Logarithm of each weighted component's density (n, k) at colours (n, 3)."""
-    columns = []
-    for weight, mean, covariance in zip(mixture.weights, mixture.means, mixture.covariances, strict=True):
-        factor = np.linalg.cholesky(covariance)
-        white = (colours - mean) @ np.linalg.inv(factor).T
-        constant = np.log(max(weight, 1e-12)) - np.log(np.diag(factor)).sum() - 1.5 * np.log(2 * np.pi)
-        columns.append(constant - 0.5 * (white[:, 0] ** 2 + white[:, 1] ** 2 + white[:, 2] ** 2))
-    return np.stack(columns, axis=1)
+    means, inverse = mixture.means - MIDDLE, np.linalg.inv(mixture.covariances)
+    twisted = np.einsum("kij,kj->ki", inverse, means)
+    constant = np.log(np.maximum(mixture.weights, 1e-12)) - 0.5 * np.linalg.slogdet(mixture.covariances)[1]
+    constant -= 1.5 * np.log(2 * np.pi) + 0.5 * np.einsum("ki,ki->k", twisted, means)
+    twice = np.where(_ROWS == _COLUMNS, -0.5, -1.0)
+    form = np.column_stack([constant, twisted, twice * inverse[:, _ROWS, _COLUMNS]])
+    return np.asarray((form @ _terms(colours)).T)
+
+
+def _terms(colours: Floats) -> Floats:
+    """Terms (10, n) of a quadratic in colours (n, 3): one, the three channels, their six products."""
+    about = colours.T - MIDDLE
+    return np.concatenate([np.ones((1, about.shape[1])), about, about[_ROWS] * about[_COLUMNS]])
 
 
 def log_density(mixture: Mixture, colours: Floats) -> Floats:
     """Logarithm of the mixture's density (n,) at colours (n, 3)."""
-    parts = log_components(mixture, colours)
+    return log_sum(log_components(mixture, colours))
+
+
+def log_sum(parts: Floats) -> Floats:
+    """Logarithm of the sum (n,) of the exponentials of each row (n, k)."""
     peak = parts.max(axis=1)
     return np.asarray(peak + np.log(np.exp(parts - peak[:, None]).sum(axis=1)))
 

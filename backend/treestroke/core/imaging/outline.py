@@ -43,14 +43,16 @@ def fill_outline(points: Floats, height: int, width: int) -> NDArray[np.bool_]:
     A pixel belongs to it when its centre does. Loops that turn against each other count too, and so
     does what lies between them and cannot be left without crossing the line.
     """
-    return _without_holes(winding_numbers(points, height, width) != 0)
+    return filled_and_crossing(points, height, width)[0]
 
 
-def crosses_itself(points: Floats, height: int, width: int) -> bool:
-    """Tell whether a closed outline (n, 2), px, crosses itself by a pixel or more."""
+def filled_and_crossing(points: Floats, height: int, width: int) -> tuple[NDArray[np.bool_], bool]:
+    """Fill a closed outline (n, 2), px, as `fill_outline` does; tell whether it crosses itself by a pixel or more."""
     winding = winding_numbers(points, height, width)
-    low, high = int(winding.min()), int(winding.max())
-    return high - low > 1 or bool((_without_holes(winding != 0) != (winding != 0)).any())
+    enclosed = winding != 0
+    filled = _without_holes(enclosed)
+    crossing = int(winding.max()) - int(winding.min()) > 1 or not np.array_equal(filled, enclosed)
+    return filled, crossing
 
 
 def rings_of_mask(mask: NDArray[np.bool_]) -> list[Floats]:

@@ -24,6 +24,7 @@ from treestroke.core.imaging.mixture import (
     table_index,
 )
 from treestroke.core.imaging.outline import fill_outline
+from treestroke.core.segment.height import log_odds_by_height
 
 Mask = NDArray[np.bool_]
 Photo = NDArray[np.uint8]
@@ -62,13 +63,13 @@ class FoliageParams:
         Holes as wide as this share of the crown are shade among leaves, no gaps.
     """
 
-    components: int = 10
+    components: int = 12
     dilation_px: float = 10.0
     smoothness: float = 60.0
-    samples: int = 3000
+    samples: int = 6000
     refits: int = 2
     cut_pixels: int = 120_000
-    pore_share: float = 0.015
+    pore_share: float = 0.01
 
     def __post_init__(self) -> None:
         if self.components < 2 or self.samples < 100 or self.cut_pixels < 1000:
@@ -113,9 +114,13 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= grow_px
     leaf, ground = _colour_models(pixels, inside, params)
     place = _place_prior(inside)
-    for _ in range(params.refits):
-        leaf, ground = _refit(pixels, _log_odds(leaf, ground, pixels) + place, inside, params) or (leaf, ground)
     odds = _log_odds(leaf, ground, pixels)
+    for _ in range(params.refits):
+        told = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0)
+        if not told.any() or told.all():
+            break
+        leaf, ground = _refit(pixels, told, params)
+        odds = log_odds_by_height(leaf, ground, pixels, told)
     found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
     pure = _alike(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
@@ -125,14 +130,14 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
 
 def _alike(pure: Mask, pixels: Photo) -> Mask:
     """Drop the pixels that glare among dark foliage: a cloud between the leaves."""
-    brightness = pixels.max(axis=-1)
+    brightness = np.maximum(pixels[..., 2], np.maximum(pixels[..., 0], pixels[..., 1]))
     usual = float(np.median(brightness[pure])) if pure.any() else 255.0
     return np.asarray(pure & (brightness <= GLARE * usual + 30))
 
 
 def _bluish(pixels: Photo) -> Mask:
     """Tell where blue outshines red and green: sky shines through, or on."""
-    return np.asarray(pixels[..., 2] > 1.04 * pixels[..., :2].max(axis=-1))
+    return np.asarray(pixels[..., 2] > 1.04 * np.maximum(pixels[..., 0], pixels[..., 1]))
 
 
 def _framed(part: Mask, box: tuple[slice, slice], frame: Mask) -> Mask:
@@ -177,19 +182,14 @@ def _weighted(mixture: Mixture, belief: Floats) -> Mixture:
     return Mixture(weights / weights.sum(), mixture.means, mixture.covariances)
 
 
-def _refit(
-    pixels: Photo, odds: NDArray[np.float32], inside: Mask, params: FoliageParams
-) -> tuple[Mixture, Mixture] | None:
-    """Fit leaf and ground anew to what the blurred odds tell apart; None where that is no leaf at all.
+def _refit(pixels: Photo, told: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
+    """Fit leaf and ground anew to what was told to be leaves (h, w) and what was not.
 
     This is what makes the answer hold still when the hand trembles: the first guess depends on where the stroke
     runs, its fixed point hardly does.
     """
-    found = inside & (cv2.GaussianBlur(odds, (0, 0), BLUR_PX) > 0)
-    if not found.any() or found.all():
-        return None
-    leaf, ground = _sample(pixels, found, params.samples), _sample(pixels, ~found, params.samples)
-    return fit_mixture(leaf, params.components // 2), fit_mixture(ground, params.components // 2 + 2)
+    leaf, ground = _sample(pixels, told, params.samples), _sample(pixels, ~told, params.samples)
+    return fit_mixture(leaf, params.components // 2), fit_mixture(ground, params.components // 2 + 4)
 
 
 def _sample(pixels: Photo, where: Mask, count: int) -> NDArray[np.uint8]:

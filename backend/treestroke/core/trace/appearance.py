@@ -47,9 +47,9 @@ def branch_odds(
     bare = fit_mixture(_thinned(pixels[~in_crown]), COMPONENTS) if (~in_crown).sum() >= FEWEST else model
     among_leaves = _like(_unlike(model, leaf), bare)
     rest = join_mixtures([leaf, ground], [0.5, 0.5])
-    inside = _odds(among_leaves, rest) if among_leaves is not None else np.full(len(table_colours()), -6.0, np.float32)
-    index = table_index(photo)
-    return np.where(crown, inside[index], _odds(bare, ground)[index])
+    outside = _odds(bare, ground)
+    inside = _odds(among_leaves, rest) if among_leaves is not None else np.full_like(outside, -6.0)
+    return np.take(np.concatenate([outside, inside]), table_index(photo) + len(outside) * crown.astype(np.int32))
 
 
 def _odds(branch: Mixture, rest: Mixture) -> Odds:

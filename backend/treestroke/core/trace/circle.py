@@ -6,6 +6,7 @@ between leaves fail: a branch is a ribbon (clear of other wood on both sides) no
 
 from collections import deque
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,19 +32,26 @@ class Circle:
     radius_px: float
     wood: NDArray[np.bool_]
 
+    @cached_property
+    def rim(self) -> Floats:
+        """Points (n, 2), px, a pixel apart on the circle about the origin."""
+        count = max(16, int(2 * np.pi * self.radius_px))
+        return _on_circle(np.linspace(0.0, 2 * np.pi, count, endpoint=False), self.radius_px)
+
     def arcs(self, centre: Floats) -> Floats:
         """Middles (k, 2), px, of the runs of wood on the circle about ``centre``."""
-        count = max(16, int(2 * np.pi * self.radius_px))
-        turn = np.arange(count) * (2 * np.pi / count)
-        rim = centre + self.radius_px * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        seen = sample_nearest(self.wood, rim, False)
+        seen = sample_nearest(self.wood, centre + self.rim, False)
         if seen.all() or not seen.any():
             return np.empty((0, 2))
         first = int(np.flatnonzero(~seen)[0])
         edges = np.diff(np.concatenate([[0], np.roll(seen, -first).astype(np.int8), [0]]))
         middle = (np.flatnonzero(edges == 1) + np.flatnonzero(edges == -1) - 1) / 2 + first
-        angle = middle * (2 * np.pi / count)
-        return np.asarray(centre + self.radius_px * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        return centre + _on_circle(middle * (2 * np.pi / len(seen)), self.radius_px)
+
+
+def _on_circle(angle: Floats, radius_px: float) -> Floats:
+    """Points (n, 2), px, at angles (n,), radians, on a circle about the origin."""
+    return radius_px * np.stack([np.cos(angle), np.sin(angle)], axis=1)
 
 
 def trace_forks(draft: Draft, circle: Circle, seeds: list[int]) -> None:
@@ -76,5 +84,6 @@ def _breadth(way: Floats, bearer_px: float, circle: Circle) -> float:
 
 def _are_new(ends: Floats, draft: Draft, radius_px: float) -> NDArray[np.bool_]:
     """Tell which arcs' middles (k, 2) lie apart from everything traced so far."""
-    away = np.linalg.norm(ends[:, None] - np.array(draft.points), axis=2)
-    return np.asarray((away > np.maximum(APART * radius_px, 1.5 * np.array(draft.radii))).all(axis=1))
+    points, radii = draft.table()
+    away = np.hypot(ends[:, :1] - points[:, 0], ends[:, 1:] - points[:, 1])
+    return np.asarray((away > np.maximum(APART * radius_px, 1.5 * radii)).all(axis=1))

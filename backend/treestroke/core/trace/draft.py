@@ -17,6 +17,7 @@ class Draft:
         self.radii: list[float] = []
         self.parents: list[int] = []
         self.stroke: list[int] = []
+        self._table: tuple[Floats, Floats] | None = None
 
     def grow(self, parent: int, line_px: Floats, radius_px: Floats | float, stroke: int) -> int:
         """Add a chain (n, 2) with radii; from a parent its first point stands for the parent. Return its last joint."""
@@ -27,15 +28,22 @@ class Draft:
             self.parents.append(parent)
             self.stroke.append(stroke)
             parent = len(self.points) - 1
+        self._table = None
         return parent
+
+    def table(self) -> tuple[Floats, Floats]:
+        """Give all joints so far as arrays: points (n, 2) and radii (n,), px."""
+        if self._table is None:
+            self._table = np.array(self.points), np.array(self.radii)
+        return self._table
 
     def nearest(self, point: Floats) -> int:
         """Find the joint nearest to a point (2,)."""
-        return int(np.linalg.norm(np.array(self.points) - point, axis=1).argmin())
+        return int(np.linalg.norm(self.table()[0] - point, axis=1).argmin())
 
     def skeleton(self) -> Skeleton:
         """Give the skeleton as it stands."""
-        return Skeleton(np.array(self.points), np.array(self.radii), np.array(self.parents))
+        return Skeleton(*self.table(), np.array(self.parents))
 
 
 def without(skeleton: Skeleton, stroke: Indices, dropped: Indices) -> tuple[Skeleton, Indices]:
