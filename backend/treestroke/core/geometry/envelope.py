@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from treestroke.core.geometry.camera import Camera, Floats
+from treestroke.core.geometry.polyline import smoothed
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ def envelope_of_mask(mask: NDArray[np.bool_], camera: Camera) -> Envelope:
     left = np.interp(np.arange(top, bottom + 1), rows, mask.argmax(axis=1)[rows])
     right = np.interp(np.arange(top, bottom + 1), rows, mask.shape[1] - mask[:, ::-1].argmax(axis=1)[rows])
     sigma = 0.02 * (bottom - top + 1)
-    left, right = (gaussian_filter1d(side, sigma, mode="nearest") for side in (left, right))
+    left, right = (smoothed(side, sigma) for side in (left, right))
     middle, radius = np.zeros(camera.height), np.zeros(camera.height)
     middle[:top], middle[bottom + 1 :] = (left[0] + right[0]) / 2, (left[-1] + right[-1]) / 2
     middle[top : bottom + 1], radius[top : bottom + 1] = (left + right) / 2, (right - left) / 2

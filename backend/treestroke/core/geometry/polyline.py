@@ -1,5 +1,6 @@
 """Chains of points."""
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,6 +20,14 @@ def resample(points: Floats, step: float) -> Floats:
     count = max(1, round(float(arc[-1]) / step))
     at = np.linspace(0.0, arc[-1], count + 1)
     return np.stack([np.interp(at, arc, column) for column in points.T], axis=1)
+
+
+def smoothed(values: Floats, sigma: float) -> Floats:
+    """Smooth values (n,) or (n, d) along a chain by a Gaussian of ``sigma`` places; the ends go on as they are."""
+    size = (1, 2 * int(np.ceil(4.0 * sigma)) + 1)
+    columns = values.reshape(len(values), -1)
+    smooth = cv2.GaussianBlur(columns, size, sigmaX=1.0, sigmaY=sigma, borderType=cv2.BORDER_REPLICATE)
+    return np.asarray(smooth, dtype=np.float64).reshape(values.shape)
 
 
 def directions(points: Floats) -> Floats:

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter
 
+from treestroke.core.geometry.polyline import smoothed
 from treestroke.core.imaging.quilting import QuiltParams, quilt
 from treestroke.core.mesh.grain import bark_grain
 
@@ -126,7 +126,7 @@ def _opponent(logs: Floats) -> Floats:
 
 def _clean_run(strip: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.bool_]]:
     """Keep the longest run of rows that are mostly bark."""
-    share = gaussian_filter(clean.mean(axis=1), 6.0, mode="nearest")
+    share = smoothed(clean.mean(axis=1), 6.0)
     bounds = np.flatnonzero(np.diff(np.concatenate([[False], share > 0.6, [False]]).astype(np.int8)))
     if bounds.size == 0:
         return strip[:0], clean[:0]
@@ -138,7 +138,8 @@ def _clean_run(strip: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray
 def _flattened(strip: Floats, clean: NDArray[np.bool_]) -> Floats:
     """Take slow changes of light off a strip: log light (h, w, 3), mean 0; pixels that are not bark are 0."""
     logs = _log(strip)
-    weight = gaussian_filter(cv2.erode(clean.astype(np.float64), np.ones((7, 7))), 3.0, mode="nearest")
+    inner = cv2.erode(clean.astype(np.float64), np.ones((7, 7)))
+    weight: Floats = np.asarray(cv2.GaussianBlur(inner, (25, 25), 3.0, borderType=cv2.BORDER_REPLICATE), np.float64)
     slow = _slow(logs * weight[..., None]) / np.maximum(_slow(weight), 1e-3)[..., None]
     detail = (logs - slow) * weight[..., None]
     # cylinder shading that the smoothing leaves at the strip's sides

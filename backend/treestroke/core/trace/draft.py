@@ -75,7 +75,8 @@ def simplify(skeleton: Skeleton, stroke: Indices, tolerance_px: float) -> tuple[
     ``tolerance_px`` from the line that stays.
     """
     counts, offspring = child_counts(skeleton), children(skeleton)
-    kept = (counts != 1) | (skeleton.parents < 0)
+    # A branch's first joint stays, too: its thickness there is its own, not its bearer's.
+    kept = (counts != 1) | (skeleton.parents < 0) | (stroke != stroke[np.maximum(skeleton.parents, 0)])
     for joint in np.flatnonzero(kept).tolist():
         for child in offspring[joint]:
             chain = [joint, child]

@@ -2,9 +2,8 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
-from treestroke.core.geometry.polyline import Floats, normals, resample
+from treestroke.core.geometry.polyline import Floats, normals, resample, smoothed
 from treestroke.core.imaging.sampling import sample_nearest
 
 OFFSETS = 21
@@ -45,7 +44,7 @@ def blurred(values: Floats, sigma: float) -> Floats:
     flat = values.reshape(count, -1)
     ahead, behind = 2 * flat[0] - flat[:0:-1], 2 * flat[-1] - flat[-2::-1]
     long = np.concatenate([ahead, flat, behind])
-    return np.asarray(gaussian_filter1d(long, sigma, axis=0)[count - 1 : 2 * count - 1].reshape(values.shape))
+    return smoothed(long, sigma)[count - 1 : 2 * count - 1].reshape(values.shape)
 
 
 def _cheapest(cost: Floats, change: Floats) -> NDArray[np.int64]:

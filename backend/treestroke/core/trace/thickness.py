@@ -1,8 +1,8 @@
 """How thick a branch is, measured where the photo shows it."""
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from scipy.ndimage import median_filter
 
 from treestroke.core.geometry.polyline import Floats, normals
 from treestroke.core.imaging.sampling import sample_nearest
@@ -39,10 +39,11 @@ def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 def _steady(widths: Floats) -> Floats:
     """Take the median of the measurements around each place; NaN where fewer than half of them measured anything."""
-    window = min(len(widths), 9)
+    window = min((len(widths) - 1) | 1, 9)
     seen = ~np.isnan(widths)
     if not seen.any():
         return widths
     filled = np.interp(np.arange(len(widths)), np.flatnonzero(seen), widths[seen])
     share = np.convolve(seen.astype(float), np.ones(window) / window, mode="same")
-    return np.where(share >= 0.5, median_filter(filled, window, mode="nearest"), np.nan)
+    around = np.pad(filled, window // 2, mode="edge")
+    return np.where(share >= 0.5, np.median(sliding_window_view(around, window), axis=1), np.nan)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import isotonic_regression
 
 from treestroke.core.geometry.polyline import Floats, Indices, arc_lengths, normals
 from treestroke.core.imaging.mixture import Mixture
@@ -166,11 +165,21 @@ def _radii(line: Floats, width: float | None, measured: Floats, bearer: float, h
     if len(places) < FEWEST_SEEN:
         return expected
     seen = np.minimum(measured[places], SWELLING * np.median(measured[places]))
-    radii = np.interp(np.arange(len(line)), places, isotonic_regression(seen, increasing=False).x)
+    radii = np.interp(np.arange(len(line)), places, _falling(seen))
     radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
     return np.asarray(np.maximum(radii, LEAST * expected))
+
+
+def _falling(values: Floats) -> Floats:
+    """Give the values (n,) nearest to the given ones that never rise (the min-max formula of isotonic regression)."""
+    count = np.arange(len(values))
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    means = (sums[None, 1:] - sums[:-1, None]) / np.maximum(count[None] - count[:, None] + 1, 1)
+    means[count[:, None] > count[None]] = -np.inf
+    onward = np.maximum.accumulate(means[:, ::-1], axis=1)[:, ::-1]
+    return np.asarray(np.minimum.accumulate(onward, axis=0).diagonal())
 
 
 def _seeds(draft: Draft, radius_px: float) -> list[int]:
