@@ -1,8 +1,11 @@
 """The command line, in process: exit codes, single lines, and files whole or not at all."""
 
 import json
+import os
 import resource
 import signal
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -200,6 +203,20 @@ def test_a_project_file_gives_the_same_bytes(run, tmp_path: Path, maple_photo: P
     assert main(["model", str(project), "--out", str(tmp_path / "a.glb")]) == 0
     run("--seed", "4")
     assert (tmp_path / "a.glb").read_bytes() == (tmp_path / "tree.glb").read_bytes()
+
+
+def test_the_bytes_do_not_depend_on_the_number_of_threads(
+    tmp_path: Path, maple_photo: Path, maple_strokes: Path
+) -> None:
+    trees = []
+    for threads in ("1", "4"):
+        out = tmp_path / f"{threads}.glb"
+        argv = ["model", str(maple_photo), "--strokes", str(maple_strokes), "--out", str(out), *QUICK]
+        many = {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads, "OPENCV_FOR_THREADS_NUM": threads}
+        env = os.environ | many | {"PYTHONPATH": str(Path(treestroke.__file__).parents[1])}
+        subprocess.run([sys.executable, "-m", "treestroke", *argv], env=env, check=True, timeout=120)
+        trees.append(out.read_bytes())
+    assert trees[0] == trees[1]
 
 
 def test_trace_answers_in_the_contract_s_shape(tmp_path: Path, maple_photo: Path, maple_strokes: Path) -> None:
