@@ -51,14 +51,14 @@ def thin_edges(skeleton: Skeleton) -> NDArray[np.bool_]:
 
 def seats_along(skeleton: Skeleton, bearing: Floats, count: int, rng: np.random.Generator) -> Seats:
     """Spread places over edges, each having as many as its length times its weight ``bearing`` (n,) asks."""
-    lengths = edge_lengths(skeleton)
-    ends = np.cumsum(lengths * bearing)
+    borne = edge_lengths(skeleton) * bearing
+    ends = np.cumsum(borne)
     if ends[-1] <= 0 or count <= 0:
         return Seats(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, dtype=np.int64))
     along = (np.arange(count) + rng.random(count)) * ends[-1] / count
     joints = np.minimum(np.searchsorted(ends, along, side="right"), len(skeleton) - 1)
     end, start = skeleton.points[joints], skeleton.points[skeleton.parents[joints]]
-    share = np.clip((ends[joints] - along) / np.maximum(lengths[joints], 1e-12), 0, 1)[:, None]
+    share = np.clip((ends[joints] - along) / np.maximum(borne[joints], 1e-12), 0, 1)[:, None]
     return Seats(end + share * (start - end), _unit(end - start), joints)
 
 

@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.leaf.arrangement import Poses, Seats
 from treestroke.core.leaf.atlas import Atlas, tile_alphas, tile_labs
-from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
+from treestroke.core.leaf.colouring import DARKEST, Colouring, colouring_of, shades
 from treestroke.core.leaf.coverage import Outlines, cover, outlines_of, share_inside
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.leaves import Floats, Leaves
 
-SIDES = (0.017, 0.029)
+SIDES = (0.015, 0.03)
 """Smallest and largest side of a card of size 1, as shares of the crown's width."""
+FLICKER = 0.05
+"""Standard deviation of a card's brightness, so that neighbours stand out from each other."""
 FITTING = 0.92
 """Share of a card's opaque dots that must lie in the foliage. Higher loses more of the foliage at its outline than it
 gains beside it (5 photos: 0.96 costs 1 to 3 % of silhouette IoU)."""
@@ -57,7 +59,8 @@ class Crown:
     def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> tuple[Leaves, NDArray[np.bool_]]:
         """Colour the cards that stay inside the foliage and the crown, and tell which of them do (n,)."""
         tiles, flips = self.colouring.tiles(poses.centres, rng), rng.random(len(seats)) < 0.5
-        light = shades(poses.centres, poses.lift, self.envelope)
+        light = shades(poses.centres, poses.lift, self.envelope) + rng.normal(0, FLICKER, len(seats))
+        light = np.clip(light, DARKEST, 1.0)
         leaves = Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
         kept = self._fitting(leaves)
         return leaves.select(kept), kept

@@ -1,10 +1,11 @@
 """Further cards where the foliage is still seen through."""
 
+import cv2
 import numpy as np
-from scipy.spatial import cKDTree
 
 from treestroke.core.leaf.arrangement import Seats, pose_over, seats_along
 from treestroke.core.leaf.crown import SIDES, Crown
+from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.leaves import Floats, Indices, Leaves
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -32,7 +33,7 @@ def cover_gaps(
     seats = seats_along(skeleton, np.ones(len(skeleton), dtype=np.bool_), BEARERS, rng)
     if len(seats) == 0:
         return []
-    branches, inside = cKDTree(seats.points[:, :2]), crown.grid.inside.ravel()
+    nearest, inside = _nearest_seats(seats, crown.grid), crown.grid.inside.ravel()
     covered, patches = np.zeros(inside.size, dtype=np.bool_), [leaves]
     far = int(FAR_SHARE * len(leaves) / len(SIZES))
     for scale in SIZES:
@@ -42,7 +43,7 @@ def cover_gaps(
         if surplus <= 0 or left <= 0:
             break
         chosen = rng.choice(gaps, min(_count(surplus, scale, crown), left, len(gaps)), replace=False)
-        centres, index = _centres(chosen, branches, seats, crown, far, rng)
+        centres, index = _centres(chosen, nearest[chosen], seats, crown, far, rng)
         patches.append(_patch(centres, seats.at(index), scale, crown, rng))
     return patches[1:]
 
@@ -54,18 +55,31 @@ def _count(cells: float, scale: float, crown: Crown) -> int:
 
 
 def _centres(
-    gaps: Indices, branches: cKDTree, seats: Seats, crown: Crown, far: int, rng: np.random.Generator
+    gaps: Indices, nearest: Indices, seats: Seats, crown: Crown, far: int, rng: np.random.Generator
 ) -> tuple[Floats, Indices]:
-    """Place centres (n, 3) over gaps, about as deep as the seat nearest in the photo, and tell that seat.
+    """Place centres (n, 3) over gaps (m,), about as deep as the seat ``nearest`` (m,) in the photo, and tell that seat.
 
     Gaps out of reach are left out, and so are all but ``far`` of those that are not near.
     """
     x, y = crown.grid.x_y_of(gaps, rng.random((len(gaps), 2)))
-    distance, nearest = branches.query(np.stack([x, y], axis=1))
+    distance = np.hypot(x - seats.points[nearest, 0], y - seats.points[nearest, 1])
     beyond = distance > NEAR * crown.height
     kept = (distance <= REACH * crown.height) & (~beyond | (np.cumsum(beyond) <= far))
     z = seats.points[nearest[kept], 2] + rng.normal(0, THICKNESS * crown.height, np.count_nonzero(kept))
-    return np.stack([x[kept], y[kept], z], axis=1), np.asarray(nearest[kept])
+    return np.stack([x[kept], y[kept], z], axis=1), nearest[kept]
+
+
+def _nearest_seats(seats: Seats, grid: FoliageGrid) -> Indices:
+    """Find the seat nearest in the photo to each cell, flat, to within a cell."""
+    cells = grid.flat_cells(seats.points[:, 0], seats.points[:, 1])
+    free = np.ones(grid.inside.size, dtype=np.uint8)
+    free[cells] = 0
+    _, labels = cv2.distanceTransformWithLabels(
+        free.reshape(grid.inside.shape), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    )
+    seat_of = np.zeros(int(labels.max()) + 1, dtype=np.int64)
+    seat_of[labels.ravel()[cells]] = np.arange(len(seats))
+    return np.asarray(seat_of[labels.ravel()])
 
 
 def _patch(centres: Floats, seats: Seats, scale: float, crown: Crown, rng: np.random.Generator) -> Leaves:

@@ -87,6 +87,7 @@ def foliage_grid(photo: Photo, mask: Mask, camera: Camera) -> FoliageGrid:
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     top, bottom, left, right = int(rows[0]), int(rows[-1]) + 1, int(columns[0]), int(columns[-1]) + 1
     step = max(MIN_STEP_PX, (right - left) / CELLS_ACROSS)
+    step = step if step >= 1 else 1 / round(1 / step)  # finer cells than pixels share the pixels' borders
     shrink = cv2.INTER_AREA if step >= 1 else cv2.INTER_NEAREST
     size = (max(1, round((right - left) / step)), max(1, round((bottom - top) / step)))
     part = mask[top:bottom, left:right].astype(np.uint8)

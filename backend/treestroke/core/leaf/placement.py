@@ -10,20 +10,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.leaf.arrangement import Seats, pose_on_branches, seats_along, thin_edges
+from treestroke.core.leaf.arrangement import Seats, pose_on_branches, seats_along
 from treestroke.core.leaf.atlas import Atlas, Kind
 from treestroke.core.leaf.crown import Crown, crown_of
 from treestroke.core.leaf.gaps import cover_gaps
 from treestroke.core.leaf.grid import foliage_grid
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.leaf.mass import bearing
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 
 LAYERS = 10.0
 """Cards' opaque area over the foliage's area in the photo, at density 1 (a leaf area index)."""
-RESERVE = 0.2
+RESERVE = 0.25
 """Share of the cards that is kept for what the first ones leave uncovered."""
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
 """Sizes at which a card that would leave the foliage is tried again, each time turned anew."""
@@ -36,7 +36,7 @@ class LeafParams:
     Attributes
     ----------
     size
-        Factor on the side of a card (1.7 to 2.9 % of the crown's width), 0.3 to 3.
+        Factor on the side of a card (1.5 to 3 % of the crown's width), 0.3 to 3.
     density
         Factor on the number of cards, 0 to 3; 0 bears none, under 1 leaves part of the foliage uncovered.
     max_cards
@@ -81,24 +81,12 @@ def place_leaves(
     crown = crown_of(grid, envelope, atlas, params.size, rng)
     wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    bearing = thin_edges(skeleton).astype(np.float64)
-    if params.kind == "needles":
-        bearing *= _evenness(skeleton, envelope)
-    leaves = _on_branches(seats_along(skeleton, bearing, count, rng), crown, rng)
+    weights = bearing(skeleton, grid, envelope, crown.height, even=params.kind == "needles")
+    leaves = _on_branches(seats_along(skeleton, weights, count, rng), crown, rng)
     report("leaf", 0.5)
     patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(leaves), rng)
     report("leaf", 1.0)
     return join_leaves([leaves, *patches])
-
-
-def _evenness(skeleton: Skeleton, envelope: Envelope) -> Floats:
-    """Weigh joints (n,) by the inverse of the crown's radius there.
-
-    Whorls get longer downward faster than a conifer's foliage gets denser: by length alone its skirt would take all.
-    """
-    row = np.floor(envelope.camera.pixels_from_world(skeleton.points)[:, 1]).astype(np.int64)
-    radius = envelope.radius_px[np.clip(row, 0, len(envelope.radius_px) - 1)]
-    return np.asarray(1.0 / np.maximum(radius, 0.1 * envelope.radius_px.max()))
 
 
 def _on_branches(seats: Seats, crown: Crown, rng: np.random.Generator) -> Leaves:

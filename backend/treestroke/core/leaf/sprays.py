@@ -19,8 +19,14 @@ SUBPIXEL_BITS = 4
 SHADES = np.array([-14.0, -7.0, -3.0, 0.0, 3.0, 7.0])
 """Lightness steps, CIE Lab, that one piece is painted in: heart, edge, dark half, plain, light half, midrib."""
 HEART, EDGE, DARK, PLAIN, LIGHT, RIB = range(6)
-LEAVES, FLOWERS, TUFTS = 200, 220, 36
+LIGHT_SCATTER = 4.0
+"""Standard deviation of the pieces' lightness, CIE Lab: leaves turn to the light each in its own way."""
+LEAVES, FLOWERS = 200, 220
 """Pieces that a spray is tried to be drawn of; those that would hide each other or leave the square are left out."""
+NEEDLES = 160
+"""Needles of a shoot."""
+ROOM = 0.36
+"""How far shoots reach from the square's middle, so that the leaves at their tips have room."""
 
 
 class _Easel:
@@ -33,7 +39,8 @@ class _Easel:
     def __init__(self, side: int, members: Floats, pieces: int, rng: np.random.Generator) -> None:
         self.side = 2 * side
         mean = members.mean(axis=0)
-        picked = 0.55 * members[rng.integers(len(members), size=pieces)] + 0.45 * mean
+        picked = 0.7 * members[rng.integers(len(members), size=pieces)] + 0.3 * mean
+        picked[:, 0] += rng.normal(0, LIGHT_SCATTER, pieces)
         self.paints = rgb_from_lab(picked[:, None, :] + SHADES[:, None] * np.array([1.0, 0.0, 0.0]))
         wood = np.array([0.6 * mean[0], 0.5 * mean[1] + 4.0, 0.5 * mean[2] + 6.0])
         ground, self.wood = rgb_from_lab(np.stack([mean, wood]))
@@ -98,7 +105,7 @@ def _twig(rng: np.random.Generator) -> Floats:
     """Draw the twig (9, 2): from the bottom's middle upward with a bend."""
     t = np.linspace(0, 1, 9)
     bend, lean = rng.uniform(-0.06, 0.06), rng.uniform(-0.1, 0.1)
-    return np.stack([0.5 + bend * np.sin(np.pi * t) + lean * t, 0.97 - 0.67 * t], axis=1)
+    return np.stack([0.5 + bend * np.sin(np.pi * t) + lean * t, 0.97 - 0.7 * t], axis=1)
 
 
 def _heading(angle: Floats) -> Floats:
@@ -106,36 +113,61 @@ def _heading(angle: Floats) -> Floats:
     return np.stack([np.sin(angle), -np.cos(angle)], axis=-1)
 
 
-def _along(twig: Floats, share: Floats) -> Floats:
-    """Points (..., 2) at shares of the twig's length."""
-    return np.stack([np.interp(share * 8, np.arange(9), twig[:, axis]) for axis in range(2)], axis=-1)
+def _along(lines: Floats, share: Floats) -> Floats:
+    """Points (..., 2) at shares (...) of the length of lines (..., 9, 2), each of its own or all of one line."""
+    place = np.clip(share, 0, 1) * 8
+    piece = np.minimum(place, 7).astype(np.int64)
+    lines = np.broadcast_to(lines, (*share.shape, 9, 2))
+    start, end = (np.take_along_axis(lines, (piece + k)[..., None, None], axis=-2)[..., 0, :] for k in (0, 1))
+    return np.asarray(start + (place - piece)[..., None] * (end - start))
 
 
 def _draw_leaves(side: int, members: Floats, rng: np.random.Generator) -> Image:
-    """Draw broad leaves to both sides of a twig and its side twigs, each unless others hold its place."""
-    easel, twig = _Easel(side, members, LEAVES, rng), _twig(rng)
-    share, turn = rng.uniform(0.02, 1.0, LEAVES), np.where(np.arange(LEAVES) % 2, 1.0, -1.0)
-    angle = turn * rng.uniform(0.35, 1.75, LEAVES) * (1.1 - 0.8 * share) + rng.normal(0, 0.15, LEAVES)
-    out = rng.uniform(0.0, 0.32, LEAVES) * np.sqrt(1 - (1.6 * share - 0.8) ** 2)
-    base = _along(twig, share) + out[:, None] * _heading(turn * 1.1)
+    """Draw a forked twig with broad leaves along its shoots, each leaf unless others hold its place."""
+    easel, shoots = _Easel(side, members, LEAVES, rng), _shoots(rng, int(rng.integers(6, 10)), 0.66)
+    shoot = rng.integers(len(shoots), size=LEAVES)
+    share, turn = rng.uniform(0.15, 1.0, LEAVES), np.where(np.arange(LEAVES) % 2, 1.0, -1.0)
+    share[: len(shoots)], shoot[: len(shoots)] = 1.0, np.arange(len(shoots))
+    base = _along(shoots[shoot], share)
+    ahead = base - _along(shoots[shoot], share - 0.1)
+    spread = turn * rng.uniform(0.3, 1.3, LEAVES) * (1.15 - share)
+    angle = np.arctan2(ahead[:, 0], -ahead[:, 1]) + spread + rng.normal(0, 0.2, LEAVES)
     outline, spine = _leaf_outlines(base, angle, rng)
-    stalk = np.stack([_along(twig, np.maximum(0.0, share - 0.1)), base], axis=1)
+    easel.lines(shoots, easel.wood, 0.01)
     kept = np.flatnonzero(_inside(outline))
     rim, core = easel.cells(outline[kept]), easel.cells(spine[kept, 2:7])
     for piece, rim_cells, core_cells in zip(kept.tolist(), rim, core, strict=True):
-        if easel.taken(rim_cells) <= 0.6 and easel.taken(core_cells) <= 0.8:
-            easel.lines(stalk[piece : piece + 1], easel.wood, 0.008)
+        if easel.taken(rim_cells) <= 0.6 and easel.taken(core_cells) <= 0.75:
             _draw_leaf(easel, outline[piece], spine[piece], easel.paints[piece])
-    easel.lines(twig[None, :7], easel.wood, 0.012)
     return easel.tile()
 
 
+def _shoots(rng: np.random.Generator, count: int, longest: float) -> Floats:
+    """Draw a twig and the bent shoots (count + 1, 9, 2) that leave it to both sides, no two sprays alike."""
+    twig, t = _twig(rng), np.linspace(0, 1, 9)
+    share = (np.arange(count) + rng.uniform(0.1, 0.9, count)) / count
+    turn = np.where((np.arange(count) + rng.integers(2)) % 2, 1.0, -1.0)
+    length = longest * rng.uniform(0.55, 1.0, count) * (1.0 - 0.45 * share)
+    angle = turn * rng.uniform(0.6, 1.25, count) * (1.1 - 0.4 * share)
+    bent = angle[:, None] + turn[:, None] * rng.uniform(-0.5, 0.25, (count, 1)) * t
+    foot, way = _along(twig, share), length[:, None, None] * t[:, None] * _heading(bent)
+    room = np.minimum(1.0, ROOM / np.abs(foot[:, None] - 0.5 + way).max(axis=(1, 2)))
+    return np.concatenate([twig[None], foot[:, None] + room[:, None, None] * way])
+
+
 def _leaf_outlines(base: Floats, angle: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Outline ovate leaves: edges (p, 16, 2), left up and right down, and midribs (p, 8, 2)."""
-    size, slimness = rng.uniform(0.2, 0.3, (2, len(base), 1, 1)) * np.array([1.0, 2.3]).reshape(2, 1, 1, 1)
+    """Outline leaves that end in a drawn-out tip: edges (p, 16, 2), left up and right down, and midribs (p, 8, 2).
+
+    Leaves of one spray are of one form, from slender to broad, in different sizes.
+    """
+    form, size = rng.uniform(0.5, 0.74), rng.uniform(0.17, 0.31, (len(base), 1, 1))
+    breadth = form * rng.uniform(0.8, 1.15, (len(base), 1, 1)) * size
     t = np.linspace(0, 1, 8)[:, None]
-    half = 0.5 * slimness * size * np.sin(np.pi * t**0.75) ** 0.9 * _heading(angle + np.pi / 2)[:, None]
-    spine = base[:, None] + t * size * _heading(angle)[:, None]
+    profile = 1.25 * np.sin(np.pi * t**0.8) * (1 - 0.45 * t)
+    bend = rng.normal(0, 0.05, (len(base), 1, 1)) * np.sin(np.pi * t) * size
+    across = _heading(angle + np.pi / 2)[:, None]
+    spine = base[:, None] + t * size * _heading(angle)[:, None] + bend * across
+    half = 0.5 * breadth * profile * across
     return np.concatenate([spine - half, (spine + half)[:, ::-1]], axis=1), spine
 
 
@@ -145,31 +177,32 @@ def _draw_leaf(easel: _Easel, outline: Floats, spine: Floats, paint: Image) -> N
     easel.polygon(outline, paint[EDGE])
     easel.polygon(base + 0.94 * (outline - base), paint[LIGHT])
     easel.polygon(base + 0.94 * (np.vstack([spine, outline[8:]]) - base), paint[DARK])
-    easel.lines(spine[None, ::7], paint[RIB], 0.006)
+    easel.lines(spine[None, :7], paint[RIB], 0.005)
 
 
 def _draw_needles(side: int, members: Floats, rng: np.random.Generator) -> Image:
-    """Draw a flat spray of side twigs, each with needles to both sides."""
-    easel, twig = _Easel(side, members, TUFTS, rng), _twig(rng)
-    share, turn = (np.arange(TUFTS) + rng.random(TUFTS)) / TUFTS, np.where(np.arange(TUFTS) % 2, 1.0, -1.0)
-    angle = turn * rng.uniform(0.6, 1.3, TUFTS) * (1.2 - 0.9 * share)
-    length = rng.uniform(0.3, 0.44, TUFTS) * (1.15 - 0.5 * share)
-    needles = _needles(_along(twig, share), angle, length, rng)
-    for tuft, paint in zip(needles, easel.paints, strict=True):
-        kept = tuft[_inside(tuft)]
-        for start, shade in enumerate((DARK, PLAIN, LIGHT)):
-            easel.lines(kept[start::3], paint[shade], 0.015)
-    easel.lines(twig[None], easel.wood, 0.012)
+    """Draw a twig and few shoots as brushes: long thin needles that point forward, frayed at the outline."""
+    shoots = _shoots(rng, int(rng.integers(2, 5)), 0.6)
+    easel = _Easel(side, members, NEEDLES * len(shoots), rng)
+    needles = _needles(shoots, rng.uniform(0.3, 0.4), rng)
+    easel.lines(shoots, easel.wood, 0.012)
+    paints = easel.paints.reshape(len(shoots), NEEDLES, *easel.paints.shape[1:])
+    for brush, paint in zip(needles, paints, strict=True):
+        kept = brush[_inside(brush)]
+        for start in range(12):
+            easel.lines(kept[start::12], paint[start, (DARK, PLAIN, LIGHT)[start // 4]], 0.013)
     return easel.tile()
 
 
-def _needles(base: Floats, angle: Floats, length: Floats, rng: np.random.Generator) -> Floats:
-    """Seat needles (p, 20, 2, 2) on side twigs; they point forward the more the nearer they are to its tip."""
-    along = np.repeat(np.linspace(0.1, 1.0, 10), 2)
-    shape = (len(base), len(along))
-    turn = np.tile([-1.0, 1.0], 10) * rng.uniform(0.5, 0.95, shape) * (1.1 - 0.75 * along)
-    foot = base[:, None] + (along * length[:, None])[..., None] * _heading(angle)[:, None]
-    tip = foot + rng.uniform(0.08, 0.12, shape)[..., None] * _heading(angle[:, None] + turn)
+def _needles(shoots: Floats, length: float, rng: np.random.Generator) -> Floats:
+    """Seat needles (m, NEEDLES, 2, 2) on shoots (m, 9, 2), the more upright the nearer they are to a shoot's tip."""
+    along = np.sort(rng.uniform(0.12, 1.0, (len(shoots), NEEDLES)), axis=1)
+    lines = np.repeat(shoots[:, None], NEEDLES, axis=1)
+    foot = _along(lines, along)
+    ahead = foot - _along(lines, along - 0.1)
+    spread = rng.choice([-1.0, 1.0], along.shape) * rng.uniform(0.1, 1.0, along.shape) * (1.2 - 0.5 * along)
+    angle = np.arctan2(ahead[..., 0], -ahead[..., 1]) + spread
+    tip = foot + length * rng.uniform(0.55, 1.15, along.shape)[..., None] * _heading(angle)
     return np.stack([foot, tip], axis=2)
 
 
