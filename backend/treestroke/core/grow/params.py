@@ -36,6 +36,8 @@ class GrowthParams:
         Share of the crown's height to which the first stem is carried on where no visible limb reaches it.
     tip_px
         Radius of the thinnest twigs.
+    twigs
+        Most twigs added to the grown branches.
     """
 
     iterations: int = 300
@@ -50,11 +52,12 @@ class GrowthParams:
     stem_piece: float = 0.2
     limb_piece: float = 0.2
     leader: float = 0.65
-    tip_px: float = 0.9
+    tip_px: float = 0.5
+    twigs: int = 0
 
     def __post_init__(self) -> None:
-        if self.iterations < 0 or min(self.attractors, self.candidates, self.angles) < 1:
-            raise ValueError(f"growth needs iterations >= 0 and attractors, candidates and angles >= 1, got {self}")
+        if min(self.iterations, self.twigs) < 0 or min(self.attractors, self.candidates, self.angles) < 1:
+            raise ValueError(f"growth needs counts >= 0, attractors, candidates and angles >= 1, got {self}")
         if self.mode not in ("alternating", "image", "space"):
             raise ValueError(f"the mode is alternating, image or space, not {self.mode!r}")
         if min(self.spacing_px, self.closeness_px, self.tip_px, self.stem_piece, self.limb_piece) <= 0:
@@ -68,5 +71,13 @@ def growth_for(kind: Kind, iterations: int = 300) -> GrowthParams:
     if kind == "needles":
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":
-        return GrowthParams(iterations, attractors=4000, closeness_px=6.0, tip_px=0.6, limb_piece=0.14)
+        return GrowthParams(
+            iterations,
+            attractors=4000,
+            closeness_px=6.0,
+            inward_cosine=0.55,
+            limb_piece=0.14,
+            tip_px=0.35,
+            twigs=6000,
+        )
     return GrowthParams(iterations)

@@ -66,6 +66,8 @@ def _weights(tree: Skeleton, pipes: Floats) -> Floats:
     lengths = edge_lengths(tree)
     for limb in limbs(tree, heaviest_children(tree, visible)):
         own = limb if tree.parents[limb[0]] < 0 else limb[1:]
+        if not known[own[0]]:
+            continue
         arc = np.cumsum(np.where(known[own], lengths[own], 0.0))
         weight[own] = np.clip((arc[-1] - arc) / max(FADE * arc[-1], 1e-12), 0, 1)
     return np.where(known, weight, 0.0)

@@ -17,9 +17,11 @@ from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.form import curved
 from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.library import Subtree
+from treestroke.core.grow.limb_ends import with_limbs_carried_on
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.radii import pipe_radii
 from treestroke.core.grow.stem import foot_of, with_leader
+from treestroke.core.grow.twigs import with_twigs
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 
@@ -61,7 +63,8 @@ def grow(
     """Fill the crown of a lifted tree (3D, metres, measured radii) with branches.
 
     ``mask`` (height, width) is the foliage with its holes closed, ``envelope`` how deep it is. New joints project
-    into the mask and lie within the envelope; visible joints stay where they are.
+    into the mask and lie within the envelope, save where a stem or limb is carried on from below the foliage into it;
+    visible joints stay where they are. Without iterations no limb is carried on and no twig grows.
 
     Raises
     ------
@@ -75,10 +78,12 @@ def grow(
     visible = Skeleton(pixels_of(skeleton.points, camera), skeleton.radii / scale, skeleton.parents)
     visible = with_leader(visible, mask, envelope, params.leader)
     crown = crown_of(mask, envelope, foot_of(visible, mask))
+    visible = with_limbs_carried_on(visible, crown) if params.iterations else visible
     evaluator = evaluator_for(crown, library, rules_for(params, crown.unit))
     growth = Growing(visible, crown, library, params, evaluator)
     choices = growth.run(rng, report)
     form = curved(visible, len(skeleton), growth.chains, growth.table(), crown, rng)
+    form = with_twigs(form, crown, params.twigs if choices else 0, rng)
     radii = pipe_radii(form.points, form.parents, form.measured, params.tip_px * crown.unit)
     distances = growth.evaluator.image_distances()
     return Grown(

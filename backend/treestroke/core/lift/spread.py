@@ -2,7 +2,7 @@
 
 Source: Tan et al. 2008, section 3.1, after Okabe, Owada and Igarashi 2005: from root to tips, greedily, each branch is
 turned so that the distances among branches are as large as possible. Unbounded, this throws limbs far in front of
-the crown, so slopes are limited and depth stays inside the crown turned about its middle.
+the crown, so slopes are limited and, where there is crown, depth stays inside the crown turned about its middle.
 """
 
 from dataclasses import dataclass
@@ -90,12 +90,28 @@ def _options(points: Floats, start: float, envelope: Envelope, params: LiftParam
     steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     slopes = np.linspace(-params.steepest, params.steepest, params.slopes) * _leaning(points)
-    most = np.maximum(params.inside * envelope.half_depth(points), abs(start))
+    most = _bounds(points, abs(start), steps, envelope, params)
     eased = along**2 / (along + 0.25 * along[-1] + 1e-9)
     depth = np.clip(start + slopes[:, None] * eased, -most, most)
     lifted = np.broadcast_to(points, (len(slopes), *points.shape)).copy()
     lifted[:, :, 2] = depth
     return lifted
+
+
+def _bounds(points: Floats, start: float, steps: Floats, envelope: Envelope, params: LiftParams) -> Floats:
+    """Bound the depth of a limb's joints (n,), metres, by the envelope, under the crown by its slope alone.
+
+    The bound itself is no steeper than a limb may be: else a limb that enters the crown would jump aside.
+    """
+    row = np.floor(envelope.camera.pixels_from_world(points)[:, 1]).astype(np.int64)
+    open_air = envelope.radius_px[np.clip(row, 0, len(envelope.radius_px) - 1)] <= 0
+    most = np.where(open_air, np.inf, np.maximum(params.inside * envelope.half_depth(points), start))
+    for i in range(len(steps) - 1, -1, -1):
+        most[i] = min(most[i], most[i + 1] + params.steepest * steps[i])
+    most[0] = max(most[0], start)
+    for i, step in enumerate(steps.tolist()):
+        most[i + 1] = min(most[i + 1], most[i] + params.steepest * step)
+    return np.asarray(np.maximum(most, start))
 
 
 def _leaning(points: Floats) -> float:

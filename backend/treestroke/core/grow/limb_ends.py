@@ -1,0 +1,177 @@
+"""Limbs whose stroke ends before their crown does: how they go on.
+
+A person draws the first stretch of a limb, or the tracer loses it among leaves. Left alone it would stand as a stub.
+Each is carried on along a curve into the room that is left, thick limbs first, as far as wood of its thickness
+reaches; of the curves tried the one with most free room around it wins, as in lifting (Okabe et al. 2005).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.grow.branches import successors_by_wood
+from treestroke.core.grow.crown import Crown
+from treestroke.core.skeleton.measure import path_lengths
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.traverse import limbs
+
+UP = np.array([0.0, -1.0, 0.0])
+JOINT_SHARE = 0.02
+"""Of the crown's height: between the joints of what is carried on."""
+LEAST_LIMB = 0.05
+"""Of the crown's height: a shorter limb is a spur and stays."""
+AIM_SHARE = 0.08
+"""Of the crown's height: the last stretch of a limb, which tells where it was going and how thick it was."""
+SLENDER = 55.0
+"""Length of what is carried on over the radius it begins with, at most."""
+LEAST_REACH, MOST_REACH = 0.1, 0.5
+"""Bounds of that length, of the crown's height."""
+MOST_GAP = 0.2
+"""Of the crown's height: how far below the foliage a limb may end and still be carried on into it."""
+ROOM = 0.12
+"""Of the crown's height: free room beyond this counts no more."""
+LEAST_ROOM = 0.03
+"""Of the crown's height: mean free room without which a limb stays as it is."""
+SWERVES = (0.0, 0.5, 1.0, 1.7)
+"""How far sideways a curve's end is tried, over its length ahead."""
+TURNS = 6
+LENGTHS = (1.0, 0.75, 0.5, 0.3)
+RISE = 0.35
+"""Weight of the vertical in the direction of a curve's end (phototropism)."""
+WITHIN = 0.92
+"""Share of the envelope's radius that curves may use."""
+THINNED = 0.35
+"""Radius at the end of what is carried on over that at its start; the pipe model has the last word (`radii`)."""
+
+
+class _End(NamedTuple):
+    """A limb's end: its joint, the way it was going (3,), unit, its radius, and how far it may go on, px."""
+
+    joint: int
+    way: Floats
+    radius: float
+    reach: float
+
+
+def with_limbs_carried_on(skeleton: Skeleton, crown: Crown) -> Skeleton:
+    """Carry on the limbs of a visible tree (px) that end under the crown or in it with free room ahead.
+
+    What is carried on ends inside the crown and below the tree's highest joint. It may cross a gap between a limb's
+    end and the foliage. Its radii fall from the limb's own.
+    """
+    rows = np.flatnonzero(crown.mask.any(axis=1))
+    height = float(rows[-1] - rows[0] + 1)
+    for end in _ends(skeleton, height):
+        path = _best_path(skeleton, end, crown, height)
+        if len(path):
+            skeleton = _appended(skeleton, end, path)
+    return skeleton
+
+
+def _ends(skeleton: Skeleton, height: float) -> list[_End]:
+    """List the ends of limbs, thick ones first; the highest joint ends the leader and is none."""
+    highest = int(np.argmin(skeleton.points[:, 1]))
+    arc = path_lengths(skeleton)
+    found = []
+    for limb in limbs(skeleton, successors_by_wood(skeleton)):
+        length = float(arc[limb[-1]] - arc[limb[0]])
+        if limb[-1] != highest and length >= LEAST_LIMB * height:
+            found.append(_end(skeleton, limb, arc, height))
+    return sorted(found, key=lambda end: (-end.radius, end.joint))
+
+
+def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
+    """Measure how a limb ends, over its last stretch."""
+    own = limb[1:] if len(limb) > 1 else limb
+    last = own[arc[own] >= arc[own[-1]] - AIM_SHARE * height]
+    before = limb[max(len(limb) - len(last) - 1, 0)]
+    radius = float(skeleton.radii[last].max())
+    reach = float(np.clip(SLENDER * radius, LEAST_REACH * height, MOST_REACH * height))
+    return _End(int(limb[-1]), _unit(skeleton.points[limb[-1]] - skeleton.points[before]), radius, reach)
+
+
+def _best_path(skeleton: Skeleton, end: _End, crown: Crown, height: float) -> Floats:
+    """Choose the curve (k, 3) with most free room along it, without its start; (0, 3) where there is none."""
+    start = skeleton.points[end.joint]
+    others = skeleton.points[_away(skeleton, end.joint, AIM_SHARE * height)]
+    top = float(skeleton.points[:, 1].min()) + JOINT_SHARE * height
+    best, best_room = np.zeros((0, 3)), LEAST_ROOM * height * LEAST_REACH * height
+    for path in _paths(start, end, JOINT_SHARE * height):
+        inside = _inside(path, crown)
+        first = int(np.argmax(inside))
+        gap = float(np.sqrt(((path[first] - start) ** 2).sum()))
+        if not inside[first:].all() or gap > MOST_GAP * height or path[:, 1].min() < top:
+            continue
+        room = np.minimum(_nearest(path[first:], others), ROOM * height)
+        step = float(np.sqrt(((path[-1] - path[-2]) ** 2).sum()))
+        if float(room.sum()) * step > best_room:
+            best, best_room = path, float(room.sum()) * step
+    return best
+
+
+def _paths(start: Floats, end: _End, step: float) -> list[Floats]:
+    """Draw curves (k, 3) that begin the way a limb was going, swerve to all sides, and rise to their end."""
+    side = _unit(np.cross(end.way, UP if abs(end.way[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
+    other = np.cross(side, end.way)
+    ways = []
+    for swerve in SWERVES:
+        for turn in range(TURNS if swerve else 1):
+            angle = 2 * np.pi * turn / TURNS
+            ways.append(_unit(end.way + swerve * (np.cos(angle) * other + np.sin(angle) * side)))
+    return [_curve(start, end.way, way * length * end.reach, step) for length in LENGTHS for way in ways]
+
+
+def _curve(start: Floats, way: Floats, chord: Floats, step: float) -> Floats:
+    """Place points (k, 3) about ``step`` apart on a cubic curve that starts in a direction and rises at its end."""
+    length = float(np.sqrt((chord**2).sum()))
+    count = max(int(np.ceil(length / step)), 2)
+    t = (np.arange(1, count + 1) / count)[:, None]
+    rising = _unit(_unit(chord) + RISE * UP)
+    inner = t * (1 - t) ** 2 * way * length - t**2 * (1 - t) * rising * length
+    return np.asarray(start + t**2 * (3 - 2 * t) * chord + inner)
+
+
+def _inside(path: Floats, crown: Crown) -> NDArray[np.bool_]:
+    """Tell which points (k, 3) lie in the crown, clear of the envelope's surface."""
+    row = np.clip(np.floor(path[:, 1]).astype(np.int64), 0, len(crown.middle) - 1)
+    inner = np.hypot(path[:, 0] - crown.middle[row], path[:, 2]) <= WITHIN * crown.radius[row]
+    return np.asarray(crown.inside(path) & inner)
+
+
+def _nearest(points: Floats, others: Floats) -> Floats:
+    """Measure each point's (k, 3) distance to the nearest of others (n, 3)."""
+    squares = np.zeros((len(points), len(others)))
+    for axis in range(3):
+        squares += (points[:, axis, None] - others[:, axis]) ** 2
+    return np.asarray(np.sqrt(squares.min(axis=1)))
+
+
+def _away(skeleton: Skeleton, tip: int, reach: float) -> Indices:
+    """List the joints save those on the last stretch (px) before a tip."""
+    arc = path_lengths(skeleton)
+    others = np.ones(len(skeleton), dtype=bool)
+    joint = tip
+    while joint >= 0 and arc[tip] - arc[joint] <= reach:
+        others[joint] = False
+        joint = int(skeleton.parents[joint])
+    return np.flatnonzero(others) if others.any() else np.array([0], dtype=np.int64)
+
+
+def _appended(skeleton: Skeleton, end: _End, path: Floats) -> Skeleton:
+    """Append a path behind a limb's end; the wood tapers along it."""
+    first, t = len(skeleton), np.arange(1, len(path) + 1) / len(path)
+    radii = skeleton.radii[end.joint] * (1 - (1 - THINNED) * t)
+    parents = np.concatenate([[end.joint], np.arange(first, first + len(path) - 1)])
+    return Skeleton(
+        np.vstack([skeleton.points, path]),
+        np.concatenate([skeleton.radii, radii]),
+        np.concatenate([skeleton.parents, parents]),
+    )
+
+
+def _unit(vector: Floats) -> Floats:
+    """Scale a vector (3,) to length 1; one without length points up."""
+    length = float(np.sqrt((vector**2).sum()))
+    return np.asarray(vector / length) if length > 1e-12 else UP

@@ -1,0 +1,73 @@
+"""Twigs: the last and finest shoots, which a bare tree shows and growth by attractors is too coarse for.
+
+They stand at the joints of thin branches, each turned by the golden angle from the one before (phyllotaxis), lean
+forward, get shorter toward their branch's tip and rise a little.
+"""
+
+import numpy as np
+
+from treestroke.core.geometry.camera import Floats
+from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.form import Form
+from treestroke.core.skeleton.measure import edge_lengths
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.traverse import accumulate_to_root
+
+GOLDEN_RAD = np.pi * (3 - np.sqrt(5.0))
+LEAN = (0.55, 1.0)
+"""Range of the tangent of a twig's angle from its branch."""
+RISE = 0.3
+LENGTH_PX = (16.0, 42.0)
+FINE_PX = 500.0
+"""A branch that bears no more wood than this in length bears twigs."""
+
+
+def with_twigs(form: Form, crown: Crown, most: int, rng: np.random.Generator) -> Form:
+    """Add up to ``most`` twigs to a tree (px), all within the crown; they count as born with what bears them."""
+    seats = _seats(form, crown.unit, most)
+    if len(seats) == 0:
+        return form
+    along = _unit(form.points[seats] - form.points[form.parents[seats]])
+    turn = GOLDEN_RAD * np.arange(len(seats)) + rng.uniform(-0.5, 0.5, len(seats))
+    way = _unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
+    length = crown.unit * rng.uniform(*LENGTH_PX, len(seats))[:, None]
+    middle = form.points[seats] + 0.5 * length * way
+    rising = _unit(way + RISE * np.array([0.0, -1.0, 0.0]) + rng.normal(0, 0.15, way.shape))
+    end = middle + 0.5 * length * rising
+    kept = crown.inside(middle) & crown.inside(end)
+    return _appended(form, seats[kept], middle[kept], end[kept])
+
+
+def _seats(form: Form, unit: float, most: int) -> Indices:
+    """Choose the joints that bear twigs, evenly among those of thin branches."""
+    tree = Skeleton(form.points, np.zeros(len(form.points)), form.parents)
+    wood = accumulate_to_root(tree, edge_lengths(tree))
+    thin = np.flatnonzero((wood <= FINE_PX * unit) & (form.born > 0) & (form.measured == 0) & (form.parents >= 0))
+    if len(thin) <= most:
+        return thin
+    return thin[(np.arange(most) * len(thin)) // most]
+
+
+def _across(along: Floats, turn: Floats) -> Floats:
+    """Give unit vectors (n, 3) square to directions (n, 3), turned about them."""
+    level = np.where(np.abs(along[:, 2:]) > 0.9, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
+    side = _unit(np.cross(along, level))
+    return np.asarray(np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * np.cross(along, side))
+
+
+def _appended(form: Form, seats: Indices, middle: Floats, end: Floats) -> Form:
+    """Append twigs of two joints each behind their seats (m,)."""
+    first, count = len(form.points), len(seats)
+    parents = np.stack([seats, first + 2 * np.arange(count)], axis=1).ravel()
+    return Form(
+        np.vstack([form.points, np.stack([middle, end], axis=1).reshape(-1, 3)]),
+        np.concatenate([form.parents, parents]),
+        np.concatenate([form.born, np.repeat(form.born[seats], 2)]),
+        np.concatenate([form.measured, np.zeros(2 * count)]),
+    )
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Scale vectors (n, 3) to length 1; those without length stay."""
+    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
+    return np.asarray(vectors / np.maximum(length, 1e-12))
