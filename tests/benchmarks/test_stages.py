@@ -107,12 +107,13 @@ def test_growing(benchmark: BenchmarkFixture, subject: Subject) -> None:
 
 def test_drawing_the_leaf_atlas_and_hanging_the_leaves(benchmark: BenchmarkFixture, subject: Subject) -> None:
     photo, mask, kind = subject.photo, subject.trace.foliage, subject.tree.foliage_kind
+    front = np.where(mask, np.inf, -np.inf).astype(np.float32)
 
     def run() -> int:
         rng = np.random.default_rng(0)
         atlas = leaf_atlas(photo, mask, kind, rng)
         skeleton = subject.tree.grown.skeleton
-        leaves = place_leaves(skeleton, mask, subject.envelope, photo, atlas, LeafParams(kind=kind), rng)
+        leaves = place_leaves(skeleton, front, subject.envelope, photo, atlas, LeafParams(kind=kind), rng)
         return len(Surface(cards(leaves, atlas), atlas.image).mesh.triangles)
 
     assert benchmark.pedantic(run, rounds=3) > 10_000

@@ -84,7 +84,7 @@ def test_materials_are_named_and_leaves_are_cut_out() -> None:
     wood, leaf = document(encode_glb(bark(), leaves(), CAMERA, generator="treestroke 1"))["materials"]
     assert (wood["name"], leaf["name"]) == ("bark", "leaf")
     assert "alphaMode" not in wood
-    assert (leaf["alphaMode"], leaf["alphaCutoff"], leaf["doubleSided"]) == ("MASK", 0.5, True)
+    assert (leaf["alphaMode"], leaf["alphaCutoff"], leaf["doubleSided"]) == ("MASK", 0.3, True)
 
 
 def test_bark_repeats_and_leaves_clamp() -> None:

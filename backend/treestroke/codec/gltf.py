@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.mesh import Mesh, Surface
+from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
 
 _BYTE, _SHORT, _INT, _FLOAT = 5121, 5123, 5125, 5126  # component types, glTF 2.0, 3.6.2.2
 _COMPONENTS = {np.uint8: _BYTE, np.uint16: _SHORT, np.uint32: _INT, np.float32: _FLOAT}
@@ -25,7 +25,7 @@ BARK_MATERIAL = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFacto
 LEAF_MATERIAL = {
     "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0},
     "alphaMode": "MASK",
-    "alphaCutoff": 0.5,
+    "alphaCutoff": ALPHA_CUT,
     "doubleSided": True,
 }
 
@@ -34,7 +34,7 @@ def encode_glb(bark: Surface, leaf: Surface | None, camera: Camera, *, generator
     """Write a tree as a self-contained GLB.
 
     Nodes, meshes and materials are named ``bark`` and ``leaf``; the scene's ``extras.photo`` holds the
-    camera. The bark's texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at 0.5. Texture
+    camera. The bark's texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at `ALPHA_CUT`. Texture
     coordinates within 0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Equal input gives equal bytes.
     """
     book = _Book()

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from treestroke.codec.raster import Floats, Indices, Planes, pixel_centres, planes, visible_triangles
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.mesh import Surface
+from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 
 _VIEW_HEIGHT, _MAX_ASPECT = 620, 1.5
 _FINER = 2
@@ -76,7 +76,7 @@ class _Skin:
 
     colours: NDArray[np.float32]
     alpha: NDArray[np.float32]
-    threshold: float = 0.5
+    threshold: float = ALPHA_CUT
 
     def texels(self, uvs: Floats) -> Indices:
         """Find the flat texel of texture coordinates (2, m), repeated outside 0 to 1."""
@@ -100,7 +100,7 @@ def draw_preview(bark: Surface, leaf: Surface | None, camera: Camera) -> NDArray
     """Draw a tree twice, side by side: as the photo frames it, and turned by 40 degrees from slightly above.
 
     Sun from the upper left with soft shadows in the crown and on the ground, and light from the sky. Textures that
-    are cut by alpha are cut (at .5); vertex shades darken. Takes one core a second or two, no GPU.
+    are cut by alpha are cut (at `ALPHA_CUT`); vertex shades darken. Takes one core a second or two, no GPU.
 
     Returns
     -------

@@ -5,15 +5,13 @@ from numpy.typing import NDArray
 
 from treestroke.codec.raster import Floats, Indices, planes, visible_triangles
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.mesh import Surface
-
-ALPHA_CUT = 128
+from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 
 
 def silhouette(bark: Surface, leaf: Surface | None, camera: Camera, height: int) -> NDArray[np.bool_]:
     """Draw the front view's silhouette at the photo's framing, ``height`` px tall: (height, width).
 
-    Textures with alpha are cut at .5, as a viewer does.
+    Textures with alpha are cut at `ALPHA_CUT`, as a viewer does.
     """
     scale = height / camera.height
     width = max(1, round(camera.width * scale))
@@ -48,4 +46,4 @@ class _Opaque:
         u, v = self.coordinates.at(triangle, x, y)
         column = np.clip((u * width).astype(np.int64), 0, width - 1)
         row = np.clip((v * height).astype(np.int64), 0, height - 1)
-        return np.asarray(self.texture[row, column, 3] >= ALPHA_CUT)
+        return np.asarray(self.texture[row, column, 3] >= 255 * ALPHA_CUT)

@@ -11,7 +11,7 @@ HEIGHT = 10.0
 
 def borne(tree, photo, mask, envelope, even=False) -> np.ndarray:
     """Leaves of each joint's edge."""
-    grid = foliage_grid(photo, mask, envelope.camera)
+    grid = foliage_grid(photo, np.where(mask, np.inf, -np.inf).astype(np.float32), envelope.camera)
     return bearing(tree, grid, envelope, HEIGHT, even) * edge_lengths(tree)
 
 

@@ -12,9 +12,14 @@ from treestroke.core.leaf.placement import LeafParams, place_leaves
 HEIGHT = 10.0
 
 
-def place(scene, params=None, seed=0):
+def front_of(mask: np.ndarray) -> np.ndarray:
+    return np.where(mask, np.inf, -np.inf).astype(np.float32)
+
+
+def place(scene, params=None, seed=0, front=None):
     tree, mask, envelope, photo, atlas = scene
-    return place_leaves(tree, mask, envelope, photo, atlas, params or LeafParams(), np.random.default_rng(seed))
+    front, rng = front_of(mask) if front is None else front, np.random.default_rng(seed)
+    return place_leaves(tree, front, envelope, photo, atlas, params or LeafParams(), rng)
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +55,16 @@ def test_the_foliage_is_covered_and_little_else(leaves, mask, atlas, camera):
     drawn = shown(leaves, atlas, camera)
     assert (drawn & mask).sum() >= 0.95 * mask.sum()
     assert (drawn & ~mask).sum() <= 0.02 * drawn.sum()
+
+
+def test_wood_that_is_seen_has_leaves_behind_it_and_none_before(scene, camera):
+    front = front_of(scene[1])
+    front[:, 145:155][scene[1][:, 145:155]] = 0.0
+    placed = place(scene, front=front)
+    column = camera.pixels_from_world(placed.centres)[:, 0]
+    beside = (column > 146) & (column < 154)
+    assert beside.sum() > 50
+    assert (placed.centres[beside, 2] < 0).all()
 
 
 def test_a_big_gap_stays_open(tree, mask, envelope, photo, atlas, camera):

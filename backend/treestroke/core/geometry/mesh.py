@@ -5,6 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+ALPHA_CUT = 0.3
+"""Alpha below which a texel is not drawn. Viewers' smaller copies of a texture mix leaves with the gaps between: cut at
+a half, foliage would thin out with distance."""
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -49,7 +53,7 @@ class Mesh:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """A mesh and the texture that it wears: (h, w, 3) or, alpha-cut, (h, w, 4) uint8, sRGB."""
+    """A mesh and the texture that it wears: (h, w, 3) or, cut at `ALPHA_CUT`, (h, w, 4) uint8, sRGB."""
 
     mesh: Mesh
     texture: NDArray[np.uint8]

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Floats
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import Chain
 from treestroke.core.grow.crown import Crown, in_mask
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
@@ -109,7 +110,7 @@ def _bend(
             _on_chains(visible, chains, bearer, at) if on_chain else _on_curves(curves, bearer, at)
             for at in (nearby, nearby + 0.05)
         ]
-        _bend_level(curves, shoots, base, table.tips[shoots], _unit(ends[1] - ends[0]), noise[:, shoots])
+        _bend_level(curves, shoots, base, table.tips[shoots], unit(ends[1] - ends[0]), noise[:, shoots])
         _straighten(curves, shoots, crown)
     return curves
 
@@ -117,10 +118,10 @@ def _bend(
 def _bend_level(curves: _Curves, shoots: Indices, base: Floats, tips: Floats, bearing: Floats, noise: Floats) -> None:
     """Set the curves of shoots (m,) that leave bearers of the given directions (m, 3)."""
     chord = tips - base
-    length, direction = np.sqrt((chord**2).sum(axis=1, keepdims=True)), _unit(chord)
+    length, direction = np.sqrt((chord**2).sum(axis=1, keepdims=True)), unit(chord)
     upright = np.abs(direction[:, 1:2])
-    start = _unit(direction + FOLLOW * bearing - SAG * (1 - upright) * UP)
-    end = _unit(direction + RISE * (1 - upright) * UP)
+    start = unit(direction + FOLLOW * bearing - SAG * (1 - upright) * UP)
+    end = unit(direction + RISE * (1 - upright) * UP)
     across = noise - (noise * direction).sum(axis=-1, keepdims=True) * direction
     curves.base[shoots], curves.chord[shoots] = base, chord
     curves.start[shoots] = start * length / 3 - chord / 3
@@ -270,9 +271,3 @@ def _inserted(visible: Skeleton, seen: int, owner: Indices, share: Floats) -> tu
     homes = np.where(share >= 0.5, number[owner], number[np.maximum(visible.parents[owner], 0)])
     homes[new] = number[len(joint) :]
     return Form(points, parents, (end >= seen).astype(np.int64), np.where(known, radii, 0.0)), homes
-
-
-def _unit(vectors: Floats) -> Floats:
-    """Scale vectors (n, 3) to length 1; those without length stay."""
-    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
-    return np.asarray(vectors / np.maximum(length, 1e-12))

@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Floats
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import successors_by_wood
 from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.form import UP
 from treestroke.core.skeleton.measure import path_lengths
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 from treestroke.core.skeleton.traverse import limbs
 
-UP = np.array([0.0, -1.0, 0.0])
 JOINT_SHARE = 0.02
 """Of the crown's height: between the joints of what is carried on."""
 LEAST_LIMB = 0.05
@@ -89,7 +90,7 @@ def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
     before = limb[max(len(limb) - len(last) - 1, 0)]
     radius = float(skeleton.radii[last].max())
     reach = float(np.clip(SLENDER * radius, LEAST_REACH * height, MOST_REACH * height))
-    return _End(int(limb[-1]), _unit(skeleton.points[limb[-1]] - skeleton.points[before]), radius, reach)
+    return _End(int(limb[-1]), unit(skeleton.points[limb[-1]] - skeleton.points[before], UP), radius, reach)
 
 
 def _best_path(skeleton: Skeleton, end: _End, crown: Crown, height: float) -> Floats:
@@ -113,13 +114,13 @@ def _best_path(skeleton: Skeleton, end: _End, crown: Crown, height: float) -> Fl
 
 def _paths(start: Floats, end: _End, step: float) -> list[Floats]:
     """Draw curves (k, 3) that begin the way a limb was going, swerve to all sides, and rise to their end."""
-    side = _unit(np.cross(end.way, UP if abs(end.way[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
+    side = unit(np.cross(end.way, UP if abs(end.way[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
     other = np.cross(side, end.way)
     ways = []
     for swerve in SWERVES:
         for turn in range(TURNS if swerve else 1):
             angle = 2 * np.pi * turn / TURNS
-            ways.append(_unit(end.way + swerve * (np.cos(angle) * other + np.sin(angle) * side)))
+            ways.append(unit(end.way + swerve * (np.cos(angle) * other + np.sin(angle) * side)))
     return [_curve(start, end.way, way * length * end.reach, step) for length in LENGTHS for way in ways]
 
 
@@ -128,7 +129,7 @@ def _curve(start: Floats, way: Floats, chord: Floats, step: float) -> Floats:
     length = float(np.sqrt((chord**2).sum()))
     count = max(int(np.ceil(length / step)), 2)
     t = (np.arange(1, count + 1) / count)[:, None]
-    rising = _unit(_unit(chord) + RISE * UP)
+    rising = unit(unit(chord) + RISE * UP)
     inner = t * (1 - t) ** 2 * way * length - t**2 * (1 - t) * rising * length
     return np.asarray(start + t**2 * (3 - 2 * t) * chord + inner)
 
@@ -169,9 +170,3 @@ def _appended(skeleton: Skeleton, end: _End, path: Floats) -> Skeleton:
         np.concatenate([skeleton.radii, radii]),
         np.concatenate([skeleton.parents, parents]),
     )
-
-
-def _unit(vector: Floats) -> Floats:
-    """Scale a vector (3,) to length 1; one without length points up."""
-    length = float(np.sqrt((vector**2).sum()))
-    return np.asarray(vector / length) if length > 1e-12 else UP

@@ -7,8 +7,9 @@ forward, get shorter toward their branch's tip and rise a little.
 import numpy as np
 
 from treestroke.core.geometry.camera import Floats
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.crown import Crown
-from treestroke.core.grow.form import Form
+from treestroke.core.grow.form import UP, Form
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root
@@ -27,12 +28,12 @@ def with_twigs(form: Form, crown: Crown, most: int, rng: np.random.Generator) ->
     seats = _seats(form, crown.unit, most)
     if len(seats) == 0:
         return form
-    along = _unit(form.points[seats] - form.points[form.parents[seats]])
+    along = unit(form.points[seats] - form.points[form.parents[seats]])
     turn = GOLDEN_RAD * np.arange(len(seats)) + rng.uniform(-0.5, 0.5, len(seats))
-    way = _unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
+    way = unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
     length = crown.unit * rng.uniform(*LENGTH_PX, len(seats))[:, None]
     middle = form.points[seats] + 0.5 * length * way
-    rising = _unit(way + RISE * np.array([0.0, -1.0, 0.0]) + rng.normal(0, 0.15, way.shape))
+    rising = unit(way + RISE * UP + rng.normal(0, 0.15, way.shape))
     end = middle + 0.5 * length * rising
     kept = crown.inside(middle) & crown.inside(end)
     return _appended(form, seats[kept], middle[kept], end[kept])
@@ -51,7 +52,7 @@ def _seats(form: Form, unit: float, most: int) -> Indices:
 def _across(along: Floats, turn: Floats) -> Floats:
     """Give unit vectors (n, 3) square to directions (n, 3), turned about them."""
     level = np.where(np.abs(along[:, 2:]) > 0.9, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
-    side = _unit(np.cross(along, level))
+    side = unit(np.cross(along, level))
     return np.asarray(np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * np.cross(along, side))
 
 
@@ -65,9 +66,3 @@ def _appended(form: Form, seats: Indices, middle: Floats, end: Floats) -> Form:
         np.concatenate([form.born, np.repeat(form.born[seats], 2)]),
         np.concatenate([form.measured, np.zeros(2 * count)]),
     )
-
-
-def _unit(vectors: Floats) -> Floats:
-    """Scale vectors (n, 3) to length 1; those without length stay."""
-    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
-    return np.asarray(vectors / np.maximum(length, 1e-12))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.leaves import Floats, Indices
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -59,7 +60,7 @@ def seats_along(skeleton: Skeleton, bearing: Floats, count: int, rng: np.random.
     joints = np.minimum(np.searchsorted(ends, along, side="right"), len(skeleton) - 1)
     end, start = skeleton.points[joints], skeleton.points[skeleton.parents[joints]]
     share = np.clip((ends[joints] - along) / np.maximum(borne[joints], 1e-12), 0, 1)[:, None]
-    return Seats(end + share * (start - end), _unit(end - start), joints)
+    return Seats(end + share * (start - end), unit(end - start, UP), joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,13 +79,13 @@ def pose_on_branches(
     """Set a spray on each seat: foot near the branch, outward along it, drooping a little, facing out and up."""
     around = rng.normal(size=seats.points.shape)
     along = (around * seats.directions).sum(axis=1, keepdims=True)
-    around = _unit(around - along * seats.directions)
+    around = unit(around - along * seats.directions, UP)
     offset = height * SCATTER * np.sqrt(rng.random((len(seats), 1)))
     axis = 0.7 * seats.directions + rng.uniform(0.4, 1.2, (len(seats), 1)) * around
     axis[:, 1] -= DROOP
-    axis = _unit(axis)
+    axis = unit(axis, UP)
     centres = seats.points + offset * around + 0.8 * half_sizes[:, None] * axis
-    return Poses(centres, *_frames(axis, _unit(centres - crown_middle), half_sizes, rng), around[:, 1])
+    return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng), around[:, 1])
 
 
 def pose_over(
@@ -92,21 +93,15 @@ def pose_over(
 ) -> Poses:
     """Set a spray at each centre (n, 3) that is to be covered: as if it hung from its seat, and turned to be seen."""
     way = centres - seats.points
-    axis = _unit(0.6 * seats.directions + _unit(way) + rng.normal(0, 0.5, way.shape))
-    outward = _unit(centres - crown_middle)
+    axis = unit(0.6 * seats.directions + unit(way) + rng.normal(0, 0.5, way.shape), UP)
+    outward = unit(centres - crown_middle, UP)
     outward[:, 2] += np.where(outward[:, 2] < 0, -1.0, 1.0)
-    return Poses(centres, *_frames(axis, outward, half_sizes, rng), _unit(way)[:, 1])
+    return Poses(centres, *_frames(axis, outward, half_sizes, rng), unit(way, UP)[:, 1])
 
 
 def _frames(axis: Floats, outward: Floats, half_sizes: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Turn cards about their axis to face outward and up, each a bit otherwise: rights and ups."""
     facing = 0.75 * outward + rng.normal(0, 0.45, axis.shape)
     facing[:, 1] += 0.35
-    right = _unit(np.cross(axis, facing))
+    right = unit(np.cross(axis, facing), UP)
     return right * half_sizes[:, None], axis * half_sizes[:, None]
-
-
-def _unit(vectors: Floats) -> Floats:
-    """Scale vectors (n, 3) to length 1; a zero vector points up."""
-    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
-    return np.where(length > 1e-12, vectors / np.maximum(length, 1e-12), np.array([0.0, 1.0, 0.0]))

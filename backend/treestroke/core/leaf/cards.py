@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Mesh
+from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.leaves import Floats, Leaves
 
@@ -37,15 +38,9 @@ def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
 def _normals(leaves: Leaves, positions: Floats) -> Floats:
     """Blend each card's normal with the direction out of the crown's ellipsoid (4 m, 3)."""
     low, high = leaves.centres.min(axis=0), leaves.centres.max(axis=0)
-    outward = _unit((positions - (low + high) / 2) / np.maximum((high - low) / 2, 1e-6))
-    facing = np.repeat(_unit(np.cross(leaves.rights, leaves.ups)), 4, axis=0)
-    return _unit(ROUNDNESS * outward + (1 - ROUNDNESS) * facing)
-
-
-def _unit(vectors: Floats) -> Floats:
-    """Scale vectors (n, 3) to length 1; a zero vector points up."""
-    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
-    return np.where(length > 1e-9, vectors / np.maximum(length, 1e-9), np.array([0.0, 1.0, 0.0]))
+    outward = unit((positions - (low + high) / 2) / np.maximum((high - low) / 2, 1e-6))
+    facing = np.repeat(unit(np.cross(leaves.rights, leaves.ups), UP), 4, axis=0)
+    return unit(ROUNDNESS * outward + (1 - ROUNDNESS) * facing, UP)
 
 
 def _uvs(leaves: Leaves, atlas: Atlas) -> NDArray[np.float32]:

@@ -46,9 +46,9 @@ def outlines_of(alphas: NDArray[np.uint8]) -> Outlines:
 
 
 def share_inside(leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:
-    """Share of each card's opaque dots that project into the foliage (m,)."""
+    """Share of each card's opaque dots that project into the foliage, or onto wood that they lie behind (m,)."""
     cells = _cells(leaves, outlines.probes[leaves.tiles], grid)
-    return np.asarray(grid.inside.ravel()[cells].mean(axis=1))
+    return np.asarray((grid.front.ravel()[cells] > leaves.centres[:, 2:]).mean(axis=1))
 
 
 def cover(covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> None:

@@ -70,9 +70,10 @@ class Crown:
         cover(covered, leaves, self.outlines, self.grid)
 
     def _fitting(self, leaves: Leaves) -> NDArray[np.bool_]:
-        """Which cards (m,) lie in the foliage as the photo shows it and in the crown's solid."""
+        """Which cards (m,) lie in the foliage as the photo shows it, or behind its wood, and in the crown's solid."""
         cells = self.grid.flat_cells(leaves.centres[:, 0], leaves.centres[:, 1])
-        shown = self.grid.inside.ravel()[cells] & (share_inside(leaves, self.outlines, self.grid) >= FITTING)
+        behind = self.grid.front.ravel()[cells] > leaves.centres[:, 2]
+        shown = behind & (share_inside(leaves, self.outlines, self.grid) >= FITTING)
         flat = np.abs(leaves.centres[:, 2]) <= FLAT * self.height
         return np.asarray(shown & (flat | (self.envelope.reach(leaves.centres) <= 1.0)))
 

@@ -34,6 +34,9 @@ class FoliageGrid:
         (x, y) of the grid's top-left corner, px.
     inside
         (rows, columns) whether most of the cell is foliage.
+    front
+        (rows, columns) world Z, metres, behind which leaves may lie: infinite in the foliage, that of the wood where
+        wood is seen, minus infinite elsewhere.
     labs, broad_labs
         (rows * columns, 3) mean of the foliage's colour over a leaf and over a spray, CIE Lab, light flattened as
         the atlas's; outside the foliage the colour of the nearest part of it.
@@ -43,6 +46,7 @@ class FoliageGrid:
     step_px: float
     corner_px: tuple[float, float]
     inside: Mask
+    front: NDArray[np.float32]
     labs: Floats
     broad_labs: Floats
 
@@ -74,14 +78,17 @@ class FoliageGrid:
         return points[:, 0], points[:, 1]
 
 
-def foliage_grid(photo: Photo, mask: Mask, camera: Camera) -> FoliageGrid:
-    """Lay a grid over the foliage (h, w) and average the photo (h, w, 3) in its cells.
+def foliage_grid(photo: Photo, front: NDArray[np.float32], camera: Camera) -> FoliageGrid:
+    """Lay a grid over the foliage and average the photo (h, w, 3) in its cells.
+
+    ``front`` (h, w) is infinite in the foliage, the wood's world Z where the photo shows wood, else minus infinite.
 
     Raises
     ------
     ValueError
-        The mask is empty or not of the photo's size.
+        There is no foliage, or the map is not of the photo's size.
     """
+    mask = np.isposinf(front)
     if mask.shape != photo.shape[:2] or not mask.any():
         raise ValueError(f"a foliage grid needs a mask with foliage of the photo's size, got {mask.shape}")
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
@@ -96,9 +103,12 @@ def foliage_grid(photo: Photo, mask: Mask, camera: Camera) -> FoliageGrid:
     total = _padded(cv2.resize(foliage, size, interpolation=shrink).reshape(*size[::-1], 3))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
     fine, broad = (_mean_labs(total, share, sigma, inside) for sigma in (LOCAL_CELLS, BROAD_CELLS))
+    near = cv2.resize(front[top:bottom, left:right].astype(np.float32), size, interpolation=cv2.INTER_NEAREST)
+    near = np.pad(near, PADDING, constant_values=-np.inf)
+    behind = np.where(inside, np.inf, np.where(np.isfinite(near), near, -np.inf)).astype(np.float32)
     nearest = _nearest_inside(inside)
     corner = (left - PADDING * step, top - PADDING * step)
-    return FoliageGrid(camera, step, corner, inside, fine[nearest], broad[nearest])
+    return FoliageGrid(camera, step, corner, inside, behind, fine[nearest], broad[nearest])
 
 
 def _padded(image: NDArray[Any]) -> NDArray[np.float32]:

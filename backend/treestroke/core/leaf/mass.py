@@ -16,7 +16,7 @@ OPAQUE = 0.97
 """Share of the light that the densest foliage stops; what is behind a closed crown no photo tells."""
 MOST = 4.0
 """Most leaves a branch bears for its length, against the mean; more would be clumps on lonely twigs."""
-SHELL = 0.4
+SHELL = 0.6
 """Share of its leaves that a branch at the solid's surface gives up: growth's twigs crowd there, a crown's leaves do
 not (4 trees with known leaves)."""
 
@@ -42,8 +42,8 @@ def bearing(skeleton: Skeleton, grid: FoliageGrid, envelope: Envelope, height: f
 
 
 def _layers(grid: FoliageGrid, sigma: float) -> Floats:
-    """Layers of leaves over each cell (rows, columns), from the share of gaps around it."""
-    inside = grid.inside.astype(np.float64)
+    """Layers of leaves over each cell (rows, columns), from the share of gaps around it; wood is no gap."""
+    inside = (grid.front > -np.inf).astype(np.float64)
     return np.asarray(-np.log(1 - OPAQUE * np.clip(_blurred(inside, sigma), 0, 1)) * inside)
 
 

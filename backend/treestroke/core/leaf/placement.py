@@ -61,7 +61,7 @@ class LeafParams:
 
 def place_leaves(
     skeleton: Skeleton,
-    mask: NDArray[np.bool_],
+    front: NDArray[np.float32],
     envelope: Envelope,
     photo: NDArray[np.uint8],
     atlas: Atlas,
@@ -71,13 +71,14 @@ def place_leaves(
 ) -> Leaves:
     """Hang cards on a grown tree.
 
-    The skeleton is in metres; mask (h, w) is the foliage in the photo (h, w, 3), envelope the crown's solid. Every
-    card's centre projects into the mask and its leaves at most by a few per cent outside; nearly all cards stand
-    nearer to a branch than 4.5 % of the tree's height. A bare tree, density 0 or an empty mask gives none.
+    The skeleton is in metres, envelope the crown's solid; front (h, w) is infinite in the foliage of the photo
+    (h, w, 3), the wood's world Z where wood is seen, else minus infinite. Every card's centre projects into the
+    foliage, or onto wood that it lies behind, and its leaves at most by a few per cent outside; nearly all cards stand
+    nearer to a branch than 4.5 % of the tree's height. A bare tree, density 0 or no foliage gives none.
     """
-    if params.kind == "bare" or params.density == 0 or params.max_cards == 0 or not mask.any():
+    if params.kind == "bare" or params.density == 0 or params.max_cards == 0 or not np.isposinf(front).any():
         return no_leaves()
-    grid = foliage_grid(photo, mask, envelope.camera)
+    grid = foliage_grid(photo, front, envelope.camera)
     crown = crown_of(grid, envelope, atlas, params.size, rng)
     wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))

@@ -23,7 +23,7 @@ LIGHT_SCATTER = 4.0
 """Standard deviation of the pieces' lightness, CIE Lab: leaves turn to the light each in its own way."""
 LEAVES, FLOWERS = 200, 220
 """Pieces that a spray is tried to be drawn of; those that would hide each other or leave the square are left out."""
-NEEDLES = 160
+NEEDLES = 120
 """Needles of a shoot."""
 ROOM = 0.36
 """How far shoots reach from the square's middle, so that the leaves at their tips have room."""
@@ -182,9 +182,9 @@ def _draw_leaf(easel: _Easel, outline: Floats, spine: Floats, paint: Image) -> N
 
 def _draw_needles(side: int, members: Floats, rng: np.random.Generator) -> Image:
     """Draw a twig and few shoots as brushes: long thin needles that point forward, frayed at the outline."""
-    shoots = _shoots(rng, int(rng.integers(2, 5)), 0.6)
+    shoots = _shoots(rng, int(rng.integers(3, 6)), 0.8)
     easel = _Easel(side, members, NEEDLES * len(shoots), rng)
-    needles = _needles(shoots, rng.uniform(0.3, 0.4), rng)
+    needles = _needles(shoots, rng.uniform(0.19, 0.24), rng)
     easel.lines(shoots, easel.wood, 0.012)
     paints = easel.paints.reshape(len(shoots), NEEDLES, *easel.paints.shape[1:])
     for brush, paint in zip(needles, paints, strict=True):
@@ -195,14 +195,17 @@ def _draw_needles(side: int, members: Floats, rng: np.random.Generator) -> Image
 
 
 def _needles(shoots: Floats, length: float, rng: np.random.Generator) -> Floats:
-    """Seat needles (m, NEEDLES, 2, 2) on shoots (m, 9, 2), the more upright the nearer they are to a shoot's tip."""
-    along = np.sort(rng.uniform(0.12, 1.0, (len(shoots), NEEDLES)), axis=1)
+    """Seat needles (m, NEEDLES, 2, 2) on shoots (m, 9, 2), pointing forward, shorter toward a shoot's tip.
+
+    Each shoot becomes a narrow brush: single needles are gone where a card is few pixels wide, the brushes are not.
+    """
+    along = np.sort(rng.uniform(0.06, 1.0, (len(shoots), NEEDLES)), axis=1)
     lines = np.repeat(shoots[:, None], NEEDLES, axis=1)
     foot = _along(lines, along)
     ahead = foot - _along(lines, along - 0.1)
-    spread = rng.choice([-1.0, 1.0], along.shape) * rng.uniform(0.1, 1.0, along.shape) * (1.2 - 0.5 * along)
+    spread = rng.choice([-1.0, 1.0], along.shape) * rng.uniform(0.25, 0.9, along.shape) * (1.1 - 0.5 * along)
     angle = np.arctan2(ahead[..., 0], -ahead[..., 1]) + spread
-    tip = foot + length * rng.uniform(0.55, 1.15, along.shape)[..., None] * _heading(angle)
+    tip = foot + (length * (1.15 - 0.4 * along) * rng.uniform(0.7, 1.1, along.shape))[..., None] * _heading(angle)
     return np.stack([foot, tip], axis=2)
 
 

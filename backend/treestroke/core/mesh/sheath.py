@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.mesh.stations import Stations
 from treestroke.core.skeleton.skeleton import Floats, Indices
 
@@ -80,7 +81,7 @@ def smooth_normals(grid: Grid, rings: Stations, positions: Floats) -> Floats:
     normals[bottom] = -rings.tangents[grid.ring[bottom]]
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     normals[tip] = normals[vertex[tip] - step[tip]] + rings.tangents[grid.ring[tip]]
-    return _unit(normals, rings.tangents[grid.ring])
+    return unit(normals, rings.tangents[grid.ring])
 
 
 def texture_coordinates(grid: Grid, rings: Stations, positions: Floats, repeats: int, aspect: float) -> Floats:
@@ -109,9 +110,3 @@ def _girths(grid: Grid, rings: Stations, positions: Floats) -> Floats:
     step = np.linalg.norm(np.diff(positions, axis=0), axis=1)
     inside = np.diff(grid.ring) == 0
     return np.asarray(np.bincount(grid.ring[1:][inside], step[inside], len(rings.limb)), dtype=np.float64)
-
-
-def _unit(vectors: Floats, otherwise: Floats) -> Floats:
-    """Make vectors (n, 3) unit; those without length become ``otherwise``."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.where(length > 1e-9, vectors / np.maximum(length, 1e-9), otherwise)

@@ -138,7 +138,7 @@ def model_photo(
     report("trace", 0.0)
     traced = _trace(sight, foliage)
     report("lift", 0.0)
-    wood = _drawn(traced.skeleton, np.ones(len(traced.skeleton), dtype=bool), foliage.mask.shape)
+    wood = _drawn(traced.skeleton, foliage.mask.shape)
     crown = _closed(foliage.mask | (wood & foliage.region), kind)
     camera = _camera(sight, foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
@@ -148,7 +148,8 @@ def model_photo(
     library = choose_library(settings.library, kind, lifted)
     grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
     report("leaf", 0.0)
-    leaf, count = _leaf(sight, foliage, traced, grown, envelope, kind, settings, rng, report)
+    front = _front(foliage, dense, traced.measured[owner], lifted.points[:, 2])
+    leaf, count = _leaf(sight, foliage, front, grown, envelope, kind, settings, rng, report)
     report("mesh", 0.0)
     bark = Surface(tubes(grown.skeleton), _bark_texture(sight, traced, rng))
     report("mesh", 1.0)
@@ -236,7 +237,7 @@ def _closed(mask: Mask, kind: Kind) -> Mask:
 def _leaf(
     sight: _Sight,
     foliage: Foliage,
-    traced: Traced,
+    front: NDArray[np.float32],
     grown: Grown,
     envelope: Envelope,
     kind: Kind,
@@ -245,25 +246,48 @@ def _leaf(
     report: Report,
 ) -> tuple[Surface | None, int]:
     """Hang leaves on the grown tree: their surface and their number."""
-    if kind == "bare" or settings.leaf_density == 0 or not foliage.mask.any():
+    if kind == "bare" or settings.leaf_density == 0 or not np.isposinf(front).any():
         return None, 0
-    mask = foliage.mask & ~_drawn(traced.skeleton, traced.measured, foliage.mask.shape, BARE_BREADTH)
-    coloured = foliage.pure if foliage.pure.sum() > 0.1 * foliage.mask.sum() else foliage.mask
+    leafy = np.isposinf(front)
+    pure = foliage.pure & leafy
+    coloured = pure if pure.sum() > 0.1 * leafy.sum() else leafy
     atlas = leaf_atlas(sight.photo, coloured, kind, rng)
     params = LeafParams(settings.leaf_size, settings.leaf_density, kind=kind)
-    leaves = place_leaves(grown.skeleton, mask, envelope, sight.photo, atlas, params, rng, report)
+    leaves = place_leaves(grown.skeleton, front, envelope, sight.photo, atlas, params, rng, report)
     return (Surface(cards(leaves, atlas), atlas.image), len(leaves)) if len(leaves) else (None, 0)
 
 
-def _drawn(tree: Skeleton, shown: Mask, shape: tuple[int, ...], breadth: float = 1.0) -> Mask:
-    """Draw a traced skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood."""
-    drawn = np.zeros(shape, np.uint8)
+def _front(foliage: Foliage, tree: Skeleton, seen: Mask, depth_m: Floats) -> NDArray[np.float32]:
+    """World Z (h, w), metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
+
+    ``tree`` is the traced skeleton, px, ``seen`` (n,) where the photo shows it, ``depth_m`` (n,) its world Z.
+    """
+    wood = _drawn_depth(tree, seen, depth_m, foliage.mask.shape, 1.0)
+    middle = _drawn_depth(tree, seen, depth_m, foliage.mask.shape, BARE_BREADTH)
+    front = np.where(np.isnan(wood) | ~foliage.region, -np.inf, wood)
+    front[foliage.mask & np.isnan(middle)] = np.inf
+    return front.astype(np.float32)
+
+
+def _drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
+    """Draw a traced skeleton as wide as its wood."""
+    return ~np.isnan(_drawn_depth(tree, np.ones(len(tree), dtype=bool), np.zeros(len(tree)), shape, 1.0))
+
+
+def _drawn_depth(
+    tree: Skeleton, shown: Mask, depth_m: Floats, shape: tuple[int, ...], breadth: float
+) -> NDArray[np.float32]:
+    """Draw the depth of a skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood.
+
+    NaN where nothing is drawn.
+    """
+    drawn = np.full(shape, np.nan, np.float32)
     for joint, parent in enumerate(tree.parents.tolist()):
         if parent >= 0 and shown[joint] and shown[parent]:
             ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
             width = max(1, int(breadth * (tree.radii[joint] + tree.radii[parent])))
-            cv2.line(drawn, ends[0], ends[1], 1, width, cv2.LINE_8, 4)
-    return drawn.astype(bool)
+            cv2.line(drawn, ends[0], ends[1], float(depth_m[joint]), width, cv2.LINE_8, 4)
+    return drawn
 
 
 def _bark_texture(sight: _Sight, traced: Traced, rng: np.random.Generator) -> Photo:

@@ -18,7 +18,7 @@ from treestroke.core.imaging.mixture import (
 
 BANDS = 10
 """Heights at which weights are counted; between them they are interpolated."""
-EVERYWHERE = 0.4
+EVERYWHERE = 0.25
 """Share of a component's weight that does not depend on the height: what a band did not show may still be there."""
 SAMPLES = 8000
 FEWEST = 20
