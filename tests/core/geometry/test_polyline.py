@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from scipy.ndimage import gaussian_filter1d
 
 from treestroke.core.geometry.polyline import (
     arc_lengths,
@@ -13,6 +14,7 @@ from treestroke.core.geometry.polyline import (
     normals,
     resample,
     simplified,
+    smoothed,
 )
 
 CORNER = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]])
@@ -79,3 +81,13 @@ def test_distance_is_to_the_piece_and_not_to_its_line() -> None:
 
 def test_a_piece_without_length_is_a_point() -> None:
     assert distances_to_segment(np.array([[3.0, 4.0]]), np.zeros(2), np.zeros(2)).tolist() == [5.0]
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 40])
+def test_smoothing_keeps_length_and_level(count: int) -> None:
+    assert smoothed(np.full(count, 3.0), 5.0) == pytest.approx(np.full(count, 3.0))
+
+
+def test_smoothing_is_that_of_scipy() -> None:
+    rough = np.random.default_rng(0).normal(size=(50, 2))
+    np.testing.assert_allclose(smoothed(rough, 3.0), gaussian_filter1d(rough, 3.0, axis=0, mode="nearest"), atol=1e-12)

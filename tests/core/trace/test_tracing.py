@@ -108,6 +108,13 @@ def test_thickness_is_measured_where_the_photo_shows_it() -> None:
     assert foot == pytest.approx([6.0, 3.75], abs=0.75)
 
 
+def test_slivers_of_wood_among_leaves_do_not_thin_the_trunk_below_them() -> None:
+    wood = TREE & ~INSIDE | wood_mask([([(220.0, 250.0), (220.0, 60.0)], 3.0)], SIZE, SIZE)
+    traced = trace(stroked([STEM[0], (220.0, 60.0)]), wood)
+    below = (traced.stroke == 0) & (traced.skeleton.points[:, 1] > 260)
+    assert traced.skeleton.radii[below] == pytest.approx(6.0, abs=0.75)
+
+
 def test_a_given_width_is_used() -> None:
     traced = trace(stroked(STEM, width=40.0))
     radii = traced.skeleton.radii[traced.stroke == 0]

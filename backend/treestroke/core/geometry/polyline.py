@@ -24,6 +24,8 @@ def resample(points: Floats, step: float) -> Floats:
 
 def smoothed(values: Floats, sigma: float) -> Floats:
     """Smooth values (n,) or (n, d) along a chain by a Gaussian of ``sigma`` places; the ends go on as they are."""
+    if len(values) == 0:
+        return values
     size = (1, 2 * int(np.ceil(4.0 * sigma)) + 1)
     columns = values.reshape(len(values), -1)
     smooth = cv2.GaussianBlur(columns, size, sigmaX=1.0, sigmaY=sigma, borderType=cv2.BORDER_REPLICATE)

@@ -16,7 +16,7 @@ OPAQUE = 0.97
 """Share of the light that the densest foliage stops; what is behind a closed crown no photo tells."""
 MOST = 4.0
 """Most leaves a branch bears for its length, against the mean; more would be clumps on lonely twigs."""
-SHELL = 0.6
+SHELL = 0.45
 """Share of its leaves that a branch at the solid's surface gives up: growth's twigs crowd there, a crown's leaves do
 not (4 trees with known leaves)."""
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import Floats, Indices, arc_lengths, normals
 from treestroke.core.imaging.mixture import Mixture
+from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import branch_odds
@@ -26,14 +27,14 @@ CONE, TAPER = 1.25, 0.75
 measured, never the limb itself."""
 STEADY = 4.0
 """Steps of a line over which its place in the wood is averaged."""
-LEAST = 0.35
+LEAST = 0.5
 """Of the radius that is expected unseen: less is a sliver of the branch between leaves."""
 FEWEST_SEEN = 4
 """Places along a line where its width must be seen for it to count."""
 GRAIN = 1.5
 """Bark's grain, px at a long side of 1500: colours are judged together over it."""
 SWELLING = 1.8
-"""A measured radius beyond this many times the line's median is a shadow beside the branch."""
+"""A measured radius beyond this many times the line's usual one is a shadow beside the branch."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def trace_branches(
     odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), leaf, ground, crown)
     wood = cv2.GaussianBlur(odds, (0, 0), max(0.7, GRAIN * unit)) > 0
     draft = Draft()
-    _follow_strokes(draft, strokes.branches, odds, wood, height_px, params)
+    _follow_strokes(draft, strokes.branches, odds, wood, crown, height_px, params)
     seeds = _seeds(draft, params.circle_px * unit)
     trace_forks(draft, Circle(params.circle_px * unit, wood), seeds)
     skeleton, stroke = _erased(draft.skeleton(), np.array(draft.stroke), strokes.erase)
@@ -123,6 +124,7 @@ def _follow_strokes(
     branches: tuple[Stroke, ...],
     odds: NDArray[np.float32],
     wood: NDArray[np.bool_],
+    crown: NDArray[np.bool_],
     height_px: float,
     params: TraceParams,
 ) -> None:
@@ -137,7 +139,8 @@ def _follow_strokes(
         parent = -1 if stem else draft.nearest(line[0])
         bearer = params.trunk_share * height_px / 0.75 if stem else draft.radii[parent]
         most = params.thickest_share * height_px if stem else 1.2 * bearer
-        radii = _radii(line, stroke.width, half_widths(line, wood, most)[0], bearer, height_px)
+        bare = ~sample_nearest(crown, line, False)
+        radii = _radii(line, stroke.width, half_widths(line, wood, most)[0], bare, bearer, height_px)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
         if parent >= 0:
             line = np.concatenate([draft.points[parent][None], line])
@@ -155,16 +158,23 @@ def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float, root: Floats
     return np.asarray(moved + hold * (root - moved[0]))
 
 
-def _radii(line: Floats, width: float | None, measured: Floats, bearer: float, height_px: float) -> Floats:
-    """Radius (n,) along a line: drawn, else measured, else 75 % of its bearer's; it tapers and never swells outward."""
+def _radii(
+    line: Floats, width: float | None, measured: Floats, bare: NDArray[np.bool_], bearer: float, height_px: float
+) -> Floats:
+    """Radius (n,) along a line: drawn, else measured, else 75 % of its bearer's; it tapers and never swells outward.
+
+    What was measured where the wood is ``bare`` (n,), out of the crown, is believed rather than slivers among leaves.
+    """
     share = arc_lengths(line) / max(float(arc_lengths(line)[-1]), 1e-9)
     if width is not None:
         return width / 2 * (1 - 0.6 * share)
-    expected = 0.75 * bearer * (1 - 0.7 * share)
     places = np.flatnonzero(~np.isnan(measured))
     if len(places) < FEWEST_SEEN:
-        return expected
-    seen = np.minimum(measured[places], SWELLING * np.median(measured[places]))
+        return 0.75 * bearer * (1 - 0.7 * share)
+    sure = places[bare[places]]
+    usual = float(np.median(measured[sure if len(sure) >= FEWEST_SEEN else places]))
+    expected = (usual if len(sure) >= FEWEST_SEEN else 0.75 * bearer) * (1 - 0.7 * share)
+    seen = np.minimum(measured[places], SWELLING * usual)
     radii = np.interp(np.arange(len(line)), places, _falling(seen))
     radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
