@@ -62,18 +62,23 @@ def trace_forks(draft: Draft, circle: Circle, seeds: list[int]) -> None:
             return
         joint = queue.popleft()
         arcs = circle.arcs(draft.points[joint])
-        for end in arcs[_are_new(arcs, draft, circle.radius_px)]:
-            way = resample(np.stack([draft.points[joint], end]), 1.0)
+        ends = arcs[_are_new(arcs, draft, circle.radius_px)]
+        for way in _solid_ways(draft.points[joint], ends, draft.radii[joint], circle):
             breadth = _breadth(way, draft.radii[joint], circle)
             if breadth > 0:
                 queue.append(draft.grow(joint, resample(way, circle.radius_px / 4), breadth, stroke=-1))
 
 
+def _solid_ways(centre: Floats, ends: Floats, bearer_px: float, circle: Circle) -> Floats:
+    """Walk straight from a centre to ends (k, 2) on the circle, in steps of about 1 px; keep ways (m, n, 2) of wood."""
+    steps = np.linspace(0.0, 1.0, max(4, round(circle.radius_px)) + 1)[:, None]
+    ways = centre + steps * (ends[:, None] - centre)
+    free = ways[:, min(int(bearer_px) + 1, len(steps) - 4) :]
+    return np.asarray(ways[sample_nearest(circle.wood, free, False).mean(axis=1) >= SOLID_SHARE])
+
+
 def _breadth(way: Floats, bearer_px: float, circle: Circle) -> float:
     """Half-width, px, of the branch that the way (n, 2) follows out of its bearer; 0 where it follows none."""
-    free = way[min(int(bearer_px) + 1, len(way) - 4) :]
-    if sample_nearest(circle.wood, free, False).mean() < SOLID_SHARE:
-        return 0.0
     outer = way[max(len(way) // 2, int(bearer_px)) :]
     if len(outer) < 4:
         return 0.0
