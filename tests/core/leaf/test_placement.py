@@ -77,8 +77,8 @@ def test_rights_and_ups_are_at_right_angles(leaves):
     assert np.abs((leaves.rights * leaves.ups).sum(axis=1)).max() < 1e-9
 
 
-def test_most_sides_are_1_5_to_3_per_cent_of_the_crowns_width(leaves, envelope, camera):
-    width = 2 * envelope.radius_px.max() * camera.metres_per_pixel
+def test_most_sides_are_1_5_to_3_per_cent_of_the_crowns_width(leaves, mask, camera):
+    width = (np.ptp(np.flatnonzero(mask.any(axis=0))) + 1) * camera.metres_per_pixel
     share = 2 * np.linalg.norm(leaves.ups, axis=1) / width
     assert share.max() <= 0.03
     assert (share >= 0.015).mean() >= 0.75

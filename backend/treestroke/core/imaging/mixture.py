@@ -142,7 +142,7 @@ def table_colours() -> Floats:
     return np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
-def table_index(colours: NDArray[np.uint8]) -> NDArray[np.int32]:
+def table_index(colours: NDArray[np.uint8]) -> NDArray[np.uint16]:
     """Give each pixel's cell (...,) in the look-up table, for colours (..., 3)."""
-    cell = (colours >> (8 - TABLE_BITS)).astype(np.int32)
-    return (cell[..., 0] << (2 * TABLE_BITS)) | (cell[..., 1] << TABLE_BITS) | cell[..., 2]
+    red, green, blue = (colours[..., channel].astype(np.uint16) >> (8 - TABLE_BITS) for channel in range(3))
+    return np.asarray((red << (2 * TABLE_BITS)) | (green << TABLE_BITS) | blue, dtype=np.uint16)

@@ -87,7 +87,8 @@ def crown_of(grid: FoliageGrid, envelope: Envelope, atlas: Atlas, size: float, r
     top, centre, bottom = ((camera.root_px[1] - rows_px) * scale).tolist()
     middle_px = envelope.middle_px[int(np.clip(rows_px[1], 0, camera.height - 1))]
     middle = np.array([(middle_px - camera.root_px[0]) * scale, centre, 0.0])
-    side = size * 2 * float(envelope.radius_px.max()) * scale
+    columns = np.flatnonzero(grid.inside.any(axis=0))
+    side = size * float(columns[-1] - columns[0] + 1) * grid.cell_m
     area = float((alphas > 127).mean()) * (side * sum(SIDES) / 2) ** 2
     colouring = colouring_of(grid, envelope, tile_labs(atlas), rng)
     return Crown(grid, envelope, colouring, outlines_of(alphas), middle, max(top, top - bottom), side, area)

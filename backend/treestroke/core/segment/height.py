@@ -60,7 +60,7 @@ def weights_by_height(mixture: Mixture, pixels: NDArray[np.uint8], where: NDArra
     return np.asarray((1 - EVERYWHERE) * local + EVERYWHERE * mixture.weights)
 
 
-def interpolated(tables: Floats, index: NDArray[np.int32]) -> NDArray[np.float32]:
+def interpolated(tables: Floats, index: NDArray[np.uint16]) -> NDArray[np.float32]:
     """Look each pixel (h, w) up in the two tables (bands, 32768) nearest to its height and mix them."""
     height, compact = index.shape[0], tables.astype(np.float32)
     place = np.clip((np.arange(height) + 0.5) / height * BANDS - 0.5, 0, BANDS - 1)

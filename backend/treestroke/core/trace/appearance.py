@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import Floats, normals, resample
 from treestroke.core.imaging.mixture import (
+    TABLE_BITS,
     Mixture,
     distance,
     fit_mixture,
@@ -49,7 +50,7 @@ def branch_odds(
     rest = join_mixtures([leaf, ground], [0.5, 0.5])
     outside = _odds(bare, ground)
     inside = _odds(among_leaves, rest) if among_leaves is not None else np.full_like(outside, -6.0)
-    return np.take(np.concatenate([outside, inside]), table_index(photo) + len(outside) * crown.astype(np.int32))
+    return np.take(np.concatenate([outside, inside]), table_index(photo) | crown.astype(np.uint16) << 3 * TABLE_BITS)
 
 
 def _odds(branch: Mixture, rest: Mixture) -> Odds:

@@ -63,6 +63,8 @@ def trace_forks(draft: Draft, circle: Circle, seeds: list[int]) -> None:
         joint = queue.popleft()
         arcs = circle.arcs(draft.points[joint])
         ends = arcs[_are_new(arcs, draft, circle.radius_px)]
+        if len(ends) == 0:
+            continue
         for way in _solid_ways(draft.points[joint], ends, draft.radii[joint], circle):
             breadth = _breadth(way, draft.radii[joint], circle)
             if breadth > 0:
