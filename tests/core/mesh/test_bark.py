@@ -82,3 +82,9 @@ def test_a_trunk_at_the_photo_s_edge_is_read_without_a_stop() -> None:
     photo = photo_of_a_trunk(30.0)
     edge = np.array([[1.0, 405.0], [-3.0, 200.0]])
     assert bark_texture(photo, edge, np.full(2, 30.0), BarkParams(), np.random.default_rng(0)).shape == (512, 256, 3)
+
+
+def test_a_long_trunk_that_is_seen_at_its_tip_alone_gets_the_hidden_colour() -> None:
+    trunk, radii = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]]), np.array([0.0, 0.0, 2.5])
+    texture = bark_texture(photo_of_a_trunk(2.5), trunk, radii, BarkParams(), np.random.default_rng(0))
+    assert texture.reshape(-1, 3).mean(axis=0) == pytest.approx(np.array(BarkParams().hidden_colour), rel=0.1)

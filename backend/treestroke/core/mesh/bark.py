@@ -65,12 +65,14 @@ def bark_texture(
     """
     grain = bark_grain(TEXTURE_SIZE, rng)[..., None]
     found = _unrolled(photo, trunk_px, radii_px, params)
+    hidden = _linear(np.array(params.hidden_colour, dtype=np.float64))
     if found is None:
-        colour = _linear(np.array(params.hidden_colour, dtype=np.float64))
-        return _painted(_GRAIN * grain, colour)
+        return _painted(_GRAIN * grain, hidden)
     strip, pixels_per_pixel = found
     clean = _bark_like(strip)
     strip, clean = _clean_run(strip, clean)
+    if not clean.any():
+        return _painted(_GRAIN * grain, hidden)
     if len(strip) < _PX_PER_RADIAN or clean.mean() < 0.5:
         return _painted(_GRAIN * grain, _mean_colour(strip, clean))
     detail = _flattened(strip, clean)
@@ -104,6 +106,8 @@ def _unrolled(
     x, y = (place - 0.5).astype(np.float32).transpose(2, 0, 1)
     strip = cv2.remap(photo, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
     kept = reach >= params.smallest_radius_px
+    if not kept.any():
+        return None
     return _linear(strip[kept].astype(np.float64)), _PX_PER_RADIAN / radius
 
 
