@@ -152,7 +152,7 @@ def model_photo(
     library = choose_library(settings.library, kind, lifted)
     grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
     report("leaf", 0.0)
-    front = _front(foliage, dense, traced.measured[owner], lifted.points[:, 2])
+    front = _front(foliage, traced.wood, dense, traced.measured[owner], lifted.points[:, 2])
     leaf, count = _leaf(sight, foliage, front, grown, envelope, kind, settings, rng, report)
     report("mesh", 0.0)
     bark = Surface(tubes(grown.skeleton), _bark_texture(sight, traced, rng))
@@ -261,15 +261,16 @@ def _leaf(
     return (Surface(cards(leaves, atlas), atlas.image), len(leaves)) if len(leaves) else (None, 0)
 
 
-def _front(foliage: Foliage, tree: Skeleton, seen: Mask, depth_m: Floats) -> NDArray[np.float32]:
+def _front(foliage: Foliage, woody: Mask, tree: Skeleton, seen: Mask, depth_m: Floats) -> NDArray[np.float32]:
     """World Z (h, w), metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
 
-    ``tree`` is the traced skeleton, px, ``seen`` (n,) where the photo shows it, ``depth_m`` (n,) its world Z.
+    ``woody`` (h, w) has the colours of branches, ``tree`` is the traced skeleton, px, ``seen`` (n,) where it shows,
+    ``depth_m`` (n,) its world Z. What is a leaf by its colour hangs before the wood.
     """
     wood = _drawn_depth(tree, seen, depth_m, foliage.mask.shape, 1.0)
     middle = _drawn_depth(tree, seen, depth_m, foliage.mask.shape, BARE_BREADTH)
     front = np.where(np.isnan(wood) | ~foliage.region, -np.inf, wood)
-    front[foliage.mask & np.isnan(middle)] = np.inf
+    front[foliage.mask & (np.isnan(middle) | (foliage.pure & ~woody))] = np.inf
     return front.astype(np.float32)
 
 

@@ -84,11 +84,14 @@ class Traced:
         (n,) index of the branch stroke that each joint follows, -1 where the tracer found it.
     measured
         (n,) whether the photo showed the radius there.
+    wood
+        (h, w) pixels that have the colours of branches.
     """
 
     skeleton: Skeleton
     stroke: Indices
     measured: NDArray[np.bool_]
+    wood: NDArray[np.bool_]
 
 
 def trace_branches(
@@ -116,7 +119,7 @@ def trace_branches(
     skeleton, stroke = _erased(draft.skeleton(), np.array(draft.stroke), strokes.erase)
     skeleton, stroke = without_spurs(skeleton, stroke, 1.6 * params.circle_px * unit)
     skeleton, stroke = simplify(skeleton, stroke, params.tolerance_share * height_px)
-    return Traced(skeleton, stroke, _seen(skeleton, wood))
+    return Traced(skeleton, stroke, _seen(skeleton, wood), wood)
 
 
 def _follow_strokes(
