@@ -9,6 +9,7 @@ from sklearn.mixture import GaussianMixture
 
 from treestroke.core.imaging.mixture import (
     Mixture,
+    component_shares,
     distance,
     fit_mixture,
     join_mixtures,
@@ -99,3 +100,10 @@ def test_fits_are_as_likely_as_those_of_scikit_learn(maple_photo: Path) -> None:
     learnt, unseen = colours[::400], colours[200::400].astype(float)
     oracle = GaussianMixture(8, reg_covar=4.0, tol=3e-3, random_state=0).fit(learnt.astype(float))
     assert log_density(fit_mixture(learnt, 8), unseen).mean() > oracle.score(unseen) - 0.05
+
+
+def test_a_colour_is_shared_out_whole_and_by_weight_where_components_are_alike() -> None:
+    mixture = join_mixtures([lone((50, 60, 70), 9), lone((50, 60, 70), 9), lone((200, 60, 70), 9)], [1, 3, 4])
+    assert component_shares(mixture, np.array([[50.0, 60, 70], [200.0, 60, 70]])) == pytest.approx(
+        np.array([[0.25, 0.75, 0], [0, 0, 1]]), abs=1e-6
+    )

@@ -30,9 +30,10 @@ def test_the_caller_s_array_is_copied() -> None:
     assert np.array_equal(tree.points, POINTS)
 
 
-def test_attributes_cannot_be_replaced() -> None:
+@pytest.mark.parametrize("name", ["points", "radii", "parents"])
+def test_attributes_cannot_be_replaced(name: str) -> None:
     with pytest.raises(AttributeError):
-        stick().points = POINTS  # type: ignore[misc]
+        setattr(stick(), name, POINTS)
 
 
 def test_several_stems_are_one_skeleton() -> None:

@@ -119,6 +119,12 @@ def _terms(colours: Floats) -> Floats:
     return np.concatenate([np.ones((1, about.shape[1])), about, about[_ROWS] * about[_COLUMNS]])
 
 
+def component_shares(mixture: Mixture, colours: Floats) -> Floats:
+    """Share (n, k) of each colour (n, 3) that each component explains; the shares of a colour sum to 1."""
+    parts = log_components(mixture, colours)
+    return np.asarray(np.exp(parts - log_sum(parts)[:, None]))
+
+
 def log_density(mixture: Mixture, colours: Floats) -> Floats:
     """Logarithm of the mixture's density (n,) at colours (n, 3)."""
     return log_sum(log_components(mixture, colours))

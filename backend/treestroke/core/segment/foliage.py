@@ -16,15 +16,15 @@ from treestroke.core.imaging.grid_cut import cut_grid
 from treestroke.core.imaging.mixture import (
     Floats,
     Mixture,
+    component_shares,
     fit_mixture,
     join_mixtures,
-    log_components,
     log_density,
     table_colours,
     table_index,
 )
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.segment.height import log_odds_by_height
+from treestroke.core.segment.height import LIMIT, log_odds_by_height
 
 Mask = NDArray[np.bool_]
 Photo = NDArray[np.uint8]
@@ -222,9 +222,7 @@ def _shares(mixture: Mixture, colours: Photo) -> Floats:
     """Share of the colours that each component explains (k,)."""
     if len(colours) == 0:
         return np.zeros(len(mixture))
-    parts = log_components(mixture, colours.astype(np.float64))
-    parts = np.exp(parts - parts.max(axis=1, keepdims=True))
-    return np.asarray((parts / parts.sum(axis=1, keepdims=True)).mean(axis=0))
+    return np.asarray(component_shares(mixture, colours.astype(np.float64)).mean(axis=0))
 
 
 def _hue_prior(means: Floats) -> Floats:
@@ -239,7 +237,7 @@ def _hue_prior(means: Floats) -> Floats:
 def _log_odds(leaf: Mixture, ground: Mixture, pixels: Photo) -> NDArray[np.float32]:
     """Log odds that each pixel (h, w) is a leaf, by its colour, within +-8."""
     colours = table_colours()
-    table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -8.0, 8.0)
+    table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -LIMIT, LIMIT)
     return table.astype(np.float32)[table_index(pixels)]
 
 

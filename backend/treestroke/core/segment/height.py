@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from treestroke.core.imaging.mixture import (
     Floats,
     Mixture,
+    component_shares,
     log_components,
-    log_sum,
     table_colours,
     table_index,
 )
@@ -25,6 +25,7 @@ FEWEST = 20
 """Samples that a band must have for weights of its own."""
 
 LIMIT = 8.0
+"""No colour tells more, in log odds."""
 
 
 def log_odds_by_height(
@@ -51,8 +52,7 @@ def weights_by_height(mixture: Mixture, pixels: NDArray[np.uint8], where: NDArra
     """Count a mixture's weights (bands, k), top to bottom, over the pixels (h, w, 3) where it is found (h, w)."""
     index = np.flatnonzero(where.ravel())
     index = index[:: max(1, len(index) // SAMPLES)]
-    parts = log_components(mixture, pixels.reshape(-1, 3)[index].astype(np.float64))
-    share = np.exp(parts - log_sum(parts)[:, None])
+    share = component_shares(mixture, pixels.reshape(-1, 3)[index].astype(np.float64))
     place = (index // where.shape[1] + 0.5) / where.shape[0] * BANDS - 0.5
     near = np.exp(-0.5 * (place[None] - np.arange(BANDS)[:, None]) ** 2)
     count = near.sum(axis=1, keepdims=True)
