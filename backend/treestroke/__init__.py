@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from treestroke.core.errors import PhotoError, SettingsError, StrokesError, TreestrokeError
+    from treestroke.core.pipeline.growing import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
     from treestroke.core.strokes import Stroke, Strokes
     from treestroke.service.model import Model, model
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 __all__ = [
+    "LiveTree",
     "Model",
     "ModelSettings",
     "PhotoError",
@@ -32,6 +34,7 @@ __all__ = [
 
 _HOMES = {
     "treestroke.core.errors": ("PhotoError", "SettingsError", "StrokesError", "TreestrokeError"),
+    "treestroke.core.pipeline.growing": ("LiveTree",),
     "treestroke.core.pipeline.settings": ("ModelSettings",),
     "treestroke.core.strokes": ("Stroke", "Strokes"),
     "treestroke.service.model": ("Model", "model"),

@@ -98,7 +98,20 @@ def _parser() -> Parser:
     trace.add_argument(
         "--overlay", metavar="OVERLAY.png", type=Path, help="the photo with what was found drawn over it"
     )
-    for command, action in ((model, _model), (trace, _trace)):
+    serve = commands.add_parser("serve", help="answer over HTTP, with a page", allow_abbrev=False)
+    serve.add_argument("--host", help="address to listen on (default 127.0.0.1)")
+    serve.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
+    worker = commands.add_parser("worker", help="grow models for a service elsewhere", allow_abbrev=False)
+    doctor = commands.add_parser("doctor", help="say what is missing or broken", allow_abbrev=False)
+    for command in (serve, worker, doctor):
+        command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
+    for command, action in (
+        (model, _model),
+        (trace, _trace),
+        (serve, _serve),
+        (worker, _worker),
+        (doctor, _doctor),
+    ):
         command.add_argument("--debug", action="store_true", help="show the trace of an error")
         command.set_defaults(command=action)
     return parser
@@ -108,9 +121,9 @@ def _model(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "report", "preview"))
     photo, strokes, settings, seed = _model_inputs(options)
     from treestroke.codec.image import encode_png
-    from treestroke.service.files import write_whole
     from treestroke.service.inputs import load_settings
     from treestroke.service.model import model
+    from treestroke.store.files import write_whole
 
     chosen = load_settings(settings)
     line = ProgressLine(sys.stderr, chosen.iterations) if sys.stderr.isatty() else None
@@ -130,8 +143,8 @@ def _model(options: argparse.Namespace) -> None:
 def _trace(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "overlay"))
     from treestroke.codec.image import encode_png
-    from treestroke.service.files import write_whole
     from treestroke.service.trace import trace
+    from treestroke.store.files import write_whole
 
     result = trace(options.photo, options.strokes)
     answer = json.dumps(result.answer())
@@ -142,6 +155,40 @@ def _trace(options: argparse.Namespace) -> None:
     write_whole({path: makers[name]() for name, path in outputs.items()})
     if options.out is None:
         print(answer)
+
+
+def _serve(options: argparse.Namespace) -> None:
+    from treestroke.serve import serve
+
+    serve(_service_settings(options))
+
+
+def _worker(options: argparse.Namespace) -> None:
+    from treestroke.worker import main as work
+
+    os.environ.update(_service_settings(options).environment())
+    if work():
+        raise OSError("the worker did not start; its log says why")
+
+
+def _doctor(options: argparse.Namespace) -> None:
+    from treestroke.service.doctor import examine
+
+    ill = 0
+    for finding in examine(_service_settings(options)):
+        ill += not finding.well
+        print(f"{'ok ' if finding.well else 'ILL'}  {finding.part}: {finding.found}", flush=True)
+        if finding.mend:
+            print(f"     mend: {finding.mend}")
+    if ill:
+        raise OSError(f"{ill} of these are ill")
+
+
+def _service_settings(options: argparse.Namespace) -> Any:
+    from treestroke.settings import read_settings
+
+    given = {name: getattr(options, name, None) for name in ("host", "port", "data")}
+    return read_settings(**{name: value for name, value in given.items() if value is not None})
 
 
 def _model_inputs(options: argparse.Namespace) -> tuple[Any, Any, dict[str, Any], Any]:

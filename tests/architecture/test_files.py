@@ -7,7 +7,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PATH_OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:work|root|home|opt|Users|mnt|srv)/\w|\.\./shared|[A-Z]:\\\\")
-HOST = re.compile(r"\b\w+:/{2}[\w.-]+|\b(?:pypi|pythonhosted|npmjs)\.org")
+OWN = r"(?:127\.0\.0\.1|localhost|\[::1\]|redis|testserver)\b"
+HOST = re.compile(rf"\b\w+:/{{2}}(?!{OWN}|HOST\b)\w[\w.-]*|\b(?:pypi|pythonhosted|npmjs)\.org")
 
 
 def tracked() -> list[Path]:

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from PIL import Image, ImageCms
 
-from treestroke.codec.image import MAX_BYTES, check_size, decode_photo, encode_png
+import treestroke.codec.image
+from treestroke.codec.image import MAX_BYTES, check_size, decode_photo, decode_stored, encode_png, encode_stored
 from treestroke.core.errors import PhotoError
 
 UPRIGHT = np.zeros((80, 100, 3), dtype=np.uint8)
@@ -107,8 +108,9 @@ def test_what_is_no_picture_is_refused(data: bytes) -> None:
 @pytest.mark.parametrize("kind", ["PNG", "WEBP"])
 def test_a_moving_picture_is_refused(kind: str) -> None:
     frames = [Image.new("RGB", (64, 64), colour) for colour in ("red", "blue")]
-    with pytest.raises(PhotoError, match="2 frames"):
+    with pytest.raises(PhotoError, match="2 frames") as refused:
         decode_photo(encoded(frames[0], kind, save_all=True, append_images=frames[1:]), "photo")
+    assert refused.value.code == "photo_animated"
 
 
 @pytest.mark.parametrize(("width", "height"), [(64, 64), (16_384, 64), (10_000, 5_000)])
@@ -116,22 +118,96 @@ def test_sizes_at_the_bounds_are_taken(width: int, height: int) -> None:
     check_size(width, height, "photo")
 
 
-@pytest.mark.parametrize(("width", "height"), [(63, 64), (64, 63), (16_385, 64), (10_000, 5_001)])
-def test_sizes_beyond_the_bounds_are_refused(width: int, height: int) -> None:
-    with pytest.raises(PhotoError, match="photo: the photo"):
+@pytest.mark.parametrize(
+    ("width", "height", "code"),
+    [
+        (63, 64, "photo_too_small"),
+        (64, 63, "photo_too_small"),
+        (16_385, 64, "photo_side_too_long"),
+        (10_000, 5_001, "photo_too_many_pixels"),
+    ],
+)
+def test_sizes_beyond_the_bounds_are_refused(width: int, height: int, code: str) -> None:
+    with pytest.raises(PhotoError, match="photo: the photo") as refused:
         check_size(width, height, "photo")
+    assert refused.value.code == code
+
+
+def ftyp(*brands: bytes) -> bytes:
+    return (8 + 4 * len(brands)).to_bytes(4, "big") + b"ftyp" + b"".join(brands) + bytes(200)
+
+
+@pytest.mark.parametrize(
+    ("data", "code", "message"),
+    [
+        (ftyp(b"heic", bytes(4), b"mif1"), "format_not_allowed", "but HEIC; export it as JPEG$"),
+        (ftyp(b"mif1", bytes(4), b"avif", b"mif1"), "format_not_allowed", "but AVIF; export it as JPEG$"),
+        (ftyp(b"isom", bytes(4)), "format_not_allowed", "save it as one$"),
+        (b"RIFF\x10\0\0\0WAVEfmt ", "format_not_allowed", "save it as one$"),
+        (b"RIFF\x10\0\0\0WEBPVP8 ", "photo_unreadable", "save it as one$"),
+        (b"GIF89a", "format_not_allowed", "save it as one$"),
+        (b"\xff\xd8\xff\xe0", "photo_unreadable", "save it as one$"),
+        (encode_png(UPRIGHT)[:-30], "photo_unreadable", "damaged or cut short"),
+        (bytes(MAX_BYTES + 1), "photo_too_large_file", "more than 25 MB"),
+    ],
+)
+def test_a_refusal_says_for_programs_what_is_wrong(data: bytes, code: str, message: str) -> None:
+    with pytest.raises(PhotoError, match=message) as refused:
+        decode_photo(data, "photo")
+    assert refused.value.code == code
+
+
+def test_a_stored_photo_comes_back_as_it_was(maple_photo: Path) -> None:
+    photo = decode_photo(maple_photo.read_bytes(), "photo")
+    stored = encode_stored(photo)
+    assert np.array_equal(decode_stored(stored), photo)
+    assert {kind for kind in (b"tEXt", b"eXIf", b"iCCP", b"tIME", b"pHYs") if kind in stored} == set()
+
+
+def test_a_stored_photo_may_be_larger_than_an_upload(maple_photo: Path) -> None:
+    stored = encode_png(UPRIGHT) + bytes(MAX_BYTES)
+    assert np.array_equal(decode_stored(stored), UPRIGHT)
+
+
+def in_strips(data: bytes, monkeypatch: pytest.MonkeyPatch) -> np.ndarray:
+    with monkeypatch.context() as patch:
+        patch.setattr(treestroke.codec.image, "_STRIP", 7 * 90)
+        return decode_photo(data, "photo")
+
+
+@pytest.mark.parametrize("mode", ["RGB", "RGBA", "P", "L", "CMYK", "I;16"])
+def test_strips_join_to_the_same_picture(maple_photo: Path, mode: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+    given = Image.open(maple_photo).resize((90, 80))
+    image = given.convert("L").convert(mode) if mode == "I;16" else given.convert(mode)
+    data = encoded(image, "JPEG" if mode == "CMYK" else "PNG", **({"icc_profile": profile} if mode == "RGB" else {}))
+    assert np.array_equal(in_strips(data, monkeypatch), decode_photo(data, "photo"))
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_strips_are_turned_upright(orientation: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    data = encoded(Image.fromarray(np.ascontiguousarray(STORED[orientation](UPRIGHT))), "PNG", exif=exif)
+    assert np.array_equal(in_strips(data, monkeypatch), UPRIGHT)
+
+
+@pytest.mark.parametrize("kind", ["PNG", "JPEG", "WEBP"])
+def test_decoding_tells_how_far_it_is(maple_photo: Path, kind: str) -> None:
+    seen: list[tuple[str, float]] = []
+    decode_photo(encoded(Image.open(maple_photo), kind), "photo", lambda *told: seen.append(told))
+    fractions = [fraction for _, fraction in seen]
+    assert {stage for stage, _ in seen} == {"decode"}
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
 
 
 def test_a_bomb_is_judged_by_its_header() -> None:
     data = bytearray(encode_png(UPRIGHT))
     data[16:24] = (15_000).to_bytes(4, "big") * 2
-    with pytest.raises(PhotoError, match="megapixels|can be read"):
+    with pytest.raises(PhotoError, match="megapixels|can be read") as refused:
         decode_photo(bytes(data), "photo")
-
-
-def test_a_huge_file_is_refused_before_decoding() -> None:
-    with pytest.raises(PhotoError, match="25 MB"):
-        decode_photo(bytes(MAX_BYTES + 1), "photo")
+    assert refused.value.code in ("photo_too_many_pixels", "photo_unreadable")
 
 
 @pytest.mark.parametrize("share", [0.02, 0.3, 0.9])

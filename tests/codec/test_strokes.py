@@ -66,6 +66,47 @@ def test_a_number_that_is_not_finite_is_refused(token: str) -> None:
         parse_strokes('{"crown": {"points": [[1, 2], [3, 4], [5, TOKEN]]}}'.replace("TOKEN", token), "strokes")
 
 
+def refusal(value: object) -> StrokesError:
+    with pytest.raises(StrokesError) as refused:
+        parse_strokes(value if isinstance(value, str | bytes) else json.dumps(value), "oak.json")
+    return refused.value
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "pointer"),
+    [
+        ([], "wrong_type", ""),
+        ({}, "crown_missing", "/crown"),
+        ({**GOOD, "le/aves": []}, "unknown_key", "/le~1aves"),
+        ({**GOOD, "crown": {}}, "missing_key", "/crown"),
+        ({**GOOD, "branches": [{"points": [[1, 2], [3]]}]}, "wrong_type", "/branches/0/points/1"),
+        ({**GOOD, "branches": [{"points": SQUARE, "width": "3"}]}, "wrong_type", "/branches/0/width"),
+        ({**GOOD, "branches": [{"points": SQUARE, "colour": 1}]}, "unknown_key", "/branches/0/colour"),
+        ({**GOOD, "branches": GOOD["branches"] * 200}, "too_many_strokes", ""),
+        ({**GOOD, "erase": [{"points": [[1, 1]] * 10_001}]}, "too_many_points", "/erase/0"),
+        ('{"crown": {"points": [[1, NaN]]}}', "non_finite_number", "/crown/points/0"),
+        ('{"crown": {"points": [[1, 2], [1e999, 0]]}}', "non_finite_number", "/crown/points/1"),
+        ('{"crown": {"points": [[1, -NUMBER]]}}'.replace("NUMBER", "7" * 5000), "non_finite_number", "/crown/points/0"),
+        ("{", "malformed_json", ""),
+        (b"\xff", "malformed_json", ""),
+        ("[" * 100_000, "malformed_json", ""),
+        ('{"crown": 1, "crown": 2}', "malformed_json", ""),
+    ],
+)
+def test_a_refusal_says_what_and_where_for_programs(value: object, code: str, pointer: str) -> None:
+    error = refusal(value)
+    assert (error.code, error.pointer) == (code, pointer)
+    assert str(error).startswith("oak.json: ")
+
+
+@pytest.mark.parametrize("key", [r"\u0000", r"\ud800", r"\ud800/~", "k" * 100_000])
+def test_any_key_makes_a_message_that_can_be_written(key: str) -> None:
+    error = refusal('{"crown": {"points": []}, "KEY": 1}'.replace("KEY", key))
+    assert error.code == "unknown_key"
+    assert len(str(error).encode()) < 200
+    assert error.pointer.encode()
+
+
 @pytest.mark.parametrize("text", ["", "{", b"\xff\xfe\x00", "[" * 100_000, '{"crown": 1,}'])
 def test_what_is_no_json_is_refused_in_one_line(text: str | bytes) -> None:
     with pytest.raises(StrokesError, match="no valid JSON") as refused:

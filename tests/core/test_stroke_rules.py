@@ -29,31 +29,34 @@ def test_points_outside_are_clamped_to_the_photo() -> None:
 
 
 @pytest.mark.parametrize(
-    ("strokes", "message"),
+    ("strokes", "message", "code"),
     [
-        ({"crown": [[10, 10], [90, 90], [10, 10]]}, "^crown: it has 2 distinct points"),
-        ({"crown": [[10, 10], [20, 10], [20, 20], [10, 20]]}, r"^crown: it encloses 0\.0"),
-        ({"crown": [[10, 10], [50, 50], [90, 90]]}, r"^crown: it encloses 0\.00%"),
-        ({"branches": ([[200, 290], [200, 290]],)}, "^branches/0: it has 1 distinct point "),
-        ({"branches": (TRUNK, [[500, 50], [600, 50]])}, "^branches/1: it has 1 distinct point "),
-        ({"erase": ([[5, 5], [5, 5]],)}, "^erase/0: it has 1 distinct point "),
-        ({"branches": ([[200, 290], [np.nan, 150]],)}, "^branches/0: a coordinate is not a finite"),
-        ({"branches": ([[200, 290], [200, np.inf]],)}, "^branches/0: a coordinate is not a finite"),
-        ({"branches": ([[20, 290], [20, 180]],)}, "^branches/0: the trunk neither touches nor points into the crown"),
-        ({"branches": ([[200, 200], [200, 290]],)}, "^branches/0: the trunk neither touches nor points into the crown"),
-        ({"branches": (TRUNK,) * 200}, "^strokes: there are 201"),
-        ({"branches": ([[200, 290], *([[200, 150]] * 10_000)],)}, "^branches/0: it has 10001 points"),
+        ({"crown": [[10, 10], [90, 90], [10, 10]]}, "^crown: it has 2 distinct points", "stroke_too_short"),
+        ({"crown": [[10, 10], [20, 10], [20, 20], [10, 20]]}, r"^crown: it encloses 0\.0", "crown_too_small"),
+        ({"crown": [[10, 10], [50, 50], [90, 90]]}, r"^crown: it encloses 0\.00%", "crown_too_small"),
+        ({"branches": ([[200, 290], [200, 290]],)}, "^branches/0: it has 1 distinct point ", "stroke_too_short"),
+        ({"branches": (TRUNK, [[500, 50], [600, 50]])}, "^branches/1: it has 1 distinct point ", "stroke_too_short"),
+        ({"erase": ([[5, 5], [5, 5]],)}, "^erase/0: it has 1 distinct point ", "stroke_too_short"),
+        ({"branches": ([[200, 290], [np.nan, 150]],)}, "^branches/0: a coordinate is not", "non_finite_number"),
+        ({"branches": ([[200, 290], [200, np.inf]],)}, "^branches/0: a coordinate is not", "non_finite_number"),
+        ({"branches": ([[20, 290], [20, 180]],)}, "^branches/0: the trunk neither touches", "trunk_outside_crown"),
+        ({"branches": ([[200, 200], [200, 290]],)}, "^branches/0: the trunk neither touches", "trunk_outside_crown"),
+        ({"branches": (TRUNK,) * 200}, "^strokes: there are 201", "too_many_strokes"),
+        ({"branches": ([[200, 290], *([[200, 150]] * 10_000)],)}, "^branches/0: it has 10001", "too_many_points"),
     ],
 )
-def test_unusable_strokes_are_refused_by_name(strokes: dict[str, object], message: str) -> None:
-    with pytest.raises(StrokesError, match=message):
+def test_unusable_strokes_are_refused_by_name(strokes: dict[str, object], message: str, code: str) -> None:
+    with pytest.raises(StrokesError, match=message) as refused:
         mend(**strokes)
+    place = str(refused.value).partition(":")[0]
+    assert (refused.value.code, refused.value.pointer) == (code, "" if place == "strokes" else f"/{place}")
 
 
 def test_a_width_that_is_not_positive_is_refused() -> None:
     strokes = Strokes(Stroke(np.array(CROWN, float)), (Stroke(np.array(TRUNK, float), width=0.0),))
-    with pytest.raises(StrokesError, match="^branches/0: width"):
+    with pytest.raises(StrokesError, match="^branches/0: width") as refused:
         mend_strokes(strokes, WIDTH, HEIGHT)
+    assert (refused.value.code, refused.value.pointer) == ("width_invalid", "/branches/0/width")
 
 
 def test_a_trunk_that_points_into_the_crown_from_afar_is_taken() -> None:
@@ -92,5 +95,6 @@ def test_a_crown_that_crosses_itself_is_kept_with_a_warning() -> None:
 def test_a_model_needs_a_trunk_but_a_trace_does_not() -> None:
     mended = mend(branches=())
     assert mended.strokes.branches == ()
-    with pytest.raises(StrokesError, match="branches"):
+    with pytest.raises(StrokesError, match="branches") as refused:
         require_trunk(mended.strokes)
+    assert (refused.value.code, refused.value.pointer) == ("trunk_missing", "/branches")

@@ -3,6 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from treestroke.codec.image import decode_stored, encode_stored
 from treestroke.core.errors import PhotoError, StrokesError
 from treestroke.service.inputs import load_photo, load_settings, load_strokes
 
@@ -26,6 +27,15 @@ def test_path_bytes_and_pixels_give_the_same_photo(maple_photo: Path) -> None:
 def test_an_array_that_is_no_photo_is_refused(array: np.ndarray) -> None:
     with pytest.raises(PhotoError, match="^photo: "):
         load_photo(array)
+
+
+def test_a_stored_photo_is_let_in_whatever_its_size(maple_photo: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    stored = encode_stored(load_photo(maple_photo))
+    monkeypatch.setattr("treestroke.codec.image.MAX_BYTES", len(stored) - 1)
+    assert np.array_equal(load_photo(stored), decode_stored(bytes(stored)))
+    with pytest.raises(PhotoError) as refused:
+        load_photo(bytes(stored))
+    assert refused.value.code == "photo_too_large_file"
 
 
 def test_path_mapping_and_values_give_the_same_strokes(maple_strokes: Path) -> None:

@@ -49,6 +49,36 @@ def test_progress_goes_through_the_stages_in_order(maple_photo: Path, maple_stro
     assert all(0.0 <= fraction <= 1.0 for _, fraction in seen)
 
 
+def test_no_stage_falls_back(maple_photo: Path, maple_strokes: Path) -> None:
+    told: dict[str, list[float]] = {stage: [] for stage in STAGES}
+    treestroke.model(maple_photo, maple_strokes, QUICK, report=lambda stage, fraction: told[stage].append(fraction))
+    assert all(fractions == sorted(fractions) for fractions in told.values())
+    assert min(len(fractions) for fractions in told.values()) >= 1
+
+
+def test_the_grown_tree_is_shown_once_before_it_has_leaves(maple_photo: Path, maple_strokes: Path) -> None:
+    told: list[str] = []
+
+    def show(tree: treestroke.LiveTree) -> None:
+        told.append(f"{len(tree.skeleton) == len(tree.born)}")
+
+    treestroke.model(maple_photo, maple_strokes, QUICK, report=lambda stage, _: told.append(stage), on_grown=show)
+    assert told.count("True") == 1
+    assert told[told.index("True") - 1 : told.index("True") + 2] == ["grow", "True", "leaf"]
+
+
+def test_an_exception_in_a_report_ends_the_work(maple_photo: Path, maple_strokes: Path) -> None:
+    class CancelledError(Exception):
+        pass
+
+    def stop(stage: str, _: float) -> None:
+        if stage == "decode":
+            raise CancelledError
+
+    with pytest.raises(CancelledError):
+        treestroke.model(maple_photo, maple_strokes, QUICK, report=stop)
+
+
 def test_the_preview_is_a_picture(maple: Model) -> None:
     picture = maple.preview()
     assert picture.dtype == np.uint8

@@ -2,8 +2,11 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import treestroke
+from treestroke.core.pipeline.growing import LiveTree
+from treestroke.service.trace import Trace
 
 
 def test_foliage_and_branches_lie_in_the_photo(maple_photo: Path, maple_strokes: Path) -> None:
@@ -26,3 +29,60 @@ def test_without_branches_the_foliage_alone_is_found(maple_photo: Path, maple_st
     found = treestroke.trace(maple_photo, {"crown": crown})
     assert found.skeleton is None
     assert np.count_nonzero(found.foliage) > 1000
+
+
+@pytest.fixture(scope="module")
+def live(maple_photo: Path, maple_strokes: Path) -> Trace:
+    return treestroke.trace(maple_photo, maple_strokes, grow=True)
+
+
+def same(one: LiveTree | None, other: LiveTree | None) -> bool:
+    assert one is not None
+    assert other is not None
+    pairs = [(getattr(one.skeleton, name), getattr(other.skeleton, name)) for name in ("points", "radii", "parents")]
+    arrays = all(np.array_equal(*pair) for pair in [*pairs, (one.born, other.born)])
+    return arrays and one.camera == other.camera
+
+
+def test_the_live_tree_is_the_one_that_the_model_grows(live: Trace, maple_photo: Path, maple_strokes: Path) -> None:
+    seen: list[LiveTree] = []
+    model = treestroke.model(maple_photo, maple_strokes, {"leaf_density": 0}, on_grown=seen.append)
+    assert same(live.grown, seen[0])
+    assert np.array_equal(live.grown.skeleton.points, model.tree.grown.skeleton.points)
+    assert live.grown.camera == model.tree.camera
+
+
+def test_the_live_tree_is_the_same_whether_its_foliage_is_known(live: Trace, maple_strokes: Path) -> None:
+    trunk = json.loads(maple_strokes.read_text())
+    before = treestroke.trace(live.photo, {**trunk, "branches": trunk["branches"][:1]})
+    after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
+    assert after.found is before.found
+    assert same(after.grown, live.grown)
+
+
+def test_growing_changes_nothing_of_the_trace(live: Trace, maple_photo: Path, maple_strokes: Path) -> None:
+    plain, grown = treestroke.trace(maple_photo, maple_strokes).answer(), live.answer()
+    assert {name: grown[name] for name in plain} == plain
+
+
+def test_an_answer_with_a_live_tree_is_plain_json(live: Trace) -> None:
+    answer = live.answer()
+    assert json.loads(json.dumps(answer)) == answer
+    assert set(answer) == {"foliage", "skeleton", "warnings", "grown", "photo"}
+    assert set(answer["grown"]) == {"points", "radii", "parents", "born", "photo"}
+    assert answer["photo"] == answer["grown"]["photo"]
+    assert (answer["photo"]["width"], answer["photo"]["height"]) == (live.photo.shape[1], live.photo.shape[0])
+
+
+def test_the_live_tree_s_root_stands_at_the_root_s_pixel(live: Trace, maple_strokes: Path) -> None:
+    photo = live.answer()["photo"]
+    x, y, _ = live.grown.skeleton.points[0]
+    place = photo["root"][0] + x / photo["metres_per_pixel"], photo["root"][1] - y / photo["metres_per_pixel"]
+    assert place == pytest.approx(live.skeleton.points[0], abs=1e-6)
+
+
+def test_without_branches_nothing_grows(maple_photo: Path, maple_strokes: Path) -> None:
+    crown = json.loads(maple_strokes.read_text())["crown"]
+    found = treestroke.trace(maple_photo, {"crown": crown}, grow=True)
+    assert found.grown is None
+    assert (found.answer()["grown"], found.answer()["photo"]) == (None, None)

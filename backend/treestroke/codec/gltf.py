@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from treestroke.codec.skeleton import plain_camera
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
 
@@ -41,13 +42,7 @@ def encode_glb(bark: Surface, leaf: Surface | None, camera: Camera, *, generator
     book.add("bark", bark, BARK_MATERIAL, _REPEAT)
     if leaf is not None:
         book.add("leaf", leaf, LEAF_MATERIAL, _CLAMP)
-    photo = {
-        "width": camera.width,
-        "height": camera.height,
-        "metres_per_pixel": camera.metres_per_pixel,
-        "root": list(camera.root_px),
-    }
-    scene = {"nodes": list(range(len(book.tables["nodes"]))), "extras": {"photo": photo}}
+    scene = {"nodes": list(range(len(book.tables["nodes"]))), "extras": {"photo": plain_camera(camera)}}
     head = {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [scene]}
     return _container({**head, **book.tables, "buffers": [{"byteLength": len(book.binary)}]}, bytes(book.binary))
 

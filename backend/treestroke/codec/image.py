@@ -1,27 +1,38 @@
 """Photos: bytes in, upright sRGB pixels out."""
 
 import io
+import re
 import struct
 import warnings
 import zlib
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
 from treestroke.core.errors import PhotoError
+from treestroke.core.progress import Report, silent
 
 Picture = NDArray[np.uint8]
 
 MAX_BYTES = 25_000_000
+"""Of an upload."""
 MIN_SIDE, MAX_SIDE = 64, 16_384
 MAX_PIXELS = 50_000_000
+MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
+"""A stored photo is no larger: noise that does not compress, a byte a channel, and 1 % for the PNG around it."""
 
 _FORMATS = ("JPEG", "PNG", "WEBP")
+_BEGINNING = re.compile(rb"\xff\xd8\xff|\x89PNG\r\n\x1a\n|RIFF....WEBP", re.DOTALL)
+_PHONE_BRANDS = {"AVIF": (b"avif", b"avis"), "HEIC": (b"heic", b"heix", b"hevc", b"hevx", b"heim", b"heis", b"mif1")}
+"""Brands in the ftyp box (ISO 14496-12, 4.3) of the photos that phones write."""
 _DAMAGED = (OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, struct.error, zlib.error)
 """What Pillow's decoders raise on files that break their format."""
+_TOLD = 0.05
+"""Share of a file's bytes after which its reading is told again."""
 _ORIENTATION = 0x0112
-_UPRIGHT = {
+_TURNS = {
     2: Image.Transpose.FLIP_LEFT_RIGHT,
     3: Image.Transpose.ROTATE_180,
     4: Image.Transpose.FLIP_TOP_BOTTOM,
@@ -30,26 +41,51 @@ _UPRIGHT = {
     7: Image.Transpose.TRANSVERSE,
     8: Image.Transpose.ROTATE_90,
 }
+"""What makes a picture of each EXIF orientation upright."""
+_SIDEWAYS, _BACKWARD = (5, 6, 7, 8), (3, 4, 6, 7)
+"""Orientations whose rows are columns of the upright picture, and whose first row comes last."""
+_STRIP = 2_000_000
+"""Pixels that are brought to sRGB at a time."""
+_READ = 0.7
+"""Share of decoding that is done when all bytes are read."""
 _SRGB = ImageCms.createProfile("sRGB")
 
 
-def decode_photo(data: bytes, name: str) -> Picture:
+class StoredPhoto(bytes):
+    """An encoded photo that was let in before: the limit on uploads does not hold for it."""
+
+
+def decode_photo(data: bytes, name: str, report: Report = silent) -> Picture:
     """Decode a JPEG, PNG or WebP photo to (h, w, 3) uint8 sRGB, upright by EXIF, alpha over white.
 
     An ICC profile is honoured (a broken one is ignored); 16 bits a channel become 8; ``name`` appears in messages.
-    The size is judged from the header, before any pixel is decoded.
+    The size is judged from the header, before any pixel is decoded. ``report("decode", fraction)`` is called as the
+    bytes are read.
 
     Raises
     ------
     PhotoError
         Another format, damaged, more than one frame, too small or too large.
     """
-    if len(data) > MAX_BYTES:
-        raise PhotoError(f"{name}: the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
+    limit = MAX_STORED_BYTES if isinstance(data, StoredPhoto) else MAX_BYTES
+    if len(data) > limit:
+        what = f"the photo has more than {limit // 10**6} MB; save it smaller"
+        raise PhotoError(f"{name}: {what}", code="photo_too_large_file")
     # Pillow speaks of odd metadata by warnings, which say nothing about the pixels.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return _decoded(data, name)
+        return _decoded(data, name, report)
+
+
+def decode_stored(data: bytes, report: Report = silent) -> Picture:
+    """Decode what `encode_stored` gave, or any photo that was let in before, as `decode_photo` does.
+
+    Raises
+    ------
+    PhotoError
+        As `decode_photo`, save for the file's size.
+    """
+    return decode_photo(StoredPhoto(data), "photo", report)
 
 
 def check_size(width: int, height: int, name: str) -> None:
@@ -62,12 +98,14 @@ def check_size(width: int, height: int, name: str) -> None:
     """
     if min(width, height) < MIN_SIDE or max(width, height) > MAX_SIDE:
         raise PhotoError(
-            f"{name}: the photo is {width} x {height} px, each side must be {MIN_SIDE} to {MAX_SIDE} px; resize it"
+            f"{name}: the photo is {width} x {height} px, each side must be {MIN_SIDE} to {MAX_SIDE} px; resize it",
+            code="photo_too_small" if min(width, height) < MIN_SIDE else "photo_side_too_long",
         )
     if width * height > MAX_PIXELS:
         raise PhotoError(
             f"{name}: the photo has {width * height / 1e6:.1f} megapixels, at most {MAX_PIXELS / 1e6:.0f} are allowed; "
-            "resize it"
+            "resize it",
+            code="photo_too_many_pixels",
         )
 
 
@@ -78,37 +116,99 @@ def encode_png(picture: Picture) -> bytes:
     return out.getvalue()
 
 
-def _decoded(data: bytes, name: str) -> Picture:
-    image = _opened(data, name)
+def encode_stored(picture: Picture) -> StoredPhoto:
+    """Encode a photo (h, w, 3) uint8 without loss, as a PNG that is written fast and holds nothing but pixels.
+
+    Runs alone are compressed: a third of the time of Pillow's fastest, and 7 % smaller on 12 megapixels with noise
+    (6 % larger on 2 megapixels from a clean JPEG).
+    """
+    how = (cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE)
+    sub = (cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_SUB)
+    _, encoded = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), (*how, *sub))
+    return StoredPhoto(encoded.tobytes())
+
+
+class _Watched(io.BytesIO):
+    """Bytes that tell how far they were read."""
+
+    def __init__(self, data: bytes, report: Report) -> None:
+        super().__init__(data)
+        self._size, self._furthest, self._report = len(data), 0, report
+
+    def read(self, size: int | None = -1) -> bytes:
+        """Read, as any file does; tell of each further share of `_TOLD`."""
+        found = super().read(size)
+        if self.tell() > self._furthest + _TOLD * self._size:
+            self._furthest = self.tell()
+            self._report("decode", _READ * self._furthest / self._size)
+        return found
+
+
+def _decoded(data: bytes, name: str, report: Report) -> Picture:
+    image = _opened(data, name, report)
     check_size(image.width, image.height, name)
     try:
         # A JPEG may carry further pictures (depth, gain map) behind the photo; those are no frames of it.
         if image.format != "MPO" and getattr(image, "n_frames", 1) > 1:
-            raise PhotoError(
-                f"{name}: the photo has {getattr(image, 'n_frames', 2)} frames; save one of them by itself"
-            )
+            what = f"the photo has {getattr(image, 'n_frames', 2)} frames; save one of them by itself"
+            raise PhotoError(f"{name}: {what}", code="photo_animated")
         image.load()
     except _DAMAGED as error:
         raise PhotoError(
             f"{name}: the photo is damaged or cut short ({_brief(error)}); save or copy it anew"
         ) from error
-    return np.ascontiguousarray(_upright(_over_white(image), image))
+    return _pixels(image, report)
 
 
-def _opened(data: bytes, name: str) -> Image.Image:
+def _opened(data: bytes, name: str, report: Report) -> Image.Image:
     try:
-        return Image.open(io.BytesIO(data), formats=_FORMATS)
+        return Image.open(_Watched(data, report), formats=_FORMATS)
     except Image.DecompressionBombError as error:
         raise PhotoError(
-            f"{name}: the photo has more than {MAX_PIXELS / 1e6:.0f} megapixels, which is not allowed; resize it"
+            f"{name}: the photo has more than {MAX_PIXELS / 1e6:.0f} megapixels, which is not allowed; resize it",
+            code="photo_too_many_pixels",
         ) from error
     except _DAMAGED as error:
-        raise PhotoError(f"{name}: this is no JPEG, PNG or WebP photo that can be read; save it as one") from error
+        if phone := _phone_format(data):
+            what = f"this is no JPEG, PNG or WebP photo but {phone}; export it as JPEG"
+        else:
+            what = "this is no JPEG, PNG or WebP photo that can be read; save it as one"
+        code = "photo_unreadable" if _BEGINNING.match(data) else "format_not_allowed"
+        raise PhotoError(f"{name}: {what}", code=code) from error
 
 
-def _over_white(image: Image.Image) -> Image.Image:
+def _phone_format(data: bytes) -> str:
+    """Name the format that phones save photos in and that is none of ours; "" for any other."""
+    if data[4:8] != b"ftyp":
+        return ""
+    brands = {data[start : start + 4] for start in (8, *range(16, min(int.from_bytes(data[:4], "big"), 128), 4))}
+    return next((name for name, known in _PHONE_BRANDS.items() if brands.intersection(known)), "")
+
+
+def _pixels(image: Image.Image, report: Report) -> Picture:
+    """Bring a picture upright and to sRGB, (h, w, 3), strip by strip."""
+    orientation, (width, height) = _orientation(image), image.size
+    upright = np.empty((width, height, 3) if orientation in _SIDEWAYS else (height, width, 3), dtype=np.uint8)
+    rows = max(1, _STRIP // width)
+    for top in range(0, height, rows):
+        bottom = min(top + rows, height)
+        strip = _over_white(image.crop((0, top, width, bottom)), image.info.get("icc_profile"))
+        turned = np.asarray(strip.transpose(_TURNS[orientation]) if orientation in _TURNS else strip)
+        place = slice(height - bottom, height - top) if orientation in _BACKWARD else slice(top, bottom)
+        upright[(slice(None), place) if orientation in _SIDEWAYS else place] = turned
+        report("decode", _READ + (1 - _READ) * bottom / height)
+    return upright
+
+
+def _orientation(image: Image.Image) -> int:
+    try:
+        return int(image.getexif().get(_ORIENTATION, 1))
+    except _DAMAGED:
+        return 1
+
+
+def _over_white(image: Image.Image, profile: bytes | None) -> Image.Image:
     """Bring any mode to sRGB, 8 bit, without alpha."""
-    profile = image.info.get("icc_profile")
     if image.mode.startswith("I"):
         deep = np.asarray(image)
         image = Image.fromarray((np.clip(deep, 0, 65535) >> 8).astype(np.uint8))
@@ -132,15 +232,6 @@ def _in_srgb(image: Image.Image, profile: bytes | None) -> Image.Image:
         if converted is not None:
             return converted
     return image.convert("RGB")
-
-
-def _upright(picture: Image.Image, source: Image.Image) -> Image.Image:
-    try:
-        orientation = source.getexif().get(_ORIENTATION, 1)
-    except _DAMAGED:
-        return picture
-    turn = _UPRIGHT.get(orientation)
-    return picture if turn is None else picture.transpose(turn)
 
 
 def _brief(error: BaseException) -> str:

@@ -8,16 +8,25 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from treestroke.codec.image import MAX_BYTES
+from treestroke.codec.image import MAX_STORED_BYTES, StoredPhoto
+from treestroke.codec.json_text import read_json
 from treestroke.core.errors import SettingsError, TreestrokeError
 
 MAX_TEXT_BYTES = 64_000_000
 """More than the longest strokes that are allowed ever need."""
 
 
+_ENDINGS = {b"\xff\xd8": "jpg", b"RIFF": "webp"}
+_NO_TIME = (1980, 1, 1, 0, 0, 0)
+_UNIX, _READABLE = 3, 0o644
+
+
 @dataclass(frozen=True)
 class Project:
-    """The photo's bytes, the strokes' JSON text, and the settings by name (``seed`` may be among them)."""
+    """The photo's bytes, the strokes' JSON text, and the settings by name (``seed`` may be among them).
+
+    What a service stored may be larger than an upload, so the photo in a project may be, too.
+    """
 
     photo: bytes
     strokes: bytes
@@ -41,27 +50,46 @@ def read_project(data: bytes, name: str) -> Project:
             members = {info.filename: info for info in archive.infolist()}
             photos = sorted(member for member in members if PurePosixPath(member).stem == "photo")
             if len(photos) != 1 or "strokes.json" not in members:
-                raise TreestrokeError(f"{name}: the project needs one photo and strokes.json; export it anew")
-            photo = _member(archive, members[photos[0]], MAX_BYTES, name)
+                what = "the project needs one photo and strokes.json; export it anew"
+                raise TreestrokeError(f"{name}: {what}", code="project_unreadable")
+            photo = _member(archive, members[photos[0]], MAX_STORED_BYTES, name)
             strokes = _member(archive, members["strokes.json"], MAX_TEXT_BYTES, name)
             has_settings = "settings.json" in members
             settings = _member(archive, members["settings.json"], MAX_TEXT_BYTES, name) if has_settings else b"{}"
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        raise TreestrokeError(f"{name}: this is no project file that can be read ({error}); export it anew") from error
-    return Project(photo, strokes, _settings(settings, name))
+        what = f"this is no project file that can be read ({error}); export it anew"
+        raise TreestrokeError(f"{name}: {what}", code="project_unreadable") from error
+    return Project(StoredPhoto(photo), strokes, _settings(settings, name))
+
+
+def write_project(project: Project) -> bytes:
+    """Write a project file that `read_project` reads back; equal projects give equal bytes."""
+    ending = next((ending for start, ending in _ENDINGS.items() if project.photo.startswith(start)), "png")
+    settings = json.dumps(project.settings, indent=2, sort_keys=True).encode()
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        _add(archive, f"photo.{ending}", project.photo, zipfile.ZIP_STORED)  # it is compressed already
+        _add(archive, "strokes.json", project.strokes, zipfile.ZIP_DEFLATED)
+        _add(archive, "settings.json", settings, zipfile.ZIP_DEFLATED)
+    return out.getvalue()
+
+
+def _add(archive: zipfile.ZipFile, member: str, data: bytes, compression: int) -> None:
+    info = zipfile.ZipInfo(member, _NO_TIME)
+    info.create_system, info.external_attr, info.compress_type = _UNIX, _READABLE << 16, compression
+    archive.writestr(info, data)
 
 
 def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, limit: int, name: str) -> bytes:
     if info.file_size > limit:
-        raise TreestrokeError(f"{name}: {info.filename} has more than {limit // 10**6} MB; make it smaller")
+        what = f"{info.filename} has more than {limit // 10**6} MB; make it smaller"
+        raise TreestrokeError(f"{name}: {what}", code="project_too_large")
     return archive.read(info)
 
 
 def _settings(text: bytes, name: str) -> dict[str, Any]:
-    try:
-        value = json.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise SettingsError(f"{name}: settings.json is no valid JSON ({error}); export the project anew") from error
+    value = read_json(text, SettingsError, f"{name}: settings.json is", "export the project anew")
     if not isinstance(value, dict):
-        raise SettingsError(f"{name}: settings.json must hold an object; export the project anew")
+        what = "settings.json must hold an object; export the project anew"
+        raise SettingsError(f"{name}: {what}", code="wrong_type")
     return value

@@ -1,14 +1,19 @@
 """Skeletons as plain lists, for JSON."""
 
+import math
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.pipeline.growing import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
 _DIGITS = 2
 """Of a pixel: finer than any photo shows."""
+_DIGITS_AT_10_M = 4
+"""Of a metre; a tree ten times as high has one digit less."""
 
 
 def plain_skeleton(skeleton: Skeleton | None, stroke: NDArray[np.int64]) -> dict[str, list[Any]]:
@@ -20,4 +25,28 @@ def plain_skeleton(skeleton: Skeleton | None, stroke: NDArray[np.int64]) -> dict
         "radii": skeleton.radii.round(_DIGITS).tolist(),
         "parents": skeleton.parents.tolist(),
         "stroke": stroke.tolist(),
+    }
+
+
+def plain_camera(camera: Camera) -> dict[str, Any]:
+    """Write a camera as the GLB's ``extras.photo`` has it."""
+    return {
+        "width": camera.width,
+        "height": camera.height,
+        "metres_per_pixel": camera.metres_per_pixel,
+        "root": list(camera.root_px),
+    }
+
+
+def plain_grown(tree: LiveTree) -> dict[str, Any]:
+    """Write a grown tree, metres, and the photo's camera as lists."""
+    skeleton, camera = tree.skeleton, tree.camera
+    height_m = max(float(np.ptp(skeleton.points[:, 1])), 1e-3)
+    digits = _DIGITS_AT_10_M - round(math.log10(height_m / 10))
+    return {
+        "points": skeleton.points.round(digits).tolist(),
+        "radii": skeleton.radii.round(digits).tolist(),
+        "parents": skeleton.parents.tolist(),
+        "born": tree.born.tolist(),
+        "photo": plain_camera(camera),
     }

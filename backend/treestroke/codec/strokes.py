@@ -1,14 +1,16 @@
 """Strokes: JSON in and out."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from numbers import Real
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 
-from treestroke.core.errors import StrokesError
-from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
+from treestroke.codec.json_text import read_json
+from treestroke.core.errors import StrokesError, shown
+from treestroke.core.stroke_rules import MAX_POINTS, Place, check_count
 from treestroke.core.strokes import Stroke, Strokes
 
 
@@ -21,15 +23,11 @@ def parse_strokes(text: str | bytes, name: str) -> Strokes:
         No JSON, a wrong type, an unknown or missing key, NaN or infinity, too many strokes or points; the message
         names the file and the stroke.
     """
-    try:
-        decoded = text.decode("utf-8-sig") if isinstance(text, bytes) else text
-        value = json.loads(decoded, parse_constant=_refuse_constant)
-    except (ValueError, RecursionError) as error:
-        raise StrokesError(f"{name}: the strokes are no valid JSON ({error}); save them anew") from error
+    value = read_json(text, StrokesError, f"{name}: the strokes are", "save them anew")
     try:
         return strokes_from(value)
     except StrokesError as error:
-        raise StrokesError(f"{name}: {error}") from error
+        raise error.within(name) from error
 
 
 def strokes_from(value: object) -> Strokes:
@@ -40,17 +38,15 @@ def strokes_from(value: object) -> Strokes:
     StrokesError
         As `parse_strokes`.
     """
-    table = _table(value, "strokes", ("crown", "branches", "erase"))
+    table = _table(value, (), ("crown", "branches", "erase"))
     if "crown" not in table:
-        raise StrokesError("crown: it is missing; draw one stroke around the foliage")
-    branches, erase = (_list(table.get(key, []), key) for key in ("branches", "erase"))
-    count = 1 + len(branches) + len(erase)
-    if count > MAX_STROKES:
-        raise StrokesError(f"strokes: there are {count}, at most {MAX_STROKES} are allowed; leave some out")
+        raise StrokesError.at(("crown",), "it is missing; draw one stroke around the foliage", "crown_missing")
+    branches, erase = (_list(table.get(key, []), (key,)) for key in ("branches", "erase"))
+    check_count(1 + len(branches) + len(erase))
     return Strokes(
-        crown=_stroke(table["crown"], "crown", ("points",)),
-        branches=tuple(_stroke(one, f"branches/{i}", ("points", "width")) for i, one in enumerate(branches)),
-        erase=tuple(_stroke(one, f"erase/{i}", ("points",)) for i, one in enumerate(erase)),
+        crown=_stroke(table["crown"], ("crown",), ("points",)),
+        branches=tuple(_stroke(one, ("branches", i), ("points", "width")) for i, one in enumerate(branches)),
+        erase=tuple(_stroke(one, ("erase", i), ("points",)) for i, one in enumerate(erase)),
     )
 
 
@@ -69,53 +65,53 @@ def _plain(stroke: Stroke) -> dict[str, object]:
     return {"points": stroke.points.tolist(), **width}
 
 
-def _refuse_constant(token: str) -> NoReturn:
-    raise ValueError(f"{token} is no number")
-
-
-def _table(value: object, pointer: str, known: Sequence[str]) -> Mapping[str, Any]:
+def _table(value: object, place: Place, known: Sequence[str]) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
-        raise StrokesError(f"{pointer}: it must be an object with {', '.join(known)}, not {_kind(value)}")
+        what = f"it must be an object with {', '.join(known)}, not {_kind(value)}"
+        raise StrokesError.at(place, what, "wrong_type")
     for key in value:
         if key not in known:
-            raise StrokesError(f"{pointer}: the key {key!r} is unknown; allowed are {', '.join(known)}")
+            what = f"the key {shown(key)} is unknown; allowed are {', '.join(known)}"
+            raise StrokesError.at(place, what, "unknown_key", key=str(key))
     return value
 
 
-def _list(value: object, pointer: str) -> Sequence[Any]:
+def _list(value: object, place: Place) -> Sequence[Any]:
     if not isinstance(value, list | tuple):
-        raise StrokesError(f"{pointer}: it must be a list, not {_kind(value)}")
+        raise StrokesError.at(place, f"it must be a list, not {_kind(value)}", "wrong_type")
     return value
 
 
-def _stroke(value: object, pointer: str, known: Sequence[str]) -> Stroke:
-    table = _table(value, pointer, known)
+def _stroke(value: object, place: Place, known: Sequence[str]) -> Stroke:
+    table = _table(value, place, known)
     if "points" not in table:
-        raise StrokesError(f"{pointer}: it has no points; give [[x, y], ...]")
-    points = _list(table["points"], f"{pointer}/points")
+        raise StrokesError.at(place, "it has no points; give [[x, y], ...]", "missing_key")
+    points = _list(table["points"], (*place, "points"))
     if len(points) > MAX_POINTS:
-        raise StrokesError(f"{pointer}: it has {len(points)} points, at most {MAX_POINTS} are allowed; thin them out")
-    pairs = [_pair(one, f"{pointer}/points/{i}") for i, one in enumerate(points)]
-    width = _number(table["width"], f"{pointer}/width") if "width" in table else None
+        what = f"it has {len(points)} points, at most {MAX_POINTS} are allowed; thin them out"
+        raise StrokesError.at(place, what, "too_many_points")
+    pairs = [_pair(one, (*place, "points", i)) for i, one in enumerate(points)]
+    width = _number(table["width"], (*place, "width")) if "width" in table else None
     return Stroke(np.array(pairs, dtype=np.float64).reshape(-1, 2), width)
 
 
-def _pair(value: object, pointer: str) -> tuple[float, float]:
-    pair = _list(value, pointer)
+def _pair(value: object, place: Place) -> tuple[float, float]:
+    pair = _list(value, place)
     if len(pair) != 2:
-        raise StrokesError(f"{pointer}: a point is a pair [x, y], not {len(pair)} values")
-    return _number(pair[0], pointer), _number(pair[1], pointer)
+        raise StrokesError.at(place, f"a point is a pair [x, y], not {len(pair)} values", "wrong_type")
+    return _number(pair[0], place), _number(pair[1], place)
 
 
-def _number(value: object, pointer: str) -> float:
+def _number(value: object, place: Place) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise StrokesError(f"{pointer}: a number is needed, not {_kind(value)}")
+        raise StrokesError.at(place, f"a number is needed, not {_kind(value)}", "wrong_type")
     try:
         number = float(value)
     except OverflowError:
         number = float("inf")
-    if not np.isfinite(number):
-        raise StrokesError(f"{pointer}: {number} is not finite; give pixels of the photo")
+    if not math.isfinite(number):
+        what = f"{json.dumps(number)} is not finite; give pixels of the photo"
+        raise StrokesError.at(place, what, "non_finite_number")
     return number
 
 

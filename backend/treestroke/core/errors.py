@@ -8,18 +8,79 @@ TreestrokeError              the user's input cannot be used; the message says w
 A programmer's mistake (wrong shape, broken invariant) is a ValueError instead.
 """
 
+from typing import ClassVar, Self
+
+LONGEST_SHOWN = 60
+"""Characters of a value that a message repeats."""
+
 
 class TreestrokeError(Exception):
-    """An input that cannot be used; the message is one line for the person who gave it."""
+    """An input that cannot be used; the message is one line for the person who gave it.
+
+    Attributes
+    ----------
+    code
+        What is wrong, for programs: snake_case and stable.
+    pointer
+        JSON pointer (RFC 6901) to the faulty part of the input, such as ``/branches/0/points/3``; "" for the whole.
+    """
+
+    usual_code: ClassVar[str] = "bad_input"
+    whole: ClassVar[str] = "input"
+    """How a message calls the input as a whole."""
+
+    def __init__(self, message: str, *, code: str = "", pointer: str = "") -> None:
+        super().__init__(_printable(message))
+        self.code = code or self.usual_code
+        self.pointer = pointer
+
+    @classmethod
+    def at(cls, place: tuple[str | int, ...], what: str, code: str, *, key: str = "") -> Self:
+        """Say what is wrong at a place, given by its keys from the outside in; the text itself names ``key`` there."""
+        keys = (*place, key) if key else place
+        text = "/".join(map(str, place))[:LONGEST_SHOWN] or cls.whole
+        return cls(f"{text}: {what}", code=code, pointer="".join(f"/{_escaped(str(one))}" for one in keys))
+
+    def within(self, name: str) -> Self:
+        """Give the same error with the name of the file before its message."""
+        return type(self)(f"{name}: {self}", code=self.code, pointer=self.pointer)
 
 
 class PhotoError(TreestrokeError):
     """The photo cannot be read, or is too small, too large or not one frame."""
 
+    usual_code = "photo_unreadable"
+    whole = "photo"
+
 
 class StrokesError(TreestrokeError):
     """A stroke is malformed, or the strokes together do not describe a tree."""
 
+    usual_code = "strokes_invalid"
+    whole = "strokes"
+
 
 class SettingsError(TreestrokeError):
     """A setting is unknown or out of range."""
+
+    usual_code = "setting_invalid"
+    whole = "settings"
+
+
+def shown(value: object) -> str:
+    """Write a value for a message: cut short, and never an error of its own."""
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # thousands of digits; lists in lists in lists
+        return f"{type(value).__name__} too long to show"
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 3]}..."
+
+
+def _printable(message: str) -> str:
+    """Escape what is no character of a line of text: line ends, NUL, halves of a surrogate pair."""
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in message)
+
+
+def _escaped(key: str) -> str:
+    """Write a key as part of a JSON pointer."""
+    return _printable(key).replace("~", "~0").replace("/", "~1")

@@ -21,6 +21,8 @@ TOUCH_SHARE = 0.02
 """Of the photo's long side: as near as a loose stroke comes to what it is meant to touch."""
 STEM_SHARE = 0.03
 """Of the tree's height: a later stroke that starts this near the root is a stem of its own."""
+Place = tuple[str | int, ...]
+"""Keys from the strokes as a whole to one of their parts."""
 CROSSING = StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken")
 
 
@@ -37,11 +39,11 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
         Too many strokes or points, a value that is not finite, too few distinct points, a crown that is too small,
         or a trunk that neither touches nor points into the crown. The message names the stroke.
     """
-    _check_counts(strokes)
+    check_count(1 + len(strokes.branches) + len(strokes.erase))
     inside = Strokes(
-        crown=_clamped(strokes.crown, "crown", width, height, 3),
-        branches=tuple(_clamped(s, f"branches/{i}", width, height, 2) for i, s in enumerate(strokes.branches)),
-        erase=tuple(_clamped(s, f"erase/{i}", width, height, 2) for i, s in enumerate(strokes.erase)),
+        crown=_clamped(strokes.crown, ("crown",), width, height, 3),
+        branches=tuple(_clamped(s, ("branches", i), width, height, 2) for i, s in enumerate(strokes.branches)),
+        erase=tuple(_clamped(s, ("erase", i), width, height, 2) for i, s in enumerate(strokes.erase)),
     )
     coarse = min(1.0, CHECKED_SIDE / max(width, height))
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
@@ -64,45 +66,50 @@ def require_trunk(strokes: Strokes) -> None:
         There is no branch stroke.
     """
     if not strokes.branches:
-        raise StrokesError("branches: there is none; draw one stroke from the tree's root up its trunk")
+        what = "there is none; draw one stroke from the tree's root up its trunk"
+        raise StrokesError.at(("branches",), what, "trunk_missing")
 
 
-def _check_counts(strokes: Strokes) -> None:
-    count = 1 + len(strokes.branches) + len(strokes.erase)
+def check_count(count: int) -> None:
+    """Refuse too many strokes.
+
+    Raises
+    ------
+    StrokesError
+        There are more than `MAX_STROKES`.
+    """
     if count > MAX_STROKES:
-        raise StrokesError(f"strokes: there are {count}, at most {MAX_STROKES} are allowed; leave some out")
+        what = f"there are {count}, at most {MAX_STROKES} are allowed; leave some out"
+        raise StrokesError.at((), what, "too_many_strokes")
 
 
-def _clamped(stroke: Stroke, pointer: str, width: int, height: int, least: int) -> Stroke:
+def _clamped(stroke: Stroke, place: Place, width: int, height: int, least: int) -> Stroke:
     """Check one stroke by itself and move its points into the photo."""
     points = np.asarray(stroke.points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 2:
-        raise StrokesError(f"{pointer}: points must be pairs of x and y; give [[x, y], ...]")
+        raise StrokesError.at(place, "points must be pairs of x and y; give [[x, y], ...]", "wrong_type")
     if len(points) > MAX_POINTS:
-        raise StrokesError(
-            f"{pointer}: it has {len(points)} points, at most {MAX_POINTS} are allowed; draw it with fewer"
-        )
+        what = f"it has {len(points)} points, at most {MAX_POINTS} are allowed; draw it with fewer"
+        raise StrokesError.at(place, what, "too_many_points")
     if not np.isfinite(points).all():
-        raise StrokesError(f"{pointer}: a coordinate is not a finite number; give pixels of the photo")
+        what = "a coordinate is not a finite number; give pixels of the photo"
+        raise StrokesError.at(place, what, "non_finite_number")
     if stroke.width is not None and not (np.isfinite(stroke.width) and stroke.width > 0):
-        raise StrokesError(f"{pointer}: width is {stroke.width}; give pixels above 0 or leave it out")
+        what = f"width is {stroke.width}; give pixels above 0 or leave it out"
+        raise StrokesError.at(place, what, "width_invalid", key="width")
     points = np.clip(points, 0.0, (float(width), float(height)))
     distinct = len(np.unique(points, axis=0))
     if distinct < least:
-        raise StrokesError(
-            f"{pointer}: it has {distinct} distinct point{'s' * (distinct != 1)} inside the photo, "
-            f"at least {least} are needed; draw it longer"
-        )
+        held = f"it has {distinct} distinct point{'s' * (distinct != 1)} inside the photo"
+        raise StrokesError.at(place, f"{held}, at least {least} are needed; draw it longer", "stroke_too_short")
     return Stroke(points, stroke.width)
 
 
 def _check_crown(crown: NDArray[np.bool_]) -> None:
     share = np.count_nonzero(crown) / crown.size
     if share < MIN_CROWN_SHARE:
-        raise StrokesError(
-            f"crown: it encloses {share:.2%} of the photo, at least {MIN_CROWN_SHARE:.1%} is needed; "
-            "draw it around the whole foliage"
-        )
+        held = f"it encloses {share:.2%} of the photo, at least {MIN_CROWN_SHARE:.1%} is needed"
+        raise StrokesError.at(("crown",), f"{held}; draw it around the whole foliage", "crown_too_small")
 
 
 def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side: int) -> None:
@@ -119,9 +126,8 @@ def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side
         return
     outline = np.vstack([strokes.crown.points, strokes.crown.points[:1]])
     if _nearest(outline, drawn)[1].min() > TOUCH_SHARE * side:
-        raise StrokesError(
-            "branches/0: the trunk neither touches nor points into the crown; draw it from the root up to the foliage"
-        )
+        what = "the trunk neither touches nor points into the crown; draw it from the root up to the foliage"
+        raise StrokesError.at(("branches", 0), what, "trunk_outside_crown")
 
 
 def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], tuple[StrokeWarning, ...]]:

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from treestroke.codec.image import MAX_BYTES, Picture, check_size, decode_photo
+from treestroke.codec.image import MAX_BYTES, MAX_STORED_BYTES, Picture, check_size, decode_photo
 from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
 from treestroke.codec.strokes import parse_strokes, strokes_from
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
+from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import Strokes
 
 PhotoLike = str | os.PathLike[str] | bytes | Picture
@@ -38,8 +39,10 @@ def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeEr
         raise kind(f"{os.fspath(path)!r}: this is no path ({error}); check it") from error
 
 
-def load_photo(photo: PhotoLike) -> Picture:
+def load_photo(photo: PhotoLike, report: Report = silent) -> Picture:
     """Bring a photo (path, encoded bytes, or upright sRGB pixels (h, w, 3) uint8) to pixels.
+
+    ``report("decode", fraction)`` is called as encoded ones are read.
 
     Raises
     ------
@@ -48,12 +51,13 @@ def load_photo(photo: PhotoLike) -> Picture:
     """
     if isinstance(photo, np.ndarray):
         if photo.ndim != 3 or photo.shape[2] != 3 or photo.dtype != np.uint8:
-            raise PhotoError(f"photo: an array must be (h, w, 3) uint8, not {photo.shape} {photo.dtype}; convert it")
+            what = f"an array must be (h, w, 3) uint8, not {photo.shape} {photo.dtype}; convert it"
+            raise PhotoError.at((), what, "wrong_type")
         check_size(photo.shape[1], photo.shape[0], "photo")
         return np.ascontiguousarray(photo)
     if isinstance(photo, bytes):
-        return decode_photo(photo, "photo")
-    return decode_photo(read_input(photo, MAX_BYTES, PhotoError), os.fspath(photo))
+        return decode_photo(photo, "photo", report)
+    return decode_photo(read_input(photo, MAX_BYTES, PhotoError), os.fspath(photo), report)
 
 
 def load_strokes(strokes: StrokesLike) -> Strokes:
@@ -92,5 +96,5 @@ def load_project(path: str | os.PathLike[str]) -> Project:
     TreestrokeError
         As `read_project`; or the file cannot be read.
     """
-    data = read_input(path, MAX_BYTES + MAX_TEXT_BYTES, TreestrokeError)
+    data = read_input(path, MAX_STORED_BYTES + MAX_TEXT_BYTES, TreestrokeError)
     return read_project(data, os.fspath(path))

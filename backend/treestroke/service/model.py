@@ -11,7 +11,7 @@ from treestroke import __version__
 from treestroke.codec.gltf import encode_glb
 from treestroke.codec.preview import draw_preview
 from treestroke.codec.silhouette import likeness, silhouette
-from treestroke.core.pipeline.photo import TreeModel, model_photo
+from treestroke.core.pipeline.photo import OnGrown, TreeModel, model_photo, unseen
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
@@ -53,12 +53,14 @@ def model(
     settings: SettingsLike = None,
     seed: int = 0,
     report: Report = silent,
+    on_grown: OnGrown = unseen,
 ) -> Model:
     """Turn one photo and a few strokes into a 3D tree.
 
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
     mapping or values; ``settings`` holds any of `ModelSettings`' names. ``report(stage, fraction)`` is called as
-    the work goes on. The same photo, strokes, settings and seed give the same bytes.
+    the work goes on, ``on_grown(tree)`` once, with the grown tree before it has leaves and bark. The same photo,
+    strokes, settings and seed give the same bytes.
 
     Raises
     ------
@@ -70,8 +72,8 @@ def model(
     watch = Stopwatch(report)
     with one_thread():
         with watch.stage("decode"):
-            picture = load_photo(photo)
-        tree = model_photo(picture, given, chosen, np.random.default_rng(seed), watch)
+            picture = load_photo(photo, watch)
+        tree = model_photo(picture, given, chosen, np.random.default_rng(seed), watch, on_grown)
         with watch.stage("write"):
             glb = encode_glb(tree.bark, tree.leaf, tree.camera, generator=ENGINE)
     return Model(glb, _report(tree, len(glb), chosen, seed, watch), tree)

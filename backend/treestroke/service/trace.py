@@ -7,9 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.codec.overlay import draw_overlay
-from treestroke.codec.skeleton import plain_skeleton
+from treestroke.codec.skeleton import plain_grown, plain_skeleton
 from treestroke.core.imaging.outline import rings_of_mask
-from treestroke.core.pipeline.photo import trace_photo
+from treestroke.core.pipeline.growing import LiveTree
+from treestroke.core.pipeline.photo import grow_photo, trace_photo
+from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
@@ -27,6 +29,8 @@ class Trace:
         (h, w, 3) uint8 sRGB, upright.
     foliage
         (h, w), true on leaves (on a bare tree, on twigs).
+    rings
+        The same as closed outlines, each (n, 2), px, by the even-odd rule.
     crown
         (n, 2) the crown stroke's points, px.
     found
@@ -37,35 +41,50 @@ class Trace:
         (n,) index of the stroke that each joint lies under, -1 where it was found by itself.
     warnings
         What was mended in the strokes.
+    grow
+        Whether a grown tree was asked for.
+    grown
+        The tree that default settings and seed 0 let grow; None where it was not asked for or has no branch stroke.
     """
 
     photo: NDArray[np.uint8]
     foliage: NDArray[np.bool_]
+    rings: list[NDArray[np.float64]]
     crown: NDArray[np.float64]
     found: Foliage
     skeleton: Skeleton | None
     stroke: NDArray[np.int64]
     warnings: tuple[StrokeWarning, ...]
+    grow: bool = False
+    grown: LiveTree | None = None
 
     def answer(self) -> dict[str, Any]:
-        """Give the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``."""
-        return {
-            "foliage": [ring.tolist() for ring in rings_of_mask(self.foliage)],
+        """Give the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``.
+
+        Where a grown tree was asked for, also ``grown`` and ``photo``, null without a branch stroke.
+        """
+        found = {
+            "foliage": [ring.tolist() for ring in self.rings],
             "skeleton": plain_skeleton(self.skeleton, self.stroke),
             "warnings": [asdict(warning) for warning in self.warnings],
         }
+        if not self.grow:
+            return found
+        grown = None if self.grown is None else plain_grown(self.grown)
+        return {**found, "grown": grown, "photo": None if grown is None else grown["photo"]}
 
     def overlay(self) -> NDArray[np.uint8]:
         """Draw foliage and skeleton over the photo (h, w, 3)."""
         return draw_overlay(self.photo, self.foliage, self.skeleton, self.stroke)
 
 
-def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None) -> Trace:
+def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None, grow: bool = False) -> Trace:
     """Find the foliage inside the crown stroke and the branches near the branch strokes.
 
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
     mapping or values. Without branch strokes the foliage alone is found. ``after`` is the last trace of the same photo:
-    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once.
+    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once. ``grow``
+    asks for the tree, too, that `model` would grow of them.
 
     Raises
     ------
@@ -74,9 +93,14 @@ def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None) ->
     """
     given = load_strokes(strokes)
     picture = load_photo(photo)
+    crown = given.crown.points
+    last = after if after is not None and np.array_equal(after.crown, crown) else None
+    known = None if last is None else last.found
     with one_thread():
-        kept = after is not None and np.array_equal(after.crown, given.crown.points)
-        traced = trace_photo(picture, given, after.found if after is not None and kept else None)
-    return Trace(
-        picture, traced.foliage, given.crown.points, traced.found, traced.skeleton, traced.stroke, traced.warnings
-    )
+        if grow:
+            found, grown = grow_photo(picture, given, ModelSettings(), np.random.default_rng(0), known)
+        else:
+            found, grown = trace_photo(picture, given, known), None
+    rings = rings_of_mask(found.foliage) if last is None else last.rings
+    what = found.foliage, rings, crown, found.found, found.skeleton, found.stroke, found.warnings
+    return Trace(picture, *what, grow=grow, grown=grown)

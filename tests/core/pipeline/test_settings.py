@@ -61,3 +61,29 @@ def test_a_seed_in_range_is_taken(seed: int) -> None:
 def test_another_seed_is_refused(seed: object) -> None:
     with pytest.raises(SettingsError, match="^seed: "):
         check_seed(seed)
+
+
+@pytest.mark.parametrize(
+    ("values", "code", "pointer"),
+    [
+        ({"wind": 1}, "unknown_setting", "/wind"),
+        ({"w/ind\n": 1}, "unknown_setting", r"/w~1ind\n"),
+        ({"height": 1000}, "setting_not_allowed", "/height"),
+        ({"height": float("inf")}, "non_finite_number", "/height"),
+        ({"height": 10**5000}, "setting_not_allowed", "/height"),
+        ({"iterations": 2.5}, "setting_not_allowed", "/iterations"),
+        ({"foliage": ["moss"] * 1000}, "setting_not_allowed", "/foliage"),
+    ],
+)
+def test_a_refusal_says_what_and_where_for_programs(values: dict[str, object], code: str, pointer: str) -> None:
+    with pytest.raises(SettingsError) as refused:
+        settings_from(values)
+    assert (refused.value.code, refused.value.pointer) == (code, pointer)
+    assert len(str(refused.value)) < 200
+
+
+@pytest.mark.parametrize("seed", [-1, [10**5000], float("nan")])
+def test_a_seed_s_refusal_has_its_own_code(seed: object) -> None:
+    with pytest.raises(SettingsError) as refused:
+        check_seed(seed)
+    assert (refused.value.code, refused.value.pointer) == ("seed_invalid", "/seed")

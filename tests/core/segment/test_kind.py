@@ -8,12 +8,16 @@ from tests.pictures import disc, leaves_on_sky, ring, wood_mask, wood_photo
 
 from treestroke.codec.image import decode_photo
 from treestroke.core.segment.foliage import segment_foliage
-from treestroke.core.segment.kind import foliage_kind
+from treestroke.core.segment.kind import Kind, foliage_kind, foliage_look
 from treestroke.service.inputs import load_strokes
 
 DULL, VIVID = (50, 62, 40), (90, 150, 40)
 TRUNK = np.array([[150.0, 290.0], [150.0, 200.0], [150.0, 60.0]])
 SHORT_TRUNK = np.array([[150.0, 290.0], [150.0, 230.0]])
+
+
+def kind_of(photo: np.ndarray, mask: np.ndarray, crown: np.ndarray, trunk: np.ndarray) -> Kind:
+    return foliage_kind(foliage_look(photo, mask, crown), mask, trunk)
 
 
 def spire(half_width: float = 55.0) -> np.ndarray:
@@ -41,21 +45,21 @@ def fan(twigs: int = 25) -> np.ndarray:
 def test_colour_and_shape_tell_needles_from_leaves(
     mask: np.ndarray, colour: tuple[int, int, int], trunk: np.ndarray, kind: str
 ) -> None:
-    assert foliage_kind(leaves_on_sky(mask, colour), mask, mask, trunk) == kind
+    assert kind_of(leaves_on_sky(mask, colour), mask, mask, trunk) == kind
 
 
 def test_a_leaning_trunk_bears_no_needles() -> None:
     leaning = TRUNK + np.array([[0, 0], [30, 0], [60, 0]])
-    assert foliage_kind(leaves_on_sky(spire(), DULL), spire(), spire(), leaning) == "leaves"
+    assert kind_of(leaves_on_sky(spire(), DULL), spire(), spire(), leaning) == "leaves"
 
 
 def test_a_fan_of_twigs_is_bare() -> None:
-    assert foliage_kind(wood_photo(fan()), fan(), disc(300, 125), TRUNK) == "bare"
+    assert kind_of(wood_photo(fan()), fan(), disc(300, 125), TRUNK) == "bare"
 
 
 def test_no_foliage_at_all_is_bare() -> None:
     none = np.zeros((300, 300), dtype=bool)
-    assert foliage_kind(wood_photo(none), none, disc(300, 125), TRUNK) == "bare"
+    assert kind_of(wood_photo(none), none, disc(300, 125), TRUNK) == "bare"
 
 
 KINDS = {
@@ -86,4 +90,4 @@ def test_each_photo_s_kind_is_seen(name: str, kind: str) -> None:
     photo = decode_photo((folder / f"{name.split('.')[0]}.jpg").read_bytes(), name)
     strokes = load_strokes(folder / f"{name}.strokes.json")
     found = segment_foliage(photo, strokes.crown.points)
-    assert foliage_kind(photo, found.mask, found.region, strokes.branches[0].points) == kind
+    assert kind_of(photo, found.mask, found.region, strokes.branches[0].points) == kind

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from treestroke.core.errors import SettingsError
+from treestroke.core.errors import SettingsError, shown
 
 MAX_SEED = 2**63 - 1
 
@@ -77,7 +77,8 @@ class ModelSettings:
         for entry in fields(self):
             value, allowed = getattr(self, entry.name), entry.metadata["allowed"]
             if not allowed.holds(value):
-                raise SettingsError(f"{entry.name}: {value!r} is not allowed; give {allowed}")
+                code = "non_finite_number" if _is_endless(value) else "setting_not_allowed"
+                raise SettingsError.at((entry.name,), f"{shown(value)} is not allowed; give {allowed}", code)
             object.__setattr__(self, entry.name, allowed.plain(value))
 
 
@@ -92,7 +93,8 @@ def settings_from(values: Mapping[str, Any]) -> ModelSettings:
     known = [entry.name for entry in fields(ModelSettings)]
     for name in values:
         if name not in known:
-            raise SettingsError(f"{name}: there is no such setting; the settings are {', '.join(known)}")
+            what = f"there is no such setting; the settings are {', '.join(known)}"
+            raise SettingsError.at((name,), what, "unknown_setting")
     return ModelSettings(**values)
 
 
@@ -108,5 +110,11 @@ def check_seed(seed: Any) -> int:
         It is no whole number from 0 to 2^63 - 1.
     """
     if not SEED.holds(seed):
-        raise SettingsError(f"seed: {seed!r} is not allowed; give a whole number from 0 to {MAX_SEED}")
+        what = f"{shown(seed)} is not allowed; give a whole number from 0 to {MAX_SEED}"
+        raise SettingsError.at(("seed",), what, "seed_invalid")
     return int(seed)
+
+
+def _is_endless(value: object) -> bool:
+    """Tell whether a value is a number that is not finite."""
+    return isinstance(value, float | np.floating) and not np.isfinite(value)

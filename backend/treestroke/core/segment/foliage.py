@@ -24,7 +24,9 @@ from treestroke.core.imaging.mixture import (
     table_index,
 )
 from treestroke.core.imaging.outline import fill_outline
+from treestroke.core.progress import Report, silent
 from treestroke.core.segment.height import LIMIT, log_odds_by_height
+from treestroke.core.segment.kind import Look, foliage_look
 
 Mask = NDArray[np.bool_]
 Photo = NDArray[np.uint8]
@@ -92,6 +94,8 @@ class Foliage:
         (h, w) where foliage was looked for: the crown, a little dilated.
     leaf, ground
         Colour models of the foliage and of all else near it.
+    look
+        How the leaves look, for judging what they are.
     """
 
     mask: Mask
@@ -99,9 +103,12 @@ class Foliage:
     region: Mask
     leaf: Mixture
     ground: Mixture
+    look: Look
 
 
-def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = FoliageParams()) -> Foliage:
+def segment_foliage(
+    photo: Photo, crown_px: Floats, params: FoliageParams = FoliageParams(), report: Report = silent
+) -> Foliage:
     """Find the foliage inside a crown stroke (n, 3 points at least), px, on a photo (h, w, 3), sRGB.
 
     The mask is never empty: where nothing looks like a leaf it is the crown itself.
@@ -113,19 +120,24 @@ def segment_foliage(photo: Photo, crown_px: Floats, params: FoliageParams = Foli
     grow_px = params.dilation_px * max(height, width) / REFERENCE_SIDE
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= grow_px
     leaf, ground = _colour_models(pixels, inside, params)
+    report("foliage", 0.2)
     place = _place_prior(inside)
     odds = _log_odds(leaf, ground, pixels)
-    for _ in range(params.refits):
+    for refit in range(params.refits):
         told = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0)
         if not told.any() or told.all():
             break
         leaf, ground = _refit(pixels, told, params)
         odds = log_odds_by_height(leaf, ground, pixels, told)
+        report("foliage", 0.2 + 0.5 * (refit + 1) / params.refits)
     found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
+    report("foliage", 0.9)
     pure = _alike(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
+    look = foliage_look(pixels, found, region)
     mask, sure, searched = (_framed(part, box, crown) for part in (found, pure, region))
-    return Foliage(mask, sure, searched, leaf, ground)
+    report("foliage", 1.0)
+    return Foliage(mask, sure, searched, leaf, ground, look)
 
 
 def _alike(pure: Mask, pixels: Photo) -> Mask:

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.polyline import distances_to_segment
 
 Kind = Literal["leaves", "needles", "bare"]
+Look = Literal["bare", "dull", "fresh"]
+"""Twigs alone; dull dark green; all else."""
 Mask = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
@@ -22,15 +24,24 @@ TALLNESS = 1.2
 """Least height of a conifer's crown over its width, for a crown that does not taper."""
 
 
-def foliage_kind(photo: NDArray[np.uint8], mask: Mask, crown: Mask, trunk_px: Floats) -> Kind:
-    """Judge by the foliage mask (h, w), the crown's inside (h, w) and the trunk stroke (n, 2), px.
+def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> Look:
+    """Judge foliage by its mask (h, w) on a photo (h, w, 3) and the crown's inside (h, w).
 
-    Bare: the crown is thin lines, or a web of colourless ones with something else between them. Needles: dull dark
-    green, in a crown that is tall or tapers to a top above a trunk that runs through it. Leaves: all else.
+    Bare: the crown is thin lines, or a web of colourless ones with something else between them.
     """
     if not mask.any() or _thinness(mask, crown) > THIN or _is_twiggy(photo, mask, crown):
         return "bare"
-    return "needles" if _is_dull_green(photo, mask) and _is_spire(mask, trunk_px) else "leaves"
+    return "dull" if _is_dull_green(photo, mask) else "fresh"
+
+
+def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> Kind:
+    """Judge by how the foliage looks, its mask (h, w) and the trunk stroke (n, 2), px.
+
+    Needles: dull dark green, in a crown that is tall or tapers to a top above a trunk that runs through it.
+    """
+    if look == "bare":
+        return "bare"
+    return "needles" if look == "dull" and _is_spire(mask, trunk_px) else "leaves"
 
 
 def _thinness(mask: Mask, crown: Mask) -> float:
@@ -67,7 +78,8 @@ def _is_dull_green(photo: NDArray[np.uint8], mask: Mask) -> bool:
 def _is_spire(mask: Mask, trunk_px: Floats) -> bool:
     """Tell whether the crown is tall, or tapers upward, and a straight trunk runs up through most of it."""
     rows = np.flatnonzero(mask.any(axis=1))
-    widths = np.array([np.ptp(np.flatnonzero(mask[row])) + 1 for row in rows], dtype=np.float64)
+    left, right = mask[rows].argmax(axis=1), mask[rows, ::-1].argmax(axis=1)
+    widths = (mask.shape[1] - right - left).astype(np.float64)
     height, width = float(len(rows)), float(np.percentile(widths, 90))
     quarter = max(1, len(rows) // 4)
     taper = widths[:quarter].mean() / max(widths[-2 * quarter :].mean(), 1.0)

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from treestroke.service.files import write_whole
+from treestroke.store.files import write_whole
 
 
 def test_files_are_written(tmp_path: Path) -> None:

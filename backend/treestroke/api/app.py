@@ -1,0 +1,109 @@
+"""The web application."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from functools import partial
+from pathlib import Path
+
+from fastapi import FastAPI
+from fastapi.responses import FileResponse
+from fastapi.routing import APIRoute
+from pydantic.json_schema import models_json_schema
+from starlette.types import Scope
+
+from treestroke import __version__
+from treestroke.api.errors import add_handlers
+from treestroke.api.guard import Guard, Limited
+from treestroke.api.metrics import add_metrics
+from treestroke.api.routes import events, files, models, photos, status
+from treestroke.codec.image import MAX_BYTES
+from treestroke.codec.project import MAX_TEXT_BYTES
+from treestroke.queue import make_queue, send_hint
+from treestroke.schemas import ModelRequest, Problem, TraceRequest
+from treestroke.service.dispatch import Dispatcher
+from treestroke.service.photos import Shelf
+from treestroke.service.pool import Tracers
+from treestroke.settings import Settings
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+
+PAGE = Path(__file__).parent / "page"
+HOSTS = ("127.0.0.1", "localhost", "::1")
+_FORM_BYTES = 100_000
+"""What a form may have around its file."""
+_SMALL_BYTES = 100_000
+_REF = "#/components/schemas/{model}"
+
+
+def make_app(settings: Settings) -> FastAPI:
+    """Make the application; database, queue and tracing processes are opened when it starts."""
+    app = FastAPI(
+        title="treestroke",
+        version=__version__,
+        summary="One photo of a tree and a few strokes become a 3D tree.",
+        lifespan=_lifespan,
+        docs_url=None,
+        redoc_url=None,
+        generate_unique_id_function=_operation_id,
+    )
+    app.state.settings = settings
+    add_handlers(app)
+    for routes in (photos, models, events, files, status):
+        app.include_router(routes.router)
+    add_metrics(app)
+
+    @app.get("/", include_in_schema=False)
+    def page() -> FileResponse:
+        return FileResponse(PAGE / "index.html")
+
+    app.add_middleware(Limited, limit_of=_limit_of)
+    app.add_middleware(Guard, hosts=HOSTS)
+    app.openapi = partial(_document, app)  # type: ignore[method-assign]
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    settings: Settings = app.state.settings
+    settings.folder.mkdir(parents=True, exist_ok=True)
+    database, blobs = Database(settings.folder), Blobs(settings.folder)
+    database.migrate()
+    tracers = Tracers(settings.tracers, settings.trace_seconds, settings.memory_mb)
+    dispatcher = Dispatcher(database, blobs, partial(send_hint, make_queue(settings)), settings.keep_days)
+    app.state.shelf = Shelf(database, blobs, tracers)
+    app.state.dispatcher = dispatcher
+    app.state.closing = asyncio.Event()
+    dispatcher.start()
+    try:
+        yield
+    finally:
+        dispatcher.stop()
+        tracers.close()
+        database.close()
+
+
+def _limit_of(scope: Scope) -> int:
+    """Say how many bytes a request's body may have."""
+    path = scope["path"]
+    if path == "/v1/photos":
+        return MAX_BYTES + _FORM_BYTES
+    if path == "/v1/models":
+        return MAX_BYTES + MAX_TEXT_BYTES
+    return MAX_TEXT_BYTES if path.endswith("/trace") else _SMALL_BYTES
+
+
+def _operation_id(route: APIRoute) -> str:
+    return route.name
+
+
+def _document(app: FastAPI) -> dict[str, object]:
+    """Give the API's document, with the bodies that routes read by themselves."""
+    if app.openapi_schema is None:
+        document = FastAPI.openapi(app)
+        schemas = document["components"]["schemas"]
+        _, extra = models_json_schema(
+            [(one, "validation") for one in (TraceRequest, ModelRequest, Problem)], ref_template=_REF
+        )
+        schemas.update(extra["$defs"])
+    return app.openapi_schema  # type: ignore[return-value]

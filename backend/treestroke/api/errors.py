@@ -1,0 +1,156 @@
+"""Errors as problem+json: the only place that knows which error is which HTTP status."""
+
+import re
+from collections.abc import Sequence
+from http import HTTPStatus
+from typing import Any
+
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from fastapi.routing import iter_route_contexts
+from sqlalchemy.exc import OperationalError
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+from starlette.routing import compile_path
+
+from treestroke.core.errors import TreestrokeError
+from treestroke.schemas import Fault, Problem
+from treestroke.service.models import KeyReused
+from treestroke.service.photos import NotFound
+from treestroke.service.pool import Crashed, Overloaded
+
+MEDIA_TYPE = "application/problem+json"
+_RETRY = {"Retry-After": "1"}
+_CODES = {
+    400: "bad_request",
+    404: "not_found",
+    405: "method_not_allowed",
+    408: "body_too_slow",
+    413: "body_too_large",
+    415: "unsupported_media_type",
+}
+log = structlog.get_logger()
+
+
+def problem(
+    status: int, code: str, detail: str, errors: Sequence[Fault] = (), headers: dict[str, str] | None = None
+) -> JSONResponse:
+    """Answer with a problem."""
+    body = Problem(
+        type="about:blank",
+        title=HTTPStatus(status).phrase,
+        status=status,
+        detail=detail,
+        code=code,
+        errors=list(errors),
+    )
+    return JSONResponse(body.model_dump(), status, headers, MEDIA_TYPE)
+
+
+def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Name the problems that a route may answer with, for the API's document."""
+    content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    described = {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
+    for status in {503} & described.keys():
+        described[status]["headers"] = _RETRY_HEADER
+    return dict(described)
+
+
+def add_handlers(app: FastAPI) -> None:
+    """Answer every error as a problem."""
+    for kind, answer in _ANSWERS.items():
+        app.add_exception_handler(kind, answer)
+
+
+def _input(_: Request, error: TreestrokeError) -> JSONResponse:
+    faults = [Fault(pointer=error.pointer, code=error.code, detail=str(error))] if error.pointer else []
+    return problem(400 if error.code == "malformed_json" else 422, error.code, str(error), faults)
+
+
+def _invalid(_: Request, error: RequestValidationError) -> JSONResponse:
+    if error.errors()[0]["type"] == "json_invalid":
+        return problem(400, "malformed_json", "the body is no valid JSON; send it anew")
+    # What was sent is not repeated: it may be anything.
+    faults = [
+        Fault(pointer="".join(f"/{part}" for part in one["loc"][1:]), code=one["type"], detail=one["msg"])
+        for one in error.errors()
+    ]
+    said = "; ".join(f"{fault.pointer[1:]}: {fault.detail}" for fault in faults)
+    return problem(422, "invalid", f"{said}; change it", faults)
+
+
+def _missing(_: Request, error: NotFound) -> JSONResponse:
+    return problem(404, f"{error}_not_found", f"there is no such {error}; check its id")
+
+
+def _reused(_: Request, __: KeyReused) -> JSONResponse:
+    detail = "this Idempotency-Key was used with another request; take a new one"
+    return problem(422, "idempotency_key_reused", detail)
+
+
+def _busy(_: Request, __: Overloaded) -> JSONResponse:
+    return problem(503, "overloaded", "too much is being traced at the moment; try again", headers=_RETRY)
+
+
+def _crashed(_: Request, error: Crashed) -> JSONResponse:
+    log.error("tracer_replaced", why=str(error))
+    detail = "this took too long or failed; try again, or with fewer strokes"
+    return problem(503, "tracing_stopped", detail, headers=_RETRY)
+
+
+def _storage(_: Request, error: OSError) -> JSONResponse:
+    log.error("storage_failed", error=str(error))
+    return problem(507, "storage_full", "the service cannot store this: its disk may be full; try again later")
+
+
+def _database(request: Request, error: OperationalError) -> JSONResponse:
+    if "full" in str(error.orig):
+        return _storage(request, OSError(str(error.orig)))
+    log.error("database_failed", error=str(error.orig))
+    return problem(503, "database_unavailable", "the database is busy; try again", headers=_RETRY)
+
+
+def _http(request: Request, error: HTTPException) -> JSONResponse:
+    headers, detail = dict(error.headers or {}), str(error.detail)
+    if error.status_code == 405:
+        headers["Allow"] = ", ".join(_allowed(request))
+        detail = f"{request.method} does nothing here; take {headers['Allow']}"
+    elif detail == HTTPStatus.NOT_FOUND.phrase:
+        detail = "there is nothing at this address; /openapi.json names what there is"
+    return problem(error.status_code, _CODES.get(error.status_code, "error"), detail, headers=headers)
+
+
+def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
+    """Answer, for order's sake, a client that left before its body was whole."""
+    return problem(400, "bad_request", "the body ended too soon; send it again")
+
+
+def _ours(_: Request, error: Exception) -> JSONResponse:
+    log.error("request_failed", exc_info=error)
+    return problem(500, "internal", "this is our mistake, and it is in the log; try again later")
+
+
+_ANSWERS: dict[type[Exception], Any] = {
+    TreestrokeError: _input,
+    RequestValidationError: _invalid,
+    NotFound: _missing,
+    KeyReused: _reused,
+    Overloaded: _busy,
+    Crashed: _crashed,
+    OSError: _storage,
+    OperationalError: _database,
+    HTTPException: _http,
+    ClientDisconnect: _gone,
+    Exception: _ours,
+}
+
+
+def _allowed(request: Request) -> list[str]:
+    """Collect the methods of all routes at a request's path."""
+    methods: set[str] = set()
+    for route in iter_route_contexts(request.app.routes):
+        if re.fullmatch(compile_path(route.path)[0], request.scope["path"]):
+            methods |= set(route.methods or ())
+    return sorted(methods)

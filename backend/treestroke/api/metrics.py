@@ -1,0 +1,29 @@
+"""Figures for Prometheus."""
+
+from collections.abc import Iterator
+
+from fastapi import FastAPI
+from prometheus_client import REGISTRY
+from prometheus_client.core import GaugeMetricFamily
+from prometheus_client.registry import Collector
+from prometheus_fastapi_instrumentator import Instrumentator
+
+from treestroke.service.dispatch import queue_figures
+
+
+class _Queue(Collector):
+    """The queue as the database has it at this moment."""
+
+    def __init__(self, app: FastAPI) -> None:
+        self._app = app
+
+    def collect(self) -> Iterator[GaugeMetricFamily]:
+        shelf = getattr(self._app.state, "shelf", None)
+        for name, (about, value) in (queue_figures(shelf.database) if shelf else {}).items():
+            yield GaugeMetricFamily(f"treestroke_{name}", about, value)
+
+
+def add_metrics(app: FastAPI) -> None:
+    """Count requests by route, and show all figures at /metrics."""
+    Instrumentator(excluded_handlers=["/metrics"]).instrument(app).expose(app, include_in_schema=False)
+    REGISTRY.register(_Queue(app))

@@ -1,0 +1,103 @@
+"""Photos and their traces."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, HTTPException, Request, Response
+from fastapi.responses import FileResponse
+from starlette.datastructures import UploadFile
+
+from treestroke.api.deps import JsonBody, ShelfOf, media_type
+from treestroke.api.errors import documented
+from treestroke.api.views import photo_view
+from treestroke.codec.image import MAX_BYTES
+from treestroke.schemas import Photo, TraceAnswer
+from treestroke.service import photos
+
+router = APIRouter(prefix="/v1/photos", tags=["photos"])
+_RAW = ("image/jpeg", "image/png", "image/webp", "application/octet-stream")
+_BINARY = {"schema": {"type": "string", "format": "binary"}}
+_UPLOAD: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "format": "binary"}},
+                }
+            },
+            **dict.fromkeys(_RAW, _BINARY),
+        },
+    }
+}
+
+
+async def _photo_bytes(request: Request) -> bytes:
+    """Read an upload: the field ``file`` of a form, or the whole body."""
+    if media_type(request) != "multipart/form-data":
+        if media_type(request) not in (*_RAW, ""):
+            raise HTTPException(415, f"send a form with the field file, or {', '.join(_RAW)}")
+        return await request.body()
+    async with request.form(max_files=1, max_fields=1) as form:
+        file = form.get("file")
+        if not isinstance(file, UploadFile):
+            raise HTTPException(400, "the form has no file in the field file; send the photo there")
+        return await file.read()
+
+
+@router.post(
+    "",
+    status_code=201,
+    responses={
+        201: {"model": Photo, "headers": {"Location": {"schema": {"type": "string"}}}},
+        **documented(400, 403, 408, 413, 415, 422, 503, 507),
+    },
+    openapi_extra=_UPLOAD,
+)
+def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> Photo:
+    """Upload a photo: JPEG, PNG or WebP, one frame."""
+    if len(content) > MAX_BYTES:
+        raise HTTPException(413, f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
+    row = photos.add_photo(shelf, content)
+    response.headers["Location"] = f"/v1/photos/{row.id}"
+    return photo_view(row)
+
+
+@router.get("/{id}", responses=documented(403, 404))
+def get_photo(shelf: ShelfOf, id: str) -> Photo:
+    """Look a photo up."""
+    return photo_view(photos.get_photo(shelf, id))
+
+
+@router.get(
+    "/{id}/image",
+    response_class=FileResponse,
+    responses={200: {"content": {"image/png": _BINARY}}, **documented(403, 404)},
+)
+def get_image(shelf: ShelfOf, id: str) -> FileResponse:
+    """Give the stored picture: PNG, upright, sRGB, without metadata."""
+    row = photos.get_photo(shelf, id)
+    return FileResponse(shelf.blobs.path(row.blob), media_type="image/png", headers={"ETag": f'"{row.blob}"'})
+
+
+@router.delete("/{id}", status_code=204, responses=documented(403, 404))
+def delete_photo(shelf: ShelfOf, id: str) -> None:
+    """Delete a photo; models that were made of it keep their own copy."""
+    photos.delete_photo(shelf, id)
+
+
+@router.post(
+    "/{id}/trace",
+    response_model=TraceAnswer,
+    responses=documented(400, 403, 404, 408, 413, 415, 422, 503),
+    openapi_extra={
+        "requestBody": {
+            "required": True,
+            "content": {"application/json": {"schema": {"$ref": "#/components/schemas/TraceRequest"}}},
+        }
+    },
+)
+def trace_photo(shelf: ShelfOf, id: str, body: JsonBody) -> Response:
+    """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too."""
+    return Response(photos.trace_photo(shelf, id, body), media_type="application/json")

@@ -1,0 +1,72 @@
+"""How the service is, what it takes, and which it is."""
+
+from dataclasses import fields
+
+from fastapi import APIRouter, Response
+
+from treestroke import __version__
+from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf
+from treestroke.api.errors import documented
+from treestroke.api.routes.models import MAX_WAIT_SECONDS
+from treestroke.codec.image import MAX_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
+from treestroke.codec.project import MAX_TEXT_BYTES
+from treestroke.core.pipeline.settings import ModelSettings, Span
+from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
+from treestroke.schemas import Health, Limits, Version
+from treestroke.service.doctor import readiness
+from treestroke.service.model import ENGINE
+from treestroke.service.tracing import MAX_NAME
+
+router = APIRouter(tags=["service"])
+
+
+@router.get("/livez", responses=documented(403))
+async def live() -> Health:
+    """Tell that this process answers."""
+    return Health(status="ok")
+
+
+@router.get("/readyz", responses={503: {"model": Health}, **documented(403)})
+def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Health:
+    """Tell whether requests can be taken, part by part; without workers or broker they are taken and wait."""
+    health = readiness(shelf, dispatcher.broker_takes)
+    if health.status == "down":
+        response.status_code = 503
+    return health
+
+
+@router.get("/v1/limits", responses=documented(403))
+def limits(settings: SettingsOf) -> Limits:
+    """Name everything that is bounded."""
+    return Limits(
+        photo_bytes=MAX_BYTES,
+        photo_pixels=MAX_PIXELS,
+        photo_side_min=MIN_SIDE,
+        photo_side_max=MAX_SIDE,
+        photo_formats=["image/jpeg", "image/png", "image/webp"],
+        strokes=MAX_STROKES,
+        points=MAX_POINTS,
+        json_bytes=MAX_TEXT_BYTES,
+        name_length=MAX_NAME,
+        trace_seconds=settings.trace_seconds,
+        model_seconds=settings.model_seconds,
+        wait_seconds=MAX_WAIT_SECONDS,
+        settings={
+            entry.name: {"default": entry.default, "meaning": entry.metadata["meaning"], **_allowed(entry.metadata)}
+            for entry in fields(ModelSettings)
+        },
+        keep_days=settings.keep_days,
+    )
+
+
+@router.get("/v1/version", responses=documented(403))
+def version() -> Version:
+    """Say which treestroke this is."""
+    return Version(version=__version__, engine=ENGINE, api="v1")
+
+
+def _allowed(metadata: object) -> dict[str, object]:
+    allowed = metadata["allowed"]  # type: ignore[index]
+    if isinstance(allowed, Span):
+        return {"min": allowed.low, "max": allowed.high, "whole": allowed.whole}
+    return {"names": list(allowed.names)}

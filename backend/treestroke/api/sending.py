@@ -1,0 +1,63 @@
+"""Stored files as answers: whole, in part, or not again."""
+
+import re
+from typing import Any
+
+from fastapi import Request, Response
+from fastapi.responses import FileResponse
+from starlette.datastructures import MutableHeaders
+
+from treestroke.api.errors import documented, problem
+from treestroke.service.photos import Shelf
+
+_TAG_HEADER = {"ETag": {"schema": {"type": "string"}, "description": "SHA-256 of the file, in quotes"}}
+_RANGE = re.compile(r"bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))")
+
+
+def file_answers(kind: str) -> dict[int | str, dict[str, Any]]:
+    """Name the answers of a route that sends a file, for the API's document."""
+    content = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
+    length = {"Content-Range": {"schema": {"type": "string"}, "description": "bytes FIRST-LAST/ALL"}}
+    problems = documented(403, 404, 416)
+    problems[416]["headers"] = length
+    return {
+        200: {**content, "description": "The file", "headers": _TAG_HEADER},
+        206: {**content, "description": "The part that Range asks for", "headers": {**_TAG_HEADER, **length}},
+        304: {"description": "If-None-Match names this very file", "headers": _TAG_HEADER},
+        **problems,
+    }
+
+
+def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: str | None = None) -> Response:
+    """Send a blob; its name is its ETag. One range is honoured, whatever else Range says is passed over."""
+    path, tag = shelf.blobs.path(blob), f'"{blob}"'
+    headers = {"ETag": tag, "Cache-Control": "private, no-cache"}
+    if _names(request.headers.get("if-none-match", ""), tag):
+        return Response(status_code=304, headers=headers)
+    size = path.stat().st_size
+    part = _part(request, tag, size)
+    if part is None:
+        del MutableHeaders(scope=request.scope)["range"]
+    elif not part:
+        told = {"Content-Range": f"bytes */{size}"}
+        return problem(416, "range_not_satisfiable", f"the file has {size} bytes; ask for some of them", headers=told)
+    name = None if download is None else re.sub(r'[\\/:*?"<>|]', "_", download)
+    return FileResponse(path, headers=headers, media_type=kind, filename=name)
+
+
+def _names(known: str, tag: str) -> bool:
+    """Tell whether If-None-Match names a file (a weak comparison, RFC 9110, 13.1.2)."""
+    return known.strip() == "*" or tag in re.findall(r'"[^"]*"', known)
+
+
+def _part(request: Request, tag: str, size: int) -> range | None:
+    """Read which bytes are asked for, perhaps none that there are; None for all."""
+    found = _RANGE.fullmatch(request.headers.get("range", ""))
+    if found is None or request.headers.get("if-range", tag) != tag:
+        return None
+    first, last, ending = found.groups()
+    if ending:
+        return range(size)[-int(ending) :] if int(ending) else range(0)
+    if last and int(last) < int(first):
+        return None
+    return range(size)[int(first) : int(last) + 1 if last else size]

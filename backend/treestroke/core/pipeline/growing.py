@@ -1,0 +1,184 @@
+"""The recipe's first half, which the live tree and the model share: from a photo and its strokes to a grown tree."""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
+from treestroke.core.geometry.polyline import Floats, Indices
+from treestroke.core.grow.library import choose_library
+from treestroke.core.grow.params import growth_for
+from treestroke.core.grow.replacement import Grown, grow
+from treestroke.core.lift.spread import lift
+from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.sight import Mask, Photo, Sight, look
+from treestroke.core.progress import Report, silent
+from treestroke.core.segment.foliage import Foliage, segment_foliage
+from treestroke.core.segment.kind import Kind, foliage_kind
+from treestroke.core.skeleton.edit import densified
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.strokes import Strokes
+from treestroke.core.trace.tracing import Traced, trace_branches
+
+JOINT_SHARE = 0.015
+"""Of the tree's height: joints this near let growth cut a straight trunk where it likes."""
+BULGE = 1.08
+"""Radius of the crown's sections over half their width in the photo. A crown is no turned solid: away from the outline
+that the photo shows some limbs reach further (4 trees known in 3D; 1.15 is too deep again for a slim one)."""
+CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
+"""Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
+
+
+@dataclass(frozen=True, eq=False)
+class LiveTree:
+    """A grown tree before it has leaves and bark.
+
+    Attributes
+    ----------
+    skeleton
+        The whole tree, metres, world frame.
+    born
+        (n,) iteration at which each joint appeared, from 1; 0 for those of the visible tree.
+    camera
+        That of the photo at its own size.
+    """
+
+    skeleton: Skeleton
+    born: Indices
+    camera: Camera
+
+
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """What photo and strokes show, at the working size; nothing is traced without a branch stroke."""
+
+    sight: Sight
+    foliage: Foliage
+    traced: Traced | None
+
+
+@dataclass(frozen=True, eq=False)
+class GrownTree:
+    """A tree that has grown, at the working size.
+
+    Attributes
+    ----------
+    kind
+        What the twigs bear.
+    traced
+        The visible branches.
+    wood
+        (h, w) the same, drawn.
+    visible, owner
+        The traced skeleton, px, with more joints, and the traced joint (n,) at whose edge each lies.
+    depth_m
+        (n,) world Z of the visible joints.
+    envelope
+        The crown's solid.
+    grown
+        The whole tree.
+    camera
+        That of the photo at its own size.
+    """
+
+    kind: Kind
+    traced: Traced
+    wood: Mask
+    visible: Skeleton
+    owner: Indices
+    depth_m: Floats
+    envelope: Envelope
+    grown: Grown
+    camera: Camera
+
+    @property
+    def live(self) -> LiveTree:
+        """The tree as it may be shown before it is finished."""
+        return LiveTree(self.grown.skeleton, self.grown.born, self.camera)
+
+
+def see(photo: Photo, strokes: Strokes, known: Foliage | None = None, report: Report = silent) -> Seen:
+    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3), sRGB.
+
+    Raises
+    ------
+    StrokesError
+        The strokes do not describe a tree.
+    """
+    report("foliage", 0.0)
+    sight = look(photo, strokes)
+    report("foliage", 0.05)
+    foliage = known or segment_foliage(sight.photo, sight.strokes.crown.points, report=report)
+    if not strokes.branches:
+        return Seen(sight, foliage, None)
+    report("trace", 0.0)
+    height_px = sight.height_px(foliage.mask)
+    traced = trace_branches(sight.photo, sight.strokes, foliage.leaf, foliage.ground, foliage.region, height_px)
+    return Seen(sight, foliage, traced)
+
+
+def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, report: Report = silent) -> GrownTree:
+    """Lift what was traced into the world and let it fill the crown.
+
+    Raises
+    ------
+    ValueError
+        Nothing was traced.
+    """
+    sight, foliage, traced = seen.sight, seen.foliage, seen.traced
+    if traced is None:
+        raise ValueError("nothing grows without a branch stroke")
+    report("lift", 0.0)
+    kind = _kind(sight, foliage, settings)
+    wood = drawn(traced.skeleton, foliage.mask.shape)
+    crown = _closed(foliage.mask | (wood & foliage.region), kind)
+    camera = sight.camera(foliage.mask, settings.height)
+    envelope = envelope_of_mask(crown, camera)
+    envelope = replace(envelope, radius_px=BULGE * envelope.radius_px)
+    visible, owner = densified(traced.skeleton, JOINT_SHARE * sight.height_px(foliage.mask))
+    lifted = lift(visible, traced.stroke[owner], envelope, rng)
+    report("grow", 0.0)
+    library = choose_library(settings.library, kind, lifted)
+    grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
+    depth_m, own = lifted.points[:, 2], sight.unreduced(camera)
+    return GrownTree(kind, traced, wood, visible, owner, depth_m, envelope, grown, own)
+
+
+def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
+    """Draw a traced skeleton as wide as its wood."""
+    return ~np.isnan(drawn_depth(tree, np.ones(len(tree), dtype=bool), np.zeros(len(tree)), shape, 1.0))
+
+
+def drawn_depth(
+    tree: Skeleton, shown: Mask, depth_m: Floats, shape: tuple[int, ...], breadth: float
+) -> NDArray[np.float32]:
+    """Draw the depth of a skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood.
+
+    NaN where nothing is drawn.
+    """
+    drawn = np.full(shape, np.nan, np.float32)
+    for joint, parent in enumerate(tree.parents.tolist()):
+        if parent >= 0 and shown[joint] and shown[parent]:
+            ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
+            width = max(1, int(breadth * (tree.radii[joint] + tree.radii[parent])))
+            cv2.line(drawn, ends[0], ends[1], float(depth_m[joint]), width, cv2.LINE_8, 4)
+    return drawn
+
+
+def _kind(sight: Sight, foliage: Foliage, settings: ModelSettings) -> Kind:
+    """Take the kind that was asked for, or judge by the picture."""
+    if settings.foliage == "auto":
+        return foliage_kind(foliage.look, foliage.mask, sight.strokes.branches[0].points)
+    kinds: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
+    return kinds[settings.foliage]
+
+
+def _closed(mask: Mask, kind: Kind) -> Mask:
+    """Close small holes and bays of a foliage mask."""
+    size = max(3, int(2 * CLOSED_SHARE[kind] * np.sqrt(mask.sum())) | 1)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    edge = cv2.copyMakeBorder(mask.astype(np.uint8), size, size, size, size, cv2.BORDER_CONSTANT, value=0)
+    return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)

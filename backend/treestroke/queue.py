@@ -1,0 +1,82 @@
+"""The queue: Celery, which carries the ids of jobs as hints. The jobs themselves are rows of the database."""
+
+from typing import Any
+
+from celery import Celery
+
+from treestroke.settings import Settings
+
+TASK = "treestroke.grow"
+_SOCKET_SECONDS = 2.0
+"""A broker that does not answer within this is down."""
+_POLL_SECONDS = 0.2
+_GRACE_SECONDS = 10
+"""After its own limit, which the job watches itself, a process that does not react is killed."""
+_LOST_SECONDS = 0.5
+"""After a process died, until its job is given back. No answer of it is waited for: what it did is in the database."""
+DRAIN_SECONDS = 7.0
+"""What a worker that is told to stop may still take for what it has begun."""
+
+
+def make_queue(settings: Settings) -> Celery:
+    """Make the Celery application: no result backend, messages acknowledged when they are taken.
+
+    A lost message, a lost worker and a message that comes twice are all mended by the row's lease.
+    """
+    app = Celery("treestroke", set_as_current=False, fixups=[])
+    app.conf.update(
+        broker_url=settings.broker_url or "filesystem://localhost",
+        broker_transport_options=_redis() if settings.broker_url else _folder(settings),
+        broker_connection_timeout=_SOCKET_SECONDS,
+        broker_connection_retry_on_startup=True,
+        broker_connection_max_retries=None,
+        broker_transport_polling_interval=_POLL_SECONDS,
+        task_default_queue="treestroke",
+        task_ignore_result=True,
+        task_acks_late=False,
+        task_time_limit=settings.model_seconds + _GRACE_SECONDS,
+        worker_lost_wait=_LOST_SECONDS,
+        worker_prefetch_multiplier=1,
+        worker_concurrency=settings.workers or 1,
+        worker_soft_shutdown_timeout=DRAIN_SECONDS,
+        worker_hijack_root_logger=False,
+        worker_redirect_stdouts=False,
+        worker_enable_remote_control=False,
+        worker_send_task_events=False,
+        accept_content=["json"],
+    )
+    return app
+
+
+def send_hint(app: Celery, model: str) -> None:
+    """Tell the workers that a job waits.
+
+    Raises
+    ------
+    kombu.exceptions.OperationalError, OSError
+        The broker does not take it.
+    """
+    app.send_task(TASK, args=[model], retry=False, ignore_result=True)
+
+
+def _redis() -> dict[str, Any]:
+    return {
+        "socket_timeout": _SOCKET_SECONDS,
+        "socket_connect_timeout": _SOCKET_SECONDS,
+        "socket_keepalive": True,
+        "health_check_interval": 5,
+        "polling_interval": _POLL_SECONDS,
+    }
+
+
+def _folder(settings: Settings) -> dict[str, Any]:
+    queue = settings.folder / "queue"
+    for folder in (queue / "messages", queue / "control"):
+        folder.mkdir(parents=True, exist_ok=True)
+    return {
+        "data_folder_in": str(queue / "messages"),
+        "data_folder_out": str(queue / "messages"),
+        "control_folder": str(queue / "control"),
+        "store_processed": False,
+        "polling_interval": _POLL_SECONDS,
+    }

@@ -1,0 +1,146 @@
+"""`treestroke serve`: a web process and a worker, started, watched, restarted and stopped together."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from contextlib import suppress
+from pathlib import Path
+from types import FrameType
+
+from treestroke.core.errors import SettingsError
+from treestroke.lifeline import VARIABLE as LIFELINE
+from treestroke.settings import Settings
+
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+STOP_SECONDS = 10.0
+"""What the processes may take to finish or give back what they do."""
+_LOOK_SECONDS = 0.2
+_SLOWEST_RESTART_SECONDS = 10.0
+_WELL_AFTER_SECONDS = 30.0
+_START_SECONDS = 60.0
+
+
+class Child:
+    """One process that is started again whenever it ends."""
+
+    def __init__(self, module: str, environment: dict[str, str], sockets: tuple[int, ...] = ()) -> None:
+        self.module = module
+        self._environment, self._sockets = environment, sockets
+        self._process: subprocess.Popen[bytes] | None = None
+        self._failures = 0
+        self._next = self._started = 0.0
+
+    def look(self) -> None:
+        """Start the process where it does not run; one that keeps dying is started ever more slowly."""
+        now = time.monotonic()
+        if self._process is not None and self._process.poll() is not None:
+            code = self._process.returncode
+            self._failures = 1 if now - self._started > _WELL_AFTER_SECONDS else self._failures + 1
+            self._next = now + min(0.1 * 2**self._failures, _SLOWEST_RESTART_SECONDS)
+            self._process = None
+            print(f"treestroke: {self.module} ended ({code}) and is started again", file=sys.stderr, flush=True)
+        if self._process is None and now >= self._next:
+            command = [sys.executable, "-m", self.module]
+            self._process = subprocess.Popen(
+                command, env=self._environment, pass_fds=self._sockets, stdin=subprocess.PIPE
+            )
+            self._started = now
+
+    def stop(self) -> None:
+        """Tell the process to stop."""
+        if self._process is not None:
+            self._process.terminate()
+
+    def wait(self, deadline: float) -> None:
+        """Wait until it has stopped, and end it where it does not."""
+        if self._process is not None:
+            try:
+                self._process.wait(max(deadline - time.monotonic(), 0.0))
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+
+
+def serve(settings: Settings) -> int:
+    """Run web process and worker until this process is told to stop.
+
+    The listening socket is this process's own: while a web process is replaced, requests wait instead of failing.
+
+    Raises
+    ------
+    SettingsError
+        The address is not this machine's own: without keys nobody else may reach it.
+    OSError
+        The port is taken, or the data folder cannot be written.
+    """
+    if settings.host not in LOOPBACK:
+        raise SettingsError(
+            f"--host {settings.host}: without keys only this machine may reach treestroke; take 127.0.0.1, or put a "
+            "server that asks for a password before it"
+        )
+    folder = settings.folder
+    _clear(folder / "tmp")
+    with _listen(settings) as listener:
+        environment = {
+            **os.environ,
+            **settings.environment(),
+            "TREESTROKE_DATA": str(folder),
+            "TMPDIR": str(folder / "tmp"),
+            LIFELINE: "1",
+        }
+        port = listener.getsockname()[1]
+        children = [Child("treestroke.api", {**environment, "LISTEN_FD": str(listener.fileno())}, (listener.fileno(),))]
+        if settings.workers:
+            children.append(Child("treestroke.worker", environment))
+        stopping = False
+
+        def stop(_signal: int, _frame: FrameType | None) -> None:
+            nonlocal stopping
+            stopping = True
+
+        for name in (signal.SIGTERM, signal.SIGINT):
+            signal.signal(name, stop)
+        threading.Thread(target=_announce, args=(address(settings, port),), daemon=True).start()
+        while not stopping:
+            for child in children:
+                child.look()
+            time.sleep(_LOOK_SECONDS)
+        deadline = time.monotonic() + STOP_SECONDS
+        for child in children:
+            child.stop()
+        for child in children:
+            child.wait(deadline)
+    return 0
+
+
+def _listen(settings: Settings) -> socket.socket:
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    return socket.create_server((settings.host, settings.port), family=family, backlog=1024)
+
+
+def _clear(folder: Path) -> None:
+    """Begin with an empty folder for what an earlier run left half done."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+
+
+def _announce(page: str) -> None:
+    """Say where the page is, once it answers."""
+    deadline = time.monotonic() + _START_SECONDS
+    while time.monotonic() < deadline:
+        with suppress(OSError), urllib.request.urlopen(f"{page}livez", timeout=_START_SECONDS):
+            print(f"treestroke: open {page} in a browser; Ctrl+C ends it", flush=True)
+            return
+        time.sleep(_LOOK_SECONDS)
+
+
+def address(settings: Settings, port: int) -> str:
+    """Write the page's address."""
+    host = f"[{settings.host}]" if ":" in settings.host else settings.host
+    return f"http:{'//'}{host}:{port}/"

@@ -1,0 +1,179 @@
+"""The dispatcher: tells workers of jobs that wait, takes back the jobs of workers that are gone, and sweeps.
+
+Leases are judged by the change of a row's ``beat`` as this process sees it on its own monotonic clock. No two
+machines need agree on the time, and a clock that jumps expires nothing.
+"""
+
+import threading
+import time
+from collections.abc import Callable, Hashable, Iterable
+from dataclasses import asdict
+
+import structlog
+from prometheus_client import Counter
+from sqlalchemy import delete, func, select, update
+from sqlalchemy.exc import SQLAlchemyError
+
+from treestroke.service.failures import problem_of
+from treestroke.service.retention import sweep
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+from treestroke.store.leases import lose
+from treestroke.store.tables import Model, Worker
+
+LEASE_SECONDS = 10.0
+RESEND_SECONDS = 5.0
+_TICK_SECONDS = 0.5
+_BACKOFF_SECONDS = 2.0
+_SWEEP_SECONDS = 600.0
+_UNKNOWN_SLOTS = 2
+"""Hints that are sent where no worker has spoken yet: one may be about to start."""
+LOST = Counter("treestroke_attempts_lost", "Attempts whose lease ran out.")
+SENT = Counter("treestroke_hints_sent", "Messages to the queue.")
+UNSENT = Counter("treestroke_hints_unsent", "Messages that the broker did not take.")
+log = structlog.get_logger()
+
+
+class Watch:
+    """For how long each of some counters has stood still, by this process's monotonic clock."""
+
+    def __init__(self) -> None:
+        self._seen: dict[Hashable, tuple[int, float]] = {}
+
+    def still(self, counters: Iterable[tuple[Hashable, int]], seconds: float) -> set[Hashable]:
+        """Take all counters that there are now; give the keys of those that stood still for ``seconds``."""
+        now = time.monotonic()
+        before, self._seen = self._seen, {}
+        for key, count in counters:
+            known = before.get(key)
+            self._seen[key] = known if known is not None and known[0] == count else (count, now)
+        return {key for key, (_, since) in self._seen.items() if now - since >= seconds}
+
+
+class Dispatcher:
+    """A thread beside the web server; it holds nothing that another cannot find again in the database."""
+
+    def __init__(self, database: Database, blobs: Blobs, send: Callable[[str], None], keep_days: float) -> None:
+        self._database, self._blobs = database, blobs
+        self._send, self._keep_days = send, keep_days
+        self._jobs, self._workers = Watch(), Watch()
+        self._sent: dict[str, float] = {}
+        self._wake, self._stopped = threading.Event(), threading.Event()
+        self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
+        self._quiet_until = self._sweep_at = 0.0
+        self.broker_takes = True
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def wake(self) -> None:
+        """Look at the queue now: something has changed."""
+        self._wake.set()
+
+    def stop(self) -> None:
+        """End; jobs that wait stay rows and are found by the next one."""
+        self._stopped.set()
+        self._wake.set()
+        self._thread.join(timeout=_TICK_SECONDS)
+
+    def _run(self) -> None:
+        while not self._stopped.is_set():
+            try:
+                self.recover()
+                self.dispatch()
+                self.sweep()
+            except (SQLAlchemyError, OSError) as error:
+                log.error("dispatch_failed", error=str(error))
+            self._wake.wait(_TICK_SECONDS)
+            self._wake.clear()
+
+    def recover(self) -> None:
+        """Take back the jobs whose worker has not beaten for a lease, and forget workers that are silent."""
+        with self._database.reading() as session:
+            jobs = {job.id: job for job in session.scalars(select(Model).where(Model.status == "running"))}
+            workers = {worker.id: worker for worker in session.scalars(select(Worker))}
+        for key in self._jobs.still((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
+            job = jobs[key[0]]  # type: ignore[index]
+            with self._database.writing() as session:
+                lost = lose(session, job, problem_of("worker_lost"))
+            if lost:
+                LOST.inc()
+                log.warning("attempt_lost", job=job.id, attempt=job.attempt, worker=job.worker)
+                self._sent.pop(job.id, None)
+        for key in self._workers.still(((worker.id, worker.beat) for worker in workers.values()), LEASE_SECONDS):
+            with self._database.writing() as session:
+                session.execute(delete(Worker).where(Worker.id == key, Worker.beat == workers[str(key)].beat))
+
+    def dispatch(self) -> None:
+        """Tell the workers of the jobs that are next, as many as they have hands for and one more each."""
+        if time.monotonic() < self._quiet_until:
+            return
+        with self._database.reading() as session:
+            slots = session.scalar(select(func.sum(Worker.slots))) or 0
+            running = session.scalar(select(func.count()).where(Model.status == "running")) or 0
+            wanted = max(2 * slots - running, 0) if slots else _UNKNOWN_SLOTS
+            queued = select(Model.id).where(Model.status == "queued").order_by(Model.number).limit(wanted)
+            next_ones = session.scalars(queued).all()
+        now = time.monotonic()
+        self._sent = {id: at for id, at in self._sent.items() if id in next_ones}
+        for id in next_ones:
+            if now - self._sent.get(id, -RESEND_SECONDS) >= RESEND_SECONDS and not self._tell(id, now):
+                return
+
+    def sweep(self) -> None:
+        """Remove, now and then, what is to go."""
+        if time.monotonic() < self._sweep_at:
+            return
+        self._sweep_at = time.monotonic() + _SWEEP_SECONDS
+        swept = sweep(self._database, self._blobs, self._keep_days)
+        log.info("swept", **asdict(swept))
+
+    def _tell(self, id: str, now: float) -> bool:
+        try:
+            self._send(id)
+        except Exception as error:  # noqa: BLE001 - a broker fails in many ways; each means the same: later
+            UNSENT.inc()
+            self.broker_takes, self._quiet_until = False, time.monotonic() + _BACKOFF_SECONDS
+            log.warning("hint_unsent", job=id, error=str(error) or type(error).__name__)
+            return False
+        SENT.inc()
+        self.broker_takes, self._sent[id] = True, now
+        return True
+
+
+def say_alive(database: Database, worker: str, slots: int) -> None:
+    """Write down that a worker lives."""
+    with database.writing() as session:
+        beaten = session.execute(
+            update(Worker).where(Worker.id == worker).values(beat=Worker.beat + 1, slots=slots).returning(Worker.id)
+        ).first()
+        if beaten is None:
+            session.add(Worker(id=worker, slots=slots, beat=1))
+
+
+def say_gone(database: Database, worker: str) -> None:
+    """Write down that a worker stops: what it still held queues again at once."""
+    with database.writing() as session:
+        session.execute(delete(Worker).where(Worker.id == worker))
+        for job in session.scalars(select(Model).where(Model.status == "running", Model.worker == worker)).all():
+            lose(session, job, problem_of("worker_lost"))
+
+
+def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
+    """Give the queue's figures by name, each with what it means."""
+    with database.reading() as session:
+        counts = dict(session.execute(select(Model.status, func.count()).group_by(Model.status)).tuples().all())
+        oldest = session.scalar(select(func.min(Model.created)).where(Model.status == "queued"))
+        slots = session.scalar(select(func.sum(Worker.slots))) or 0
+    return {
+        "models_queued": ("Models that wait.", counts.get("queued", 0)),
+        "models_running": ("Models that are being grown.", counts.get("running", 0)),
+        "models_failed": ("Models that failed and are kept.", counts.get("failed", 0)),
+        "models_succeeded": ("Models that are kept.", counts.get("succeeded", 0)),
+        "queue_age_seconds": (
+            "How long the oldest queued model waits.",
+            max(time.time() - oldest, 0.0) if oldest else 0.0,
+        ),
+        "worker_slots": ("Models that the workers alive grow at once.", slots),
+    }

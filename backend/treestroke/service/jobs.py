@@ -1,0 +1,177 @@
+"""Grow one queued model: claim the row, keep its lease, make the tree, publish it or say why not."""
+
+import json
+import threading
+import time
+from contextlib import suppress
+from types import TracebackType
+from typing import Any, Self
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from treestroke.codec.image import StoredPhoto, encode_png
+from treestroke.codec.skeleton import plain_grown
+from treestroke.core.errors import TreestrokeError
+from treestroke.core.pipeline.growing import LiveTree
+from treestroke.service.failures import problem_of, problem_of_input, ran_out_of_memory
+from treestroke.service.model import Model as MadeModel
+from treestroke.service.model import model
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+from treestroke.store.leases import add_file, beat, claim, end, succeed
+from treestroke.store.tables import Model
+
+GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
+_BEAT_SECONDS = 2.0
+_LISTEN_SECONDS = 0.5
+_WEIGHTS = {
+    "decode": 0.03,
+    "foliage": 0.2,
+    "trace": 0.06,
+    "lift": 0.01,
+    "grow": 0.15,
+    "leaf": 0.15,
+    "mesh": 0.12,
+    "write": 0.03,
+    "preview": 0.25,
+}
+"""Share of a model's time that each phase takes, measured on photos of 1500 px."""
+PHASES = tuple(_WEIGHTS)
+log = structlog.get_logger()
+
+
+class Stop(Exception):
+    """The person does not want the model any more."""
+
+
+class Superseded(Exception):
+    """Another attempt has the job now."""
+
+
+class TimeLimit(Exception):
+    """The model takes longer than is allowed."""
+
+
+class Pulse:
+    """Keeps a job's lease from a thread of its own, passes its progress on, and hears when it is to stop."""
+
+    def __init__(self, database: Database, job: Model, seconds: float) -> None:
+        self._database, self._job = database, job
+        self._deadline = time.monotonic() + seconds
+        self._state: tuple[str | None, float, float] = (None, 0.0, 0.0)
+        self._order: type[Exception] | None = None
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="pulse", daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def report(self, phase: str, fraction: float) -> None:
+        """Take the progress of the work, and interrupt it where it is to stop.
+
+        Raises
+        ------
+        Stop, Superseded, TimeLimit
+            The work is to end here.
+        """
+        if self._order is not None:
+            raise self._order
+        if time.monotonic() > self._deadline:
+            raise TimeLimit
+        before = sum(_WEIGHTS[earlier] for earlier in PHASES[: PHASES.index(phase)])
+        self._state = phase, fraction, max(before + fraction * _WEIGHTS[phase], self._state[2])
+
+    def _run(self) -> None:
+        shown, beaten = self._state, 0.0
+        while not self._over.wait(_LISTEN_SECONDS if beaten else 0.0):
+            if self._state == shown and time.monotonic() - beaten < _BEAT_SECONDS and not self._listen():
+                continue
+            state = self._state
+            # A database that is busy or full for a moment costs one beat; the lease outlasts several.
+            with suppress(SQLAlchemyError):
+                with self._database.writing() as session:
+                    stop = beat(session, self._job, *state)
+                self._order = {None: Superseded, True: Stop, False: None}[stop]
+                shown, beaten = state, time.monotonic()
+
+    def _listen(self) -> bool:
+        """Tell whether the row says anything else than to go on."""
+        with suppress(SQLAlchemyError), self._database.reading() as session:
+            row = session.get(Model, self._job.number)
+            return row is None or row.cancel or row.attempt != self._job.attempt or row.status != "running"
+        return False
+
+
+def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: str, seconds: float) -> None:
+    """Grow the model that a hint names, unless somebody else does or did, and publish it whole or not at all."""
+    with database.writing() as session:
+        job = claim(session, id, token, worker)
+    if job is None:
+        log.info("hint_ignored", job=id)
+        return
+    with structlog.contextvars.bound_contextvars(job=id, attempt=job.attempt):
+        log.info("job_started")
+        try:
+            with Pulse(database, job, seconds) as pulse:
+                report, files = _make(database, blobs, job, pulse)
+            _publish(database, job, report, files)
+        except Superseded:
+            log.warning("job_superseded")
+        except Stop:
+            _end(database, job, "canceled", None)
+        except TimeLimit:
+            _end(database, job, "failed", problem_of("time_limit"))
+        except TreestrokeError as error:
+            _end(database, job, "failed", problem_of_input(error))
+        except SQLAlchemyError as error:
+            # Nothing can be written down now; the lease runs out, and the job is taken up again.
+            log.error("database_failed", error=str(error))
+        except OSError as error:
+            log.error("storage_failed", error=str(error))
+            _end(database, job, "failed", problem_of("storage_error"))
+        except Exception as error:
+            code = "out_of_memory" if ran_out_of_memory(error) else "engine_error"
+            log.exception("job_broke", code=code)
+            _end(database, job, "failed", problem_of(code))
+
+
+def _make(
+    database: Database, blobs: Blobs, job: Model, pulse: Pulse
+) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
+    """Make the tree and store its files; nobody sees them before they are published."""
+    pulse.report("decode", 0.0)
+    photo = StoredPhoto(blobs.get(job.photo_blob))
+
+    def show(grown: LiveTree) -> None:
+        content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
+        with database.writing() as session:
+            first = {} if job.preview_seq else {"preview_seq": Model.seq + 1}
+            add_file(session, job, GROWTH, blobs.put(content), len(content), **first)
+
+    made: MadeModel = model(photo, blobs.get(job.strokes_blob), job.settings, job.seed, pulse.report, show)
+    pulse.report("preview", 0.0)
+    contents = {GLB: made.glb, PREVIEW: encode_png(made.preview())}
+    pulse.report("preview", 1.0)
+    files = {name: (blobs.put(content), len(content)) for name, content in contents.items()}
+    pulse.report("preview", 1.0)
+    return made.report, files
+
+
+def _publish(database: Database, job: Model, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> None:
+    with database.writing() as session:
+        published = succeed(session, job, report, files)
+        # Not published: it was to be stopped at the last moment, or another attempt has the job.
+        canceled = not published and end(session, job, "canceled", None)
+    log.info("job_succeeded" if published else "job_canceled" if canceled else "job_superseded")
+
+
+def _end(database: Database, job: Model, status: Any, error: dict[str, Any] | None) -> None:
+    with database.writing() as session:
+        ended = end(session, job, status, error)
+    log.info(f"job_{status}" if ended else "job_superseded", code=error["code"] if error else None)

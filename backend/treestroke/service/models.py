@@ -1,0 +1,248 @@
+"""Models: asked for, found, named, stopped, deleted and restored."""
+
+import hashlib
+import json
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import update
+from sqlalchemy.orm import Session
+
+from treestroke.codec.project import Project, write_project
+from treestroke.core.errors import TreestrokeError
+from treestroke.service import tracing
+from treestroke.service.model import ENGINE
+from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.tracing import Wish
+from treestroke.store import leases, queries
+from treestroke.store.database import Database
+from treestroke.store.tables import File, Model, Photo, Replay
+
+MAX_PAGE = 100
+RESTORABLE_SECONDS = 24 * 3600.0
+
+
+class KeyReused(Exception):
+    """An Idempotency-Key came again with another request."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A model as its readers see it: the row, its files, its place in the queue and its remaining seconds."""
+
+    row: Model
+    files: dict[str, File]
+    queue_position: int | None
+    eta_s: float | None
+
+
+def read_wish(shelf: Shelf, body: bytes) -> Wish:
+    """Read a request for a model, in a tracing process since it may be large or hostile.
+
+    Raises
+    ------
+    TreestrokeError
+        It is no such request.
+    """
+    return shelf.tracers("", tracing.read_wish, body)
+
+
+def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | None = None) -> Seen:
+    """Accept a model: checked, stored and queued, or answered from the one that was made of the same input.
+
+    ``key`` is the Idempotency-Key: with the same request it gives the model that it gave first. A photo that the
+    request ``brought`` is kept only where a new model is made of it.
+
+    Raises
+    ------
+    NotFound, TreestrokeError, KeyReused
+        There is no such photo; something in the request cannot be used; the key was used for something else.
+    OSError
+        The disk is full.
+    """
+    photo = brought or _photo_for(shelf, wish, key)
+    shelf.tracers(photo.blob, tracing.check_wish, shelf.blobs.path(photo.blob), wish.strokes)
+    strokes = shelf.blobs.put(wish.strokes)
+    fingerprint = _digest([photo.blob, strokes, wish.settings, wish.seed, ENGINE])
+    used = _digest([fingerprint, wish.name, photo.sha256])
+    with shelf.database.writing() as session:
+        first = session.get(Replay, key) if key else None
+        if first is not None:
+            if first.fingerprint != used:
+                raise KeyReused
+            found = queries.model(session, first.model, deleted=True)
+            if found is not None:
+                return _seen(session, found)
+        row = _new_row(photo, wish, strokes, fingerprint)
+        session.add_all([row, photo] if brought else [row])
+        session.flush()
+        _answer_from_twin(session, row)
+        if key:
+            session.merge(Replay(key=key, fingerprint=used, model=row.id, created=time.time()))
+        session.flush()
+        return _seen(session, row)
+
+
+def see(database: Database, id: str) -> Seen:
+    """Find a model.
+
+    Raises
+    ------
+    NotFound
+        There is none, or it is deleted.
+    """
+    with database.reading() as session:
+        return _seen(session, _found(session, id))
+
+
+def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[Seen], str | None]:
+    """Give a page of models, newest first, and the cursor of the next page.
+
+    Raises
+    ------
+    TreestrokeError
+        The cursor is none of ours.
+    """
+    before = None if cursor is None else queries.number_of(cursor)
+    if cursor is not None and before is None:
+        raise TreestrokeError.at(("cursor",), "it is no cursor of this list; begin without one", "cursor_invalid")
+    with database.reading() as session:
+        rows = queries.newest(session, before, limit + 1)
+        page = [_seen(session, row) for row in rows[:limit]]
+    return page, queries.cursor_after(rows[limit - 1]) if len(rows) > limit else None
+
+
+def rename(database: Database, id: str, name: str) -> Seen:
+    """Give a model a name.
+
+    Raises
+    ------
+    NotFound, TreestrokeError
+        There is no such model, or the name cannot be used.
+    """
+    tracing.check_name(name)
+    with database.writing() as session:
+        row = _found(session, id)
+        session.execute(update(Model).where(Model.id == id).values(name=name, seq=Model.seq + 1))
+        session.refresh(row)
+        return _seen(session, row)
+
+
+def cancel(database: Database, id: str) -> Seen:
+    """Stop a model that is not finished; one that is stays as it is.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with database.writing() as session:
+        row = _found(session, id)
+        leases.cancel(session, id)
+        session.refresh(row)
+        return _seen(session, row)
+
+
+def delete(database: Database, id: str) -> None:
+    """Delete a model; it is stopped where it is not finished, and can be restored for a day.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with database.writing() as session:
+        _found(session, id)
+        leases.cancel(session, id)
+        session.execute(update(Model).where(Model.id == id).values(deleted=time.time()))
+
+
+def restore(database: Database, id: str) -> Seen:
+    """Take a model's deletion back.
+
+    Raises
+    ------
+    NotFound
+        There is none, or its files are gone.
+    """
+    with database.writing() as session:
+        row = _found(session, id, deleted=True)
+        session.execute(update(Model).where(Model.id == id).values(deleted=None))
+        session.refresh(row)
+        return _seen(session, row)
+
+
+def project_of(shelf: Shelf, id: str) -> tuple[Model, str]:
+    """Pack a model's photo, strokes and settings as a project file; give the model and the file's blob.
+
+    Raises
+    ------
+    NotFound
+        There is no such model.
+    """
+    row = see(shelf.database, id).row
+    photo, strokes = shelf.blobs.get(row.photo_blob), shelf.blobs.get(row.strokes_blob)
+    return row, shelf.blobs.put(write_project(Project(photo, strokes, {**row.settings, "seed": row.seed})))
+
+
+def _photo_for(shelf: Shelf, wish: Wish, key: str | None) -> Photo:
+    """Find the photo that a request names; a deleted one only where the request may be a repetition."""
+    with shelf.database.reading() as session:
+        repeated = key is not None and session.get(Replay, key) is not None
+        photo = queries.photo(session, wish.photo, deleted=repeated)
+    if photo is None:
+        raise NotFound("photo")
+    return photo
+
+
+def _found(session: Session, id: str, deleted: bool = False) -> Model:
+    row = queries.model(session, id, deleted)
+    if row is None:
+        raise NotFound("model")
+    return row
+
+
+def _seen(session: Session, row: Model) -> Seen:
+    position, eta_s = queries.queue_position(session, row), None
+    if row.status in ("queued", "running"):
+        usual_s = queries.usual_seconds(session)
+        eta_s = usual_s * (1.0 - row.progress + (position or 1) - 1)
+    return Seen(row, queries.files(session, row.id), position, eta_s)
+
+
+def _new_row(photo: Photo, wish: Wish, strokes: str, fingerprint: str) -> Model:
+    return Model(
+        id=queries.new_id("mdl"),
+        name=wish.name,
+        photo=photo.id,
+        photo_blob=photo.blob,
+        strokes_blob=strokes,
+        settings=wish.settings,
+        seed=wish.seed,
+        engine=ENGINE,
+        fingerprint=fingerprint,
+        status="queued",
+        phase_fraction=0.0,
+        progress=0.0,
+        seq=1,
+        attempt=0,
+        beat=0,
+        cancel=False,
+        created=time.time(),
+    )
+
+
+def _answer_from_twin(session: Session, row: Model) -> None:
+    """Take the files of a model that was made of the same input: they would come out the same."""
+    twin = queries.twin(session, row.fingerprint)
+    if twin is None:
+        return
+    row.status, row.progress, row.finished = "succeeded", 1.0, time.time()
+    row.report, row.preview_seq = twin.report, 1
+    for name, file in queries.files(session, twin.id).items():
+        session.add(File(model=row.id, name=name, blob=file.blob, bytes=file.bytes))
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

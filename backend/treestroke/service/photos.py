@@ -1,0 +1,104 @@
+"""Photos: taken in, found, traced and deleted."""
+
+import hashlib
+import time
+from dataclasses import dataclass
+
+from sqlalchemy import update
+
+from treestroke.core.errors import PhotoError
+from treestroke.service import tracing
+from treestroke.service.pool import Crashed, Tracers
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+from treestroke.store.queries import new_id
+from treestroke.store.queries import photo as find_photo
+from treestroke.store.tables import Photo
+
+
+class NotFound(Exception):
+    """There is no such photo or model."""
+
+
+@dataclass(frozen=True)
+class Shelf:
+    """Where everything is kept, and who looks into photos."""
+
+    database: Database
+    blobs: Blobs
+    tracers: Tracers
+
+
+def add_photo(shelf: Shelf, content: bytes) -> Photo:
+    """Take a photo in and keep it.
+
+    Raises
+    ------
+    PhotoError, OSError
+        As `take_in`.
+    """
+    row = take_in(shelf, content)
+    with shelf.database.writing() as session:
+        session.add(row)
+    return row
+
+
+def take_in(shelf: Shelf, content: bytes) -> Photo:
+    """Decode a photo and store its upright pixels, without its metadata; the row that is given is not yet kept.
+
+    Raises
+    ------
+    PhotoError
+        It cannot be used.
+    OSError
+        The disk is full.
+    """
+    sha256 = hashlib.sha256(content).hexdigest()
+    try:
+        blob, width, height = shelf.tracers(sha256, tracing.keep_photo, shelf.blobs.folder.parent, content)
+    except Crashed as error:
+        raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
+    return Photo(id=new_id("pho"), sha256=sha256, width=width, height=height, blob=blob, created=time.time())
+
+
+def get_photo(shelf: Shelf, id: str) -> Photo:
+    """Find a photo.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with shelf.database.reading() as session:
+        found = find_photo(session, id)
+    if found is None:
+        raise NotFound("photo")
+    return found
+
+
+def delete_photo(shelf: Shelf, id: str) -> None:
+    """Delete a photo; models that were made of it keep their own copy.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with shelf.database.writing() as session:
+        gone = update(Photo).where(Photo.id == id, Photo.deleted.is_(None)).values(deleted=time.time())
+        if session.scalars(gone.returning(Photo.id)).first() is None:
+            raise NotFound("photo")
+
+
+def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
+    """Trace a photo by a request's body; give the answer's JSON.
+
+    Raises
+    ------
+    NotFound, StrokesError
+        There is no such photo, or the body cannot be used.
+    Overloaded, Crashed
+        The tracing processes have too much to do, or one died over this.
+    """
+    blob = get_photo(shelf, id).blob
+    return shelf.tracers(blob, tracing.trace_answer, shelf.blobs.path(blob), body)

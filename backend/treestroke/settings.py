@@ -1,0 +1,96 @@
+"""The service's settings: environment variables, read once."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+from pydantic import Field, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from treestroke.core.errors import SettingsError, shown
+
+PREFIX = "TREESTROKE_"
+
+
+def _setting(default: object, meaning: str, **bounds: float) -> object:
+    return Field(default, description=meaning, **bounds)  # type: ignore[call-overload]
+
+
+class Settings(BaseSettings):
+    """How one deployment runs; each field is an environment variable with the prefix ``TREESTROKE_``."""
+
+    model_config = SettingsConfigDict(env_prefix=PREFIX, env_ignore_empty=True, frozen=True, allow_inf_nan=False)
+
+    data: Annotated[Path, _setting(Path("~/.treestroke"), "folder of the database, the files and the embedded queue")]
+    host: Annotated[str, _setting("127.0.0.1", "address that the web process listens on")]
+    port: Annotated[int, _setting(8000, "port that it listens on; 0 takes a free one", ge=0, le=65535)]
+    broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
+    workers: Annotated[
+        int,
+        _setting(
+            1, "models that one worker grows at once; 0: `treestroke serve` runs none, they run elsewhere", ge=0, le=256
+        ),
+    ]
+    tracers: Annotated[int, _setting(2, "processes that decode photos and trace", ge=1, le=64)]
+    trace_seconds: Annotated[
+        float, _setting(20, "a tracing or decoding that takes longer is stopped, in seconds", gt=0, le=600)
+    ]
+    model_seconds: Annotated[float, _setting(300, "a model that takes longer fails, in seconds", gt=0, le=86_400)]
+    memory_mb: Annotated[
+        int, _setting(4096, "address space of one tracing or growing process, in MB", ge=1024, le=2**20)
+    ]
+    keep_days: Annotated[
+        float, _setting(0, "models and photos older than this are deleted; 0 keeps them", ge=0, le=36_500)
+    ]
+
+    @property
+    def folder(self) -> Path:
+        """The data folder, absolute."""
+        return self.data.expanduser().absolute()
+
+    @property
+    def embedded(self) -> bool:
+        """Whether the queue is a folder instead of a Redis."""
+        return not self.broker_url
+
+    def environment(self) -> dict[str, str]:
+        """Give the variables from which another process reads these same settings."""
+        return {_variable(name): str(value) for name, value in self}
+
+
+def read_settings(**given: object) -> Settings:
+    """Read the settings from the environment; ``given`` (the command's flags) goes before it.
+
+    Raises
+    ------
+    SettingsError
+        A variable or a flag has a value that is not allowed, or there is no setting of its name.
+    """
+    known = {_variable(name) for name in Settings.model_fields}
+    for name in sorted(os.environ):
+        if name.upper().startswith(PREFIX) and name.upper() not in known:
+            raise SettingsError(f"{name}: there is no such setting; the settings are {', '.join(sorted(known))}")
+    try:
+        settings = Settings(**given)  # type: ignore[arg-type]
+        settings.folder  # noqa: B018 - a home that cannot be found shows here
+    except ValidationError as error:
+        first = error.errors()[0]
+        name = str(first["loc"][0])
+        where = f"--{name}" if name in given else _variable(name)
+        raise SettingsError(f"{where}: {shown(first['input'])} is not allowed; {_allowed(first['msg'])}") from None
+    except RuntimeError:
+        raise SettingsError("the data folder's home is unknown; name a folder by --data or TREESTROKE_DATA") from None
+    if not settings.embedded and not settings.broker_url.startswith(("redis://", "rediss://", "unix://")):
+        raise SettingsError(
+            f"{_variable('broker_url')}: only a Redis is known; give redis://HOST:PORT/0 or leave it out"
+        )
+    return settings
+
+
+def _variable(name: str) -> str:
+    return f"{PREFIX}{name.upper()}"
+
+
+def _allowed(message: str) -> str:
+    """Turn what pydantic says into the end of a sentence: "Input should be ..." to "it should be ..."."""
+    return message.replace("Input should", "it should", 1)

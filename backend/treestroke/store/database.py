@@ -1,0 +1,84 @@
+"""The database: opened, migrated, and used in short transactions."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from alembic import command
+from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.orm import Session
+
+_WRITES = "treestroke_writes"
+_BUSY_SECONDS = 10
+"""How long a writer waits for another."""
+
+
+class Database:
+    """SQLite in WAL mode: many readers beside one writer, from several processes.
+
+    A committed change survives a power cut: what was accepted is never lost.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / "treestroke.sqlite3"
+        self._engine = _engine(self.path)
+
+    @contextmanager
+    def reading(self) -> Iterator[Session]:
+        """Open a session that sees one state of the database and changes nothing."""
+        with Session(self._engine, expire_on_commit=False) as session:
+            yield session
+
+    @contextmanager
+    def writing(self) -> Iterator[Session]:
+        """Open a session that is the only writer from its first statement on, and commit it at the end."""
+        with (
+            self._engine.connect().execution_options(**{_WRITES: True}) as connection,
+            Session(connection, expire_on_commit=False) as session,
+            session.begin(),
+        ):
+            yield session
+
+    def migrate(self) -> None:
+        """Bring the tables to the newest form, from nothing or from any older one."""
+        with self._engine.connect().execution_options(**{_WRITES: True}) as connection:
+            settings = _migrations()
+            settings.attributes["connection"] = connection
+            command.upgrade(settings, "head")
+
+    def current(self) -> bool:
+        """Tell whether the tables have the form that this program knows."""
+        with self._engine.connect() as connection:
+            found = MigrationContext.configure(connection).get_current_revision()
+        return found == ScriptDirectory.from_config(_migrations()).get_current_head()
+
+    def close(self) -> None:
+        """Close all connections."""
+        self._engine.dispose()
+
+
+def _migrations() -> Config:
+    settings = Config()
+    settings.set_main_option("script_location", "treestroke.store:migrations")
+    return settings
+
+
+def _engine(path: Path) -> Engine:
+    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False})
+
+    @event.listens_for(engine, "connect")
+    def _prepare(connection: Any, _: object) -> None:
+        connection.isolation_level = None  # transactions begin below, not by the driver's guess
+        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+            connection.execute(f"PRAGMA {pragma}")
+
+    @event.listens_for(engine, "begin")
+    def _begin(connection: Connection) -> None:
+        writes = connection.get_execution_options().get(_WRITES, False)
+        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+    return engine

@@ -1,0 +1,113 @@
+"""The lease on a job: claimed, kept by beats, given back or ended. Each change holds only for the attempt it names.
+
+queued -> running -> succeeded | failed | canceled        running -> queued where an attempt was lost
+"""
+
+import time
+from typing import Any, Literal
+
+from sqlalchemy import update
+from sqlalchemy.orm import Session
+
+from treestroke.store.tables import File, Model
+
+MAX_ATTEMPTS = 3
+TERMINAL = ("succeeded", "failed", "canceled")
+Ending = Literal["succeeded", "failed", "canceled"]
+
+
+def claim(session: Session, model: str, token: str, worker: str) -> Model | None:
+    """Take a queued job for one more attempt; None where somebody was first or nothing is left to do."""
+    return session.scalars(
+        update(Model)
+        .where(Model.id == model, Model.status == "queued")
+        .values(
+            status="running",
+            attempt=Model.attempt + 1,
+            beat=Model.beat + 1,
+            seq=Model.seq + 1,
+            claim=token,
+            worker=worker,
+            phase=None,
+            phase_fraction=0.0,
+            progress=0.0,
+            started=time.time(),
+        )
+        .returning(Model)
+    ).first()
+
+
+def beat(session: Session, job: Model, phase: str | None, phase_fraction: float, progress: float) -> bool | None:
+    """Say that an attempt lives and how far it is; tell whether it is to stop, or None where it is no longer ours."""
+    return session.scalars(
+        _ours(job)
+        .values(beat=Model.beat + 1, seq=Model.seq + 1, phase=phase, phase_fraction=phase_fraction, progress=progress)
+        .returning(Model.cancel)
+    ).first()
+
+
+def add_file(session: Session, job: Model, name: str, blob: str, size: int, **values: Any) -> bool:
+    """Publish one file of a job under way, with other ``values`` of its row; False where it is no longer ours."""
+    if session.scalars(_ours(job).values(seq=Model.seq + 1, **values).returning(Model.id)).first() is None:
+        return False
+    session.merge(File(model=job.id, name=name, blob=blob, bytes=size))
+    return True
+
+
+def succeed(session: Session, job: Model, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> bool:
+    """Publish a model and its files, (blob, size) by name; False where it is not ours any more or was to be stopped."""
+    change = _ours(job).where(Model.cancel.is_(False)).values(**_ended("succeeded"), progress=1.0, report=report)
+    if session.scalars(change.returning(Model.id)).first() is None:
+        return False
+    for name, (blob, size) in files.items():
+        session.merge(File(model=job.id, name=name, blob=blob, bytes=size))
+    return True
+
+
+def end(session: Session, job: Model, status: Literal["failed", "canceled"], error: dict[str, Any] | None) -> bool:
+    """End an attempt without a model; False where it is no longer ours."""
+    change = _ours(job).values(**_ended(status), error=error)
+    return session.scalars(change.returning(Model.id)).first() is not None
+
+
+def lose(session: Session, job: Model, error: dict[str, Any]) -> bool:
+    """Take an attempt back: the job queues again, or ends where it was to be stopped or has used its attempts up.
+
+    False where the attempt that ``job`` shows is over already, or has beaten since.
+    """
+    lost = _ours(job).where(Model.beat == job.beat)
+    if job.cancel:
+        change = lost.values(**_ended("canceled"))
+    elif job.attempt >= MAX_ATTEMPTS:
+        change = lost.values(**_ended("failed"), error=error)
+    else:
+        change = lost.values(
+            status="queued", seq=Model.seq + 1, claim=None, worker=None, phase=None, phase_fraction=0.0, progress=0.0
+        )
+    return session.scalars(change.returning(Model.id)).first() is not None
+
+
+def cancel(session: Session, model: str) -> None:
+    """Ask for a job's end: at once where it still queues, and where it runs as soon as its worker hears of it."""
+    session.execute(update(Model).where(Model.id == model, Model.status == "queued").values(**_ended("canceled")))
+    session.execute(
+        update(Model)
+        .where(Model.id == model, Model.status == "running", Model.cancel.is_(False))
+        .values(cancel=True, seq=Model.seq + 1)
+    )
+
+
+def _ours(job: Model) -> Any:
+    return update(Model).where(Model.id == job.id, Model.status == "running", Model.attempt == job.attempt)
+
+
+def _ended(status: Ending) -> dict[str, Any]:
+    return {
+        "status": status,
+        "seq": Model.seq + 1,
+        "claim": None,
+        "worker": None,
+        "phase": None,
+        "phase_fraction": 0.0,
+        "finished": time.time(),
+    }

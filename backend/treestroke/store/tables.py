@@ -1,0 +1,110 @@
+"""The tables. Times are seconds since 1970 (UTC); they are shown, and nothing waits by them."""
+
+from typing import Any
+
+from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, MetaData, String, false
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+_NAMES = {
+    "pk": "pk_%(table_name)s",
+    "uq": "uq_%(table_name)s_%(column_0_name)s",
+    "ix": "ix_%(table_name)s_%(column_0_name)s",
+    "fk": "fk_%(table_name)s_%(column_0_name)s",
+}
+_NUMBER = BigInteger().with_variant(Integer, "sqlite")
+
+
+class Table(DeclarativeBase):
+    """What all tables share."""
+
+    metadata = MetaData(naming_convention=_NAMES)
+    type_annotation_map = {dict[str, Any]: JSON(none_as_null=True), float: Float}  # noqa: RUF012
+
+
+class Photo(Table):
+    """An uploaded photo: upright sRGB pixels in a blob, without metadata."""
+
+    __tablename__ = "photos"
+
+    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(40), unique=True)
+    sha256: Mapped[str] = mapped_column(String(64))
+    """Of the bytes that were uploaded."""
+    width: Mapped[int]
+    height: Mapped[int]
+    blob: Mapped[str] = mapped_column(String(64))
+    created: Mapped[float]
+    deleted: Mapped[float | None]
+
+
+class Model(Table):
+    """A tree that was asked for, is being made, or is made. This row is the job; a queue message is a hint to it.
+
+    ``attempt`` is the fence: what works on the job says which attempt it is, and nothing of another attempt is
+    taken. ``beat`` rises as long as that attempt lives. ``seq`` rises with all that a viewer is told.
+    """
+
+    __tablename__ = "models"
+
+    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(40), unique=True)
+    name: Mapped[str] = mapped_column(String(200))
+    photo: Mapped[str] = mapped_column(String(40))
+    photo_blob: Mapped[str] = mapped_column(String(64))
+    strokes_blob: Mapped[str] = mapped_column(String(64))
+    settings: Mapped[dict[str, Any]]
+    seed: Mapped[int] = mapped_column(BigInteger)
+    engine: Mapped[str] = mapped_column(String(40))
+    fingerprint: Mapped[str] = mapped_column(String(64), index=True)
+    status: Mapped[str] = mapped_column(String(12))
+    phase: Mapped[str | None] = mapped_column(String(12))
+    phase_fraction: Mapped[float]
+    progress: Mapped[float]
+    seq: Mapped[int]
+    attempt: Mapped[int]
+    beat: Mapped[int]
+    claim: Mapped[str | None] = mapped_column(String(80))
+    worker: Mapped[str | None] = mapped_column(String(120))
+    cancel: Mapped[bool] = mapped_column(server_default=false())
+    error: Mapped[dict[str, Any] | None]
+    report: Mapped[dict[str, Any] | None]
+    preview_seq: Mapped[int | None]
+    created: Mapped[float]
+    started: Mapped[float | None]
+    finished: Mapped[float | None]
+    deleted: Mapped[float | None]
+
+
+class File(Table):
+    """A file of a model: its name outside, and the blob that holds it."""
+
+    __tablename__ = "files"
+
+    model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"), primary_key=True)
+    name: Mapped[str] = mapped_column(String(40), primary_key=True)
+    blob: Mapped[str] = mapped_column(String(64))
+    bytes: Mapped[int]
+
+
+class Replay(Table):
+    """An Idempotency-Key: what it was used for, and what it gave."""
+
+    __tablename__ = "replays"
+
+    key: Mapped[str] = mapped_column(String(255), primary_key=True)
+    fingerprint: Mapped[str] = mapped_column(String(64))
+    model: Mapped[str] = mapped_column(String(40))
+    created: Mapped[float]
+
+
+class Worker(Table):
+    """A worker that said it lives: how many models it grows at once, and its own beat."""
+
+    __tablename__ = "workers"
+
+    id: Mapped[str] = mapped_column(String(120), primary_key=True)
+    slots: Mapped[int]
+    beat: Mapped[int]
+
+
+Index("ix_models_queue", Model.status, Model.number)

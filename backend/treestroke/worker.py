@@ -1,0 +1,157 @@
+"""The worker: a Celery process whose children grow models; `treestroke serve` runs one, `treestroke worker` too."""
+
+import os
+
+# A worker that is told to stop finishes or gives back its jobs within seconds instead of waiting. Read at import.
+os.environ.setdefault("REMAP_SIGTERM", "SIGQUIT")
+
+import socket
+import sys
+import threading
+import time
+import warnings
+from typing import Any
+
+import structlog
+from billiard.exceptions import WorkerLostError
+from celery import Celery, Task, signals
+from celery.platforms import SecurityWarning  # type: ignore[attr-defined]
+from celery.worker.request import Request
+from sqlalchemy import select
+from sqlalchemy.exc import SQLAlchemyError
+
+from treestroke.lifeline import hold_lifeline
+from treestroke.logs import start_logging
+from treestroke.queue import TASK, make_queue
+from treestroke.service.dispatch import say_alive, say_gone
+from treestroke.service.failures import problem_of
+from treestroke.service.jobs import grow_model
+from treestroke.service.pool import limit_memory
+from treestroke.settings import Settings, read_settings
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+from treestroke.store.leases import end, lose
+from treestroke.store.tables import Model
+
+NICENESS = 10
+"""Growing gives way to tracing, which somebody waits for with the pen in hand."""
+_BEAT_SECONDS = 2.0
+_SCHEMA_SECONDS = 60.0
+log = structlog.get_logger()
+
+
+def main() -> int:
+    """Run a worker until it is told to stop."""
+    settings = read_settings()
+    start_logging()
+    hold_lifeline()
+    database = Database(settings.folder)
+    if not _wait_for_tables(database):
+        log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
+        return 1
+    name = f"{socket.gethostname()}-{os.getpid()}"
+    app = make_worker(settings, database, name)
+    signals.setup_logging.connect(_keep_logging, weak=False)
+    # Running as root is the container's or the person's choice; messages are JSON and hold an id.
+    warnings.simplefilter("ignore", SecurityWarning)
+    slots = app.conf.worker_concurrency
+    stopped = threading.Event()
+    beats = threading.Thread(target=_beat, args=(database, name, slots, stopped), name="beats", daemon=True)
+
+    @signals.worker_ready.connect(weak=False)
+    def _begin(**_: object) -> None:
+        beats.start()
+        log.info("worker_ready", worker=name, slots=slots)
+
+    app.Worker(
+        hostname=f"treestroke@{name}",
+        pool_cls="prefork",
+        concurrency=slots,
+        without_gossip=True,
+        without_mingle=True,
+        without_heartbeat=True,
+        quiet=True,
+    ).start()
+    stopped.set()
+    say_gone(database, name)
+    log.info("worker_stopped", worker=name)
+    return 0
+
+
+def _keep_logging(**_: object) -> None:
+    """Stand in for Celery's own set-up of the log, which would replace ours."""
+
+
+def make_worker(settings: Settings, database: Database, name: str) -> Celery:
+    """Make the Celery application with its one task."""
+    app = make_queue(settings)
+    opened: list[tuple[Database, Blobs]] = []
+
+    @signals.worker_process_init.connect(weak=False)
+    def _open(**_: object) -> None:
+        os.nice(NICENESS)
+        limit_memory(settings.memory_mb * 2**20)
+        opened[:] = [(Database(settings.folder), Blobs(settings.folder))]
+
+    class JobRequest(Request):
+        """Hears from the parent process what a child cannot say any more."""
+
+        def on_timeout(self, soft: bool, timeout: float) -> None:
+            super().on_timeout(soft, timeout)
+            if not soft:
+                _close(database, self.id, "time_limit")
+
+        def on_failure(self, exc_info: Any, *args: Any, **kwargs: Any) -> Any:
+            if isinstance(exc_info.exception, WorkerLostError):
+                _close(database, self.id, "worker_lost")
+            return super().on_failure(exc_info, *args, **kwargs)
+
+    class Grow(Task):  # type: ignore[type-arg]
+        """Grow the model that a message names."""
+
+        name = TASK
+        Request = JobRequest  # type: ignore[assignment]
+
+        def run(self, model: str) -> None:
+            grow_model(*opened[0], model, str(self.request.id), name_of_worker, settings.model_seconds)
+
+    name_of_worker = name
+    app.register_task(Grow())
+    return app
+
+
+def _close(database: Database, token: str, code: str) -> None:
+    """End or give back what a child held when it was killed."""
+    try:
+        with database.writing() as session:
+            job = session.scalars(select(Model).where(Model.claim == token, Model.status == "running")).first()
+            if job is not None and code == "time_limit":
+                end(session, job, "failed", problem_of(code))
+            elif job is not None:
+                lose(session, job, problem_of(code))
+    except SQLAlchemyError as error:
+        log.error("not_closed", token=token, code=code, error=str(error))
+    else:
+        log.warning("child_lost", job=job.id if job else None, code=code)
+
+
+def _beat(database: Database, name: str, slots: int, stopped: threading.Event) -> None:
+    while not stopped.is_set():
+        try:
+            say_alive(database, name, slots)
+        except SQLAlchemyError as error:
+            log.warning("beat_missed", error=str(error))
+        stopped.wait(_BEAT_SECONDS)
+
+
+def _wait_for_tables(database: Database) -> bool:
+    deadline = time.monotonic() + _SCHEMA_SECONDS
+    while time.monotonic() < deadline:
+        if database.path.exists() and database.current():
+            return True
+        time.sleep(0.2)
+    return False
+
+
+if __name__ == "__main__":
+    sys.exit(main())

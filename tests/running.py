@@ -1,0 +1,36 @@
+"""A real `treestroke serve`, started and stopped for tests and benchmarks."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+BACKEND = Path(__file__).parents[1] / "backend"
+
+
+@contextmanager
+def serving(data: Path, **settings: object) -> Iterator[str]:
+    """Run the service on a free port with settings by name; give its address."""
+    given = {f"TREESTROKE_{name.upper()}": str(value) for name, value in settings.items()}
+    environment = {**os.environ, "PYTHONPATH": str(BACKEND), **given}
+    command = [sys.executable, "-m", "treestroke", "serve", "--data", str(data), "--port", "0"]
+    with (data.parent / f"{data.name}.log").open("wb") as log:
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=log, start_new_session=True)
+    try:
+        assert process.stdout is not None
+        said = process.stdout.readline().decode()
+        found = re.search(r"http\S+(?=/ )", said)
+        assert found, (said, (data.parent / f"{data.name}.log").read_text())
+        yield found.group()
+    finally:
+        process.terminate()
+        try:
+            process.wait(20)
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+            process.stdout.close()
