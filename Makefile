@@ -5,18 +5,27 @@ BIN := $(VENV)/bin
 SETUP := requirements-dev.txt pyproject.toml setup.py $(wildcard backend/treestroke/core/grow/*.c)
 STAMP := $(VENV)/ready-$(shell cat $(SETUP) | sha256sum | cut -c1-16)
 EXAMPLE ?= burr_oak_dusk
+PORT ?= 8000
 
-.PHONY: run test check bench golden setup
+.PHONY: run test redis check bench golden chaos setup
 .DEFAULT_GOAL := run
 
+# Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
 run: $(STAMP)
 	@mkdir -p out
 	@$(BIN)/treestroke model examples/$(EXAMPLE).jpg --strokes examples/$(EXAMPLE).strokes.json \
 	    --out out/$(EXAMPLE).glb --report out/$(EXAMPLE).json --preview out/$(EXAMPLE).png
 	@echo "out/$(EXAMPLE).glb: the tree; out/$(EXAMPLE).png: its picture; out/$(EXAMPLE).json: its report"
+	@exec $(BIN)/treestroke serve --data out/serve --port $(PORT)
 
-test: $(STAMP)
+test: $(STAMP) redis
 	@$(BIN)/python -m pytest -q -m "not golden" --benchmark-skip
+
+# Tests of the queue need a Redis to start and kill. CI installs one where there is none; elsewhere the tests say so.
+redis:
+	@command -v redis-server >/dev/null || [ "$(CI)" != true ] || [ "$$(id -u)" != 0 ] || ! command -v apt-get >/dev/null || { \
+	    export DEBIAN_FRONTEND=noninteractive RUNLEVEL=1; \
+	    apt-get update -qq && apt-get install -qq --yes --no-install-recommends redis-server >/dev/null; }
 
 check: $(STAMP)
 	$(BIN)/ruff format --check .
@@ -31,6 +40,11 @@ bench: $(STAMP)
 
 golden: $(STAMP)
 	$(BIN)/python -m pytest -q -m golden
+
+# Three minutes a broker: workers are killed at random while 200 jobs come in. No job may be lost or made twice.
+chaos: $(STAMP)
+	$(BIN)/python -m tests.faults.chaos --broker files
+	$(BIN)/python -m tests.faults.chaos --broker redis
 
 setup: $(STAMP)
 

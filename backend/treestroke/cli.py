@@ -18,10 +18,15 @@ from treestroke.core.pipeline.settings import ModelSettings, Span
 from treestroke.core.progress import silent
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
+_PART_WIDTH = 13
 
 
 class UsageError(TreestrokeError):
     """The command itself is wrong."""
+
+
+class MachineFault(Exception):
+    """The machine's fault, in a line that says all there is to say."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -69,6 +74,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             options.command(options)
     except TreestrokeError as error:
         return _fail(BAD_INPUT, str(error), "--debug" in given)
+    except MachineFault as error:
+        return _fail(OUR_FAULT, str(error), "--debug" in given)
     except (OSError, MemoryError) as error:
         return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in given)
     except KeyboardInterrupt:
@@ -99,7 +106,7 @@ def _parser() -> Parser:
         "--overlay", metavar="OVERLAY.png", type=Path, help="the photo with what was found drawn over it"
     )
     serve = commands.add_parser("serve", help="answer over HTTP, with a page", allow_abbrev=False)
-    serve.add_argument("--host", help="address to listen on (default 127.0.0.1)")
+    serve.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
     serve.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
     worker = commands.add_parser("worker", help="grow models for a service elsewhere", allow_abbrev=False)
     doctor = commands.add_parser("doctor", help="say what is missing or broken", allow_abbrev=False)
@@ -168,20 +175,21 @@ def _worker(options: argparse.Namespace) -> None:
 
     os.environ.update(_service_settings(options).environment())
     if work():
-        raise OSError("the worker did not start; its log says why")
+        raise MachineFault("the worker did not start; its log says why")
 
 
 def _doctor(options: argparse.Namespace) -> None:
+    settings = _service_settings(options)
     from treestroke.service.doctor import examine
 
-    ill = 0
-    for finding in examine(_service_settings(options)):
-        ill += not finding.well
-        print(f"{'ok ' if finding.well else 'ILL'}  {finding.part}: {finding.found}", flush=True)
+    looked = ill = 0
+    for finding in examine(settings):
+        looked, ill = looked + 1, ill + (not finding.well)
+        print(f"{'ok ' if finding.well else 'ILL'}  {finding.part:<{_PART_WIDTH}}  {finding.found}", flush=True)
         if finding.mend:
-            print(f"     mend: {finding.mend}")
+            print(f"     {'':<{_PART_WIDTH}}  mend: {finding.mend}", flush=True)
     if ill:
-        raise OSError(f"{ill} of these are ill")
+        raise MachineFault(f"{ill} of {looked} parts are ill")
 
 
 def _service_settings(options: argparse.Namespace) -> Any:

@@ -8,15 +8,15 @@ import structlog
 
 def start_logging() -> None:
     """Write structured lines to stderr; the libraries' own lines take the same form."""
+    watched = sys.stderr.isatty()
     shared: list[structlog.typing.Processor] = [
         structlog.contextvars.merge_contextvars,
         structlog.processors.add_log_level,
-        structlog.processors.TimeStamper(fmt="iso", utc=True),
+        structlog.processors.TimeStamper(fmt="%H:%M:%S" if watched else "iso", utc=not watched),
         structlog.processors.StackInfoRenderer(),
     ]
-    watched = sys.stderr.isatty()
     shape: list[structlog.typing.Processor] = (
-        [structlog.dev.ConsoleRenderer()]
+        [structlog.dev.ConsoleRenderer(pad_event_to=0, pad_level=False)]
         if watched
         else [structlog.processors.format_exc_info, structlog.processors.JSONRenderer()]
     )

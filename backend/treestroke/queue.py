@@ -1,8 +1,15 @@
 """The queue: Celery, which carries the ids of jobs as hints. The jobs themselves are rows of the database."""
 
+import json
+import secrets
+import time
+from contextlib import suppress
+from pathlib import Path
+from queue import Empty
 from typing import Any
 
 from celery import Celery
+from kombu.transport import filesystem
 
 from treestroke.settings import Settings
 
@@ -26,6 +33,7 @@ def make_queue(settings: Settings) -> Celery:
     app = Celery("treestroke", set_as_current=False, fixups=[])
     app.conf.update(
         broker_url=settings.broker_url or "filesystem://localhost",
+        broker_transport=None if settings.broker_url else _FolderTransport,
         broker_transport_options=_redis() if settings.broker_url else _folder(settings),
         broker_connection_timeout=_SOCKET_SECONDS,
         broker_connection_retry_on_startup=True,
@@ -38,7 +46,6 @@ def make_queue(settings: Settings) -> Celery:
         worker_lost_wait=_LOST_SECONDS,
         worker_prefetch_multiplier=1,
         worker_concurrency=settings.workers or 1,
-        worker_soft_shutdown_timeout=DRAIN_SECONDS,
         worker_hijack_root_logger=False,
         worker_redirect_stdouts=False,
         worker_enable_remote_control=False,
@@ -57,6 +64,38 @@ def send_hint(app: Celery, model: str) -> None:
         The broker does not take it.
     """
     app.send_task(TASK, args=[model], retry=False, ignore_result=True)
+
+
+class _FolderChannel(filesystem.Channel):
+    """Messages as files that are seen whole or not at all; kombu's own are seen while they are being written.
+
+    One that is no message all the same is thrown away: it would end the worker that reads it.
+    """
+
+    def _put(self, queue: str, payload: Any, **_: Any) -> None:  # type: ignore[override]
+        name = f"{time.time_ns():020d}-{secrets.token_hex(8)}"
+        begun = Path(self.data_folder_out) / f"{name}.part"
+        try:
+            begun.write_text(json.dumps(payload))
+            begun.rename(begun.with_name(f"{name}.{queue}.msg"))
+        except OSError:
+            begun.unlink(missing_ok=True)
+            raise
+
+    def _get(self, queue: str) -> Any:  # type: ignore[override]
+        for path in sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg")):
+            # Whoever removes it has it.
+            with suppress(FileNotFoundError, ValueError):
+                content = path.read_bytes()
+                path.unlink()
+                message = json.loads(content)
+                if isinstance(message, dict) and message.keys() >= {"body", "headers", "properties"}:
+                    return message
+        raise Empty
+
+
+class _FolderTransport(filesystem.Transport):
+    Channel = _FolderChannel
 
 
 def _redis() -> dict[str, Any]:

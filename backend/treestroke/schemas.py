@@ -3,15 +3,30 @@
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
+from pydantic.json_schema import SkipJsonSchema
 
 Point = tuple[float, float]
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 
+NAME_PATTERN = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]*$"
+"""A line of text: no controls, no line ends, nothing that turns the direction of what follows it."""
 _CROWN: list[JsonValue] = [[210, 300], [390, 120], [610, 140], [760, 330], [700, 560], [480, 640], [270, 560]]
 STROKES_EXAMPLE: dict[str, JsonValue] = {
     "crown": {"points": _CROWN},
     "branches": [{"points": [[490, 900], [488, 760], [484, 600], [480, 420]], "width": 34.0}],
 }
+MODEL_EXAMPLE: dict[str, JsonValue] = {
+    "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
+    "strokes": STROKES_EXAMPLE,
+    "settings": {"height": 14},
+    "seed": 1,
+    "name": "The old oak",
+}
+
+
+def _no_default(schema: dict[str, Any]) -> None:
+    """Leave a default of None out of a schema that does not allow null."""
+    schema.pop("default")
 
 
 class _Wire(BaseModel):
@@ -28,7 +43,7 @@ class BranchStroke(_Wire):
     """A stroke along a branch, from its parent outward; the first runs from the root up the trunk."""
 
     points: list[Point] = Field(min_length=2, max_length=10_000)
-    width: float | None = Field(default=None, gt=0, description="pixels")
+    width: float | SkipJsonSchema[None] = Field(default=None, gt=0, description="pixels", json_schema_extra=_no_default)
 
 
 class EraseStroke(_Wire):
@@ -143,28 +158,20 @@ class ModelRequest(_Wire):
 
     model_config = ConfigDict(
         extra="forbid",
-        json_schema_extra={
-            "example": {
-                "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
-                "strokes": STROKES_EXAMPLE,
-                "settings": {"height": 14},
-                "seed": 1,
-                "name": "The old oak",
-            }
-        },
+        json_schema_extra={"example": MODEL_EXAMPLE},
     )
 
-    photo: str = Field(max_length=40)
+    photo: str = Field(max_length=40, json_schema_extra={"pattern": "^pho_[0-9a-f]{24}$"})
     strokes: Strokes
     settings: ModelSettings = ModelSettings()
     seed: int = Field(default=0, ge=0, le=2**63 - 1)
-    name: str = Field(default="", max_length=200)
+    name: str = Field(default="", max_length=200, json_schema_extra={"pattern": NAME_PATTERN})
 
 
 class Rename(_Wire):
     """A model's new name."""
 
-    name: str = Field(max_length=200, json_schema_extra={"example": "The old oak"})
+    name: str = Field(max_length=200, json_schema_extra={"example": "The old oak", "pattern": NAME_PATTERN})
 
 
 class Failure(_Wire):

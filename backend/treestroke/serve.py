@@ -1,5 +1,6 @@
 """`treestroke serve`: a web process and a worker, started, watched, restarted and stopped together."""
 
+import errno
 import os
 import shutil
 import signal
@@ -47,8 +48,13 @@ class Child:
             print(f"treestroke: {self.module} ended ({code}) and is started again", file=sys.stderr, flush=True)
         if self._process is None and now >= self._next:
             command = [sys.executable, "-m", self.module]
+            # Standard output is the launcher's own, for its one line; what the processes have to say is on stderr.
             self._process = subprocess.Popen(
-                command, env=self._environment, pass_fds=self._sockets, stdin=subprocess.PIPE
+                command,
+                env=self._environment,
+                pass_fds=self._sockets,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
             )
             self._started = now
 
@@ -75,9 +81,9 @@ def serve(settings: Settings) -> int:
     Raises
     ------
     SettingsError
-        The address is not this machine's own: without keys nobody else may reach it.
+        The address is not this machine's own: without keys nobody else may reach it. Or the port is taken.
     OSError
-        The port is taken, or the data folder cannot be written.
+        The data folder cannot be written.
     """
     if settings.host not in LOOPBACK:
         raise SettingsError(
@@ -85,8 +91,8 @@ def serve(settings: Settings) -> int:
             "server that asks for a password before it"
         )
     folder = settings.folder
-    _clear(folder / "tmp")
     with _listen(settings) as listener:
+        _clear(folder / "tmp")
         environment = {
             **os.environ,
             **settings.environment(),
@@ -121,7 +127,14 @@ def serve(settings: Settings) -> int:
 
 def _listen(settings: Settings) -> socket.socket:
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
-    return socket.create_server((settings.host, settings.port), family=family, backlog=1024)
+    try:
+        return socket.create_server((settings.host, settings.port), family=family, backlog=1024)
+    except OSError as error:
+        why = "another program listens there" if error.errno == errno.EADDRINUSE else os.strerror(error.errno or 0)
+        other = 8000 if settings.port == 65535 else settings.port + 1
+        raise SettingsError(
+            f"--port {settings.port}: {why}; take another: --port {other}, or `make run PORT={other}`"
+        ) from None
 
 
 def _clear(folder: Path) -> None:
@@ -138,6 +151,7 @@ def _announce(page: str) -> None:
             print(f"treestroke: open {page} in a browser; Ctrl+C ends it", flush=True)
             return
         time.sleep(_LOOK_SECONDS)
+    print("treestroke: it does not answer; `treestroke doctor` says what is missing", file=sys.stderr, flush=True)
 
 
 def address(settings: Settings, port: int) -> str:

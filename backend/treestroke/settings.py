@@ -80,7 +80,7 @@ def read_settings(**given: object) -> Settings:
         raise SettingsError(f"{where}: {shown(first['input'])} is not allowed; {_allowed(first['msg'])}") from None
     except RuntimeError:
         raise SettingsError("the data folder's home is unknown; name a folder by --data or TREESTROKE_DATA") from None
-    if not settings.embedded and not settings.broker_url.startswith(("redis://", "rediss://", "unix://")):
+    if not settings.embedded and not settings.broker_url.startswith(("redis://", "rediss://")):
         raise SettingsError(
             f"{_variable('broker_url')}: only a Redis is known; give redis://HOST:PORT/0 or leave it out"
         )

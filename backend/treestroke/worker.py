@@ -1,29 +1,28 @@
 """The worker: a Celery process whose children grow models; `treestroke serve` runs one, `treestroke worker` too."""
 
 import os
-
-# A worker that is told to stop finishes or gives back its jobs within seconds instead of waiting. Read at import.
-os.environ.setdefault("REMAP_SIGTERM", "SIGQUIT")
-
 import socket
 import sys
 import threading
 import time
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import structlog
 from billiard.exceptions import WorkerLostError
 from celery import Celery, Task, signals
 from celery.platforms import SecurityWarning  # type: ignore[attr-defined]
+from celery.worker import state
 from celery.worker.request import Request
 from sqlalchemy import select
 from sqlalchemy.exc import SQLAlchemyError
 
-from treestroke.lifeline import hold_lifeline
+from treestroke.lifeline import end_with, hold_lifeline
 from treestroke.logs import start_logging
-from treestroke.queue import TASK, make_queue
-from treestroke.service.dispatch import say_alive, say_gone
+from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
+from treestroke.service.dispatch import holds_jobs, say_alive, say_gone
 from treestroke.service.failures import problem_of
 from treestroke.service.jobs import grow_model
 from treestroke.service.pool import limit_memory
@@ -37,6 +36,10 @@ NICENESS = 10
 """Growing gives way to tracing, which somebody waits for with the pen in hand."""
 _BEAT_SECONDS = 2.0
 _SCHEMA_SECONDS = 60.0
+_LOOK_SECONDS = 0.2
+_IDLE_LOOKS = 2
+"""So often nothing must be under way before a worker leaves: a child may be about to take what it was given."""
+_unforked = threading.RLock()
 log = structlog.get_logger()
 
 
@@ -46,6 +49,7 @@ def main() -> int:
     start_logging()
     hold_lifeline()
     database = Database(settings.folder)
+    os.register_at_fork(before=_unforked.acquire, after_in_parent=_unforked.release, after_in_child=_unforked.release)
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
         return 1
@@ -63,6 +67,10 @@ def main() -> int:
         beats.start()
         log.info("worker_ready", worker=name, slots=slots)
 
+    @signals.worker_shutting_down.connect(weak=False)
+    def _end(**_: object) -> None:
+        threading.Thread(target=_leave, args=(database, name), name="leaving", daemon=True).start()
+
     app.Worker(
         hostname=f"treestroke@{name}",
         pool_cls="prefork",
@@ -78,6 +86,37 @@ def main() -> int:
     return 0
 
 
+@contextmanager
+def _briefly(database: Database) -> Iterator[Database]:
+    """Use the database while no child is being forked, and close it again.
+
+    A child inherits what SQLite knows of the locks of its parent's connections: it would wait for ever for one that
+    was held at that moment, and would lose its own when the inherited connection is closed.
+    """
+    with _unforked:
+        try:
+            yield database
+        finally:
+            database.close()
+
+
+def _leave(database: Database, name: str) -> None:
+    """End a worker that is told to stop, as soon as nothing is being grown; what takes too long queues again.
+
+    All that matters is in the database by then. Celery would wait for its own processes, or for a broker that does
+    not answer. The children see that their parent is gone.
+    """
+    deadline, idle = time.monotonic() + DRAIN_SECONDS, 0
+    while time.monotonic() < deadline and idle < _IDLE_LOOKS:
+        time.sleep(_LOOK_SECONDS)
+        with suppress(SQLAlchemyError), _briefly(database):
+            idle = 0 if holds_jobs(database, name) else idle + 1
+    with suppress(SQLAlchemyError), _briefly(database):
+        say_gone(database, name)
+    log.info("worker_stopped", worker=name)
+    os._exit(0)
+
+
 def _keep_logging(**_: object) -> None:
     """Stand in for Celery's own set-up of the log, which would replace ours."""
 
@@ -86,9 +125,11 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
     """Make the Celery application with its one task."""
     app = make_queue(settings)
     opened: list[tuple[Database, Blobs]] = []
+    parent = os.getpid()
 
     @signals.worker_process_init.connect(weak=False)
     def _open(**_: object) -> None:
+        end_with(parent)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
         opened[:] = [(Database(settings.folder), Blobs(settings.folder))]
@@ -102,7 +143,8 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
                 _close(database, self.id, "time_limit")
 
         def on_failure(self, exc_info: Any, *args: Any, **kwargs: Any) -> Any:
-            if isinstance(exc_info.exception, WorkerLostError):
+            error = exc_info.exception
+            if isinstance(getattr(error, "exc", error), WorkerLostError):  # billiard wraps what it reports
                 _close(database, self.id, "worker_lost")
             return super().on_failure(exc_info, *args, **kwargs)
 
@@ -123,12 +165,13 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
 def _close(database: Database, token: str, code: str) -> None:
     """End or give back what a child held when it was killed."""
     try:
-        with database.writing() as session:
+        with _briefly(database), database.writing() as session:
             job = session.scalars(select(Model).where(Model.claim == token, Model.status == "running")).first()
             if job is not None and code == "time_limit":
                 end(session, job, "failed", problem_of(code))
             elif job is not None:
-                lose(session, job, problem_of(code))
+                # A pool that is being stopped kills its children before long; that is no fault of theirs.
+                lose(session, job, None if state.should_stop is not None else problem_of(code))
     except SQLAlchemyError as error:
         log.error("not_closed", token=token, code=code, error=str(error))
     else:
@@ -138,7 +181,8 @@ def _close(database: Database, token: str, code: str) -> None:
 def _beat(database: Database, name: str, slots: int, stopped: threading.Event) -> None:
     while not stopped.is_set():
         try:
-            say_alive(database, name, slots)
+            with _briefly(database):
+                say_alive(database, name, slots)
         except SQLAlchemyError as error:
             log.warning("beat_missed", error=str(error))
         stopped.wait(_BEAT_SECONDS)
@@ -147,8 +191,9 @@ def _beat(database: Database, name: str, slots: int, stopped: threading.Event) -
 def _wait_for_tables(database: Database) -> bool:
     deadline = time.monotonic() + _SCHEMA_SECONDS
     while time.monotonic() < deadline:
-        if database.path.exists() and database.current():
-            return True
+        with _briefly(database):
+            if database.path.exists() and database.current():
+                return True
         time.sleep(0.2)
     return False
 

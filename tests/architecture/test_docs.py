@@ -7,6 +7,7 @@ import pytest
 
 import treestroke
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.settings import PREFIX, Settings
 
 ROOT = Path(__file__).parents[2]
 
@@ -23,6 +24,15 @@ def test_the_readme_s_settings_are_the_table() -> None:
             f.metadata["meaning"],
         )
         for f in fields(ModelSettings)
+    ]
+    assert rows == table
+
+
+def test_the_readme_s_variables_are_the_service_s_settings() -> None:
+    rows = re.findall(r"^\| `(TREESTROKE_\w+)` \| (\S+) \| (.*?) \|$", (ROOT / "README.md").read_text(), re.M)
+    table = [
+        (f"{PREFIX}{name.upper()}", str(field.default) or "empty", field.description)
+        for name, field in Settings.model_fields.items()
     ]
     assert rows == table
 

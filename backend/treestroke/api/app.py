@@ -5,10 +5,12 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from fastapi import FastAPI
 from fastapi.responses import FileResponse
 from fastapi.routing import APIRoute
+from fastapi.staticfiles import StaticFiles
 from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
 
@@ -20,7 +22,7 @@ from treestroke.api.routes import events, files, models, photos, status
 from treestroke.codec.image import MAX_BYTES
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_hint
-from treestroke.schemas import ModelRequest, Problem, TraceRequest
+from treestroke.schemas import ModelRequest, Problem, Rename, TraceRequest
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.pool import Tracers
@@ -45,6 +47,7 @@ def make_app(settings: Settings) -> FastAPI:
         lifespan=_lifespan,
         docs_url=None,
         redoc_url=None,
+        redirect_slashes=False,
         generate_unique_id_function=_operation_id,
     )
     app.state.settings = settings
@@ -57,6 +60,7 @@ def make_app(settings: Settings) -> FastAPI:
     def page() -> FileResponse:
         return FileResponse(PAGE / "index.html")
 
+    app.mount("/page", StaticFiles(directory=PAGE))
     app.add_middleware(Limited, limit_of=_limit_of)
     app.add_middleware(Guard, hosts=HOSTS)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]
@@ -97,13 +101,23 @@ def _operation_id(route: APIRoute) -> str:
     return route.name
 
 
+def _drop_standard_problems(document: dict[str, Any]) -> None:
+    """Leave out FastAPI's own form of a 422, which it names wherever there is a parameter; ours are named by hand."""
+    for name in ("HTTPValidationError", "ValidationError"):
+        document["components"]["schemas"].pop(name, None)
+    for operation in (one for path in document["paths"].values() for one in path.values()):
+        if "HTTPValidationError" in str(operation["responses"].get("422")):
+            del operation["responses"]["422"]
+
+
 def _document(app: FastAPI) -> dict[str, object]:
     """Give the API's document, with the bodies that routes read by themselves."""
     if app.openapi_schema is None:
-        document = FastAPI.openapi(app)
+        document: dict[str, Any] = FastAPI.openapi(app)
         schemas = document["components"]["schemas"]
         _, extra = models_json_schema(
-            [(one, "validation") for one in (TraceRequest, ModelRequest, Problem)], ref_template=_REF
+            [(one, "validation") for one in (TraceRequest, ModelRequest, Rename, Problem)], ref_template=_REF
         )
         schemas.update(extra["$defs"])
+        _drop_standard_problems(document)
     return app.openapi_schema  # type: ignore[return-value]

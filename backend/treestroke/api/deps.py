@@ -1,9 +1,10 @@
 """What routes are given: the shelf with everything on it, and bodies read whole."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from fastapi import Depends, HTTPException, Request
+from fastapi import Depends, HTTPException, Path, Request
 
+from treestroke.codec.image import MAX_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.settings import Settings
@@ -32,10 +33,34 @@ def media_type(request: Request) -> str:
 async def _json_body(request: Request) -> bytes:
     """Read a JSON body; it is parsed where a large or hostile one does no harm."""
     if media_type(request) not in ("application/json", ""):
-        raise HTTPException(415, "the body must be application/json")
+        raise HTTPException(415, "the body must be JSON; send it as application/json")
     return await request.body()
 
 
+def check_length(photo: bytes) -> None:
+    """Refuse a photo of too many bytes.
+
+    Raises
+    ------
+    HTTPException
+        413.
+    """
+    if len(photo) > MAX_BYTES:
+        raise HTTPException(413, f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
+
+
+def _id(kind: str) -> Any:
+    """Document an id's form; whatever has another is not found."""
+    return Path(json_schema_extra={"pattern": f"^{kind}_[0-9a-f]{{24}}$"})
+
+
+def leads_to(*operations: str) -> dict[str, Any]:
+    """Document what may be asked with the id that an answer holds."""
+    return {name: {"operationId": name, "parameters": {"id": "$response.body#/id"}} for name in operations}
+
+
+PhotoId = Annotated[str, _id("pho")]
+ModelId = Annotated[str, _id("mdl")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
 ShelfOf = Annotated[Shelf, Depends(_shelf)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]

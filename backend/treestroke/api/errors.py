@@ -23,6 +23,7 @@ from treestroke.service.pool import Crashed, Overloaded
 
 MEDIA_TYPE = "application/problem+json"
 _RETRY = {"Retry-After": "1"}
+_RETRY_HEADER = {"Retry-After": {"schema": {"type": "string", "pattern": "^[0-9]+$"}, "description": "seconds"}}
 _CODES = {
     400: "bad_request",
     404: "not_found",
@@ -52,10 +53,12 @@ def problem(
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Name the problems that a route may answer with, for the API's document."""
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
-    described = {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
+    described: dict[int | str, dict[str, Any]] = {
+        status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses
+    }
     for status in {503} & described.keys():
         described[status]["headers"] = _RETRY_HEADER
-    return dict(described)
+    return described
 
 
 def add_handlers(app: FastAPI) -> None:
@@ -151,6 +154,6 @@ def _allowed(request: Request) -> list[str]:
     """Collect the methods of all routes at a request's path."""
     methods: set[str] = set()
     for route in iter_route_contexts(request.app.routes):
-        if re.fullmatch(compile_path(route.path)[0], request.scope["path"]):
+        if route.path and re.fullmatch(compile_path(route.path)[0], request.scope["path"]):
             methods |= set(route.methods or ())
     return sorted(methods)

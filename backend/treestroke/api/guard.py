@@ -11,8 +11,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from treestroke.api.errors import problem
 
-_PATIENCE_SECONDS = 30.0
-_SLOWEST_BYTES_PER_SECOND = 20_000
+PATIENCE_SECONDS = 30.0
+SLOWEST_BYTES_PER_SECOND = 20_000
 """A body that comes more slowly, after the first half minute, is given up."""
 _POLICY = "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'"
 _HEADERS = {
@@ -61,8 +61,15 @@ class Guard:
 class Limited:
     """Bounds a request's body, whatever its Content-Length says, and gives up on bodies that hardly come."""
 
-    def __init__(self, app: ASGIApp, limit_of: Callable[[Scope], int]) -> None:
+    def __init__(
+        self,
+        app: ASGIApp,
+        limit_of: Callable[[Scope], int],
+        patience_s: float = PATIENCE_SECONDS,
+        slowest: float = SLOWEST_BYTES_PER_SECOND,
+    ) -> None:
         self._app, self._limit_of = app, limit_of
+        self._patience_s, self._slowest = patience_s, slowest
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on with its body counted."""
@@ -80,7 +87,7 @@ class Limited:
             nonlocal got, whole
             if whole:
                 return await receive()  # what comes now is the news that the client has gone
-            patience = began + _PATIENCE_SECONDS + got / _SLOWEST_BYTES_PER_SECOND - time.monotonic()
+            patience = began + self._patience_s + got / self._slowest - time.monotonic()
             try:
                 message = await asyncio.wait_for(receive(), max(patience, 0.0))
             except TimeoutError:

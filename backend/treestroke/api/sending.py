@@ -14,14 +14,15 @@ _TAG_HEADER = {"ETag": {"schema": {"type": "string"}, "description": "SHA-256 of
 _RANGE = re.compile(r"bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))")
 
 
-def file_answers(kind: str) -> dict[int | str, dict[str, Any]]:
-    """Name the answers of a route that sends a file, for the API's document."""
-    content = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
+def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]:
+    """Name the answers of a route that sends a file, JSON perhaps of a ``schema``, for the API's document."""
+    content: dict[str, Any] = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
+    whole = {"content": {kind: {"schema": {"$ref": f"#/components/schemas/{schema}"}}}} if schema else content
     length = {"Content-Range": {"schema": {"type": "string"}, "description": "bytes FIRST-LAST/ALL"}}
     problems = documented(403, 404, 416)
     problems[416]["headers"] = length
     return {
-        200: {**content, "description": "The file", "headers": _TAG_HEADER},
+        200: {**whole, "description": "The file", "headers": _TAG_HEADER},
         206: {**content, "description": "The part that Range asks for", "headers": {**_TAG_HEADER, **length}},
         304: {"description": "If-None-Match names this very file", "headers": _TAG_HEADER},
         **problems,

@@ -12,6 +12,8 @@ from typing import ClassVar, Self
 
 LONGEST_SHOWN = 60
 """Characters of a value that a message repeats."""
+LONGEST_POINTED = 200
+"""Characters of a key that a pointer repeats."""
 
 
 class TreestrokeError(Exception):
@@ -82,5 +84,5 @@ def _printable(message: str) -> str:
 
 
 def _escaped(key: str) -> str:
-    """Write a key as part of a JSON pointer."""
-    return _printable(key).replace("~", "~0").replace("/", "~1")
+    """Write a key as part of a JSON pointer; of one that nobody meant as a key, the beginning."""
+    return _printable(key[:LONGEST_POINTED]).replace("~", "~0").replace("/", "~1")

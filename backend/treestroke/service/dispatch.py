@@ -118,7 +118,9 @@ class Dispatcher:
         now = time.monotonic()
         self._sent = {id: at for id, at in self._sent.items() if id in next_ones}
         for id in next_ones:
-            if now - self._sent.get(id, -RESEND_SECONDS) >= RESEND_SECONDS and not self._tell(id, now):
+            # Where no worker lives one message is enough: more would only pile up until one comes.
+            due = id not in self._sent or (slots and now - self._sent[id] >= RESEND_SECONDS)
+            if due and not self._tell(id, now):
                 return
 
     def sweep(self) -> None:
@@ -152,12 +154,19 @@ def say_alive(database: Database, worker: str, slots: int) -> None:
             session.add(Worker(id=worker, slots=slots, beat=1))
 
 
+def holds_jobs(database: Database, worker: str) -> bool:
+    """Tell whether a worker has jobs under way."""
+    with database.reading() as session:
+        held = select(Model.id).where(Model.status == "running", Model.worker == worker).limit(1)
+        return session.scalar(held) is not None
+
+
 def say_gone(database: Database, worker: str) -> None:
     """Write down that a worker stops: what it still held queues again at once."""
     with database.writing() as session:
         session.execute(delete(Worker).where(Worker.id == worker))
         for job in session.scalars(select(Model).where(Model.status == "running", Model.worker == worker)).all():
-            lose(session, job, problem_of("worker_lost"))
+            lose(session, job, None)
 
 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:

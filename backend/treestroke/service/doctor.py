@@ -2,26 +2,31 @@
 
 import shutil
 import sqlite3
+import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib import import_module, metadata
+from importlib import import_module
+from pathlib import Path
 
-from kombu import Connection
-from sqlalchemy import select, text
+from redis import Redis, RedisError
+from sqlalchemy import func, select, text
 from sqlalchemy.exc import SQLAlchemyError
 
-from treestroke.queue import make_queue
+from treestroke import __version__
 from treestroke.schemas import Health
 from treestroke.service.photos import Shelf
 from treestroke.service.retention import referenced
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import Worker
+from treestroke.store.tables import Model, Worker
 
 _LEAST_FREE_BYTES = 500_000_000
-_BROKER_SECONDS = 3
+_BROKER_SECONDS = 2
+_WATCH_SECONDS = 3.0
+"""A worker that lives beats within this."""
+_SERVE = "`treestroke serve`"
 _PARTS = ("cv2", "maxflow", "PIL", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
 
 
@@ -53,12 +58,15 @@ def readiness(shelf: Shelf, broker_takes: bool) -> Health:
 
 
 def examine(settings: Settings) -> Iterator[Finding]:
-    """Look at everything that the service needs, one part after another."""
+    """Look at everything that the service needs, one part after another; nothing is made that is not there yet."""
     yield _parts()
     yield _engine()
-    yield from _folder(settings)
-    yield _broker(settings)
-    yield from _rows(settings)
+    folder = _folder(settings)
+    yield folder
+    yield _disk(settings)
+    yield Finding("queue", True, "files in the data folder") if settings.embedded else _redis(settings)
+    if folder.well:
+        yield from _rows(settings)
 
 
 def _parts() -> Finding:
@@ -67,7 +75,7 @@ def _parts() -> Finding:
         return Finding(
             "packages", False, f"missing: {', '.join(missing)}", "run `make setup`, or install treestroke anew"
         )
-    return Finding("packages", True, f"all there; treestroke {metadata.version('treestroke')}")
+    return Finding("packages", True, f"all there; treestroke {__version__}")
 
 
 def _imports(name: str) -> bool:
@@ -82,83 +90,105 @@ def _engine() -> Finding:
     if _imports("treestroke.core.grow._engine"):
         return Finding("growth engine", True, "compiled")
     mend = "install a C compiler and Python's headers (python3-dev), and install treestroke anew"
-    return Finding("growth engine", False, "not compiled: growth takes minutes", mend)
+    return Finding("growth engine", False, "not compiled: growth takes many times longer", mend)
 
 
-def _folder(settings: Settings) -> Iterator[Finding]:
+def _folder(settings: Settings) -> Finding:
     folder = settings.folder
+    there = _nearest(folder)
+    mend = "choose another folder (--data, TREESTROKE_DATA), or make this one writable"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        probe = folder / ".doctor"
-        probe.write_bytes(b"well")
-        probe.unlink()
+        with tempfile.TemporaryFile(dir=there) as probe:
+            probe.write(b"well")
     except OSError as error:
-        mend = "choose another folder (TREESTROKE_DATA) or make this one writable"
-        yield Finding("data folder", False, f"{folder}: {error.strerror}", mend)
-        return
-    yield Finding("data folder", True, str(folder))
-    free = shutil.disk_usage(folder).free
+        return Finding("data folder", False, f"{there}: {error.strerror}", mend)
+    return Finding("data folder", True, str(folder) if there == folder else f"{folder}: none yet; {_SERVE} makes it")
+
+
+def _nearest(folder: Path) -> Path:
+    """Give the folder, or where it is not there the nearest one above it."""
+    return next(place for place in (folder, *folder.parents) if place.exists())
+
+
+def _disk(settings: Settings) -> Finding:
+    free = shutil.disk_usage(_nearest(settings.folder)).free
     well = free > _LEAST_FREE_BYTES
-    yield Finding("disk", well, f"{free // 10**6} MB free", "" if well else "free space, or move the data folder")
+    mend = "" if well else f"free space until {_LEAST_FREE_BYTES // 10**6} MB are free, or move the data folder"
+    return Finding("disk", well, f"{free // 10**6} MB free", mend)
 
 
-def _broker(settings: Settings) -> Finding:
-    name = "queue (Redis)" if settings.broker_url else "queue (files)"
+def _redis(settings: Settings) -> Finding:
     try:
-        with make_queue(settings).connection_for_write() as connection:
-            _connect(connection)
-    except Exception as error:  # noqa: BLE001 - a broker fails in many ways
-        mend = "start Redis, or correct TREESTROKE_BROKER_URL; jobs wait until then and none is lost"
-        return Finding(name, False, str(error) or type(error).__name__, mend)
-    return Finding(name, True, "takes messages")
-
-
-def _connect(connection: Connection) -> None:
-    connection.ensure_connection(max_retries=1, timeout=_BROKER_SECONDS)
+        with Redis.from_url(
+            settings.broker_url, socket_timeout=_BROKER_SECONDS, socket_connect_timeout=_BROKER_SECONDS
+        ) as redis:
+            # A Redis that is full, or that cannot save, answers and yet takes nothing.
+            redis.set("treestroke.doctor", "well", ex=1)
+    except (RedisError, OSError, ValueError) as error:
+        mend = "start or free Redis, or correct TREESTROKE_BROKER_URL; until then jobs wait, and none is lost"
+        return Finding("queue", False, " ".join(str(error).split()) or type(error).__name__, mend)
+    return Finding("queue", True, "Redis takes messages")
 
 
 def _rows(settings: Settings) -> Iterator[Finding]:
-    """Look into the database: sound, of this version, every file there, a worker alive."""
+    """Look into the database: sound, of this version, every file there, workers alive."""
     database = Database(settings.folder)
-    if not database.path.exists():
-        yield Finding("database", True, "none yet; `treestroke serve` makes it")
+    if not database.path.is_file():
+        yield Finding("database", True, f"none yet; {_SERVE} makes it")
         return
-    for look in (_soundness, _files, _workers):
-        try:
-            yield look(settings, database)
-        except (SQLAlchemyError, sqlite3.DatabaseError) as error:
-            mend = f"stop the service and restore {database.path} from a copy"
-            yield Finding("database", False, str(getattr(error, "orig", error)), mend)
-            return
-    database.close()
+    try:
+        for look in (_soundness, _files, _workers):
+            finding = look(settings, database)
+            yield finding
+            if not finding.well and finding.part == "database":
+                return
+    except (SQLAlchemyError, sqlite3.Error) as error:
+        yield _unsound(database, str(getattr(error, "orig", error)))
+    finally:
+        database.close()
 
 
 def _soundness(_: Settings, database: Database) -> Finding:
     with database.reading() as session:
-        said = session.execute(text("PRAGMA quick_check")).scalar()
+        said = session.execute(text("PRAGMA quick_check(1)")).scalar()
     if said != "ok":
-        return Finding("database", False, str(said), f"stop the service and restore {database.path} from a copy")
+        return _unsound(database, " ".join(str(said).split()))
     if not database.current():
-        return Finding("database", False, "of another version", "start `treestroke serve`, which brings it up to date")
+        mend = f"start {_SERVE}, which brings an older one up to date; for a newer one install a newer treestroke"
+        return Finding("database", False, "of another version", mend)
     return Finding("database", True, "sound")
+
+
+def _unsound(database: Database, why: str) -> Finding:
+    return Finding("database", False, why, f"stop the service and restore {database.path} from a copy")
 
 
 def _files(settings: Settings, database: Database) -> Finding:
     blobs = Blobs(settings.folder)
-    missing = [name for name in referenced(database) if not blobs.path(name).is_file()]
+    named = referenced(database)
+    missing = sorted(name for name in named if not blobs.path(name).is_file())
     if missing:
-        return Finding("files", False, f"{len(missing)} missing", f"restore {blobs.folder} from a copy")
-    return Finding("files", True, "all there")
+        mend = f"restore {blobs.folder} from a copy; what needs these files cannot be downloaded or grown"
+        return Finding("files", False, f"{len(missing)} of {len(named)} missing, such as {missing[0][:12]}", mend)
+    return Finding("files", True, f"all {len(named)} there")
 
 
 def _workers(_: Settings, database: Database) -> Finding:
     before = _beats(database)
     if not before:
-        return Finding("workers", True, "none runs")
-    _wait(lambda: any(_beats(database).get(name) != beat for name, beat in before.items()))
-    alive = [name for name, beat in _beats(database).items() if before.get(name) != beat]
-    mend = "" if alive else "start `treestroke serve`, or `treestroke worker` where workers run elsewhere"
-    return Finding("workers", bool(alive), f"{len(alive)} of {len(before)} alive", mend)
+        waiting = _waiting(database)
+        mend = f"start {_SERVE}, or `treestroke worker` where workers run elsewhere" if waiting else ""
+        return Finding("workers", not waiting, f"none runs; {waiting} models wait" if waiting else "none runs", mend)
+    deadline = time.monotonic() + _WATCH_SECONDS
+    while not _all_beat(before, now := _beats(database)) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    alive = sum(before.get(name) != beat for name, beat in now.items())
+    mend = "" if alive else f"start {_SERVE}, which clears them away, or `treestroke worker`"
+    return Finding("workers", alive > 0, f"{alive} of {len(now)} alive", mend)
+
+
+def _all_beat(before: dict[str, int], now: dict[str, int]) -> bool:
+    return all(before.get(name) != beat for name, beat in now.items())
 
 
 def _beats(database: Database) -> dict[str, int]:
@@ -166,7 +196,6 @@ def _beats(database: Database) -> dict[str, int]:
         return {worker.id: worker.beat for worker in session.scalars(select(Worker))}
 
 
-def _wait(ready: Callable[[], bool], seconds: float = 5.0) -> None:
-    deadline = time.monotonic() + seconds
-    while time.monotonic() < deadline and not ready():
-        time.sleep(0.1)
+def _waiting(database: Database) -> int:
+    with database.reading() as session:
+        return session.scalar(select(func.count()).where(Model.status.in_(("queued", "running")))) or 0

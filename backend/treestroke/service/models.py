@@ -10,7 +10,6 @@ from sqlalchemy import update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.project import Project, write_project
-from treestroke.core.errors import TreestrokeError
 from treestroke.service import tracing
 from treestroke.service.model import ENGINE
 from treestroke.service.photos import NotFound, Shelf
@@ -46,6 +45,17 @@ def read_wish(shelf: Shelf, body: bytes) -> Wish:
         It is no such request.
     """
     return shelf.tracers("", tracing.read_wish, body)
+
+
+def read_fields(shelf: Shelf, fields: dict[str, bytes]) -> Wish:
+    """Read a request for a model from a form's fields but the photo, as `read_wish` does.
+
+    Raises
+    ------
+    TreestrokeError
+        It is no such request.
+    """
+    return shelf.tracers("", tracing.read_fields, fields)
 
 
 def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | None = None) -> Seen:
@@ -97,20 +107,12 @@ def see(database: Database, id: str) -> Seen:
 
 
 def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[Seen], str | None]:
-    """Give a page of models, newest first, and the cursor of the next page.
-
-    Raises
-    ------
-    TreestrokeError
-        The cursor is none of ours.
-    """
-    before = None if cursor is None else queries.number_of(cursor)
-    if cursor is not None and before is None:
-        raise TreestrokeError.at(("cursor",), "it is no cursor of this list; begin without one", "cursor_invalid")
+    """Give a page of models, newest first, and the cursor of the next page: decimal digits."""
+    before = None if cursor is None else int(cursor)
     with database.reading() as session:
         rows = queries.newest(session, before, limit + 1)
         page = [_seen(session, row) for row in rows[:limit]]
-    return page, queries.cursor_after(rows[limit - 1]) if len(rows) > limit else None
+    return page, str(rows[limit - 1].number) if len(rows) > limit else None
 
 
 def rename(database: Database, id: str, name: str) -> Seen:

@@ -16,14 +16,14 @@ from treestroke.codec.json_text import read_json
 from treestroke.codec.strokes import encode_strokes, parse_strokes, strokes_from
 from treestroke.core.errors import StrokesError, TreestrokeError, shown
 from treestroke.core.pipeline.settings import check_seed, settings_from
-from treestroke.core.stroke_rules import mend_strokes, require_trunk
+from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES, mend_strokes, require_trunk
 from treestroke.schemas import NAME_PATTERN
 from treestroke.service.trace import Trace, trace
 from treestroke.store.blobs import Blobs
 
 MAX_REV = 2**53 - 1
 MAX_NAME, MAX_ID = 200, 40
-_NAME = re.compile(NAME_PATTERN)
+_NAME, _HALF_PAIR = re.compile(NAME_PATTERN), re.compile("[\ud800-\udfff]")
 _DEFAULTS: Mapping[str, Any] = {}
 _KEPT_PIXELS = 60_000_000
 """Of the photos that one process remembers."""
@@ -51,6 +51,8 @@ class Wish:
     name: str
 
 
+_MOST_SIGNS = {b"[": 1.1 * MAX_STROKES * MAX_POINTS, b"{": 1000 * MAX_STROKES, b",": 2.2 * MAX_STROKES * MAX_POINTS}
+"""What the longest strokes need, and some for names and unknown keys, which are told from them later."""
 _known: OrderedDict[Path, Known] = OrderedDict()
 
 
@@ -149,7 +151,7 @@ def check_name(name: object) -> str:
     TreestrokeError
         It is no text of at most `MAX_NAME` characters, or has some that are none of a line of text.
     """
-    if not isinstance(name, str) or len(name) > MAX_NAME or not _NAME.fullmatch(name):
+    if not isinstance(name, str) or len(name) > MAX_NAME or not _NAME.fullmatch(name) or _HALF_PAIR.search(name):
         what = f"it must be one line of at most {MAX_NAME} characters; leave out line ends and other controls"
         raise TreestrokeError.at(("name",), what, "name_invalid")
     return name
@@ -201,6 +203,10 @@ def _object(body: bytes) -> dict[str, Any]:
 
 
 def _json(text: bytes, what: str) -> Any:
+    """Read JSON that holds no more than the longest strokes need: anything else would take minutes and gigabytes."""
+    if any(text.count(sign) > most for sign, most in _MOST_SIGNS.items()):
+        most = f"more than {MAX_STROKES} strokes of {MAX_POINTS} points need"
+        raise StrokesError(f"{what}: it holds {most}; thin them out", code="too_many_points")
     return read_json(text, StrokesError, f"{what}: it is", "send valid JSON")
 
 

@@ -12,7 +12,7 @@ from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, create_engine, event
 from sqlalchemy.orm import Session
 
-_WRITES = "treestroke_writes"
+_WRITES, _STATES = "treestroke_writes", "treestroke_states"
 _BUSY_SECONDS = 10
 """How long a writer waits for another."""
 
@@ -40,6 +40,19 @@ class Database:
             self._engine.connect().execution_options(**{_WRITES: True}) as connection,
             Session(connection, expire_on_commit=False) as session,
             session.begin(),
+        ):
+            yield session
+
+    @contextmanager
+    def stating(self) -> Iterator[Session]:
+        """Open a session in which each statement is a transaction of its own.
+
+        The one lock that all writers share is then held inside SQLite alone. A process that stands still, or that is
+        busy in a library with Python's lock held, would keep everybody else from writing between two statements.
+        """
+        with (
+            self._engine.connect().execution_options(**{_STATES: True}) as connection,
+            Session(connection, expire_on_commit=False) as session,
         ):
             yield session
 
@@ -78,7 +91,8 @@ def _engine(path: Path) -> Engine:
 
     @event.listens_for(engine, "begin")
     def _begin(connection: Connection) -> None:
-        writes = connection.get_execution_options().get(_WRITES, False)
-        connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+        options = connection.get_execution_options()
+        if not options.get(_STATES, False):
+            connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get(_WRITES, False) else "BEGIN")
 
     return engine

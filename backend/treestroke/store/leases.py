@@ -6,7 +6,7 @@ queued -> running -> succeeded | failed | canceled        running -> queued wher
 import time
 from typing import Any, Literal
 
-from sqlalchemy import update
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.store.tables import File, Model
@@ -39,11 +39,13 @@ def claim(session: Session, model: str, token: str, worker: str) -> Model | None
 
 def beat(session: Session, job: Model, phase: str | None, phase_fraction: float, progress: float) -> bool | None:
     """Say that an attempt lives and how far it is; tell whether it is to stop, or None where it is no longer ours."""
-    return session.scalars(
-        _ours(job)
-        .values(beat=Model.beat + 1, seq=Model.seq + 1, phase=phase, phase_fraction=phase_fraction, progress=progress)
-        .returning(Model.cancel)
-    ).first()
+    change = _ours(job).values(
+        beat=Model.beat + 1, seq=Model.seq + 1, phase=phase, phase_fraction=phase_fraction, progress=progress
+    )
+    # No RETURNING: the change is to be over when SQLite comes back.
+    if session.connection().execute(change).rowcount == 0:
+        return None
+    return session.scalar(select(Model.cancel).where(Model.id == job.id))
 
 
 def add_file(session: Session, job: Model, name: str, blob: str, size: int, **values: Any) -> bool:
@@ -70,15 +72,18 @@ def end(session: Session, job: Model, status: Literal["failed", "canceled"], err
     return session.scalars(change.returning(Model.id)).first() is not None
 
 
-def lose(session: Session, job: Model, error: dict[str, Any]) -> bool:
+def lose(session: Session, job: Model, error: dict[str, Any] | None) -> bool:
     """Take an attempt back: the job queues again, or ends where it was to be stopped or has used its attempts up.
 
+    ``error`` says what went wrong; None where nothing did, and the job queues again however often it was begun.
     False where the attempt that ``job`` shows is over already, or has beaten since.
     """
     lost = _ours(job).where(Model.beat == job.beat)
-    if job.cancel:
-        change = lost.values(**_ended("canceled"))
-    elif job.attempt >= MAX_ATTEMPTS:
+    # Asked of the row, not of ``job``: the wish to stop may have come a moment ago.
+    stopped = lost.where(Model.cancel.is_(True)).values(**_ended("canceled"))
+    if session.scalars(stopped.returning(Model.id)).first() is not None:
+        return True
+    if error is not None and job.attempt >= MAX_ATTEMPTS:
         change = lost.values(**_ended("failed"), error=error)
     else:
         change = lost.values(

@@ -1,7 +1,5 @@
 """Questions to the tables that more than one use case asks."""
 
-import base64
-import binascii
 import secrets
 from collections.abc import Sequence
 
@@ -69,17 +67,3 @@ def usual_seconds(session: Session) -> float:
     ).all()
     known = sorted(seconds for seconds in took if seconds is not None)
     return known[len(known) // 2] if known else _FIRST_GUESS_S
-
-
-def cursor_after(row: Model) -> str:
-    """Name the place in the list after a model."""
-    return base64.urlsafe_b64encode(str(row.number).encode()).decode().rstrip("=")
-
-
-def number_of(cursor: str) -> int | None:
-    """Read a cursor; None where it is none of ours."""
-    try:
-        text = base64.urlsafe_b64decode(cursor.encode("ascii") + b"=" * (-len(cursor) % 4)).decode("ascii")
-    except (UnicodeError, binascii.Error, ValueError):
-        return None
-    return int(text) if text.isdecimal() and len(text) <= 18 else None

@@ -9,7 +9,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.requests import Request
 
-from treestroke.api.deps import ShelfOf
+from treestroke.api.deps import ModelId, ShelfOf
 from treestroke.api.errors import documented
 from treestroke.api.views import model_view
 from treestroke.service import models
@@ -23,12 +23,12 @@ _LOOK_SECONDS = 0.25
 _RETRY_MS = 2000
 
 
-def _seen(shelf: ShelfOf, id: str) -> Seen:
+def _seen(shelf: ShelfOf, id: ModelId) -> Seen:
     """Find the model before the stream begins, while the answer can still be 404."""
     return models.see(shelf.database, id)
 
 
-@router.get("/{id}/events", response_class=EventSourceResponse, responses=documented(403, 404))
+@router.get("/{id}/events", response_class=EventSourceResponse, responses=documented(403, 404, 422))
 async def follow_model(
     request: Request,
     shelf: ShelfOf,
@@ -37,8 +37,8 @@ async def follow_model(
 ) -> AsyncIterator[ServerSentEvent]:
     """Follow a model: ``snapshot``, then ``progress``, one ``preview``, and ``succeeded``, ``failed`` or ``canceled``.
 
-    Only what must not be missed carries an id: ``preview`` and the last event. After a broken connection they come
-    again unless ``Last-Event-ID`` says that they came.
+    Only what must not be missed carries an id: ``preview`` and the last event. After a broken connection ``preview``
+    comes again unless ``Last-Event-ID`` says that it came; the last event always comes.
     """
     told = int(last_event_id) if last_event_id and last_event_id.isdecimal() else 0
     shown = model_view(seen)

@@ -26,7 +26,7 @@ def get_preview(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     return _file(request, shelf, id, PREVIEW, _PNG)
 
 
-@router.get("/strokes.json", response_class=FileResponse, responses=file_answers(_JSON))
+@router.get("/strokes.json", response_class=FileResponse, responses=file_answers(_JSON, "Strokes"))
 def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Give the strokes that the tree was made of."""
     return send_blob(request, shelf, models.see(shelf.database, id).row.strokes_blob, _JSON)

@@ -1,8 +1,10 @@
 """Models: asked for, followed, named, stopped, deleted, restored."""
 
 import asyncio
+import json
 import re
 import time
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, HTTPException, Query, Request, Response
@@ -10,73 +12,112 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
-from treestroke.api.deps import DispatcherOf, ShelfOf, media_type
+from treestroke import schemas
+from treestroke.api.deps import DispatcherOf, JsonBody, ModelId, ShelfOf, check_length, leads_to, media_type
 from treestroke.api.errors import documented
 from treestroke.api.views import model_view
-from treestroke.codec.image import MAX_BYTES
-from treestroke.schemas import Model, ModelPage, Rename
+from treestroke.codec.project import MAX_TEXT_BYTES
+from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import models, photos
 from treestroke.service.models import MAX_PAGE, Seen
 from treestroke.service.photos import Shelf
-from treestroke.service.tracing import Wish, read_fields
+from treestroke.service.tracing import MAX_NAME, Wish, read_name
 from treestroke.store.leases import TERMINAL
+from treestroke.store.tables import Photo
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 MAX_WAIT_SECONDS = 60.0
 _LOOK_SECONDS = 0.1
 _WAIT = re.compile(r"(?:^|[,;\s])wait=(\d{1,4})(?:$|[,;\s])")
-_LOCATION = {"Location": {"schema": {"type": "string"}, "description": "the model"}}
+_LOCATION = {
+    "Location": {"schema": {"type": "string", "pattern": "^/v1/models/mdl_[0-9a-f]{24}$"}, "description": "the model"},
+    "Preference-Applied": {"schema": {"type": "string"}, "description": "the wait that Prefer asked for"},
+}
+_FILES = ("get_tree", "get_preview", "get_strokes", "get_project")
+_CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
+_LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
+_NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
 _TEXT = {"type": "string"}
+_TEXTS = ("strokes", "settings", "seed", "name")
 _ASK: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "content": {
-            "application/json": {"schema": {"$ref": "#/components/schemas/ModelRequest"}},
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/ModelRequest"},
+                "example": schemas.MODEL_EXAMPLE,
+            },
             "multipart/form-data": {
                 "schema": {
                     "type": "object",
                     "required": ["photo", "strokes"],
                     "properties": {
-                        "photo": {"type": "string", "format": "binary"},
-                        "strokes": {**_TEXT, "description": "JSON"},
-                        "settings": {**_TEXT, "description": "JSON"},
-                        "seed": _TEXT,
-                        "name": _TEXT,
+                        "photo": {"type": "string", "format": "binary", "description": "JPEG, PNG or WebP"},
+                        "strokes": {**_TEXT, "description": "Strokes, as JSON"},
+                        "settings": {**_TEXT, "description": "ModelSettings, as JSON"},
+                        "seed": {**_TEXT, "pattern": "^[0-9]{1,18}$"},
+                        "name": {**_TEXT, "maxLength": MAX_NAME, "pattern": NAME_PATTERN},
                     },
-                }
+                    "additionalProperties": False,
+                },
+                "example": {
+                    "photo": "(the file's bytes)",
+                    "strokes": json.dumps(schemas.STROKES_EXAMPLE),
+                    "settings": '{"height": 14}',
+                    "seed": "1",
+                    "name": "The old oak",
+                },
             },
+        },
+    }
+}
+_RENAME: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/Rename"},
+                "example": {"name": "The old oak"},
+            }
         },
     }
 }
 
 
-async def _wish(request: Request, shelf: ShelfOf) -> Wish:
+@dataclass(frozen=True)
+class _Request:
+    """What is wished for, and the photo that came along."""
+
+    wish: Wish
+    photo: Photo | None = None
+
+
+async def _request(request: Request, shelf: ShelfOf) -> _Request:
     """Read a request for a model: JSON that names a photo, or a form that brings one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return await run_in_threadpool(models.read_wish, shelf, await request.body())
+        return _Request(await run_in_threadpool(models.read_wish, shelf, await request.body()))
     if kind != "multipart/form-data":
         raise HTTPException(415, "send application/json, or a form with the fields photo and strokes")
-    async with request.form(max_files=2, max_fields=5) as form:
+    fields = 1 + len(_TEXTS)
+    async with request.form(max_files=fields, max_fields=fields, max_part_size=MAX_TEXT_BYTES) as form:
+        if len(form) < len(form.multi_items()):
+            raise HTTPException(400, "the form has a field twice; send each once")
         photo = form.get("photo")
         if not isinstance(photo, UploadFile):
             raise HTTPException(400, "the form has no file in the field photo; send the photo there")
-        texts = [await _text(form.get(name)) for name in ("strokes", "settings", "seed", "name")]
+        texts = {name: await _text(field) for name, field in form.items() if field is not photo}
         content = await photo.read()
     return await run_in_threadpool(_take_in, shelf, content, texts)
 
 
-def _take_in(shelf: Shelf, content: bytes, texts: list[bytes]) -> Wish:
-    if len(content) > MAX_BYTES:
-        raise HTTPException(413, f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
-    wish = shelf.tracers("", read_fields, "", *texts)
-    return Wish(photos.add_photo(shelf, content).id, wish.strokes, wish.settings, wish.seed, wish.name)
+def _take_in(shelf: Shelf, content: bytes, texts: dict[str, bytes]) -> _Request:
+    check_length(content)
+    return _Request(models.read_fields(shelf, texts), photos.take_in(shelf, content))
 
 
-async def _text(field: UploadFile | str | None) -> bytes:
-    if isinstance(field, UploadFile):
-        return await field.read()
-    return (field or "").encode("utf-8", "surrogatepass")
+async def _text(field: UploadFile | str) -> bytes:
+    return await field.read() if isinstance(field, UploadFile) else field.encode("utf-8", "surrogatepass")
 
 
 @router.post(
@@ -84,8 +125,8 @@ async def _text(field: UploadFile | str | None) -> bytes:
     status_code=202,
     response_model=Model,
     responses={
-        200: {"model": Model, "description": "finished already", "headers": _LOCATION},
-        202: {"model": Model, "headers": _LOCATION},
+        200: {"model": Model, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
+        202: {"model": Model, "headers": _LOCATION, "links": _LINKS},
         **documented(400, 403, 404, 408, 413, 415, 422, 503, 507),
     },
     openapi_extra=_ASK,
@@ -93,12 +134,12 @@ async def _text(field: UploadFile | str | None) -> bytes:
 async def ask_for_model(
     shelf: ShelfOf,
     dispatcher: DispatcherOf,
-    wish: Annotated[Wish, Depends(_wish)],
+    request: Annotated[_Request, Depends(_request)],
     idempotency_key: Annotated[str | None, Header(min_length=1, max_length=255, pattern=r"^[\x21-\x7e]+$")] = None,
     prefer: Annotated[str | None, Header(description="wait=SECONDS answers when the model is finished")] = None,
 ) -> Response:
     """Ask for a tree: always a new model, finished at once where the same was made before."""
-    seen = await run_in_threadpool(models.ask_for_model, shelf, wish, idempotency_key)
+    seen = await run_in_threadpool(models.ask_for_model, shelf, request.wish, idempotency_key, request.photo)
     dispatcher.wake()
     wanted = _WAIT.search(prefer or "")
     if wanted:
@@ -118,10 +159,10 @@ async def _finished(shelf: Shelf, seen: Seen, seconds: float) -> Seen:
     return seen
 
 
-@router.get("", responses=documented(403, 422))
+@router.get("", responses={200: {"links": _NEXT}, **documented(403, 422)})
 def list_models(
     shelf: ShelfOf,
-    cursor: Annotated[str | None, Query(max_length=40)] = None,
+    cursor: Annotated[str | None, Query(pattern="^[0-9]{1,18}$", description="``next`` of the page before")] = None,
     limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 20,
 ) -> ModelPage:
     """List models, newest first."""
@@ -130,30 +171,30 @@ def list_models(
 
 
 @router.get("/{id}", responses=documented(403, 404))
-def get_model(shelf: ShelfOf, id: str) -> Model:
+def get_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Look a model up."""
     return model_view(models.see(shelf.database, id))
 
 
-@router.patch("/{id}", responses=documented(400, 403, 404, 408, 413, 422))
-def rename_model(shelf: ShelfOf, id: str, change: Rename) -> Model:
+@router.patch("/{id}", responses=documented(400, 403, 404, 408, 413, 415, 422, 507), openapi_extra=_RENAME)
+def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> Model:
     """Name a model."""
-    return model_view(models.rename(shelf.database, id, change.name))
+    return model_view(models.rename(shelf.database, id, read_name(body)))
 
 
-@router.delete("/{id}", status_code=204, responses=documented(403, 404))
-def delete_model(shelf: ShelfOf, id: str) -> None:
+@router.delete("/{id}", status_code=204, responses=documented(403, 404, 507))
+def delete_model(shelf: ShelfOf, id: ModelId) -> None:
     """Delete a model; its files go after 24 hours, until then it can be restored."""
     models.delete(shelf.database, id)
 
 
-@router.post("/{id}/restore", responses=documented(403, 404))
-def restore_model(shelf: ShelfOf, id: str) -> Model:
+@router.post("/{id}/restore", responses=documented(403, 404, 507))
+def restore_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Take a deletion back."""
     return model_view(models.restore(shelf.database, id))
 
 
-@router.post("/{id}/cancel", responses=documented(403, 404))
-def cancel_model(shelf: ShelfOf, id: str) -> Model:
+@router.post("/{id}/cancel", responses=documented(403, 404, 507))
+def cancel_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Stop a model that is not finished; a finished one stays as it is."""
     return model_view(models.cancel(shelf.database, id))

@@ -6,16 +6,16 @@ from fastapi import APIRouter, Depends, HTTPException, Request, Response
 from fastapi.responses import FileResponse
 from starlette.datastructures import UploadFile
 
-from treestroke.api.deps import JsonBody, ShelfOf, media_type
+from treestroke.api.deps import JsonBody, PhotoId, ShelfOf, check_length, leads_to, media_type
 from treestroke.api.errors import documented
+from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
-from treestroke.codec.image import MAX_BYTES
-from treestroke.schemas import Photo, TraceAnswer
+from treestroke.schemas import STROKES_EXAMPLE, Photo, TraceAnswer
 from treestroke.service import photos
 
 router = APIRouter(prefix="/v1/photos", tags=["photos"])
 _RAW = ("image/jpeg", "image/png", "image/webp", "application/octet-stream")
-_BINARY = {"schema": {"type": "string", "format": "binary"}}
+_BINARY = {"type": "string", "format": "binary"}
 _UPLOAD: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -24,13 +24,26 @@ _UPLOAD: dict[str, Any] = {
                 "schema": {
                     "type": "object",
                     "required": ["file"],
-                    "properties": {"file": {"type": "string", "format": "binary"}},
+                    "properties": {"file": _BINARY},
+                    "additionalProperties": False,
                 }
             },
-            **dict.fromkeys(_RAW, _BINARY),
+            **{kind: {"schema": _BINARY} for kind in _RAW},
         },
     }
 }
+_TRACE: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/TraceRequest"},
+                "example": {**STROKES_EXAMPLE, "rev": 7, "grow": False},
+            }
+        },
+    }
+}
+_LOCATION = {"schema": {"type": "string", "pattern": "^/v1/photos/pho_[0-9a-f]{24}$"}, "description": "the photo"}
 
 
 async def _photo_bytes(request: Request) -> bytes:
@@ -39,7 +52,7 @@ async def _photo_bytes(request: Request) -> bytes:
         if media_type(request) not in (*_RAW, ""):
             raise HTTPException(415, f"send a form with the field file, or {', '.join(_RAW)}")
         return await request.body()
-    async with request.form(max_files=1, max_fields=1) as form:
+    async with request.form(max_files=1, max_fields=0) as form:
         file = form.get("file")
         if not isinstance(file, UploadFile):
             raise HTTPException(400, "the form has no file in the field file; send the photo there")
@@ -50,39 +63,37 @@ async def _photo_bytes(request: Request) -> bytes:
     "",
     status_code=201,
     responses={
-        201: {"model": Photo, "headers": {"Location": {"schema": {"type": "string"}}}},
+        201: {
+            "model": Photo,
+            "headers": {"Location": _LOCATION},
+            "links": leads_to("get_photo", "get_image", "trace_photo", "delete_photo"),
+        },
         **documented(400, 403, 408, 413, 415, 422, 503, 507),
     },
     openapi_extra=_UPLOAD,
 )
 def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> Photo:
     """Upload a photo: JPEG, PNG or WebP, one frame."""
-    if len(content) > MAX_BYTES:
-        raise HTTPException(413, f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
+    check_length(content)
     row = photos.add_photo(shelf, content)
     response.headers["Location"] = f"/v1/photos/{row.id}"
     return photo_view(row)
 
 
 @router.get("/{id}", responses=documented(403, 404))
-def get_photo(shelf: ShelfOf, id: str) -> Photo:
+def get_photo(shelf: ShelfOf, id: PhotoId) -> Photo:
     """Look a photo up."""
     return photo_view(photos.get_photo(shelf, id))
 
 
-@router.get(
-    "/{id}/image",
-    response_class=FileResponse,
-    responses={200: {"content": {"image/png": _BINARY}}, **documented(403, 404)},
-)
-def get_image(shelf: ShelfOf, id: str) -> FileResponse:
+@router.get("/{id}/image", response_class=FileResponse, responses=file_answers("image/png"))
+def get_image(request: Request, shelf: ShelfOf, id: PhotoId) -> Response:
     """Give the stored picture: PNG, upright, sRGB, without metadata."""
-    row = photos.get_photo(shelf, id)
-    return FileResponse(shelf.blobs.path(row.blob), media_type="image/png", headers={"ETag": f'"{row.blob}"'})
+    return send_blob(request, shelf, photos.get_photo(shelf, id).blob, "image/png")
 
 
-@router.delete("/{id}", status_code=204, responses=documented(403, 404))
-def delete_photo(shelf: ShelfOf, id: str) -> None:
+@router.delete("/{id}", status_code=204, responses=documented(403, 404, 507))
+def delete_photo(shelf: ShelfOf, id: PhotoId) -> None:
     """Delete a photo; models that were made of it keep their own copy."""
     photos.delete_photo(shelf, id)
 
@@ -91,13 +102,8 @@ def delete_photo(shelf: ShelfOf, id: str) -> None:
     "/{id}/trace",
     response_model=TraceAnswer,
     responses=documented(400, 403, 404, 408, 413, 415, 422, 503),
-    openapi_extra={
-        "requestBody": {
-            "required": True,
-            "content": {"application/json": {"schema": {"$ref": "#/components/schemas/TraceRequest"}}},
-        }
-    },
+    openapi_extra=_TRACE,
 )
-def trace_photo(shelf: ShelfOf, id: str, body: JsonBody) -> Response:
+def trace_photo(shelf: ShelfOf, id: PhotoId, body: JsonBody) -> Response:
     """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too."""
     return Response(photos.trace_photo(shelf, id, body), media_type="application/json")

@@ -1,0 +1,29 @@
+# Two stages: the first compiles treestroke and sets up what it needs, the second runs it.
+FROM python:3.11-slim-bookworm AS build
+RUN apt-get update \
+    && apt-get install --yes --no-install-recommends gcc libc6-dev \
+    && rm -rf /var/lib/apt/lists/*
+WORKDIR /build
+COPY requirements.txt requirements-dev.txt ./
+RUN python -m venv /venv && /venv/bin/pip install --no-cache-dir --require-hashes -r requirements.txt
+COPY pyproject.toml setup.py README.md LICENSE ./
+COPY backend backend
+# setuptools, which builds it, is pinned like the rest. Without its compiled part growth would be slow: that ends the build.
+RUN sed -n '/^setuptools==/,/[^\\]$/p' requirements-dev.txt > build.txt \
+    && pip install --no-cache-dir --require-hashes -r build.txt \
+    && pip wheel --no-cache-dir --no-deps --no-build-isolation --wheel-dir dist . \
+    && /venv/bin/pip install --no-cache-dir --no-deps dist/*.whl \
+    && /venv/bin/python -c "import treestroke.core.grow._engine"
+
+FROM python:3.11-slim-bookworm
+RUN useradd --system --uid 10001 --home-dir /data treestroke \
+    && install --directory --owner treestroke --group treestroke /data
+COPY --from=build /venv /venv
+ENV PATH=/venv/bin:$PATH PYTHONUNBUFFERED=1 TREESTROKE_DATA=/data
+USER treestroke
+WORKDIR /data
+VOLUME /data
+HEALTHCHECK --interval=10s --timeout=5s --start-period=60s --retries=3 \
+    CMD ["python", "-c", "import os, urllib.request as r; r.urlopen(f\"http://127.0.0.1:{os.environ.get('TREESTROKE_PORT') or 8000}/livez\", timeout=4)"]
+# The service listens on 127.0.0.1 only: run it with the host's network (docker-compose.yml says how and why).
+CMD ["treestroke", "serve"]

@@ -1,0 +1,81 @@
+import hashlib
+import io
+
+import httpx
+import numpy as np
+import pytest
+from PIL import Image
+from tests.api import drawn
+from tests.api.conftest import Service
+
+from treestroke.codec.image import decode_photo
+
+
+def image(client: httpx.Client, id: str) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(client.get(f"/v1/photos/{id}/image").content)))
+
+
+def test_a_photo_in_a_form_is_stored(client: httpx.Client) -> None:
+    content = drawn.encoded("JPEG", quality=70)
+    answer = client.post("/v1/photos", files={"file": ("a tree.jpg", content, "image/jpeg")})
+    photo = answer.json()
+    assert answer.status_code == 201
+    assert answer.headers["location"] == f"/v1/photos/{photo['id']}"
+    assert (photo["width"], photo["height"]) == (drawn.WIDTH, drawn.HEIGHT)
+    assert photo["sha256"] == hashlib.sha256(content).hexdigest()
+    assert client.get(answer.headers["location"]).json() == photo
+
+
+@pytest.mark.parametrize("kind", ["image/jpeg", "image/png", "image/webp", "application/octet-stream", None])
+def test_a_photo_may_be_the_whole_body_whatever_picture_type_it_is_sent_as(
+    client: httpx.Client, kind: str | None
+) -> None:
+    answer = client.post("/v1/photos", content=drawn.encoded(), headers={"Content-Type": kind} if kind else {})
+    assert answer.status_code == 201
+
+
+@pytest.mark.parametrize("kind", ["JPEG", "PNG", "WEBP"])
+def test_the_stored_picture_is_the_decoded_upload_pixel_by_pixel(service: Service, kind: str) -> None:
+    content = drawn.encoded(kind)
+    stored = image(service.client, service.add_photo(content))
+    assert np.array_equal(stored, decode_photo(content, "photo"))
+
+
+def test_the_stored_picture_has_a_tag_and_is_not_sent_again(client: httpx.Client, photo: str) -> None:
+    first = client.get(f"/v1/photos/{photo}/image")
+    assert first.headers["content-type"] == "image/png"
+    assert first.headers["etag"] == f'"{hashlib.sha256(first.content).hexdigest()}"'
+    again = client.get(f"/v1/photos/{photo}/image", headers={"If-None-Match": first.headers["etag"]})
+    assert (again.status_code, again.content) == (304, b"")
+
+
+def test_a_deleted_photo_is_gone_and_its_models_keep_their_copy(service: Service) -> None:
+    client, id = service.client, service.add_photo(drawn.encoded(seed=5))
+    model = service.make(**drawn.wish(id))
+    assert client.delete(f"/v1/photos/{id}").status_code == 204
+    for path in ("", "/image"):
+        assert client.get(f"/v1/photos/{id}{path}").json()["code"] == "photo_not_found"
+    assert client.post(f"/v1/photos/{id}/trace", json=drawn.STROKES).status_code == 404
+    assert client.post("/v1/models", json=drawn.wish(id)).status_code == 404
+    assert client.delete(f"/v1/photos/{id}").status_code == 404
+    assert client.get(f"/v1/models/{model['id']}/project").status_code == 200
+
+
+def test_a_form_without_the_photo_says_which_field_it_needs(client: httpx.Client) -> None:
+    answer = client.post("/v1/photos", files={"picture": b"1"})
+    assert answer.status_code == 400
+    assert "field file" in answer.json()["detail"]
+
+
+def test_a_body_of_another_type_is_refused(client: httpx.Client) -> None:
+    answer = client.post("/v1/photos", json={"file": 1})
+    assert (answer.status_code, answer.json()["code"]) == (415, "unsupported_media_type")
+
+
+@pytest.mark.parametrize("name", ["../../x", "a\r\nX-Evil: 1", "\u202egpj.exe", "🌳", "a\0b", "n" * 4096, ".."])
+def test_the_name_of_an_uploaded_file_does_not_matter(service: Service, name: str) -> None:
+    content = drawn.encoded(seed=9)
+    answer = service.client.post("/v1/photos", files={"file": (name, content)})
+    assert answer.status_code == 201
+    assert "x-evil" not in answer.headers
+    assert name not in [path.name for path in service.data.parent.rglob("*")]

@@ -1,0 +1,149 @@
+import re
+import time
+from typing import Any
+
+import httpx
+import pytest
+from tests.api.conftest import Service
+
+from treestroke import __version__
+from treestroke.core.pipeline.settings import ModelSettings
+
+METHODS = {"get", "put", "post", "delete", "patch"}
+
+
+@pytest.fixture(scope="module")
+def document(client: httpx.Client) -> dict[str, Any]:
+    return dict(client.get("/openapi.json").json())
+
+
+def operations(document: dict[str, Any]) -> dict[str, Any]:
+    return {f"{method} {path}": one for path, all_ in document["paths"].items() for method, one in all_.items()}
+
+
+def test_the_service_lives_and_is_ready(client: httpx.Client) -> None:
+    assert client.get("/livez").json() == {"status": "ok", "checks": {}}
+    deadline = time.monotonic() + 30  # the worker says that it lives a moment after the web process does
+    while (answer := client.get("/readyz")).json()["status"] != "ok" and time.monotonic() < deadline:
+        time.sleep(0.2)
+    assert (answer.status_code, answer.json()["status"]) == (200, "ok")
+
+
+def test_the_limits_are_told(client: httpx.Client) -> None:
+    limits = client.get("/v1/limits").json()
+    assert (limits["photo_bytes"], limits["photo_pixels"]) == (25_000_000, 50_000_000)
+    assert (limits["photo_side_min"], limits["photo_side_max"]) == (64, 16_384)
+    assert (limits["strokes"], limits["points"]) == (200, 10_000)
+    assert set(limits["settings"]) == set(ModelSettings.__dataclass_fields__)
+    assert limits["settings"]["height"]["default"] == 10
+    assert (limits["settings"]["height"]["min"], limits["settings"]["height"]["max"]) == (0.1, 150)
+
+
+def test_the_version_is_told(client: httpx.Client) -> None:
+    assert client.get("/v1/version").json() == {
+        "version": __version__,
+        "engine": f"treestroke {__version__}",
+        "api": "v1",
+    }
+
+
+def test_the_figures_of_the_queue_and_the_requests_are_told(client: httpx.Client, made: dict[str, Any]) -> None:
+    told = client.get("/metrics").text
+    for name in ("models_queued", "models_running", "worker_slots", "tracers_replaced_total"):
+        assert re.search(rf"^treestroke_{name}\b", told, re.M), name
+    assert 'handler="/v1/models"' in told
+    assert made["id"] not in told
+
+
+def test_every_answer_has_the_safe_headers(client: httpx.Client) -> None:
+    for path in ("/", "/livez", "/nothing", "/v1/models", "/openapi.json"):
+        headers = client.get(path).headers
+        assert headers["x-content-type-options"] == "nosniff"
+        assert headers["cross-origin-resource-policy"] == "same-origin"
+        assert "frame-ancestors 'none'" in headers["content-security-policy"]
+        assert headers["cache-control"] in ("no-store", "private, no-cache")
+
+
+def test_what_there_is_not_says_where_to_look(client: httpx.Client) -> None:
+    answer = client.get("/v1/tree")
+    assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
+    assert "/openapi.json" in answer.json()["detail"]
+    assert client.get("/v1/models/").status_code == 404
+
+
+@pytest.mark.parametrize(
+    ("path", "methods"),
+    [
+        ("/v1/models", "GET, POST"),
+        ("/v1/models/x", "DELETE, GET, PATCH"),
+        ("/v1/photos", "POST"),
+        ("/v1/photos/x", "DELETE, GET"),
+        ("/livez", "GET"),
+        ("/", "GET"),
+    ],
+)
+def test_another_method_is_told_which_ones_there_are(client: httpx.Client, path: str, methods: str) -> None:
+    for method in ("PUT", "TRACE", "OPTIONS", "FOO"):
+        answer = client.request(method, path)
+        assert (answer.status_code, answer.headers["allow"]) == (405, methods)
+        assert methods in answer.json()["detail"]
+
+
+def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, Any]) -> None:
+    assert {one["operationId"] for one in operations(document).values()} == {
+        "add_photo",
+        "get_photo",
+        "delete_photo",
+        "get_image",
+        "trace_photo",
+        "ask_for_model",
+        "list_models",
+        "get_model",
+        "rename_model",
+        "delete_model",
+        "restore_model",
+        "cancel_model",
+        "follow_model",
+        "get_tree",
+        "get_preview",
+        "get_strokes",
+        "get_project",
+        "live",
+        "ready",
+        "limits",
+        "version",
+    }
+    assert all(one["description"].rstrip().endswith(".") for one in operations(document).values())
+
+
+def test_every_problem_is_documented_as_one(document: dict[str, Any]) -> None:
+    wanted = {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}
+    for name, one in operations(document).items():
+        problems = {status: told for status, told in one["responses"].items() if status >= "4"}
+        assert "403" in problems, name
+        if name == "get /readyz":
+            del problems["503"]  # the same health as with 200
+        assert all(told["content"] == wanted for told in problems.values()), name
+    assert "HTTPValidationError" not in str(document)
+
+
+def test_every_body_has_an_example(document: dict[str, Any]) -> None:
+    asking = {name: one["requestBody"]["content"] for name, one in operations(document).items() if "requestBody" in one}
+    assert set(asking) == {
+        "post /v1/photos",
+        "post /v1/photos/{id}/trace",
+        "post /v1/models",
+        "patch /v1/models/{id}",
+    }
+    del asking["post /v1/photos"]  # bytes
+    assert all("example" in kind for content in asking.values() for kind in content.values())
+
+
+def test_every_reference_in_the_document_leads_somewhere(document: dict[str, Any]) -> None:
+    named = set(re.findall(r"#/components/schemas/(\w+)", str(document)))
+    assert named <= set(document["components"]["schemas"])
+
+
+def test_the_page_is_served(service: Service) -> None:
+    answer = service.client.get("/")
+    assert answer.headers["content-type"] == "text/html; charset=utf-8"

@@ -1,0 +1,61 @@
+"""The clock on the wall: it is shown, and nothing waits by it."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+from treestroke.service.dispatch import Dispatcher, say_alive
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+from treestroke.store.leases import claim
+from treestroke.store.tables import Model, Worker
+
+HOUR = 3600.0
+
+
+@pytest.mark.parametrize("jump", [HOUR, -HOUR])
+def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jump: float
+) -> None:
+    database = Database(tmp_path)
+    database.migrate()
+    with database.writing() as session:
+        session.add(queued("mdl_1"))
+        session.flush()
+        assert claim(session, "mdl_1", "token", "worker") is not None
+    say_alive(database, "worker", 1)
+    dispatcher = Dispatcher(database, Blobs(tmp_path), lambda id: None, 0)
+    real = time.time
+    for shift in (0.0, jump, 0.0):
+        monkeypatch.setattr(time, "time", lambda shift=shift: real() + shift)
+        dispatcher.recover()
+        dispatcher.dispatch()
+    with database.reading() as session:
+        job, worker = session.get(Model, 1), session.get(Worker, "worker")
+    assert job is not None
+    assert (job.status, job.attempt) == ("running", 1)
+    assert worker is not None
+    database.close()
+
+
+def queued(id: str) -> Model:
+    return Model(
+        id=id,
+        name="",
+        photo="pho_1",
+        photo_blob="",
+        strokes_blob="",
+        settings={},
+        seed=0,
+        engine="",
+        fingerprint="",
+        status="queued",
+        phase_fraction=0.0,
+        progress=0.0,
+        seq=1,
+        attempt=0,
+        beat=0,
+        cancel=False,
+        created=time.time(),
+    )

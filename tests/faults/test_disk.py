@@ -1,0 +1,94 @@
+"""A disk that is full, and has room again."""
+
+import ctypes
+import errno
+import json
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+
+import httpx
+import pytest
+from tests.faults.harness import Service, small_tree
+
+from treestroke.queue import make_queue, send_hint
+from treestroke.settings import Settings
+
+SIZE = "40m"
+_libc = ctypes.CDLL(None, use_errno=True)
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    place = tmp_path / "disk"
+    place.mkdir()
+    if _libc.mount(b"tmpfs", str(place).encode(), b"tmpfs", 0, f"size={SIZE}".encode()):
+        reason = f"no disk can be mounted here: {os.strerror(ctypes.get_errno())}"
+        pytest.fail(reason) if os.environ.get("CI") == "true" else pytest.skip(reason)
+    try:
+        yield place
+    finally:
+        _libc.umount2(str(place).encode(), 2)
+
+
+class Filler:
+    """A file that takes all the room there is."""
+
+    def __init__(self, disk: Path) -> None:
+        self._path = disk / "filler"
+
+    def fill(self) -> None:
+        for size in (2**20, 2**12, 1):
+            with self._path.open("ab", buffering=0) as file, suppress(OSError):
+                while file.write(bytes(size)) == size:
+                    pass
+        assert shutil.disk_usage(self._path.parent).free == 0
+
+    def free(self) -> None:
+        self._path.unlink()
+
+
+def stored(service: Service) -> set[str]:
+    return {path.name for path in service.data.rglob("*") if path.is_file() and "blobs" in path.parts}
+
+
+def test_a_full_disk_refuses_uploads_and_serves_nothing_half_made(tmp_path: Path, small_disk: Path) -> None:
+    disk = Filler(small_disk)
+    with Service(tmp_path / "service", data=small_disk / "data") as service:
+        service.wait_for_workers(1)
+        body, before = service.body(), stored(service)
+        disk.fill()
+        answer = service.client.post("/v1/photos", content=small_tree()[0], headers={"content-type": "image/png"})
+        refused_for_space(answer)
+        refused_for_space(service.client.post("/v1/models", json=body))
+        assert stored(service) == before
+        assert service.client.get(f"/v1/photos/{body['photo']}/image").status_code == 200
+        disk.free()
+        id = service.ask()
+        service.wait_running(id)
+        disk.fill()
+        with suppress(AssertionError):
+            service.finish([id], 4)
+        disk.free()
+        (row,) = service.finish([id])
+        assert row["status"] == "succeeded" or json.loads(row["error"])["code"] == "storage_error"
+        assert {row["status"] for row in service.finish(service.ask_for(2))} == {"succeeded"}
+        service.check_invariants()
+
+
+def refused_for_space(answer: httpx.Response) -> None:
+    assert answer.status_code == 507, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["code"] == "storage_full"
+
+
+def test_a_hint_that_does_not_fit_on_the_disk_leaves_nothing_behind(small_disk: Path) -> None:
+    queue = make_queue(Settings(data=small_disk / "data"))
+    send_hint(queue, "mdl_1")
+    disk = Filler(small_disk)
+    disk.fill()
+    with pytest.raises(OSError, match=os.strerror(errno.ENOSPC)):
+        send_hint(queue, "mdl_2")
+    assert len(list((small_disk / "data" / "queue" / "messages").iterdir())) == 1

@@ -1,0 +1,88 @@
+"""Processes that die in the middle of a job: `kill -9`, each in its turn."""
+
+import threading
+import time
+
+import httpx
+from tests.faults.harness import Service
+from tests.faults.processes import wait_for
+
+AGAIN_SECONDS = 30
+"""A lost job is ready again within this, beside its own time."""
+
+
+def test_a_job_whose_process_dies_is_grown_again(service: Service) -> None:
+    id = service.ask()
+    service.wait_running(id)
+    for grower in service.growers():
+        grower.hit()
+    (row,) = service.finish([id], AGAIN_SECONDS)
+    assert (row["status"], row["attempt"]) == ("succeeded", 2)
+
+
+def test_a_job_whose_worker_dies_with_its_child_is_grown_again(service: Service) -> None:
+    id = service.ask()
+    service.wait_running(id)
+    for process in service.workers() + service.growers():
+        process.hit()
+    (row,) = service.finish([id], AGAIN_SECONDS)
+    assert (row["status"], row["attempt"]) == ("succeeded", 2)
+
+
+def test_a_worker_that_dies_leaves_no_process_behind(service: Service) -> None:
+    service.finish()
+    worker = wait_for(service.workers, 10, "a worker")[0]
+    left = service.growers(worker)
+    worker.hit()
+    wait_for(lambda: not {one.pid for one in left} & {one.pid for one in service.alive()}, 3, "its children's end")
+    service.wait_for_workers(1)
+
+
+def test_requests_wait_while_the_web_process_is_replaced(service: Service) -> None:
+    id = service.ask()
+    service.wait_running(id)
+    web = service.web()
+    assert web is not None
+    web.hit()
+    wait_for(lambda: web.pid not in {one.pid for one in service.alive()}, 5, "the web process's end")
+    answers = [service.client.get("/livez").status_code, service.client.get(f"/v1/models/{id}").status_code]
+    assert answers == [200, 200]
+    (row,) = service.finish([id])
+    assert (row["status"], row["attempt"]) == ("succeeded", 1)
+
+
+def test_an_upload_that_a_dying_web_process_had_can_be_sent_again(service: Service) -> None:
+    met: list[int] = []
+
+    def upload() -> None:
+        deadline = time.monotonic() + 20
+        while time.monotonic() < deadline and len(met) < 8:
+            try:
+                service.upload()
+                met.append(201)
+            except httpx.TransportError:
+                met.append(0)  # cut off with the process that had begun to read it
+
+    uploads = [threading.Thread(target=upload) for _ in range(3)]
+    for thread in uploads:
+        thread.start()
+    wait_for(lambda: met, 20, "the first answer")
+    web = service.web()
+    assert web is not None
+    web.hit()
+    for thread in uploads:
+        thread.join()
+    assert met.count(0) <= len(uploads)
+    assert met[-1] == 201
+
+
+def test_all_processes_end_with_a_launcher_that_dies_and_the_next_one_finishes_their_jobs(service: Service) -> None:
+    ids = service.ask_for(2)
+    service.wait_running(ids[0])
+    launcher = service.launcher
+    assert launcher is not None
+    launcher.kill()
+    launcher.wait()
+    wait_for(lambda: not service.alive(), 10, "the end of its children")
+    service.start()
+    assert [row["status"] for row in service.finish(ids)] == ["succeeded", "succeeded"]

@@ -1,0 +1,95 @@
+"""Messages that come twice, too late, torn, or from somebody else: the queue's messages are hints, and only that."""
+
+import json
+import time
+from pathlib import Path
+
+from celery import Celery
+from redis import Redis
+from tests.faults.harness import Service
+from tests.faults.processes import wait_for
+
+from treestroke.queue import TASK, make_queue, send_hint
+from treestroke.settings import Settings
+
+
+def queue_of(service: Service, broker_url: str) -> Celery:
+    return make_queue(Settings(data=service.data, broker_url=broker_url))
+
+
+def inject(service: Service, broker_url: str, message: bytes) -> None:
+    """Put bytes where the worker looks for messages."""
+    if broker_url:
+        with Redis.from_url(broker_url) as redis:
+            redis.lpush("treestroke", message)
+    else:
+        (service.data / "queue" / "messages" / f"{time.time_ns()}.treestroke.msg").write_bytes(message)
+
+
+def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(service: Service, broker_url: str) -> None:
+    queue = queue_of(service, broker_url)
+    ids = service.ask_for(2)
+    for id in (*ids, *ids, "mdl_nobody"):
+        send_hint(queue, id)
+    before = service.finish(ids)
+    ignored = len(service.logged("hint_ignored"))
+    for id in ids:
+        send_hint(queue, id)
+    wait_for(lambda: len(service.logged("hint_ignored")) >= ignored + 2, 20, "two more hints that are ignored")
+    assert [(row["status"], row["attempt"]) for row in before] == [("succeeded", 1)] * 2
+    assert [service.row(id) for id in ids] == before
+
+
+def test_a_worker_survives_messages_that_are_not_for_it(service: Service, broker_url: str) -> None:
+    workers = [one.pid for one in service.workers()]
+    queue = queue_of(service, broker_url)
+    queue.send_task("treestroke.of_another_version", args=["mdl_1"], retry=False)
+    queue.send_task(TASK, args=["mdl_1", {"more": "than we know"}], kwargs={"new": 1}, retry=False)
+    queue.send_task(TASK, args=[], retry=False)
+    queue.send_task(TASK, args=[["not", "an", "id"]], retry=False)
+    inject(service, broker_url, old_form("mdl_1"))
+    (row,) = service.finish([service.ask()])
+    assert (row["status"], row["attempt"]) == ("succeeded", 1)
+    assert [one.pid for one in service.workers()] == workers
+
+
+def test_jobs_are_done_whatever_lies_among_the_messages(service: Service, broker_url: str) -> None:
+    for garbage in (b"", b"{", b"[]", b"\xff\xfe", b'{"body": "", "headers": {}, "properties"'):
+        inject(service, broker_url, garbage)
+    (row,) = service.finish([service.ask()])
+    assert row["status"] == "succeeded"
+
+
+def old_form(id: str) -> bytes:
+    """Make a message as the first protocol of Celery had it, all in the body."""
+    body = json.dumps({"task": TASK, "id": "1", "args": [id], "kwargs": {}})
+    properties = {
+        "delivery_tag": "1",
+        "delivery_mode": 2,
+        "body_encoding": None,
+        "delivery_info": {"exchange": "", "routing_key": "treestroke"},
+    }
+    return json.dumps(
+        {
+            "body": body,
+            "headers": {},
+            "content-type": "application/json",
+            "content-encoding": "utf-8",
+            "properties": properties,
+        }
+    ).encode()
+
+
+def test_a_message_that_is_being_written_is_not_seen(tmp_path: Path) -> None:
+    queue = make_queue(Settings(data=tmp_path))
+    send_hint(queue, "mdl_1")
+    (message,) = (tmp_path / "queue" / "messages").iterdir()
+    begun = message.with_suffix(".part")
+    message.rename(begun)
+    with queue.connection_for_read() as connection, connection.SimpleQueue("treestroke") as waiting:
+        assert len(waiting) == 0
+        begun.rename(message)
+        taken = waiting.get(block=False)
+        assert taken.payload[0] == ["mdl_1"]
+        taken.ack()
+    assert list(message.parent.iterdir()) == []

@@ -1,0 +1,164 @@
+"""Every part of the service, well and ill for real."""
+
+import shutil
+import socket
+import sqlite3
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from treestroke.cli import main
+from treestroke.service.dispatch import say_alive
+from treestroke.service.doctor import Finding, examine
+from treestroke.settings import read_settings
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
+from treestroke.store.tables import Photo
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A data folder with a database and one photo in it."""
+    place = tmp_path / "data"
+    place.mkdir()
+    database = Database(place)
+    database.migrate()
+    blob = Blobs(place).put(b"photo")
+    with database.writing() as session:
+        session.add(Photo(id="pho_1", sha256="0" * 64, width=64, height=64, blob=blob, created=0.0))
+    database.close()
+    return place
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    place = tmp_path / "disk"
+    place.mkdir()
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", str(place)], capture_output=True).returncode:
+        pytest.skip("no file system may be mounted here")
+    yield place
+    subprocess.run(["umount", str(place)], check=True)
+
+
+def findings(folder: Path, **given: object) -> dict[str, Finding]:
+    return {finding.part: finding for finding in examine(read_settings(data=folder, **given))}
+
+
+def ill(folder: Path, **given: object) -> dict[str, str]:
+    return {part: finding.found for part, finding in findings(folder, **given).items() if not finding.well}
+
+
+def test_all_is_well(folder: Path) -> None:
+    found = findings(folder)
+    assert list(found) == [
+        "packages", "growth engine", "data folder", "disk", "queue", "database", "files", "workers",
+    ]  # fmt: skip
+    assert ill(folder) == {}
+    assert found["files"].found == "all 1 there"
+
+
+def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> None:
+    found = findings(tmp_path / "a" / "b")
+    assert all(finding.well for finding in found.values())
+    assert "`treestroke serve` makes it" in found["data folder"].found
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_looking_leaves_no_file(folder: Path) -> None:
+    before = sorted(folder.rglob("*"))
+    ill(folder)
+    assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize("below", [".", "inner"])
+def test_a_file_in_the_folder_s_place_is_ill(tmp_path: Path, below: str) -> None:
+    (tmp_path / "data").write_bytes(b"")
+    assert list(ill(tmp_path / "data" / below)) == ["data folder"]
+
+
+def test_a_disk_that_is_nearly_full_is_ill(small_disk: Path) -> None:
+    found = findings(small_disk)
+    assert not found["disk"].well
+    assert found["disk"].mend.startswith("free space")
+
+
+def test_a_redis_that_does_not_run_is_ill_and_nothing_else(folder: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    found = findings(folder, broker_url=f"redis://127.0.0.1:{port}/0")
+    assert [part for part, finding in found.items() if not finding.well] == ["queue"]
+    assert "start or free Redis" in found["queue"].mend
+
+
+def test_a_redis_that_is_silent_is_ill_soon(folder: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        began = time.monotonic()
+        assert list(ill(folder, broker_url=f"redis://127.0.0.1:{server.getsockname()[1]}/0")) == ["queue"]
+    assert time.monotonic() - began < 5
+
+
+@pytest.mark.skipif(shutil.which("redis-server") is None, reason="redis-server is not installed")
+@pytest.mark.parametrize(("memory", "said"), [("0", None), ("1kb", "maxmemory")])
+def test_a_redis_is_well_unless_it_is_full(folder: Path, memory: str, said: str | None) -> None:
+    socket_file = folder.parent / "redis.sock"
+    options = ["--port", "0", "--unixsocket", str(socket_file), "--save", "", "--maxmemory", memory]
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = str(free.getsockname()[1])
+    options[1] = port
+    redis = subprocess.Popen(["redis-server", *options], stdout=subprocess.DEVNULL, cwd=folder.parent)
+    try:
+        deadline = time.monotonic() + 10
+        while not socket_file.exists() and time.monotonic() < deadline:
+            time.sleep(0.02)
+        found = ill(folder, broker_url=f"redis://127.0.0.1:{port}/0")
+    finally:
+        redis.terminate()
+        redis.wait(10)
+    assert list(found) == ([] if said is None else ["queue"])
+    assert said is None or said in found["queue"]
+
+
+def test_a_damaged_database_is_ill(folder: Path) -> None:
+    path = folder / "treestroke.sqlite3"
+    path.write_bytes(path.read_bytes()[:4096] + b"\xff" * 8192)
+    assert "database" in ill(folder)
+    path.write_bytes(b"no database at all" * 1000)
+    assert "not a database" in ill(folder)["database"]
+
+
+def test_a_database_of_another_version_is_ill(folder: Path) -> None:
+    with closing(sqlite3.connect(folder / "treestroke.sqlite3")) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = 'later'")
+        connection.commit()
+    assert ill(folder) == {"database": "of another version"}
+
+
+def test_a_file_that_is_gone_is_ill(folder: Path) -> None:
+    (blob,) = (path for path in (folder / "blobs").rglob("*") if path.is_file())
+    blob.unlink()
+    assert ill(folder) == {"files": f"1 of 1 missing, such as {blob.name[:12]}"}
+
+
+def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
+    database = Database(folder)
+    say_alive(database, "dead-1", 1)
+    database.close()
+    began = time.monotonic()
+    assert ill(folder) == {"workers": "0 of 1 alive"}
+    assert time.monotonic() - began < 6
+
+
+def test_the_command_says_what_mends_it_and_leaves_with_1(
+    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["doctor", "--data", str(folder)]) == 0
+    shutil.rmtree(folder / "blobs")
+    assert main(["doctor", "--data", str(folder)]) == 1
+    told = capsys.readouterr()
+    assert "ILL  files          1 of 1 missing" in told.out
+    assert f"                    mend: restore {folder / 'blobs'} from a copy" in told.out
+    assert told.err == "treestroke: 1 of 8 parts are ill\n"

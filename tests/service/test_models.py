@@ -1,0 +1,91 @@
+import json
+from typing import Any
+
+import pytest
+from tests.api import drawn
+
+from treestroke.codec.project import read_project
+from treestroke.core.errors import StrokesError
+from treestroke.service import models, photos
+from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.tracing import Wish
+from treestroke.store.leases import claim, succeed
+from treestroke.store.tables import Model, Photo
+
+
+def wish(shelf: Shelf, photo: str, **others: Any) -> Wish:
+    return models.read_wish(shelf, json.dumps(drawn.wish(photo, **others)).encode())
+
+
+def finished(shelf: Shelf, id: str, glb: bytes) -> None:
+    """Publish a model as its worker does."""
+    with shelf.database.writing() as session:
+        job = claim(session, id, "t", "w")
+        assert job is not None
+        assert succeed(session, job, {"score": {}}, {"tree.glb": (shelf.blobs.put(glb), len(glb))})
+
+
+def count(shelf: Shelf, table: type[Model] | type[Photo]) -> int:
+    with shelf.database.reading() as session:
+        return session.query(table).count()
+
+
+def test_a_model_is_answered_from_one_of_the_same_input_alone(shelf: Shelf) -> None:
+    first_photo, same_photo, other_photo = (photos.add_photo(shelf, drawn.encoded(seed=seed)).id for seed in (0, 0, 1))
+    first = models.ask_for_model(shelf, wish(shelf, first_photo), None).row
+    assert models.ask_for_model(shelf, wish(shelf, first_photo), None).row.status == "queued"  # it is not made yet
+    finished(shelf, first.id, b"tree")
+    again = [wish(shelf, first_photo, name="Twin"), wish(shelf, same_photo)]
+    assert [models.ask_for_model(shelf, one, None).row.status for one in again] == ["succeeded"] * 2
+    other = [wish(shelf, first_photo, seed=1), wish(shelf, first_photo, settings={}), wish(shelf, other_photo)]
+    assert [models.ask_for_model(shelf, one, None).row.status for one in other] == ["queued"] * 3
+
+
+def test_a_model_of_a_deleted_twin_keeps_the_files(shelf: Shelf) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded()).id
+    first = models.ask_for_model(shelf, wish(shelf, photo), None).row
+    finished(shelf, first.id, b"tree")
+    models.delete(shelf.database, first.id)
+    seen = models.ask_for_model(shelf, wish(shelf, photo), None)
+    assert shelf.blobs.get(seen.files["tree.glb"].blob) == b"tree"
+
+
+def test_a_photo_that_came_along_is_kept_with_its_model_alone(shelf: Shelf) -> None:
+    good = wish(shelf, "")
+    seen = models.ask_for_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
+    assert photos.get_photo(shelf, seen.row.photo)
+    models.ask_for_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
+    beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
+    bad = models.read_fields(shelf, {"strokes": json.dumps(beside).encode()})
+    with pytest.raises(StrokesError):
+        models.ask_for_model(shelf, bad, None, photos.take_in(shelf, drawn.encoded()))
+    assert (count(shelf, Photo), count(shelf, Model)) == (1, 1)
+
+
+def test_a_key_that_outlived_its_model_gives_a_new_one(shelf: Shelf) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded()).id
+    first = models.ask_for_model(shelf, wish(shelf, photo), "key").row.id
+    with shelf.database.writing() as session:
+        session.query(Model).delete()
+    second = models.ask_for_model(shelf, wish(shelf, photo), "key").row.id
+    assert second != first
+    assert models.ask_for_model(shelf, wish(shelf, photo), "key").row.id == second
+
+
+def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded())
+    row = models.ask_for_model(shelf, wish(shelf, photo.id, seed=7), None).row
+    _, blob = models.project_of(shelf, row.id)
+    project = read_project(shelf.blobs.get(blob), "x")
+    assert project.photo == shelf.blobs.get(photo.blob)
+    assert json.loads(project.strokes) == {**drawn.STROKES, "erase": []}
+    assert project.settings == {**row.settings, "seed": 7}
+    assert models.project_of(shelf, row.id)[1] == blob
+
+
+def test_a_model_that_there_is_not_is_not_found(shelf: Shelf) -> None:
+    for ask in (models.see, models.cancel, models.delete, models.restore):
+        with pytest.raises(NotFound):
+            ask(shelf.database, "mdl_0")
+    with pytest.raises(NotFound):
+        models.rename(shelf.database, "mdl_0", "x")

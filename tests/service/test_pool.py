@@ -1,0 +1,110 @@
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from tests.service import pool_work as work
+
+from treestroke.core.errors import PhotoError
+from treestroke.service.pool import WAITING, Crashed, Overloaded, Tracers
+
+SECONDS = 1.0
+
+
+@pytest.fixture(scope="module")
+def tracers() -> Iterator[Tracers]:
+    pool = Tracers(2, SECONDS, 1536)
+    yield pool
+    pool.close()
+
+
+def alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_work_is_done_in_another_process_that_stays_with_its_key(tracers: Tracers) -> None:
+    first, again = tracers("a", work.process), tracers("a", work.process)
+    assert first == again != os.getpid()
+    assert len({tracers(f"key {at}", work.process) for at in range(8)}) == 2
+
+
+@pytest.mark.parametrize("crash", [work.segfault, work.leave])
+def test_a_process_that_dies_is_replaced(tracers: Tracers, crash: object) -> None:
+    before = tracers("b", work.process)
+    with pytest.raises(Crashed):
+        tracers("b", crash)  # type: ignore[arg-type]
+    after = tracers("b", work.process)
+    assert after != before
+    assert not alive(before)
+
+
+def test_a_process_that_hangs_is_ended_at_the_limit(tracers: Tracers) -> None:
+    before, began = tracers("c", work.process), time.monotonic()
+    with pytest.raises(Crashed, match="slow"):
+        tracers("c", work.hang)
+    assert SECONDS <= time.monotonic() - began < SECONDS + 3
+    assert tracers("c", work.process) != before
+    assert not alive(before)
+
+
+def test_a_neighbour_goes_on_while_a_process_dies(tracers: Tracers) -> None:
+    keys = [f"d{at}" for at in range(20)]
+    homes = {key: tracers(key, work.process) for key in keys}
+    doomed = keys[0]
+    other = next(key for key in keys if homes[key] != homes[doomed])
+    with ThreadPoolExecutor(2) as two:
+        dying = two.submit(tracers, doomed, work.segfault)
+        assert tracers(other, work.process) == homes[other]
+        assert isinstance(dying.exception(), Crashed)
+
+
+def test_a_process_that_is_killed_between_two_calls_is_replaced(tracers: Tracers) -> None:
+    os.kill(tracers("e", work.process), signal.SIGKILL)
+    time.sleep(0.5)
+    assert tracers("e", work.process) != os.getpid()
+
+
+def test_memory_is_bounded_and_the_process_lives_on(tracers: Tracers) -> None:
+    before = tracers("f", work.process)
+    for devour in (work.devour, work.devour_pixels):
+        with pytest.raises(Crashed, match="memory"):
+            tracers("f", devour)
+    assert tracers("f", work.process) == before
+
+
+def test_errors_of_the_input_come_back_whole(tracers: Tracers) -> None:
+    with pytest.raises(PhotoError, match="no photo") as caught:
+        tracers("g", work.refuse)
+    assert (caught.value.code, caught.value.pointer) == ("photo_unreadable", "/photo")
+
+
+def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: Tracers) -> None:
+    begun = threading.Barrier(WAITING + 1)
+
+    def wait(at: int) -> int:
+        begun.wait()
+        return tracers(f"h{at % 2}", work.nap)
+
+    with ThreadPoolExecutor(WAITING) as many:
+        waiting = [many.submit(wait, at) for at in range(WAITING)]
+        begun.wait()
+        time.sleep(0.05)
+        with pytest.raises(Overloaded):
+            tracers("i", work.process)
+        assert {future.result() for future in waiting} == {1}
+    assert tracers("i", work.process)
+
+
+def test_a_pool_that_is_closed_leaves_no_process() -> None:
+    pool = Tracers(2, SECONDS, 1536)
+    pids = {pool(f"key {at}", work.process) for at in range(4)}
+    pool.close()
+    assert len(pids) == 2
+    assert not [pid for pid in pids if alive(pid)]

@@ -1,0 +1,125 @@
+import os
+import sqlite3
+import subprocess
+import sys
+import threading
+import time
+from contextlib import closing, suppress
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from sqlalchemy import create_engine, select
+from sqlalchemy.exc import OperationalError
+from tests.running import BACKEND
+from tests.store.conftest import add_model, find
+
+from treestroke.store.database import Database
+from treestroke.store.tables import Model, Table, Worker
+
+
+def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
+    database = Database(tmp_path)
+    assert not database.current()
+    database.migrate()
+    assert database.current()
+    database.close()
+    with closing(sqlite3.connect(database.path)) as plain:
+        names = {name for (name,) in plain.execute("SELECT name FROM sqlite_master WHERE type = 'table'")}
+    assert set(Table.metadata.tables) < names
+
+
+def test_migrating_twice_changes_nothing(database: Database) -> None:
+    row = add_model(database)
+    database.migrate()
+    assert find(database, row.id).number == row.number
+
+
+def test_processes_may_migrate_at_once(tmp_path: Path) -> None:
+    code = "import sys; from treestroke.store.database import *; Database(Path(sys.argv[1])).migrate()"
+    environment = {**os.environ, "PYTHONPATH": str(BACKEND)}
+    command = [sys.executable, "-c", code, str(tmp_path)]
+    processes = [subprocess.Popen(command, env=environment) for _ in range(3)]
+    assert [process.wait(30) for process in processes] == [0, 0, 0]
+    database = Database(tmp_path)
+    assert database.current()
+    database.close()
+
+
+def test_the_migrations_make_the_tables_that_the_program_knows(database: Database) -> None:
+    engine = create_engine(f"sqlite:///{database.path}")
+    with engine.connect() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True, "compare_server_default": True})
+        assert compare_metadata(context, Table.metadata) == []
+    engine.dispose()
+
+
+def test_a_failure_takes_everything_back(database: Database) -> None:
+    row = add_model(database)
+    with suppress(ZeroDivisionError), database.writing() as session:
+        session.get_one(Model, row.number).name = "changed"
+        session.flush()
+        raise ZeroDivisionError
+    assert find(database, row.id).name == ""
+
+
+def test_writers_take_turns_and_none_is_lost(database: Database) -> None:
+    row = add_model(database)
+    others = [Database(database.path.parent) for _ in range(2)]
+
+    def count(one: Database) -> None:
+        for _ in range(50):
+            with one.writing() as session:
+                found = session.get_one(Model, row.number)
+                found.seq = found.seq + 1
+
+    threads = [threading.Thread(target=count, args=(one,)) for one in others for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert find(database, row.id).seq == 1 + 4 * 50
+    for one in others:
+        one.close()
+
+
+def test_readers_see_one_state_while_another_writes(database: Database) -> None:
+    row = add_model(database)
+    with database.reading() as reading:
+        before = reading.scalars(select(Model.name)).all()
+        with database.writing() as writing:
+            writing.get_one(Model, row.number).name = "changed"
+        assert reading.scalars(select(Model.name)).all() == before == [""]
+    assert find(database, row.id).name == "changed"
+
+
+def test_a_reader_does_not_wait_for_a_writer(database: Database) -> None:
+    row = add_model(database)
+    with database.writing() as writing:
+        writing.add(Worker(id="w", slots=1, beat=1))
+        writing.flush()
+        began = time.monotonic()
+        assert find(database, row.id).id == row.id
+        assert time.monotonic() - began < 1
+
+
+def test_a_writer_has_the_database_from_its_first_word_on(database: Database) -> None:
+    with database.writing() as first:
+        first.scalars(select(Model)).all()  # it only reads, and still nobody else may write
+        with closing(sqlite3.connect(database.path, timeout=0.05)) as second, pytest.raises(sqlite3.OperationalError):
+            second.execute("BEGIN IMMEDIATE")
+
+
+def test_what_is_committed_survives_a_power_cut(database: Database) -> None:
+    with database.reading() as session:
+        pragmas = {
+            name: session.connection().exec_driver_sql(f"PRAGMA {name}").scalar()
+            for name in ("journal_mode", "synchronous", "foreign_keys")
+        }
+    assert pragmas == {"journal_mode": "wal", "synchronous": 2, "foreign_keys": 1}
+
+
+def test_a_database_that_cannot_be_opened_says_so(tmp_path: Path) -> None:
+    with pytest.raises(OperationalError):
+        Database(tmp_path / "missing").migrate()
