@@ -36,6 +36,7 @@ check: $(STAMP)
 bench: $(STAMP)
 	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \
 	    --benchmark-sort=fullname
+	@$(BIN)/python -m tests.benchmarks.service_times
 	@$(BIN)/python -m tests.benchmarks.growth_ratio
 
 golden: $(STAMP)

@@ -164,6 +164,36 @@ def modes() -> dict[str, tuple[bytes, np.ndarray]]:
     }
 
 
+def wide_profile() -> bytes:
+    """Write an ICC profile of Display P3's primaries (adapted to D50), with a gamma of 2.2 (ICC.1:2001, 6)."""
+
+    def fixed(*values: float) -> bytes:
+        return struct.pack(f">{len(values)}i", *(round(value * 65_536) for value in values))
+
+    def place(*values: float) -> bytes:
+        return b"XYZ \0\0\0\0" + fixed(*values)
+
+    tags = {
+        b"rXYZ": place(0.51512, 0.24120, -0.00105),
+        b"gXYZ": place(0.29198, 0.69225, 0.04189),
+        b"bXYZ": place(0.15710, 0.06657, 0.78407),
+        b"wtpt": place(0.96420, 1.0, 0.82491),
+        b"cprt": b"text\0\0\0\0none",
+        b"desc": b"desc\0\0\0\0" + struct.pack(">I", 3) + b"P3\0" + bytes(79),
+        **dict.fromkeys(
+            (b"rTRC", b"gTRC", b"bTRC"), b"curv\0\0\0\0" + struct.pack(">IH", 1, round(2.2 * 256)) + b"\0\0"
+        ),
+    }
+    table, content = struct.pack(">I", len(tags)), b""
+    for name, tag in tags.items():
+        padded = tag + bytes(-len(tag) % 4)
+        table += name + struct.pack(">II", 128 + 4 + 12 * len(tags) + len(content), len(tag))
+        content += padded
+    size = 128 + len(table) + len(content)
+    head = struct.pack(">I4xI4s4s4s", size, 0x02400000, b"mntr", b"RGB ", b"XYZ ") + bytes(12) + b"acsp"
+    return head + bytes(68 - len(head)) + fixed(0.9642, 1.0, 0.8249) + bytes(48) + table + content
+
+
 def cuts(content: bytes, count: int = 20) -> Iterable[bytes]:
     """Cut a file short at ``count`` places."""
     return [content[: len(content) * at // (count + 1)] for at in range(1, count + 1)]

@@ -130,11 +130,14 @@ def test_a_queued_model_tells_its_place(service: Service, photo: str) -> None:
     service.settle()
 
 
-def test_a_deleted_models_stream_ends(client: httpx.Client, photo: str) -> None:
+def test_whoever_follows_a_model_that_is_deleted_is_told_its_end(client: httpx.Client, photo: str) -> None:
     wish = drawn.wish(photo, seed=38, settings={"iterations": 2000, "leaf_density": 3})
     place = client.post("/v1/models", json=wish).headers["location"]
-    for _ in events(client, place):
+    kinds = []
+    for event in events(client, place):
         client.delete(place)
+        kinds.append(event.name)
+    assert kinds[-1] == "canceled"
     assert client.get(place).status_code == 404
 
 

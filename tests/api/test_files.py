@@ -2,6 +2,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import zipfile
@@ -124,10 +125,11 @@ def test_a_download_is_named_after_the_model(service: Service, photo: str, name:
     model = service.make(**drawn.wish(photo, name=name))
     for file, ending in (("tree.glb", "glb"), ("project", "treestroke")):
         told = service.client.get(model["files"][file]).headers["content-disposition"]
-        kind, _, given = told.partition("; filename")
-        assert kind == "attachment"
-        assert given.startswith(("*=utf-8''", '="'))
-        assert unquote(given[9:]) == f"{wanted}.{ending}" or given == f'="{wanted}.{ending}"'
+        plain = re.sub(r"[^ -~]", "_", wanted)
+        first, _, other = told.partition("; filename*=UTF-8''")
+        assert first == f'attachment; filename="{plain}.{ending}"'
+        assert unquote(other) == (f"{wanted}.{ending}" if plain != wanted else "")
+        assert other.isascii()
 
 
 def test_a_download_without_a_name_is_named_after_the_id(service: Service, photo: str) -> None:

@@ -186,15 +186,48 @@ async def _speak(
         except StopAsyncIteration:
             return {"type": "http.request", "body": b"", "more_body": False}
 
-    async def send(message: Message) -> None:
-        raise AssertionError(message)
-
     scope: Scope = {"type": "http", "method": "POST", "path": "/", "headers": []}
     try:
-        await Limited(app, lambda _: limit, patience_s, slowest)(scope, receive, send)
+        await Limited(app, lambda _: limit, patience_s, slowest)(scope, receive, _unsent)
     except HTTPException as error:
         return error.status_code, got
     return 200, got
+
+
+def test_all_bodies_together_are_bounded() -> None:
+    outcomes: list[int] = []
+    limited = Limited(_read_whole, lambda _: 1000, held=1500)
+
+    async def come() -> None:
+        bodies = _pieces(10, 100, 0.01)
+
+        async def receive() -> Message:
+            try:
+                return {"type": "http.request", "body": await anext(bodies), "more_body": True}
+            except StopAsyncIteration:
+                return {"type": "http.request", "body": b"", "more_body": False}
+
+        try:
+            await limited({"type": "http", "method": "POST", "path": "/", "headers": []}, receive, _unsent)
+            outcomes.append(200)
+        except HTTPException as error:
+            outcomes.append(error.status_code)
+
+    async def crowd() -> None:
+        await asyncio.gather(come(), come())
+        await come()  # what was held is free again
+
+    asyncio.run(crowd())
+    assert sorted(outcomes[:2]) == [200, 503]
+    assert outcomes[2] == 200
+
+
+async def _read_whole(scope: Scope, receive: Receive, send: Send) -> None:
+    await Request(scope, receive).body()
+
+
+async def _unsent(message: Message) -> None:
+    raise AssertionError(message)
 
 
 async def _pieces(count: int, size: int, pause_s: float) -> AsyncIterator[bytes]:

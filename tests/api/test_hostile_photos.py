@@ -138,6 +138,17 @@ def test_every_mode_comes_out_as_srgb(service: Service, mode: str) -> None:
     assert np.abs(pixels.astype(float) - wanted).mean() < (2 if mode == "CMYK" else 1)
 
 
+def test_wide_colours_come_out_as_the_srgb_that_looks_the_same(service: Service) -> None:
+    patches = (
+        np.repeat([[[128, 128, 128], [255, 0, 0], [180, 120, 60]]], 64, axis=0).repeat(64, axis=1).astype(np.uint8)
+    )
+    content = corpora.saved(Image.fromarray(patches), "PNG", icc_profile=corpora.wide_profile())
+    grey, red, brown = stored(service, content)[0][32, 32::64].astype(int)
+    assert np.abs(grey - 128).max() <= 3
+    assert red.tolist() == [255, 0, 0]  # it is beyond what sRGB can show
+    assert np.abs(brown - (192, 117, 40)).max() <= 4  # the same light, told with less saturated primaries
+
+
 def test_a_broken_profile_is_passed_over(service: Service) -> None:
     pixels, _ = stored(service, drawn.encoded("PNG", icc_profile=b"no profile at all" * 9))
     assert np.array_equal(pixels, drawn.pixels())

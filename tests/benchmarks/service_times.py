@@ -14,7 +14,6 @@ from typing import Any
 
 import httpx
 import numpy as np
-
 from tests.running import serving
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -38,10 +37,10 @@ def seconds(send: Callable[[], httpx.Response]) -> float:
     return took
 
 
-def line(name: str, took: list[float]) -> str:
-    """Say the times of many requests."""
+def say(name: str, took: list[float]) -> None:
+    """Write down the times of many requests."""
     middle, late, worst = np.percentile(took, [50, 95, 100])
-    return f"{name:<46} n {len(took):4}   p50 {middle:6.3f}   p95 {late:6.3f}   max {worst:6.3f} s"
+    sys.stdout.write(f"{name:<46} n {len(took):4}   p50 {middle:6.3f}   p95 {late:6.3f}   max {worst:6.3f} s\n")
 
 
 def traces(
@@ -78,13 +77,13 @@ def main() -> None:
         for shift in range(5):
             points = [[x + shift, y] for x, y in strokes["crown"]["points"]]
             crowns += traces(web, photos[0], {**strokes, "crown": {"points": points}}, 1)
-        print(line("a new crown", crowns))
+        say("a new crown", crowns)
         traces(web, photos[0], strokes, WARM_UP)
-        print(line("one more stroke", traces(web, photos[0], strokes, REQUESTS)))
-        print(line("one more stroke, the tree grown anew", traces(web, photos[0], strokes, 50, grow=True)))
+        say("one more stroke", traces(web, photos[0], strokes, REQUESTS))
+        say("one more stroke, the tree grown anew", traces(web, photos[0], strokes, 50, grow=True))
         busy, lives = crowded(web, photos, strokes)
-        print(line("one more stroke, 8 clients beside 2 models", busy))
-        print(line("/livez meanwhile", lives))
+        say("one more stroke, 8 clients beside 2 models", busy)
+        say("/livez meanwhile", lives)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ import json
 import time
 from pathlib import Path
 
+import pytest
 from celery import Celery
 from redis import Redis
 from tests.faults.harness import Service
@@ -53,11 +54,15 @@ def test_a_worker_survives_messages_that_are_not_for_it(service: Service, broker
     assert [one.pid for one in service.workers()] == workers
 
 
-def test_jobs_are_done_whatever_lies_among_the_messages(service: Service, broker_url: str) -> None:
+def test_a_worker_survives_files_that_are_no_messages(service: Service, broker_url: str) -> None:
+    if broker_url:
+        pytest.skip("nobody but the service writes to its Redis; a crash between open and write leaves torn files only")
+    workers = [one.pid for one in service.workers()]
     for garbage in (b"", b"{", b"[]", b"\xff\xfe", b'{"body": "", "headers": {}, "properties"'):
         inject(service, broker_url, garbage)
     (row,) = service.finish([service.ask()])
     assert row["status"] == "succeeded"
+    assert [one.pid for one in service.workers()] == workers
 
 
 def old_form(id: str) -> bytes:

@@ -31,6 +31,7 @@ _CODES = {
     408: "body_too_slow",
     413: "body_too_large",
     415: "unsupported_media_type",
+    503: "overloaded",
 }
 log = structlog.get_logger()
 
@@ -119,7 +120,7 @@ def _http(request: Request, error: HTTPException) -> JSONResponse:
     headers, detail = dict(error.headers or {}), str(error.detail)
     if error.status_code == 405:
         headers["Allow"] = ", ".join(_allowed(request))
-        detail = f"{request.method} does nothing here; take {headers['Allow']}"
+        detail = f"{request.method} does nothing here; what does is {headers['Allow']}"
     elif detail == HTTPStatus.NOT_FOUND.phrase:
         detail = "there is nothing at this address; /openapi.json names what there is"
     return problem(error.status_code, _CODES.get(error.status_code, "error"), detail, headers=headers)

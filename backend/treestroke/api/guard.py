@@ -11,6 +11,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from treestroke.api.errors import problem
 
+HELD_BYTES = 400_000_000
+"""Of the bodies of all requests together; whoever comes beyond it is to come again."""
 PATIENCE_SECONDS = 30.0
 SLOWEST_BYTES_PER_SECOND = 20_000
 """A body that comes more slowly, after the first half minute, is given up."""
@@ -51,9 +53,13 @@ class Guard:
         headers = Headers(scope=scope)
         host, origin = headers.get("host", ""), headers.get("origin")
         if _name(f"//{host}") not in self._hosts:
-            await problem(403, "foreign_host", "this service answers on this machine only")(scope, receive, safe)
+            await problem(
+                403, "foreign_host", "this service answers on this machine only; open it as 127.0.0.1 or localhost"
+            )(scope, receive, safe)
         elif origin is not None and not (origin.split("://")[-1] == host and _name(origin) in self._hosts):
-            await problem(403, "foreign_origin", "this page is not of this service")(scope, receive, safe)
+            await problem(403, "foreign_origin", "this page is not of this service; open the service's own page")(
+                scope, receive, safe
+            )
         else:
             await self._app(scope, receive, safe)
 
@@ -67,9 +73,11 @@ class Limited:
         limit_of: Callable[[Scope], int],
         patience_s: float = PATIENCE_SECONDS,
         slowest: float = SLOWEST_BYTES_PER_SECOND,
+        held: int = HELD_BYTES,
     ) -> None:
         self._app, self._limit_of = app, limit_of
         self._patience_s, self._slowest = patience_s, slowest
+        self._free = held
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on with its body counted."""
@@ -93,12 +101,18 @@ class Limited:
             except TimeoutError:
                 raise HTTPException(408, "the request's body comes too slowly; send it again") from None
             got += len(message.get("body", b""))
+            self._free -= len(message.get("body", b""))
             whole = not message.get("more_body", False)
             if got > limit:
                 raise HTTPException(413, _too_large(limit))
+            if self._free < 0:
+                raise HTTPException(503, "too much is being sent at the moment; try again", {"Retry-After": "1"})
             return message
 
-        await self._app(scope, counted, send)
+        try:
+            await self._app(scope, counted, send)
+        finally:
+            self._free += got
 
 
 def _too_large(limit: int) -> str:

@@ -2,6 +2,7 @@
 
 import re
 from typing import Any
+from urllib.parse import quote
 
 from fastapi import Request, Response
 from fastapi.responses import FileResponse
@@ -42,8 +43,17 @@ def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: st
     elif not part:
         told = {"Content-Range": f"bytes */{size}"}
         return problem(416, "range_not_satisfiable", f"the file has {size} bytes; ask for some of them", headers=told)
-    name = None if download is None else re.sub(r'[\\/:*?"<>|]', "_", download)
-    return FileResponse(path, headers=headers, media_type=kind, filename=name)
+    if download is not None:
+        headers["Content-Disposition"] = _saved_as(download)
+    return FileResponse(path, headers=headers, media_type=kind)
+
+
+def _saved_as(name: str) -> str:
+    """Propose a name for a download, in ASCII, too, for clients that know nothing else (RFC 6266, appendix D)."""
+    name = re.sub(r'[\\/:*?"<>|]', "_", name)
+    plain = re.sub(r"[^ -~]", "_", name)
+    also = "" if plain == name else f"; filename*=UTF-8''{quote(name, safe='')}"
+    return f'attachment; filename="{plain}"{also}'
 
 
 def _names(known: str, tag: str) -> bool:

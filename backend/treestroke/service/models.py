@@ -94,16 +94,16 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
         return _seen(session, row)
 
 
-def see(database: Database, id: str) -> Seen:
-    """Find a model.
+def see(database: Database, id: str, deleted: bool = False) -> Seen:
+    """Find a model; a deleted one only where ``deleted``.
 
     Raises
     ------
     NotFound
-        There is none, or it is deleted.
+        There is none.
     """
     with database.reading() as session:
-        return _seen(session, _found(session, id))
+        return _seen(session, _found(session, id, deleted))
 
 
 def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[Seen], str | None]:

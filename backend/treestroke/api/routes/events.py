@@ -15,7 +15,6 @@ from treestroke.api.views import model_view
 from treestroke.service import models
 from treestroke.service.jobs import GROWTH
 from treestroke.service.models import Seen
-from treestroke.service.photos import NotFound
 from treestroke.store.leases import TERMINAL
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -55,10 +54,8 @@ async def follow_model(
         await asyncio.sleep(_LOOK_SECONDS)
         if request.app.state.closing.is_set():
             return
-        try:
-            seen = await run_in_threadpool(models.see, shelf.database, row.id)
-        except NotFound:
-            return
+        # One that is deleted meanwhile is canceled too, and whoever follows it is told so.
+        seen = await run_in_threadpool(models.see, shelf.database, row.id, True)
         if (now := model_view(seen)) != shown and now.status not in TERMINAL:
             shown = now
             yield ServerSentEvent(event="progress", data=now)
