@@ -1,7 +1,6 @@
 """Services that tests harm together: one a broker, with the promises checked when all have had their turn."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from tests.faults.harness import Service
@@ -36,14 +35,9 @@ def poisoned(broker_url: str, tmp_path_factory: pytest.TempPathFactory) -> Itera
     """A web process, and beside it a worker for two models that knows poisoned jobs."""
     folder = tmp_path_factory.mktemp("poisoned")
     # On a Redis they take turns: the messages of one service mean nothing to the other.
-    with Service(folder, broker_url=broker_url.replace("/0", "/1"), workers=0, model_seconds=4) as service:
+    with Service(folder, broker_url=broker_url.replace("/0", "/1"), workers=0, model_seconds=7) as service:
         service.run("tests.faults.poisoned_worker", TREESTROKE_WORKERS=2)
         service.wait_for_workers(1)
         yield service
         service.finish()
         service.check_invariants()
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    return tmp_path
