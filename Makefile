@@ -19,7 +19,7 @@ run: $(STAMP)
 	@exec $(BIN)/treestroke serve --data out/serve --port $(PORT)
 
 test: $(STAMP) redis
-	@$(BIN)/python -m pytest -q -m "not golden" --benchmark-skip
+	@$(BIN)/python -m pytest -q -m "not golden" --ignore=tests/benchmarks -p no:benchmark -n 2 --dist loadfile
 
 # Tests of the queue need a Redis to start and kill. CI installs one where there is none; elsewhere the tests say so.
 redis:

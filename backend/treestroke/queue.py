@@ -16,7 +16,7 @@ from treestroke.settings import Settings
 TASK = "treestroke.grow"
 _SOCKET_SECONDS = 2.0
 """A broker that does not answer within this is down."""
-_POLL_SECONDS = 0.2
+_POLL_SECONDS = 0.1
 _GRACE_SECONDS = 10
 """After its own limit, which the job watches itself, a process that does not react is killed."""
 _LOST_SECONDS = 0.5
@@ -95,7 +95,22 @@ class _FolderChannel(filesystem.Channel):
 
 
 class _FolderTransport(filesystem.Transport):
+    """A folder that Celery's event loop looks into.
+
+    Only with its event loop has a pool a line of its own to each child. Otherwise the children share one, whose lock a
+    child that is killed at the wrong moment takes with it: nothing is ever grown again.
+    """
+
     Channel = _FolderChannel
+    implements = filesystem.Transport.implements.extend(asynchronous=True)
+
+    def register_with_event_loop(self, connection: Any, loop: Any) -> None:
+        """Take a message now and then."""
+        loop.call_repeatedly(_POLL_SECONDS, self._look, connection)
+
+    def _look(self, connection: Any) -> None:
+        with suppress(TimeoutError):  # there is none
+            self.drain_events(connection, timeout=0)
 
 
 def _redis() -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """`treestroke serve`: a web process and a worker, started, watched, restarted and stopped together."""
 
 import errno
+import fcntl
 import os
 import shutil
 import signal
@@ -9,8 +10,8 @@ import subprocess
 import sys
 import threading
 import time
-import urllib.request
-from contextlib import suppress
+from contextlib import closing, suppress
+from http.client import HTTPConnection
 from pathlib import Path
 from types import FrameType
 
@@ -23,7 +24,7 @@ STOP_SECONDS = 10.0
 """What the processes may take to finish or give back what they do."""
 _LOOK_SECONDS = 0.2
 _SLOWEST_RESTART_SECONDS = 10.0
-_WELL_AFTER_SECONDS = 30.0
+_WELL_AFTER_SECONDS = 3.0
 _START_SECONDS = 60.0
 _LONGEST_PATH = 70
 """A socket's path has at most 107 bytes; multiprocessing appends 33 to the folder's."""
@@ -57,6 +58,7 @@ class Child:
                 pass_fds=self._sockets,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
+                process_group=0,  # Ctrl+C is for this process, which then stops the others in good order
             )
             self._started = now
 
@@ -94,6 +96,7 @@ def serve(settings: Settings) -> int:
         )
     folder = settings.folder
     with _listen(settings) as listener:
+        _own(folder)
         _clear(folder / "tmp")
         environment = {
             **os.environ,
@@ -114,7 +117,7 @@ def serve(settings: Settings) -> int:
 
         for name in (signal.SIGTERM, signal.SIGINT):
             signal.signal(name, stop)
-        threading.Thread(target=_announce, args=(address(settings, port),), daemon=True).start()
+        threading.Thread(target=_announce, args=(address(settings, port), settings.host, port), daemon=True).start()
         while not stopping:
             for child in children:
                 child.look()
@@ -139,6 +142,18 @@ def _listen(settings: Settings) -> socket.socket:
         ) from None
 
 
+def _own(folder: Path) -> None:
+    """Keep the data folder to this user and to this process, as long as it lives."""
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    lock = os.open(folder / "lock", os.O_CREAT | os.O_RDWR, 0o600)  # held until this process ends
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise SettingsError(
+            f"--data {folder}: another `treestroke serve` keeps its data there; stop it, or name another folder"
+        ) from None
+
+
 def _clear(folder: Path) -> None:
     """Begin with an empty folder for what an earlier run left half done."""
     shutil.rmtree(folder, ignore_errors=True)
@@ -150,11 +165,13 @@ def _temporary(folder: Path) -> dict[str, str]:
     return {"TMPDIR": str(folder)} if len(os.fsencode(folder)) <= _LONGEST_PATH else {}
 
 
-def _announce(page: str) -> None:
+def _announce(page: str, host: str, port: int) -> None:
     """Say where the page is, once it answers."""
     deadline = time.monotonic() + _START_SECONDS
     while time.monotonic() < deadline:
-        with suppress(OSError), urllib.request.urlopen(f"{page}livez", timeout=_START_SECONDS):
+        with suppress(OSError), closing(HTTPConnection(host, port, timeout=_START_SECONDS)) as line:
+            line.request("GET", "/livez")
+            line.getresponse()
             print(f"treestroke: open {page} in a browser; Ctrl+C ends it", flush=True)
             return
         time.sleep(_LOOK_SECONDS)

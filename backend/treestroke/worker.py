@@ -1,6 +1,7 @@
 """The worker: a Celery process whose children grow models; `treestroke serve` runs one, `treestroke worker` too."""
 
 import os
+import secrets
 import socket
 import sys
 import threading
@@ -22,7 +23,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from treestroke.lifeline import end_with, hold_lifeline
 from treestroke.logs import start_logging
 from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
-from treestroke.service.dispatch import holds_jobs, say_alive, say_gone
+from treestroke.service.dispatch import bury_dead, holds_jobs, say_alive, say_gone
 from treestroke.service.failures import problem_of
 from treestroke.service.jobs import grow_model
 from treestroke.service.pool import limit_memory
@@ -53,7 +54,10 @@ def main() -> int:
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
         return 1
-    name = f"{socket.gethostname()}-{os.getpid()}"
+    host = socket.gethostname()
+    with _briefly(database):
+        bury_dead(database, host, _lives)
+    name = f"{host}/{os.getpid()}/{secrets.token_hex(4)}"
     app = make_worker(settings, database, name)
     signals.setup_logging.connect(_keep_logging, weak=False)
     # Running as root is the container's or the person's choice; messages are JSON and hold an id.
@@ -72,7 +76,7 @@ def main() -> int:
         threading.Thread(target=_leave, args=(database, name), name="leaving", daemon=True).start()
 
     app.Worker(
-        hostname=f"treestroke@{name}",
+        hostname=f"treestroke@{host}",
         pool_cls="prefork",
         concurrency=slots,
         without_gossip=True,
@@ -84,6 +88,18 @@ def main() -> int:
     say_gone(database, name)
     log.info("worker_stopped", worker=name)
     return 0
+
+
+def _lives(process: int) -> bool:
+    """Tell whether a process of this number runs, other than this one, which is new."""
+    if process == os.getpid():
+        return False
+    with suppress(PermissionError):  # it is somebody else's, and runs
+        try:
+            os.kill(process, 0)
+        except ProcessLookupError:
+            return False
+    return True
 
 
 @contextmanager

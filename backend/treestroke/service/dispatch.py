@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import asdict
+from typing import Any
 
 import structlog
 from prometheus_client import Counter
@@ -161,12 +162,22 @@ def holds_jobs(database: Database, worker: str) -> bool:
         return session.scalar(held) is not None
 
 
-def say_gone(database: Database, worker: str) -> None:
-    """Write down that a worker stops: what it still held queues again at once."""
+def say_gone(database: Database, worker: str, error: dict[str, Any] | None = None) -> None:
+    """Write down that a worker stops, or by what ``error`` it ended: what it still held queues again at once."""
     with database.writing() as session:
         session.execute(delete(Worker).where(Worker.id == worker))
         for job in session.scalars(select(Model).where(Model.status == "running", Model.worker == worker)).all():
-            lose(session, job, None)
+            lose(session, job, error)
+
+
+def bury_dead(database: Database, host: str, lives: Callable[[int], bool]) -> None:
+    """Find the workers of this host whose process, by its number, is gone, and give their jobs back at once."""
+    with database.reading() as session:
+        names = session.scalars(select(Worker.id)).all()
+    for name in names:
+        at, process, _ = name.rsplit("/", 2)
+        if at == host and not lives(int(process)):
+            say_gone(database, name, problem_of("worker_lost"))
 
 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:

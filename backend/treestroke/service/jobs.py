@@ -88,8 +88,9 @@ class Pulse:
         self._state = phase, fraction, max(before + fraction * _WEIGHTS[phase], self._state[2])
 
     def _run(self) -> None:
-        shown, beaten = self._state, 0.0
-        while not self._over.wait(_LISTEN_SECONDS if beaten else 0.0):
+        shown, beaten, pause = self._state, 0.0, 0.0
+        while not self._over.wait(pause):
+            pause = _LISTEN_SECONDS
             if self._state == shown and time.monotonic() - beaten < _BEAT_SECONDS and not self._listen():
                 continue
             state = self._state
@@ -150,9 +151,9 @@ def _make(
 
     def show(grown: LiveTree) -> None:
         content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
+        blob, first = blobs.put(content), {} if job.preview_seq else {"preview_seq": Model.seq + 1}
         with database.writing() as session:
-            first = {} if job.preview_seq else {"preview_seq": Model.seq + 1}
-            add_file(session, job, GROWTH, blobs.put(content), len(content), **first)
+            add_file(session, job, GROWTH, blob, len(content), **first)
 
     made: MadeModel = model(photo, blobs.get(job.strokes_blob), job.settings, job.seed, pulse.report, show)
     pulse.report("preview", 0.0)
