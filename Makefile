@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 SETUP := requirements-dev.txt pyproject.toml setup.py $(wildcard backend/treestroke/core/grow/*.c)
 STAMP := $(VENV)/ready-$(shell cat $(SETUP) | sha256sum | cut -c1-16)
+PYTEST = $(BIN)/python -m pytest -q --ignore=tests/benchmarks -p no:benchmark
 EXAMPLE ?= burr_oak_dusk
 PORT ?= 8000
 
@@ -19,7 +20,8 @@ run: $(STAMP)
 	@exec $(BIN)/treestroke serve --data out/serve --port $(PORT)
 
 test: $(STAMP) redis
-	@$(BIN)/python -m pytest -q -m "not golden" --ignore=tests/benchmarks -p no:benchmark -n 2 --dist loadfile
+	@$(PYTEST) -m "not golden and not alone" -n 2 --dist loadfile
+	@$(PYTEST) -m alone
 
 # Tests of the queue need a Redis to start and kill. CI installs one where there is none; elsewhere the tests say so.
 redis:

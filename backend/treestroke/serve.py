@@ -44,6 +44,7 @@ class Child:
         """Start the process where it does not run; one that keeps dying is started ever more slowly."""
         now = time.monotonic()
         if self._process is not None and self._process.poll() is not None:
+            self._process.communicate()  # it has nothing to say; this closes its lifeline
             code = self._process.returncode
             self._failures = 1 if now - self._started > _WELL_AFTER_SECONDS else self._failures + 1
             self._next = now + min(0.1 * 2**self._failures, _SLOWEST_RESTART_SECONDS)

@@ -198,6 +198,7 @@ def test_another_type_of_body_is_refused(client: httpx.Client, made: dict[str, A
     ],
     ids=["points", "lists", "objects", "numbers", "just not too many lists", "key", "digits"],
 )
+@pytest.mark.alone
 @pytest.mark.parametrize("path", ["trace", "model"])
 def test_an_enormous_body_is_refused_while_others_are_answered(
     service: Service, photo: str, text: bytes, path: str

@@ -9,6 +9,7 @@ from tests.api import drawn
 from tests.api.conftest import Service, running
 from tests.api.test_hostile_json import probing
 
+pytestmark = pytest.mark.alone
 LONG = {"iterations": 2000, "leaf_density": 3}
 
 
