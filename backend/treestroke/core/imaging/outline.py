@@ -70,6 +70,6 @@ def rings_of_mask(mask: NDArray[np.bool_]) -> list[Floats]:
 
 def _without_holes(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Fill what a mask (h, w) shuts in."""
-    outside = np.pad(~mask, 1, constant_values=True).astype(np.uint8)
-    _, pieces = cv2.connectedComponents(outside, connectivity=4)
-    return np.asarray(pieces[1:-1, 1:-1] != pieces[0, 0], dtype=np.bool_)
+    ground = cv2.copyMakeBorder((~mask).astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=1)
+    _, outside, _, _ = cv2.floodFill(ground, None, (0, 0), 2, flags=4)
+    return np.asarray(outside[1:-1, 1:-1] != 2, dtype=np.bool_)
