@@ -20,7 +20,7 @@ run: $(STAMP)
 	@exec $(BIN)/treestroke serve --data out/serve --port $(PORT)
 
 test: $(STAMP) redis
-	@$(PYTEST) -m "not golden and not alone" -n 2 --dist loadfile
+	@$(PYTEST) -m "not golden and not alone" -n 3 --dist loadfile
 	@$(PYTEST) -m alone
 
 # Tests of the queue need a Redis to start and kill. CI installs one where there is none; elsewhere the tests say so.
