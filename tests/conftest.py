@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from treestroke.service.threads import one_thread
+from treestroke.store.database import Database
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 DATA = Path(__file__).parent / "data"
@@ -15,6 +16,15 @@ DATA = Path(__file__).parent / "data"
 def _as_the_service_computes() -> Iterator[None]:
     with one_thread():
         yield
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Iterator[Database]:
+    """An empty database with its tables."""
+    opened = Database(tmp_path)
+    opened.migrate()
+    yield opened
+    opened.close()
 
 
 @pytest.fixture(scope="session")

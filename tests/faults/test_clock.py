@@ -4,6 +4,7 @@ import time
 from pathlib import Path
 
 import pytest
+from tests.rows import add_model
 
 from treestroke.service.dispatch import Dispatcher, say_alive
 from treestroke.store.blobs import Blobs
@@ -16,14 +17,11 @@ HOUR = 3600.0
 
 @pytest.mark.parametrize("jump", [HOUR, -HOUR])
 def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jump: float
+    database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jump: float
 ) -> None:
-    database = Database(tmp_path)
-    database.migrate()
+    queued = add_model(database)
     with database.writing() as session:
-        session.add(queued("mdl_1"))
-        session.flush()
-        assert claim(session, "mdl_1", "token", "worker") is not None
+        assert claim(session, queued.id, "token", "worker") is not None
     say_alive(database, "worker", 1)
     dispatcher = Dispatcher(database, Blobs(tmp_path), lambda id: None, 0)
     real = time.time
@@ -32,30 +30,7 @@ def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
         dispatcher.recover()
         dispatcher.dispatch()
     with database.reading() as session:
-        job, worker = session.get(Model, 1), session.get(Worker, "worker")
+        job, worker = session.get(Model, queued.number), session.get(Worker, "worker")
     assert job is not None
     assert (job.status, job.attempt) == ("running", 1)
     assert worker is not None
-    database.close()
-
-
-def queued(id: str) -> Model:
-    return Model(
-        id=id,
-        name="",
-        photo="pho_1",
-        photo_blob="",
-        strokes_blob="",
-        settings={},
-        seed=0,
-        engine="",
-        fingerprint="",
-        status="queued",
-        phase_fraction=0.0,
-        progress=0.0,
-        seq=1,
-        attempt=0,
-        beat=0,
-        cancel=False,
-        created=time.time(),
-    )

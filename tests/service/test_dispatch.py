@@ -1,22 +1,10 @@
 """Workers that are gone, as another one of their host finds them."""
 
-from collections.abc import Iterator
-from pathlib import Path
-
-import pytest
-from tests.store.conftest import add_model, find
+from tests.rows import add_model, find
 
 from treestroke.service.dispatch import bury_dead, say_alive
 from treestroke.store.database import Database
 from treestroke.store.tables import Worker
-
-
-@pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
-    opened = Database(tmp_path)
-    opened.migrate()
-    yield opened
-    opened.close()
 
 
 def held_by(database: Database, worker: str, attempt: int = 1) -> str:

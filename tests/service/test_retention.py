@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from sqlalchemy import func, select, update
-from tests.store.conftest import add_model
+from tests.rows import add_model
 
 from treestroke.service import models
 from treestroke.service.photos import NotFound

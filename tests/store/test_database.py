@@ -12,8 +12,8 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import create_engine, select
 from sqlalchemy.exc import OperationalError
+from tests.rows import add_model, find
 from tests.running import BACKEND
-from tests.store.conftest import add_model, find
 
 from treestroke.store.database import Database
 from treestroke.store.tables import Model, Table, Worker

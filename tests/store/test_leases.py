@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from tests.store.conftest import add_model, find
+from tests.rows import add_model, find
 
 from treestroke.store import leases
 from treestroke.store.database import Database

@@ -1,4 +1,4 @@
-from tests.store.conftest import add_model
+from tests.rows import add_model
 
 from treestroke.store import queries
 from treestroke.store.database import Database

@@ -110,14 +110,15 @@ def _drop_standard_problems(document: dict[str, Any]) -> None:
             del operation["responses"]["422"]
 
 
-def _document(app: FastAPI) -> dict[str, object]:
+def _document(app: FastAPI) -> dict[str, Any]:
     """Give the API's document, with the bodies that routes read by themselves."""
-    if app.openapi_schema is None:
-        document: dict[str, Any] = FastAPI.openapi(app)
+    known = app.openapi_schema is not None
+    document: dict[str, Any] = FastAPI.openapi(app)
+    if not known:
         schemas = document["components"]["schemas"]
         _, extra = models_json_schema(
             [(one, "validation") for one in (TraceRequest, ModelRequest, Rename, Problem)], ref_template=_REF
         )
         schemas.update(extra["$defs"])
         _drop_standard_problems(document)
-    return app.openapi_schema  # type: ignore[return-value]
+    return document

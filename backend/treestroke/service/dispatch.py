@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import asdict
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 import structlog
 from prometheus_client import Counter
@@ -32,16 +32,17 @@ _UNKNOWN_SLOTS = 2
 LOST = Counter("treestroke_attempts_lost", "Attempts whose lease ran out.")
 SENT = Counter("treestroke_hints_sent", "Messages to the queue.")
 UNSENT = Counter("treestroke_hints_unsent", "Messages that the broker did not take.")
+Key = TypeVar("Key", bound=Hashable)
 log = structlog.get_logger()
 
 
-class Watch:
+class Watch(Generic[Key]):
     """For how long each of some counters has stood still, by this process's monotonic clock."""
 
     def __init__(self) -> None:
-        self._seen: dict[Hashable, tuple[int, float]] = {}
+        self._seen: dict[Key, tuple[int, float]] = {}
 
-    def still(self, counters: Iterable[tuple[Hashable, int]], seconds: float) -> set[Hashable]:
+    def still(self, counters: Iterable[tuple[Key, int]], seconds: float) -> set[Key]:
         """Take all counters that there are now; give the keys of those that stood still for ``seconds``."""
         now = time.monotonic()
         before, self._seen = self._seen, {}
@@ -57,7 +58,7 @@ class Dispatcher:
     def __init__(self, database: Database, blobs: Blobs, send: Callable[[str], None], keep_days: float) -> None:
         self._database, self._blobs = database, blobs
         self._send, self._keep_days = send, keep_days
-        self._jobs, self._workers = Watch(), Watch()
+        self._jobs, self._workers = Watch[tuple[str, int]](), Watch[str]()
         self._sent: dict[str, float] = {}
         self._wake, self._stopped = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
@@ -94,17 +95,17 @@ class Dispatcher:
         with self._database.reading() as session:
             jobs = {job.id: job for job in session.scalars(select(Model).where(Model.status == "running"))}
             workers = {worker.id: worker for worker in session.scalars(select(Worker))}
-        for key in self._jobs.still((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
-            job = jobs[key[0]]  # type: ignore[index]
+        for id, _ in self._jobs.still((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
+            job = jobs[id]
             with self._database.writing() as session:
                 lost = lose(session, job, problem_of("worker_lost"))
             if lost:
                 LOST.inc()
                 log.warning("attempt_lost", job=job.id, attempt=job.attempt, worker=job.worker)
                 self._sent.pop(job.id, None)
-        for key in self._workers.still(((worker.id, worker.beat) for worker in workers.values()), LEASE_SECONDS):
+        for name in self._workers.still(((worker.id, worker.beat) for worker in workers.values()), LEASE_SECONDS):
             with self._database.writing() as session:
-                session.execute(delete(Worker).where(Worker.id == key, Worker.beat == workers[str(key)].beat))
+                session.execute(delete(Worker).where(Worker.id == name, Worker.beat == workers[name].beat))
 
     def dispatch(self) -> None:
         """Tell the workers of the jobs that are next, as many as they have hands for and one more each."""

@@ -1,10 +1,10 @@
 """What is deleted goes, a day later, with its files; so does what nothing refers to."""
 
 import time
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from sqlalchemy import delete, select, update
+from sqlalchemy.orm import Session
 
 from treestroke.service.models import RESTORABLE_SECONDS
 from treestroke.store.blobs import Blobs
@@ -41,16 +41,16 @@ def sweep(database: Database, blobs: Blobs, keep_days: float, young_s: float = Y
         ).all()
         photos = session.execute(delete(Photo).where(Photo.deleted < gone).returning(Photo.id)).all()
         session.execute(delete(Replay).where(Replay.created < gone))
-        kept = _referenced(session.scalars)
+        kept = _referenced(session)
     return Swept(len(models), len(photos), blobs.sweep(kept, young_s))
 
 
 def referenced(database: Database) -> set[str]:
     """Give the blobs that a row refers to."""
     with database.reading() as session:
-        return _referenced(session.scalars)
+        return _referenced(session)
 
 
-def _referenced(scalars: object) -> set[str]:
-    columns: Iterable[object] = (Photo.blob, Model.photo_blob, Model.strokes_blob, File.blob)
-    return {blob for column in columns for blob in scalars(select(column))}  # type: ignore[operator, call-overload]
+def _referenced(session: Session) -> set[str]:
+    columns = (Photo.blob, Model.photo_blob, Model.strokes_blob, File.blob)
+    return {blob for column in columns for blob in session.scalars(select(column))}

@@ -10,7 +10,7 @@ from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.project import MAX_TEXT_BYTES
-from treestroke.core.pipeline.settings import ModelSettings, Span
+from treestroke.core.pipeline.settings import Choice, ModelSettings, Span
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
@@ -52,7 +52,11 @@ def limits(settings: SettingsOf) -> Limits:
         model_seconds=settings.model_seconds,
         wait_seconds=MAX_WAIT_SECONDS,
         settings={
-            entry.name: {"default": entry.default, "meaning": entry.metadata["meaning"], **_allowed(entry.metadata)}
+            entry.name: {
+                "default": entry.default,
+                "meaning": entry.metadata["meaning"],
+                **_allowed(entry.metadata["allowed"]),
+            }
             for entry in fields(ModelSettings)
         },
         keep_days=settings.keep_days,
@@ -65,8 +69,7 @@ def version() -> Version:
     return Version(version=__version__, engine=ENGINE, api="v1")
 
 
-def _allowed(metadata: object) -> dict[str, object]:
-    allowed = metadata["allowed"]  # type: ignore[index]
+def _allowed(allowed: Span | Choice) -> dict[str, object]:
     if isinstance(allowed, Span):
         return {"min": allowed.low, "max": allowed.high, "whole": allowed.whole}
     return {"names": list(allowed.names)}

@@ -1,21 +1,11 @@
-import time
-from collections.abc import Iterator
-from pathlib import Path
-from typing import Any
+"""Rows written by hand, without a service."""
 
-import pytest
+import time
+from typing import Any
 
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
 from treestroke.store.tables import Model
-
-
-@pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
-    opened = Database(tmp_path)
-    opened.migrate()
-    yield opened
-    opened.close()
 
 
 def add_model(database: Database, **values: Any) -> Model:
