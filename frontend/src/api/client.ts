@@ -1,0 +1,111 @@
+import type { Limits, Model, Settings, TraceAnswer } from '../state'
+import { type Strokes, toWire } from '../strokes'
+import type { components } from './schema'
+
+type Schemas = components['schemas']
+
+/** Refusals that only ask to come again. */
+const BUSY = ['overloaded', 'database_unavailable']
+
+/** The service refused: `detail` is a sentence for the user, `pointer` the field at fault, such as /branches/0. */
+export class Refused extends Error {
+  constructor(
+    readonly status: number,
+    readonly code: string,
+    detail: string,
+    readonly pointer: string | null,
+  ) {
+    super(detail)
+  }
+}
+
+/** The service cannot be reached, or is not able to answer just now. */
+export class Unreachable extends Error {}
+
+/** What is wished for when a tree is grown. */
+export interface Wish {
+  readonly photo: string
+  readonly strokes: Strokes
+  readonly settings: Settings
+  readonly seed: number
+  readonly name: string
+}
+
+/** The service's calls that the page makes; each throws `Refused` or `Unreachable`. */
+export class Client {
+  getLimits(): Promise<Limits> {
+    return ask('GET', '/v1/limits')
+  }
+
+  addPhoto(file: Blob): Promise<Schemas['Photo']> {
+    const form = new FormData()
+    form.append('file', file)
+    return ask('POST', '/v1/photos', { body: form })
+  }
+
+  getPhoto(id: string): Promise<Schemas['Photo']> {
+    return ask('GET', `/v1/photos/${id}`)
+  }
+
+  /** Find foliage and visible branches; with `grow` the whole tree's skeleton too. */
+  trace(photo: string, strokes: Strokes, grow: boolean): Promise<TraceAnswer> {
+    return ask('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow }))
+  }
+
+  /** Ask for a model; the same `key` asks for the same one, however often it is sent. */
+  grow({ strokes, ...wish }: Wish, key: string): Promise<Model> {
+    return ask('POST', '/v1/models', json({ ...wish, strokes: toWire(strokes) }, { 'Idempotency-Key': key }))
+  }
+
+  getModel(id: string): Promise<Model> {
+    return ask('GET', `/v1/models/${id}`)
+  }
+
+  listModels(cursor: string | null): Promise<Schemas['ModelPage']> {
+    return ask('GET', `/v1/models?limit=24${cursor ? `&cursor=${cursor}` : ''}`)
+  }
+
+  renameModel(id: string, name: string): Promise<Model> {
+    return ask('PATCH', `/v1/models/${id}`, json({ name }))
+  }
+
+  async removeModel(id: string): Promise<void> {
+    await ask('DELETE', `/v1/models/${id}`)
+  }
+
+  restoreModel(id: string): Promise<Model> {
+    return ask('POST', `/v1/models/${id}/restore`)
+  }
+
+  cancelModel(id: string): Promise<Model> {
+    return ask('POST', `/v1/models/${id}/cancel`)
+  }
+
+  getStrokes(id: string): Promise<unknown> {
+    return ask('GET', `/v1/models/${id}/strokes.json`)
+  }
+
+  /** Read a file, such as a model's GLB or a photo's picture. */
+  async getFile(url: string): Promise<Blob> {
+    return (await answer('GET', url)).blob()
+  }
+}
+
+async function ask<T>(method: string, url: string, request: RequestInit = {}): Promise<T> {
+  const response = await answer(method, url, request)
+  return (response.status === 204 ? null : await response.json()) as T
+}
+
+async function answer(method: string, url: string, request: RequestInit = {}): Promise<Response> {
+  const response = await fetch(url, { ...request, method }).catch(() => {
+    throw new Unreachable()
+  })
+  if (response.ok) return response
+  const problem: Partial<Schemas['Problem']> | null = await response.json().catch(() => null)
+  if (!problem?.code || !problem.detail || BUSY.includes(problem.code)) throw new Unreachable()
+  throw new Refused(response.status, problem.code, problem.detail, problem.errors?.[0]?.pointer ?? null)
+}
+
+function json(body: unknown, headers: Record<string, string> = {}): RequestInit {
+  return { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json', ...headers } }
+}

@@ -1,0 +1,153 @@
+import type { components } from './api/schema'
+import { begin, type History } from './history'
+import { NO_STROKES, type StrokeRef, type Strokes } from './strokes'
+
+type Schemas = components['schemas']
+export type TraceAnswer = Schemas['TraceAnswer']
+export type TracedSkeleton = Schemas['TracedSkeleton']
+export type StrokeWarning = Schemas['StrokeWarning']
+export type Grown = Schemas['GrownSkeleton']
+export type PhotoFrame = Schemas['PhotoFrame']
+export type Model = Schemas['Model']
+export type Limits = Schemas['Limits']
+export type Settings = Required<Schemas['ModelSettings']>
+
+/** A photo that the service has. */
+export interface Photo {
+  readonly id: string
+  /** Pixels, upright. */
+  readonly width: number
+  readonly height: number
+  /** What was chosen: kept so that a drawing outlives the service's copy. */
+  readonly file: Blob
+  /** Where the upright picture can be shown from. */
+  readonly url: string
+}
+
+/** What the pointer does on the photo. */
+export type Tool = 'crown' | 'branch' | 'select'
+
+/** A stroke, or a traced branch by the first of its joints. */
+export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
+
+/** Where an error stands on the page. */
+export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery'
+
+/** A sentence that says what is wrong and what to do. */
+export interface Fault {
+  readonly text: string
+  /** The stroke at fault. */
+  readonly stroke?: StrokeRef
+}
+
+/** What was traced, and of which strokes. */
+export interface Traced {
+  readonly of: Strokes
+  readonly answer: TraceAnswer
+}
+
+export interface State {
+  readonly photo: Photo | null
+  readonly name: string
+  readonly history: History<Strokes>
+  readonly settings: Settings
+  readonly seed: number
+  readonly tool: Tool
+  readonly selection: Selection | null
+  /** A photo or project is being read. */
+  readonly opening: boolean
+  readonly tracing: boolean
+  readonly traced: Traced | null
+  /** The live tree. */
+  readonly grown: Grown | null
+  /** A model is being asked for. */
+  readonly asking: boolean
+  /** The model that was asked for last or is looked at. */
+  readonly model: Model | null
+  /** The strokes that the model was made of. */
+  readonly modelOf: Strokes | null
+  /** The model's skeleton, when it has just been grown. */
+  readonly growth: Grown | null
+  /** The model's GLB. */
+  readonly tree: ArrayBuffer | null
+  /** Whether the preview shows the live tree or the model. */
+  readonly shows: 'live' | 'model'
+  /** What the service takes, once it has said so. */
+  readonly limits: Limits | null
+  /** False while the browser cannot keep the drawing. */
+  readonly kept: boolean
+  /** False while the service cannot be reached. */
+  readonly online: boolean
+  readonly faults: Readonly<Partial<Record<Place, Fault>>>
+}
+
+export const DEFAULT_SETTINGS: Settings = {
+  height: 10,
+  library: 'auto',
+  iterations: 300,
+  foliage: 'auto',
+  leaf_size: 1,
+  leaf_density: 1,
+}
+
+export const EMPTY: State = {
+  photo: null,
+  name: '',
+  history: begin(NO_STROKES),
+  settings: DEFAULT_SETTINGS,
+  seed: 0,
+  tool: 'crown',
+  selection: null,
+  opening: false,
+  tracing: false,
+  traced: null,
+  grown: null,
+  asking: false,
+  model: null,
+  modelOf: null,
+  growth: null,
+  tree: null,
+  shows: 'live',
+  limits: null,
+  kept: true,
+  online: true,
+  faults: {},
+}
+
+/** Holds the one state of the page and tells who listens what changed. */
+export class Store {
+  #state = EMPTY
+  readonly #listeners = new Set<(now: State, before: State) => void>()
+
+  get state(): State {
+    return this.#state
+  }
+
+  get strokes(): Strokes {
+    return this.#state.history.present
+  }
+
+  set(change: Partial<State>): void {
+    const before = this.#state
+    this.#state = { ...before, ...change }
+    for (const listener of this.#listeners) listener(this.#state, before)
+  }
+
+  /** Put a fault in its place, or take it away. */
+  fault(place: Place, fault: Fault | null): void {
+    if (!fault && !this.#state.faults[place]) return
+    const { [place]: _, ...others } = this.#state.faults
+    this.set({ faults: fault ? { ...others, [place]: fault } : others })
+  }
+
+  /** Call `listener` with what `select` gives, now and whenever it gives something else; the call ends it. */
+  watch<T>(select: (state: State) => T, listener: (value: T) => void): () => void {
+    const told = (now: State, before: State) => {
+      const value = select(now)
+      if (value !== select(before)) listener(value)
+    }
+    this.#listeners.add(told)
+    listener(select(this.#state))
+    return () => this.#listeners.delete(told)
+  }
+}

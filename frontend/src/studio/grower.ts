@@ -1,0 +1,111 @@
+import { type Client, Unreachable } from '../api/client'
+import { follow, isOver } from '../api/follow'
+import type { Model, Store } from '../state'
+import type { Strokes } from '../strokes'
+import { text } from '../text'
+import { faultOf } from './sentences'
+
+const AGAIN_MS = 2000
+const TRIES = 5
+
+/** Has trees grown and follows them until they stand in the preview. */
+export class Grower {
+  #leave = () => {}
+
+  constructor(
+    private readonly store: Store,
+    private readonly client: Client,
+  ) {}
+
+  /** Ask for a tree of what is drawn. */
+  async grow(): Promise<void> {
+    const { photo, settings, seed, name } = this.store.state
+    const strokes = this.store.strokes
+    if (!photo || !strokes.branches.length || this.isGrowing) return
+    this.store.fault('grow', null)
+    this.store.set({ asking: true })
+    try {
+      const wish = { photo: photo.id, strokes, settings, seed, name }
+      this.show(await patiently(key => this.client.grow(wish, key)), strokes)
+    } catch (error) {
+      this.store.fault('grow', faultOf(error))
+    } finally {
+      this.store.set({ asking: false })
+    }
+  }
+
+  /** Grow another tree of the same strokes. */
+  async reroll(): Promise<void> {
+    this.store.set({ seed: Math.floor(Math.random() * 1_000_000) })
+    await this.grow()
+  }
+
+  get isGrowing(): boolean {
+    const { asking, model } = this.store.state
+    return asking || (model !== null && !isOver(model))
+  }
+
+  /** Follow a model, made of `strokes`, into the preview. */
+  show(model: Model, strokes: Strokes): void {
+    this.leave()
+    this.store.set({ model, modelOf: strokes, growth: null, tree: null, shows: 'model' })
+    this.#leave = follow(model.id, {
+      changed: now => this.#change(now),
+      grew: growth => this.store.set({ growth, shows: 'model' }),
+      connected: online => this.store.set({ online }),
+      gone: () => this.#forget(),
+    })
+  }
+
+  /** Follow no model any more. */
+  leave(): void {
+    this.#leave()
+    this.#leave = () => {}
+  }
+
+  async cancel(): Promise<void> {
+    const { model } = this.store.state
+    if (!model) return
+    try {
+      this.#change(await patiently(() => this.client.cancelModel(model.id)))
+    } catch (error) {
+      this.store.fault('grow', faultOf(error))
+    }
+  }
+
+  #change(model: Model): void {
+    this.store.set({ model, online: true })
+    if (model.error) this.store.fault('grow', { text: model.error.detail })
+    if (model.status === 'succeeded') this.#fetch(model)
+  }
+
+  /** Bring the finished tree. */
+  async #fetch(model: Model): Promise<void> {
+    try {
+      const file = await patiently(() => this.client.getFile(model.files['tree.glb']!))
+      const tree = await file.arrayBuffer()
+      if (this.store.state.model?.id === model.id) this.store.set({ tree, shows: 'model' })
+    } catch (error) {
+      this.store.fault('grow', faultOf(error))
+    }
+  }
+
+  #forget(): void {
+    this.leave()
+    this.store.set({ model: null, modelOf: null, shows: 'live' })
+    this.store.fault('grow', { text: text.faults.modelGone })
+  }
+}
+
+/** Try again while the service cannot be reached, under one key, so that what arrived twice is done once. */
+async function patiently<T>(ask: (key: string) => Promise<T>): Promise<T> {
+  const key = crypto.randomUUID()
+  for (let left = TRIES; ; left--) {
+    try {
+      return await ask(key)
+    } catch (error) {
+      if (!(error instanceof Unreachable) || left === 1) throw error
+      await new Promise(done => setTimeout(done, AGAIN_MS))
+    }
+  }
+}

@@ -1,0 +1,139 @@
+import { type DBSchema, type IDBPDatabase, openDB } from 'idb'
+import type { History } from '../history'
+import type { Settings, State, Store } from '../state'
+import { isEmpty, type Strokes } from '../strokes'
+
+/** A drawing as the browser keeps it. */
+export interface Draft {
+  readonly id: string
+  /** Milliseconds since 1970. */
+  readonly saved: number
+  readonly name: string
+  readonly photo: { readonly id: string; readonly width: number; readonly height: number }
+  readonly history: History<Strokes>
+  readonly settings: Settings
+  readonly seed: number
+  /** The model that was grown of it last, and of which strokes. */
+  readonly model: string | null
+  readonly modelOf: Strokes | null
+}
+
+interface Shelf extends DBSchema {
+  drafts: { key: string; value: Draft; indexes: { saved: number } }
+  photos: { key: string; value: Blob }
+}
+
+const KEPT = 12
+const KEYS = ['photo', 'name', 'history', 'settings', 'seed', 'model', 'modelOf'] as const
+
+/** Keeps every drawing in the browser as it is drawn, with its undo history, so that a reload or a crash loses nothing. */
+export class Keeper {
+  #id: string | null = null
+  #photo: Blob | null = null
+  #writing = false
+  #due = false
+
+  constructor(
+    private readonly store: Store,
+    private readonly shelf: Promise<IDBPDatabase<Shelf>> = open(),
+  ) {
+    shelf.catch(() => store.set({ kept: false }))
+    for (const key of KEYS)
+      store.watch(
+        state => state[key],
+        () => this.#keep(),
+      )
+  }
+
+  /** The drawing that is kept now; what is opened next is another one. */
+  get id(): string | null {
+    return this.#id
+  }
+
+  /** Go on with a kept drawing, or with a new one. */
+  begin(id: string | null): void {
+    this.#id = id ?? crypto.randomUUID()
+    this.#photo = null
+  }
+
+  /** List what is kept, the latest first; drawings without a stroke are not worth coming back to. */
+  async list(): Promise<Draft[]> {
+    const drafts = await (await this.shelf).getAllFromIndex('drafts', 'saved')
+    return drafts.filter(({ history }) => !isEmpty(history.present)).reverse()
+  }
+
+  /** Find a drawing and its photo. */
+  async find(id: string): Promise<{ draft: Draft; photo: Blob } | null> {
+    const shelf = await this.shelf
+    const [draft, photo] = await Promise.all([shelf.get('drafts', id), shelf.get('photos', id)])
+    return draft && photo ? { draft, photo } : null
+  }
+
+  async remove(id: string): Promise<void> {
+    await removeAll(await this.shelf, [id])
+  }
+
+  /** Put a drawing back that was removed. */
+  async restore(draft: Draft, photo: Blob): Promise<void> {
+    const shelf = await this.shelf
+    await shelf.put('photos', photo, draft.id)
+    await shelf.put('drafts', draft)
+  }
+
+  async #keep(): Promise<void> {
+    this.#due = true
+    if (this.#writing) return
+    this.#writing = true
+    try {
+      while (this.#due) {
+        this.#due = false
+        await this.#write(this.store.state)
+      }
+    } catch {
+      this.store.set({ kept: false }) // a private window, or a full disk: the page says so
+    } finally {
+      this.#writing = false
+    }
+  }
+
+  async #write(state: State): Promise<void> {
+    const id = this.#id
+    if (!id || !state.photo) return
+    const { file, id: photo, width, height } = state.photo
+    const shelf = await this.shelf
+    const isNew = this.#photo !== file
+    if (isNew) await shelf.put('photos', file, id)
+    const { name, history, settings, seed, modelOf } = state
+    await shelf.put('drafts', {
+      ...{ id, saved: Date.now(), name, photo: { id: photo, width, height }, history, settings, seed, modelOf },
+      model: state.model?.id ?? null,
+    })
+    if (isNew) await prune(shelf)
+    if (this.#id === id) this.#photo = file
+    if (!state.kept) this.store.set({ kept: true })
+  }
+}
+
+function open(): Promise<IDBPDatabase<Shelf>> {
+  return openDB<Shelf>('treestroke', 1, {
+    upgrade(shelf) {
+      shelf.createObjectStore('drafts', { keyPath: 'id' }).createIndex('saved', 'saved')
+      shelf.createObjectStore('photos')
+    },
+  })
+}
+
+/** Let the drawings go that were touched longest ago. */
+async function prune(shelf: IDBPDatabase<Shelf>): Promise<void> {
+  const ids = await shelf.getAllKeysFromIndex('drafts', 'saved')
+  await removeAll(shelf, ids.slice(0, Math.max(0, ids.length - KEPT)))
+}
+
+async function removeAll(shelf: IDBPDatabase<Shelf>, ids: readonly string[]): Promise<void> {
+  const change = shelf.transaction(['drafts', 'photos'], 'readwrite')
+  for (const id of ids) {
+    change.objectStore('drafts').delete(id)
+    change.objectStore('photos').delete(id)
+  }
+  await change.done
+}

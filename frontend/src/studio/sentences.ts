@@ -1,0 +1,34 @@
+import { Refused, Unreachable } from '../api/client'
+import type { Fault } from '../state'
+import type { StrokeRef } from '../strokes'
+import { text } from '../text'
+
+/** Says what is wrong and what to do; thrown where the page itself finds the fault. */
+export class Unusable extends Error {}
+
+/** Put an error into a sentence for the user; what is none of ours is thrown again. */
+export function faultOf(error: unknown): Fault {
+  if (error instanceof Unreachable) return { text: text.faults.unreachable }
+  if (error instanceof Unusable) return { text: error.message }
+  if (!(error instanceof Refused)) throw error
+  const stroke = strokeAt(error.pointer)
+  return { text: wording(error.code) ?? withoutPlace(error.message), ...(stroke && { stroke }) }
+}
+
+/** Find the stroke that a JSON pointer leads to: /crown, /branches/2/points, /strokes/erase/0. */
+export function strokeAt(pointer: string | null): StrokeRef | null {
+  const found = pointer?.match(/^(?:\/strokes)?\/(crown|branches|erase)(?:\/(\d+))?/)
+  if (!found) return null
+  const kind = found[1] === 'branches' ? 'branch' : (found[1] as 'crown' | 'erase')
+  return { kind, index: Number(found[2] ?? 0) }
+}
+
+function wording(code: string): string | undefined {
+  return (text.faults.codes as Readonly<Record<string, string>>)[code]
+}
+
+/** Leave out where in the request the fault lies, and begin as a sentence does. */
+function withoutPlace(detail: string): string {
+  const sentence = detail.replace(/^[\w/.-]+: /, '')
+  return `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}${/[.!?]$/.test(sentence) ? '' : '.'}`
+}

@@ -1,0 +1,105 @@
+import { type Client, Refused, Unreachable } from '../api/client'
+import type { Photo, Store } from '../state'
+import type { Strokes } from '../strokes'
+import { faultOf } from './sentences'
+
+const AGAIN_MS = 1500
+
+/**
+ * Keeps what is traced and the live tree in step with the strokes.
+ *
+ * One request is under way at a time: what is drawn meanwhile is traced next, the latest only. Tracing comes first; the
+ * live tree is asked for when nothing newer is waiting.
+ */
+export class Tracer {
+  #running = false
+  #due = false
+  /** Strokes that the service refused: not sent again. */
+  #refused: Strokes | null = null
+  #grownOf: Strokes | null = null
+
+  constructor(
+    private readonly store: Store,
+    private readonly client: Client,
+    private readonly wait = (ms: number) => new Promise<void>(done => setTimeout(done, ms)),
+  ) {
+    store.watch(
+      state => state.history.present,
+      () => this.#run(),
+    )
+    store.watch(
+      state => state.photo,
+      () => this.#run(),
+    )
+  }
+
+  async #run(): Promise<void> {
+    this.#due = true
+    if (this.#running) return
+    this.#running = true
+    try {
+      while (this.#due) {
+        this.#due = false
+        if (await this.#step()) this.#due = true
+      }
+    } finally {
+      this.#running = false
+      this.store.set({ tracing: false })
+    }
+  }
+
+  /** Do the next thing that is due; false where nothing is. */
+  async #step(): Promise<boolean> {
+    const { photo, traced, grown } = this.store.state
+    const strokes = this.store.strokes
+    if (!strokes.branches.length && grown) this.store.set({ grown: null })
+    if (!strokes.crown && traced) this.store.set({ traced: null, grown: null })
+    if (!photo || !strokes.crown || strokes === this.#refused) return false
+    const isTraced = traced?.of === strokes
+    if (isTraced && (!strokes.branches.length || this.#grownOf === strokes)) return false
+    try {
+      await this.#ask(photo, strokes, isTraced)
+    } catch (error) {
+      await this.#mend(error, photo, strokes)
+    }
+    return true
+  }
+
+  async #ask(photo: Photo, strokes: Strokes, grow: boolean): Promise<void> {
+    if (!grow) this.store.set({ tracing: true })
+    const answer = await this.client.trace(photo.id, strokes, grow)
+    this.store.set({ online: true })
+    if (this.#isStale(photo, strokes)) return
+    this.store.fault('strokes', null)
+    if (!grow) return this.store.set({ traced: { of: strokes, answer }, tracing: false })
+    this.#grownOf = strokes
+    this.store.set({ grown: answer.grown ?? null, shows: strokes === this.store.state.modelOf ? 'model' : 'live' })
+  }
+
+  #isStale(photo: Photo, strokes: Strokes): boolean {
+    return this.store.state.photo?.id !== photo.id || this.store.strokes !== strokes
+  }
+
+  async #mend(error: unknown, photo: Photo, strokes: Strokes): Promise<void> {
+    if (error instanceof Unreachable) {
+      this.store.set({ online: false })
+      await this.wait(AGAIN_MS)
+    } else if (error instanceof Refused && error.status === 404) {
+      await this.#bringBack(photo)
+    } else {
+      this.#refused = strokes
+      if (!this.#isStale(photo, strokes)) this.store.fault('strokes', faultOf(error))
+    }
+  }
+
+  /** Send the photo again: the service has forgotten it. */
+  async #bringBack(photo: Photo): Promise<void> {
+    try {
+      const { id } = await this.client.addPhoto(photo.file)
+      if (this.store.state.photo?.id === photo.id) this.store.set({ photo: { ...photo, id } })
+    } catch (error) {
+      if (!(error instanceof Unreachable)) throw error
+      await this.wait(AGAIN_MS)
+    }
+  }
+}

@@ -1,0 +1,45 @@
+import type { Grown, Model, Photo, TraceAnswer } from '../src/state'
+import type { Line } from '../src/strokes'
+
+export const CROWN: Line = [
+  [20, 10],
+  [80, 10],
+  [80, 60],
+  [20, 60],
+]
+export const TRUNK: Line = [
+  [50, 95],
+  [50, 40],
+]
+export const LIMB: Line = [
+  [50, 50],
+  [70, 30],
+]
+
+export function photo(changes: Partial<Photo> = {}): Photo {
+  return { id: 'pho_1', width: 100, height: 100, file: new Blob(['a photo']), url: 'blob:photo', ...changes }
+}
+
+export function answer(grown: Grown | null = null): TraceAnswer {
+  const skeleton = { points: [], radii: [], parents: [], stroke: [] }
+  return { rev: null, foliage: [], skeleton, warnings: [], grown, photo: null }
+}
+
+export function grown(points = 2): Grown {
+  return {
+    points: Array.from({ length: points }, (_, i) => [0, i, 0] as [number, number, number]),
+    radii: Array.from({ length: points }, () => 0.1),
+    parents: Array.from({ length: points }, (_, i) => i - 1),
+    born: Array.from({ length: points }, () => 0),
+    photo: { width: 100, height: 100, metres_per_pixel: 0.1, root: [50, 95] },
+  }
+}
+
+export function model(changes: Partial<Model> = {}): Model {
+  return {
+    ...{ id: 'mdl_1', name: 'Oak', photo: 'pho_1', status: 'queued', phase: null, phase_fraction: 0, progress: 0 },
+    ...{ queue_position: 1, eta_s: null, attempt: 0, error: null, score: null, report: null, files: {} },
+    ...{ settings: { height: 10 }, seed: 0, engine: 'treestroke', created: '', started: null, finished: null },
+    ...changes,
+  } as Model
+}

@@ -1,0 +1,153 @@
+import { afterEach, beforeEach, expect, test, vi } from 'vitest'
+import { Client } from '../../src/api/client'
+import { Store } from '../../src/state'
+import { Grower } from '../../src/studio/grower'
+import { Sketchbook } from '../../src/studio/sketchbook'
+import { CROWN, grown, model, photo, TRUNK } from '../builders'
+import { type Call, Events, problem, service, settle } from '../service'
+
+const GLB = new Uint8Array([103, 108, 84, 70])
+
+beforeEach(() => {
+  Events.all = []
+  vi.stubGlobal('EventSource', Events)
+})
+afterEach(() => {
+  vi.unstubAllGlobals()
+  vi.useRealTimers()
+})
+
+function begin() {
+  const store = new Store()
+  store.set({ photo: photo(), name: 'Oak', seed: 3 })
+  const sketchbook = new Sketchbook(store)
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  return { store, sketchbook, grower: new Grower(store, new Client()) }
+}
+
+function serve({ method, path }: Call): Response {
+  if (path.endsWith('tree.glb')) return new Response(GLB)
+  if (path.endsWith('/cancel')) return Response.json(model({ status: 'canceled' }))
+  return Response.json(model({ status: method === 'POST' ? 'queued' : 'running' }))
+}
+
+const finished = () => model({ status: 'succeeded', files: { 'tree.glb': '/v1/models/mdl_1/tree.glb' } })
+
+test('a tree is asked for with what was drawn, followed, and brought', async () => {
+  const calls = service(serve)
+  const { store, grower } = begin()
+  await grower.grow()
+  expect(calls[0]!.body).toMatchObject({ photo: 'pho_1', name: 'Oak', seed: 3, settings: { height: 10 } })
+  expect([store.state.model?.status, store.state.modelOf]).toEqual(['queued', store.strokes])
+  Events.last.tell('progress', model({ status: 'running', progress: 0.4 }))
+  Events.last.tell('preview', grown(5))
+  expect([store.state.model?.progress, store.state.growth]).toEqual([0.4, grown(5)])
+  Events.last.tell('succeeded', finished())
+  await settle()
+  expect(new Uint8Array(store.state.tree!)).toEqual(GLB)
+  expect(Events.last.readyState).toBe(Events.CLOSED)
+})
+
+test('a second press while a tree grows asks for nothing', async () => {
+  const calls = service(serve)
+  const { grower } = begin()
+  await Promise.all([grower.grow(), grower.grow()])
+  await grower.grow()
+  expect(calls).toHaveLength(1)
+  expect(grower.isGrowing).toBe(true)
+})
+
+test('without a trunk nothing is asked for', async () => {
+  const calls = service(serve)
+  const { sketchbook, grower } = begin()
+  sketchbook.undo()
+  await grower.grow()
+  expect(calls).toHaveLength(0)
+})
+
+test('a request that got lost is sent again under the same key', async () => {
+  vi.useFakeTimers()
+  const keys: unknown[] = []
+  let tries = 0
+  service(call => (++tries < 3 ? 'down' : serve(call)))
+  const { fetch } = globalThis
+  vi.stubGlobal('fetch', (path: string, request: RequestInit) => {
+    keys.push((request.headers as Record<string, string>)['Idempotency-Key'])
+    return fetch(path, request)
+  })
+  const { store, grower } = begin()
+  const asked = grower.grow()
+  await vi.runAllTimersAsync()
+  await asked
+  expect(new Set(keys).size).toBe(1)
+  expect(keys).toHaveLength(3)
+  expect(store.state.model?.id).toBe('mdl_1')
+})
+
+test('a refusal is said, and nothing else changes', async () => {
+  service(() => problem(422, 'out_of_range', 'settings/height: 900 is too high; give 0.1 to 150', '/settings/height'))
+  const { store, grower } = begin()
+  await grower.grow()
+  expect(store.state.faults.grow?.text).toBe('900 is too high; give 0.1 to 150.')
+  expect([store.state.model, store.state.asking]).toEqual([null, false])
+})
+
+test('a failure is said in the words of the service', async () => {
+  service(serve)
+  const { store, grower } = begin()
+  await grower.grow()
+  const error = { code: 'time_limit', detail: 'It took too long.', retryable: false }
+  Events.last.tell('failed', model({ status: 'failed', error }))
+  expect(store.state.faults.grow?.text).toBe('It took too long.')
+  expect(grower.isGrowing).toBe(false)
+})
+
+test('a broken connection is noted until events come again', async () => {
+  service(serve)
+  const { store, grower } = begin()
+  await grower.grow()
+  Events.last.onerror()
+  expect(store.state.online).toBe(false)
+  Events.last.onopen()
+  expect(store.state.online).toBe(true)
+})
+
+test('a model that is gone is forgotten, with a sentence', async () => {
+  service(serve)
+  const { store, grower } = begin()
+  await grower.grow()
+  Events.last.close()
+  Events.last.onerror()
+  expect([store.state.model, store.state.shows]).toEqual([null, 'live'])
+  expect(store.state.faults.grow?.text).toContain('no longer there')
+})
+
+test('a canceled tree is no longer growing', async () => {
+  const calls = service(serve)
+  const { store, grower } = begin()
+  await grower.grow()
+  await grower.cancel()
+  expect(calls.at(-1)!.path).toBe('/v1/models/mdl_1/cancel')
+  expect([store.state.model?.status, grower.isGrowing]).toEqual(['canceled', false])
+})
+
+test('another model takes the followed one’s place, and its tree is not mistaken', async () => {
+  service(serve)
+  const { store, grower } = begin()
+  await grower.grow()
+  const first = Events.last
+  first.tell('succeeded', finished())
+  grower.show(model({ id: 'mdl_2' }), store.strokes)
+  await settle()
+  expect(first.readyState).toBe(Events.CLOSED)
+  expect([store.state.model?.id, store.state.tree]).toEqual(['mdl_2', null])
+})
+
+test('another tree of the same strokes has another seed', async () => {
+  const calls = service(serve)
+  const { store, grower } = begin()
+  await grower.reroll()
+  expect(calls[0]!.body.seed).toBe(store.state.seed)
+  expect(store.state.seed).not.toBe(3)
+})

@@ -1,0 +1,144 @@
+import 'fake-indexeddb/auto'
+import { IDBFactory } from 'fake-indexeddb'
+import { afterEach, beforeEach, expect, test, vi } from 'vitest'
+import type { Limits } from '../../src/state'
+import { DEFAULT_SETTINGS } from '../../src/state'
+import { toWire } from '../../src/strokes'
+import { writeProject } from '../../src/studio/project'
+import { Studio } from '../../src/studio/studio'
+import { answer, CROWN, model, TRUNK } from '../builders'
+import { type Call, Events, problem, service } from '../service'
+
+const STROKES = { crown: CROWN, branches: [{ points: TRUNK }], erase: [] }
+const PHOTO = { id: 'pho_1', width: 100, height: 100, image: '/v1/photos/pho_1/image' }
+const jpeg = (name = 'Old oak.jpg', content = 'a photo') => new File([content], name, { type: 'image/jpeg' })
+
+beforeEach(() => {
+  globalThis.indexedDB = new IDBFactory()
+  vi.stubGlobal('EventSource', Events)
+  vi.stubGlobal('createImageBitmap', async () => ({ width: 100, height: 100, close() {} }))
+})
+afterEach(() => vi.unstubAllGlobals())
+
+function serve({ method, path }: Call): Response {
+  if (path === '/v1/photos') return Response.json(PHOTO, { status: 201 })
+  if (path.endsWith('/trace')) return Response.json(answer())
+  if (path.endsWith('strokes.json')) return Response.json(toWire(STROKES))
+  if (path.endsWith('.jpg') || path.endsWith('/image')) return new Response(jpeg())
+  if (path.startsWith('/v1/photos/')) return Response.json(PHOTO)
+  const status = method === 'POST' ? 'queued' : 'succeeded'
+  return Response.json(model({ status, seed: 5, settings: { ...DEFAULT_SETTINGS, height: 14 } }))
+}
+
+test('a photo is opened under its name, upright as the browser shows it', async () => {
+  service(serve)
+  const { store, opener } = new Studio()
+  await opener.openFile(jpeg())
+  expect(store.state).toMatchObject({ name: 'Old oak', opening: false, tool: 'crown', photo: { id: 'pho_1' } })
+  expect(store.state.photo?.url).toMatch(/^blob:/)
+})
+
+test('a picture that the browser sees otherwise is shown as the service has it', async () => {
+  service(serve)
+  vi.stubGlobal('createImageBitmap', async () => ({ width: 60, height: 80, close() {} }))
+  const { store, opener } = new Studio()
+  await opener.openFile(jpeg())
+  expect(store.state.photo?.url).toBe(PHOTO.image)
+})
+
+test('a file that is no photo leaves the drawing as it was', async () => {
+  let good = true
+  service(call => (good ? serve(call) : problem(422, 'photo_unreadable', 'photo: it is no picture; save it as JPEG')))
+  const { store, opener, sketchbook } = new Studio()
+  await opener.openFile(jpeg())
+  sketchbook.draw('crown', CROWN)
+  const before = store.state
+  good = false
+  await opener.openFile(new File(['text'], 'notes.txt'))
+  expect(store.state.faults.photo?.text).toBe('It is no picture; save it as JPEG.')
+  expect([store.state.photo, store.strokes]).toEqual([before.photo, before.history.present])
+})
+
+test('a file that is too large is not even sent', async () => {
+  const calls = service(serve)
+  const { store, opener } = new Studio()
+  store.set({ limits: { photo_bytes: 5 } as Limits })
+  await opener.openFile(jpeg())
+  expect(store.state.faults.photo?.text).toContain('at most')
+  expect(calls).toHaveLength(0)
+})
+
+test('a project brings its strokes, settings and seed', async () => {
+  service(serve)
+  const { store, opener } = new Studio()
+  const settings = { ...DEFAULT_SETTINGS, leaf_size: 2 }
+  const file = await writeProject({ photo: jpeg(), strokes: STROKES, settings, seed: 9 })
+  await opener.openFile(new File([file], 'Maple.treestroke'))
+  expect(store.state).toMatchObject({ name: 'Maple', settings, seed: 9, tool: 'branch' })
+  expect(store.strokes).toEqual(STROKES)
+})
+
+test('an example is opened with its strokes and grown', async () => {
+  const calls = service(call => (call.path.endsWith('x.json') ? Response.json(toWire(STROKES)) : serve(call)))
+  const { store, opener } = new Studio()
+  await opener.openExample({ name: 'oak_02', photo: '/page/x.jpg', strokes: '/page/x.json' })
+  await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
+  expect(store.state.name).toBe('Young oak')
+  expect(calls.find(call => call.path === '/v1/models')!.body.strokes).toEqual(toWire(STROKES))
+})
+
+test('a model is opened with the strokes, settings and seed that it was made of', async () => {
+  service(serve)
+  const { store, opener } = new Studio()
+  await opener.openModel('mdl_1')
+  expect(store.state).toMatchObject({ name: 'Oak', seed: 5, settings: { height: 14 }, model: { id: 'mdl_1' } })
+  expect(store.state.modelOf).toBe(store.strokes)
+})
+
+test('a model whose photo was deleted brings its own copy', async () => {
+  const project = await writeProject({ photo: jpeg(), strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0 })
+  const calls = service(call => {
+    if (call.path === '/v1/photos/pho_1') return problem(404, 'not_found', 'no such photo')
+    if (call.path === '/v1/models/mdl_1') return Response.json(model({ files: { project: '/project' } }))
+    return call.path === '/project' ? new Response(project) : serve(call)
+  })
+  const { store, opener } = new Studio()
+  await opener.openModel('mdl_1')
+  expect(calls.some(({ method, path }) => method === 'POST' && path === '/v1/photos')).toBe(true)
+  expect(await store.state.photo!.file.text()).toBe('a photo')
+})
+
+test('a model that is gone is said', async () => {
+  service(() => problem(404, 'not_found', 'no such model'))
+  const { store, opener } = new Studio()
+  await opener.openModel('mdl_1')
+  expect(store.state.faults.photo?.text).toContain('no longer there')
+})
+
+test('a kept drawing comes back with its history and its model', async () => {
+  service(serve)
+  const before = new Studio()
+  await before.opener.openFile(jpeg())
+  before.sketchbook.draw('crown', CROWN)
+  before.sketchbook.draw('branch', TRUNK)
+  await before.grower.grow()
+  const id = before.keeper.id!
+  await vi.waitFor(async () => expect((await before.keeper.find(id))?.draft.model).toBe('mdl_1'))
+  const { store, opener } = new Studio()
+  await opener.openDraft(id)
+  expect(store.state.history).toEqual(before.store.state.history)
+  expect(store.state).toMatchObject({ name: 'Old oak', model: { id: 'mdl_1' } })
+  expect(store.state.modelOf).toEqual(store.strokes)
+})
+
+test('closing leaves nothing open and keeps the drawing', async () => {
+  service(serve)
+  const { store, opener, keeper, sketchbook } = new Studio()
+  await opener.openFile(jpeg())
+  sketchbook.draw('crown', CROWN)
+  const id = keeper.id!
+  await vi.waitFor(async () => expect((await keeper.find(id))?.draft.history.past).toHaveLength(1))
+  opener.close()
+  expect([store.state.photo, store.state.model]).toEqual([null, null])
+  expect((await keeper.list()).map(draft => draft.id)).toEqual([id])
+})

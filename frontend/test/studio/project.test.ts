@@ -1,0 +1,55 @@
+import { readFileSync } from 'node:fs'
+import { strToU8, zipSync } from 'fflate'
+import { expect, test } from 'vitest'
+import { DEFAULT_SETTINGS } from '../../src/state'
+import { isProject, projectName, readProject, writeProject } from '../../src/studio/project'
+import { CROWN, LIMB, TRUNK } from '../builders'
+
+const STROKES = { crown: CROWN, branches: [{ points: TRUNK, width: 7 }, { points: LIMB }], erase: [LIMB] }
+const jpeg = new Blob([readFileSync(new URL('../../../examples/osage_orange_autumn.jpg', import.meta.url))], {
+  type: 'image/jpeg',
+})
+
+function zip(members: Record<string, string>): Blob {
+  return new Blob([zipSync(Object.fromEntries(Object.entries(members).map(([name, held]) => [name, strToU8(held)])))])
+}
+
+test('a project is read as it was written', async () => {
+  const project = { photo: jpeg, strokes: STROKES, settings: { ...DEFAULT_SETTINGS, height: 14 }, seed: 8 }
+  const read = await readProject(await writeProject(project))
+  expect({ ...read, photo: null }).toEqual({ ...project, photo: null })
+  expect(read.photo.type).toBe('image/jpeg')
+  expect(Buffer.from(await read.photo.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
+})
+
+test('a project without a crown is kept and read, too', async () => {
+  const strokes = { crown: null, branches: [{ points: TRUNK }], erase: [] }
+  const read = await readProject(await writeProject({ photo: jpeg, strokes, settings: DEFAULT_SETTINGS, seed: 0 }))
+  expect(read.strokes).toEqual(strokes)
+})
+
+test('settings may be absent', async () => {
+  const strokes = JSON.stringify({ crown: { points: CROWN } })
+  const read = await readProject(zip({ 'photo.png': 'x', 'strokes.json': strokes }))
+  expect([read.settings, read.seed, read.photo.type]).toEqual([DEFAULT_SETTINGS, 0, 'image/png'])
+})
+
+test.each([
+  ['no ZIP', new Blob(['hello']), 'damaged'],
+  ['no photo', zip({ 'strokes.json': '{}' }), 'no photo'],
+  ['strokes of another form', zip({ 'photo.jpg': 'x', 'strokes.json': '{"crown": 7}' }), 'damaged'],
+  ['no JSON', zip({ 'photo.jpg': 'x', 'strokes.json': '{' }), 'damaged'],
+])('%s is said in a sentence', async (_, file, word) => {
+  await expect(readProject(file)).rejects.toThrow(word)
+})
+
+test('a project is known by its ending or its type', () => {
+  expect(isProject(new File([], 'oak.treestroke'))).toBe(true)
+  expect(isProject(new File([], 'oak.zip', { type: 'application/zip' }))).toBe(true)
+  expect(isProject(new File([], 'oak.jpg', { type: 'image/jpeg' }))).toBe(false)
+})
+
+test('a name makes a file name that every system takes', () => {
+  expect(projectName('Oak: 3/4 "view"')).toBe('Oak_ 3_4 _view_.treestroke')
+  expect(projectName('')).toBe('tree.treestroke')
+})

@@ -1,0 +1,159 @@
+import { afterEach, expect, test, vi } from 'vitest'
+import { Client } from '../../src/api/client'
+import { Store } from '../../src/state'
+import { Sketchbook } from '../../src/studio/sketchbook'
+import { Tracer } from '../../src/studio/tracer'
+import { answer, CROWN, grown, LIMB, photo, TRUNK } from '../builders'
+import { type Call, problem, service, settle } from '../service'
+
+afterEach(() => vi.unstubAllGlobals())
+
+async function begin() {
+  const store = new Store()
+  store.set({ photo: photo() })
+  const wait = vi.fn(async () => {})
+  new Tracer(store, new Client(), wait)
+  await settle()
+  return { store, wait, sketchbook: new Sketchbook(store) }
+}
+
+function traced({ body }: Call): Response {
+  return Response.json(answer(body.grow ? grown(body.branches.length + 1) : null))
+}
+
+test('a crown alone is traced and not grown', async () => {
+  const calls = service(traced)
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  await settle()
+  expect(calls.map(call => call.body.grow)).toEqual([false])
+  expect(store.state.traced?.of).toBe(store.strokes)
+  expect(store.state.grown).toBeNull()
+})
+
+test('with a trunk the tracing comes first, the live tree after it', async () => {
+  const calls = service(traced)
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  await settle()
+  expect(calls.map(call => [call.body.branches.length, call.body.grow])).toEqual([
+    [0, false],
+    [1, false],
+    [1, true],
+  ])
+  expect(store.state.grown).toEqual(grown(2))
+  expect(store.state.tracing).toBe(false)
+})
+
+test('no more than one request is under way, and what was drawn meanwhile is traced once, by its latest', async () => {
+  let underway = 0
+  const calls = service(async call => {
+    expect(++underway).toBe(1)
+    await new Promise(done => setTimeout(done, 5))
+    underway--
+    return traced(call)
+  })
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  for (const line of [TRUNK, LIMB, LIMB]) sketchbook.draw('branch', line)
+  await vi.waitFor(() => expect(store.state.grown).not.toBeNull())
+  expect(calls.map(call => call.body.branches.length)).toEqual([0, 3, 3])
+})
+
+test('an answer for strokes that have changed since is dropped', async () => {
+  let release = () => {}
+  service(async call => {
+    if (!call.body.branches.length) await new Promise<void>(done => (release = done))
+    return traced(call)
+  })
+  const { store, sketchbook } = await begin()
+  const seen = vi.fn()
+  store.watch(state => state.traced, seen)
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  release()
+  await settle()
+  expect(seen.mock.calls.map(([one]) => one?.of.branches.length)).toEqual([undefined, 1])
+})
+
+test('refused strokes stay, say what is wrong with which, and are not sent again', async () => {
+  const calls = service(({ body }) =>
+    body.branches.length ? problem(422, 'trunk_outside_crown', 'no', '/branches/0') : traced({ body } as Call),
+  )
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  await settle()
+  expect(store.state.faults.strokes?.stroke).toEqual({ kind: 'branch', index: 0 })
+  expect(store.state.faults.strokes?.text).toContain('Draw it from the ground up')
+  expect(store.strokes.branches).toHaveLength(1)
+  expect(calls).toHaveLength(2)
+  sketchbook.undo()
+  await settle()
+  expect(store.state.faults.strokes).toBeUndefined()
+})
+
+test('while the service is away it is asked again, and the strokes are traced when it is back', async () => {
+  let tries = 0
+  service(call => (++tries < 4 ? 'down' : traced(call)))
+  const { store, wait, sketchbook } = await begin()
+  const online = vi.fn()
+  store.watch(state => state.online, online)
+  sketchbook.draw('crown', CROWN)
+  await settle()
+  expect(online.mock.calls.flat()).toEqual([true, false, true])
+  expect(wait).toHaveBeenCalledTimes(3)
+  expect(store.state.traced).not.toBeNull()
+})
+
+test('a photo that the service has forgotten is sent again', async () => {
+  service(call => {
+    if (call.path === '/v1/photos') return Response.json({ id: 'pho_2', width: 100, height: 100 })
+    return call.path.includes('pho_2') ? traced(call) : problem(404, 'not_found', 'no such photo')
+  })
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  await settle()
+  expect(store.state.photo?.id).toBe('pho_2')
+  expect(store.state.traced).not.toBeNull()
+})
+
+test('without a trunk there is no live tree any more', async () => {
+  service(traced)
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  await settle()
+  sketchbook.undo()
+  await settle()
+  expect(store.state.grown).toBeNull()
+  sketchbook.clear()
+  await settle()
+  expect(store.state.traced).toBeNull()
+})
+
+test('where nothing can be grown, it is asked for once', async () => {
+  const calls = service(() => Response.json(answer()))
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  await settle()
+  expect(calls.filter(call => call.body.grow)).toHaveLength(1)
+  expect(store.state.grown).toBeNull()
+})
+
+test('strokes that a model was grown of show the model again', async () => {
+  service(traced)
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  await settle()
+  store.set({ modelOf: store.strokes, shows: 'model' })
+  sketchbook.draw('branch', LIMB)
+  await settle()
+  expect(store.state.shows).toBe('live')
+  sketchbook.undo()
+  await settle()
+  expect(store.state.shows).toBe('model')
+})
