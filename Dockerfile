@@ -1,4 +1,12 @@
-# Two stages: the first compiles treestroke and sets up what it needs, the second runs it.
+# Three stages: the first builds the page, the second compiles treestroke and sets up what it needs, the third runs it.
+FROM node:20-bookworm-slim AS page
+WORKDIR /build/frontend
+COPY frontend/package.json frontend/package-lock.json frontend/.npmrc ./
+RUN npm ci
+COPY examples /build/examples
+COPY frontend ./
+RUN node_modules/.bin/vite build
+
 FROM python:3.11-slim-bookworm AS build
 RUN apt-get update \
     && apt-get install --yes --no-install-recommends gcc libc6-dev \
@@ -8,6 +16,7 @@ COPY requirements.txt requirements-dev.txt ./
 RUN python -m venv /venv && /venv/bin/pip install --no-cache-dir --require-hashes -r requirements.txt
 COPY pyproject.toml setup.py README.md LICENSE ./
 COPY backend backend
+COPY --from=page /build/backend/treestroke/api/page backend/treestroke/api/page
 # setuptools, which builds it, is pinned like the rest. Without its compiled part growth would be slow: that ends the build.
 RUN sed -n '/^setuptools==/,/[^\\]$/p' requirements-dev.txt > build.txt \
     && pip install --no-cache-dir --require-hashes -r build.txt \

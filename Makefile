@@ -4,36 +4,64 @@ VENV := .venv
 BIN := $(VENV)/bin
 SETUP := requirements-dev.txt pyproject.toml setup.py $(wildcard backend/treestroke/core/grow/*.c)
 STAMP := $(VENV)/ready-$(shell cat $(SETUP) | sha256sum | cut -c1-16)
+NODE := frontend/node_modules
+NODE_STAMP := $(NODE)/.ready-$(shell cat frontend/package.json frontend/package-lock.json | sha256sum | cut -c1-16)
+PAGE := backend/treestroke/api/page
+PAGE_SOURCES := $(shell find frontend examples -type f -not -path '*/node_modules/*' -not -path 'frontend/test/*')
+PAGE_STAMP := $(PAGE)/.built-$(shell sha256sum $(PAGE_SOURCES) | sort | sha256sum | cut -c1-16)
+SCHEMA := frontend/src/api/schema.d.ts
 PYTEST = $(BIN)/python -m pytest -q --ignore=tests/benchmarks -p no:benchmark
 EXAMPLE ?= burr_oak_dusk
 PORT ?= 8000
 
-.PHONY: run test redis check bench golden chaos setup
+# Whatever the system's habit is: to compile Python anew for each of the service's processes takes seconds.
+unexport PYTHONDONTWRITEBYTECODE
+export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/bytecode
+
+.PHONY: run page test redis chromium check types bench golden chaos setup
 .DEFAULT_GOAL := run
 
 # Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
-run: $(STAMP)
+run: $(STAMP) page
 	@mkdir -p out
 	@$(BIN)/treestroke model examples/$(EXAMPLE).jpg --strokes examples/$(EXAMPLE).strokes.json \
 	    --out out/$(EXAMPLE).glb --report out/$(EXAMPLE).json --preview out/$(EXAMPLE).png
 	@echo "out/$(EXAMPLE).glb: the tree; out/$(EXAMPLE).png: its picture; out/$(EXAMPLE).json: its report"
 	@exec $(BIN)/treestroke serve --data out/serve --port $(PORT)
 
-test: $(STAMP) redis
-	@$(PYTEST) -m "not golden and not alone" -n 3 --dist loadfile
+# The page as the service serves it, made of frontend/.
+page: $(PAGE_STAMP)
+
+test: $(STAMP) page redis chromium
+	@cd frontend && node_modules/.bin/vitest run
+	@$(PYTEST) -m "not golden and not alone" -n 3
 	@$(PYTEST) -m alone
 
-# Tests of the queue need a Redis to start and kill. CI installs one where there is none; elsewhere the tests say so.
+# Tests need a Redis to start and kill, and a browser. CI installs them where they are missing; elsewhere the tests say so.
 redis:
-	@command -v redis-server >/dev/null || [ "$(CI)" != true ] || [ "$$(id -u)" != 0 ] || ! command -v apt-get >/dev/null || { \
-	    export DEBIAN_FRONTEND=noninteractive RUNLEVEL=1; \
-	    apt-get update -qq && apt-get install -qq --yes --no-install-recommends redis-server >/dev/null; }
+	@$(call installed,redis-server,redis-server)
 
-check: $(STAMP)
+chromium:
+	@$(call installed,chromium,chromium fonts-dejavu-core)
+
+installed = command -v $(1) >/dev/null || [ "$(CI)" != true ] || [ "$$(id -u)" != 0 ] || ! command -v apt-get >/dev/null || { \
+    export DEBIAN_FRONTEND=noninteractive RUNLEVEL=1; \
+    apt-get update -qq && apt-get install -qq --yes --no-install-recommends $(2) >/dev/null; }
+
+check: $(STAMP) $(NODE_STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	cd frontend && node_modules/.bin/tsc
+	cd frontend && node_modules/.bin/biome ci .
+	@$(schema) | cmp -s - $(SCHEMA) || { echo "make: $(SCHEMA) is not what the API says; run \`make types\`" >&2; exit 1; }
+
+# What the API takes and gives, as types for the page.
+types: $(STAMP) $(NODE_STAMP)
+	@$(schema) > $(SCHEMA).new && mv $(SCHEMA).new $(SCHEMA)
+
+schema = $(BIN)/python frontend/openapi.py | $(NODE)/.bin/openapi-typescript
 
 bench: $(STAMP)
 	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \
@@ -58,4 +86,17 @@ $(STAMP):
 	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements-dev.txt
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	@rm -f $(VENV)/ready-*
+	@touch $@
+
+$(NODE_STAMP):
+	@node -e "const [a, b] = process.versions.node.split('.').map(Number); process.exit(a > 20 || (a === 20 && b > 18) ? 0 : 1)" \
+	    2>/dev/null && command -v npm >/dev/null || { \
+	    echo "make: the page is built with Node.js 20.19 or later and npm; install them (Debian 13 has nodejs and" \
+	         "npm). The service alone needs neither: make setup, then .venv/bin/treestroke serve" >&2; exit 1; }
+	cd frontend && npm ci --loglevel=error
+	@touch $@
+
+# Vite empties the folder first, of older stamps too.
+$(PAGE_STAMP): $(NODE_STAMP)
+	cd frontend && node_modules/.bin/vite build --logLevel warn
 	@touch $@

@@ -12,6 +12,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     target: 'es2022',
+    chunkSizeWarningLimit: 700, // three.js is one file
     rolldownOptions: {
       output: {
         codeSplitting: { groups: [{ name: 'three', test: /node_modules[\\/]three/ }] },

@@ -84,8 +84,17 @@ def test_the_image_has_the_version_of_treestroke() -> None:
 def test_every_copied_file_is_there_and_not_ignored() -> None:
     let_in = (ROOT / ".dockerignore").read_text().splitlines()
     sources = [source for line in lines("COPY") if "--from" not in line for source in line.split()[:-1]]
-    assert len(sources) == 7
-    assert [source for source in sources if not (ROOT / source).exists() or f"!{source}" not in let_in] == []
+    assert len(sources) == 12
+    missing = [one for one in sources if not (ROOT / one).exists()]
+    kept_out = [one for one in sources if f"!{one.split('/')[0]}" not in let_in or one in let_in]
+    assert (missing, kept_out) == ([], [])
+
+
+def test_the_page_is_built_before_the_package_is() -> None:
+    steps = [DOCKERFILE.index(step) for step in ("npm ci", "vite build", "COPY --from=page", "pip wheel")]
+    assert steps == sorted(steps)
+    ignored = (ROOT / ".dockerignore").read_text().splitlines()
+    assert {"frontend/node_modules", "backend/treestroke/api/page"} <= set(ignored)
 
 
 def test_what_runs_is_no_root_and_has_no_compiler() -> None:

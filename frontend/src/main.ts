@@ -3,6 +3,7 @@ import { Studio } from './studio/studio'
 import { takeFiles } from './ui/intake'
 import { mountLive } from './ui/live'
 import { mountOpening } from './ui/opening'
+import { warnUnkept } from './ui/projectFile'
 import { followSession, resume } from './ui/session'
 import { mountShell } from './ui/shell'
 import { listenToShortcuts } from './ui/shortcuts'
@@ -17,6 +18,7 @@ mountLive()
 mountOpening(store)
 takeFiles(studio)
 followTitle(store)
+warnUnkept(studio)
 client.getLimits().then(
   limits => store.set({ limits }),
   () => {}, // the service tells its limits again when one is passed

@@ -1,3 +1,4 @@
+import json
 import re
 import shutil
 import subprocess
@@ -7,6 +8,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PATH_OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:work|root|home|opt|Users|mnt|srv)/\w|\.\./shared|[A-Z]:\\\\")
+NAMESPACE = re.compile(r"\bhttp:/{2}www\.w3\.org/\d{4}/[\w/]+")
+"""A name that looks like an address and that nobody asks for."""
 OWN = r"(?:127\.0\.0\.1|localhost|\[::1\]|redis|testserver)\b"
 HOST = re.compile(rf"\b\w+:/{{2}}(?!{OWN}|HOST\b)\w[\w.-]*|\b(?:pypi|pythonhosted|npmjs)\.org")
 
@@ -35,7 +38,9 @@ def test_no_file_names_a_path_of_a_machine() -> None:
 
 def test_no_file_but_a_document_names_a_host() -> None:
     named = {
-        name: hit.group() for name, text in texts().items() if (hit := HOST.search(text)) and not name.endswith(".md")
+        name: hit.group()
+        for name, text in texts().items()
+        if (hit := HOST.search(NAMESPACE.sub("", text))) and not name.endswith(".md")
     }
     assert named == {}
 
@@ -50,3 +55,17 @@ def test_every_requirement_is_pinned_by_hash() -> None:
 def test_what_runs_is_pinned_alike_for_running_and_for_work() -> None:
     run, work = ((ROOT / name).read_text() for name in ("requirements.txt", "requirements-dev.txt"))
     assert set(re.findall(r"^\S+==\S+", run, re.M)) <= set(re.findall(r"^\S+==\S+", work, re.M))
+
+
+def test_every_package_of_the_page_is_pinned_by_hash_and_comes_from_no_given_place() -> None:
+    packages = json.loads((ROOT / "frontend" / "package-lock.json").read_text())["packages"]
+    packages.pop("")
+    assert packages
+    assert [name for name, one in packages.items() if not one["integrity"].startswith("sha512-")] == []
+    assert [name for name, one in packages.items() if {"resolved", "funding"} & set(one)] == []  # `npm run lock`
+
+
+def test_the_page_s_own_packages_have_one_version_each() -> None:
+    given = json.loads((ROOT / "frontend" / "package.json").read_text())
+    versions = {**given["dependencies"], **given["devDependencies"]}
+    assert [name for name, version in versions.items() if not re.fullmatch(r"\d+\.\d+\.\d+", version)] == []

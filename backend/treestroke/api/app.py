@@ -4,13 +4,10 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
-from fastapi.responses import FileResponse
 from fastapi.routing import APIRoute
-from fastapi.staticfiles import StaticFiles
 from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
 
@@ -19,6 +16,7 @@ from treestroke.api.errors import add_handlers
 from treestroke.api.guard import Guard, Limited
 from treestroke.api.metrics import add_metrics
 from treestroke.api.routes import events, files, models, photos, status
+from treestroke.api.routes.page import add_page
 from treestroke.codec.image import MAX_BYTES
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_hint
@@ -30,7 +28,6 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 
-PAGE = Path(__file__).parent / "page"
 HOSTS = ("127.0.0.1", "localhost", "::1")
 _FORM_BYTES = 100_000
 """What a form may have around its file."""
@@ -55,12 +52,7 @@ def make_app(settings: Settings) -> FastAPI:
     for routes in (photos, models, events, files, status):
         app.include_router(routes.router)
     add_metrics(app)
-
-    @app.get("/", include_in_schema=False)
-    def page() -> FileResponse:
-        return FileResponse(PAGE / "index.html")
-
-    app.mount("/page", StaticFiles(directory=PAGE))
+    add_page(app)
     app.add_middleware(Limited, limit_of=_limit_of)
     app.add_middleware(Guard, hosts=HOSTS)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]

@@ -16,7 +16,11 @@ HELD_BYTES = 400_000_000
 PATIENCE_SECONDS = 30.0
 SLOWEST_BYTES_PER_SECOND = 20_000
 """A body that comes more slowly, after the first half minute, is given up."""
-_POLICY = "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; frame-ancestors 'none'"
+# A GLB's textures are read from blob: addresses, by fetch as well as by image.
+_POLICY = (
+    "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob: data:; object-src 'none'; "
+    "base-uri 'none'; frame-ancestors 'none'"
+)
 _HEADERS = {
     "x-content-type-options": "nosniff",
     "referrer-policy": "no-referrer",

@@ -84,7 +84,9 @@ export class Grower {
     try {
       const file = await patiently(() => this.client.getFile(model.files['tree.glb']!))
       const tree = await file.arrayBuffer()
-      if (this.store.state.model?.id === model.id) this.store.set({ tree, shows: 'model' })
+      if (this.store.state.model?.id !== model.id) return
+      this.store.set({ tree, shows: 'model' })
+      this.store.fault('grow', null)
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     }

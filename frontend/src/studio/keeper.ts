@@ -114,7 +114,8 @@ export class Keeper {
   }
 }
 
-function open(): Promise<IDBPDatabase<Shelf>> {
+/** Asynchronous, so that a browser without a shelf rejects instead of throwing. */
+async function open(): Promise<IDBPDatabase<Shelf>> {
   return openDB<Shelf>('treestroke', 1, {
     upgrade(shelf) {
       shelf.createObjectStore('drafts', { keyPath: 'id' }).createIndex('saved', 'saved')

@@ -1,5 +1,5 @@
 import { type Client, Refused, Unreachable } from '../api/client'
-import type { Photo, Store } from '../state'
+import type { Photo, Store, TraceAnswer } from '../state'
 import type { Strokes } from '../strokes'
 import { faultOf } from './sentences'
 
@@ -71,9 +71,16 @@ export class Tracer {
     this.store.set({ online: true })
     if (this.#isStale(photo, strokes)) return
     this.store.fault('strokes', null)
-    if (!grow) return this.store.set({ traced: { of: strokes, answer }, tracing: false })
+    if (!grow) return this.#take(strokes, answer)
     this.#grownOf = strokes
     this.store.set({ grown: answer.grown ?? null, shows: strokes === this.store.state.modelOf ? 'model' : 'live' })
+  }
+
+  /** Show what was traced; a branch that was selected in the last answer may be another joint in this one. */
+  #take(strokes: Strokes, answer: TraceAnswer): void {
+    const { selection } = this.store.state
+    const traced = { of: strokes, answer }
+    this.store.set({ traced, tracing: false, selection: selection?.kind === 'traced' ? null : selection })
   }
 
   #isStale(photo: Photo, strokes: Strokes): boolean {

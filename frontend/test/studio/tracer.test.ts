@@ -133,6 +133,15 @@ test('without a trunk there is no live tree any more', async () => {
   expect(store.state.traced).toBeNull()
 })
 
+test('a traced branch that was selected is let go when its joints are numbered anew', async () => {
+  service(traced)
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.select({ kind: 'traced', joint: 7 })
+  await settle()
+  expect(store.state.selection).toBeNull()
+})
+
 test('where nothing can be grown, it is asked for once', async () => {
   const calls = service(() => Response.json(answer()))
   const { store, sketchbook } = await begin()

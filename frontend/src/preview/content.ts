@@ -1,0 +1,70 @@
+import { Box3, type BufferGeometry, Group, type Material, type Mesh, type Object3D, Vector3 } from 'three'
+import type { PhotoFrame } from '../state'
+import { type Box, unitsPerMetre } from './camera'
+import { groundShadow } from './canopy'
+import { SUN } from './sun'
+
+/** Something the preview shows: a tree in the preview's world, where 1 unit is the photo's height. */
+export interface Content {
+  readonly kind: 'live' | 'model'
+  readonly group: Group
+  readonly photo: PhotoFrame
+  readonly box: Box
+  readonly triangles: number
+  /** Where it has leaves of its own. */
+  readonly leaves: Mesh | null
+  /** How old it is, as a share of its growth: branches for the skeleton, leaves for the model. */
+  age(share: number): void
+  dispose(): void
+}
+
+/** Metres to the preview's world. */
+export function placed(photo: PhotoFrame, ...meshes: Object3D[]): Group {
+  const group = new Group()
+  group.scale.setScalar(unitsPerMetre(photo))
+  group.add(...meshes)
+  group.updateMatrixWorld(true)
+  return group
+}
+
+/** The tree's box in the preview's world. */
+export function boxOf(group: Group): Box {
+  const { min, max } = new Box3().setFromObject(group)
+  return { min: [min.x, min.y, min.z], max: [max.x, max.y, max.z] }
+}
+
+/** Triangles of a geometry. */
+export function trianglesOf(geometry: BufferGeometry): number {
+  return (geometry.index?.count ?? geometry.getAttribute('position').count) / 3
+}
+
+/** The round of ground under a tree that takes in its shadow: centre [x, z] and radius. */
+export function groundUnder({ min, max }: Box): { centre: readonly [number, number]; reach: number } {
+  const fall = max[1] / SUN[1] / 2
+  const centre = [(min[0] + max[0]) / 2 - SUN[0] * fall, (min[2] + max[2]) / 2 - SUN[2] * fall] as const
+  return { centre, reach: Math.max(max[0] - min[0], max[2] - min[2]) * 0.75 + fall * 0.8 }
+}
+
+/** The content's shadow on its ground as a picture, for where no shadow map is drawn. */
+export function shadowOf(content: Content, side: number): Uint8Array {
+  const fallen: number[] = []
+  const vertex = new Vector3()
+  content.group.traverseVisible(part => {
+    const position = (part as Mesh).geometry?.getAttribute('position')
+    for (let at = 0; position && at < position.count; at += 2) {
+      vertex.fromBufferAttribute(position, at).applyMatrix4(part.matrixWorld)
+      fallen.push(vertex.x, vertex.y, vertex.z)
+    }
+  })
+  return groundShadow(fallen, SUN, { ...groundUnder(content.box), side })
+}
+
+/** Free what a mesh holds on the GPU. */
+export function disposeMesh(mesh: Mesh): void {
+  mesh.geometry.dispose()
+  const material = mesh.material as Material & { map?: { image?: unknown; dispose(): void } | null }
+  if (material.map?.image instanceof ImageBitmap) material.map.image.close()
+  material.map?.dispose()
+  material.dispose()
+  mesh.customDepthMaterial?.dispose()
+}

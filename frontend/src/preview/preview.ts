@@ -1,0 +1,119 @@
+import './preview.css'
+import type { Grown } from '../state'
+import { press } from './keys'
+import { probeWebgl } from './software'
+import { Viewer } from './viewer'
+
+/** The views that have a name; the photo's own is parallel and lies exactly over the photo. */
+export type View = 'photo' | 'front' | 'side' | 'back' | 'top'
+
+/** What the preview shows and what it draws with. */
+export interface PreviewStatus {
+  webgl: 'ok' | 'software' | 'lost' | 'absent'
+  view: View | 'free'
+  shows: 'empty' | 'live' | 'growing' | 'model'
+  leaves: boolean
+  triangles: number
+}
+
+/** How the preview speaks and to whom. `software`: what is known of the WebGL; absent, it is found out. */
+export interface PreviewOptions {
+  labels: { wipe: string; canvas: string }
+  reducedMotion: () => boolean
+  onStatus: (status: PreviewStatus) => void
+  software?: boolean
+}
+
+/** The 3D preview in an element of the page. Where there is no WebGL it shows nothing and says so in its status. */
+export class Preview {
+  private readonly viewer: Viewer | null
+  private readonly canvas = document.createElement('canvas')
+
+  constructor(
+    private readonly host: HTMLElement,
+    options: PreviewOptions,
+  ) {
+    host.classList.add('preview')
+    host.dataset.state = 'empty'
+    const webgl = probeWebgl()
+    const software = options.software ?? webgl === 'software'
+    const certain = options.software !== undefined
+    this.viewer =
+      webgl === 'absent' ? null : this.opened({ ...options, software, certain, label: options.labels.wipe }, options)
+    if (!this.viewer) options.onStatus({ webgl: 'absent', view: 'free', shows: 'empty', leaves: true, triangles: 0 })
+  }
+
+  /** The picture for the wipe, of the upright photo; null takes it away. */
+  showPhoto(url: string | null): void {
+    this.viewer?.showPhoto(url)
+  }
+
+  /** Show the live skeleton; the camera stays where it is, the first tree opens on a view from the side. */
+  showLive(grown: Grown): void {
+    this.viewer?.showLive(grown)
+  }
+
+  /** Play the growth of a skeleton; ends showing all of it. */
+  async playGrowth(grown: Grown): Promise<void> {
+    await this.viewer?.playGrowth(grown)
+  }
+
+  /** Replace what is shown by a GLB of the service; its leaves come in. The first one is flown to the photo's view. */
+  async showModel(glb: ArrayBuffer): Promise<void> {
+    await this.viewer?.showModel(glb)
+  }
+
+  /** Show no tree. */
+  clear(): void {
+    this.viewer?.clear()
+  }
+
+  /** Fly to a view. */
+  view(name: View): void {
+    this.viewer?.view(name)
+  }
+
+  /** How much of the tree is seen in the photo's view: 0 only the photo, 1 only the tree. */
+  wipe(fraction: number): void {
+    this.viewer?.wipe(fraction)
+  }
+
+  setLeaves(on: boolean): void {
+    this.viewer?.turnLeaves(on)
+  }
+
+  /** Turn by radians: `azimuth` to the right, `polar` downwards. */
+  orbit(azimuth: number, polar: number): void {
+    this.viewer?.orbit(azimuth, polar)
+  }
+
+  /** Come closer by a factor. */
+  zoom(factor: number): void {
+    this.viewer?.zoom(factor)
+  }
+
+  /** The picture as it is seen, as a PNG of twice its CSS pixels or more. */
+  async png(): Promise<Blob> {
+    if (!this.viewer) throw new Error('There is no WebGL to draw a picture with.')
+    return this.viewer.png()
+  }
+
+  dispose(): void {
+    this.viewer?.dispose()
+    this.canvas.remove()
+  }
+
+  private opened(options: ConstructorParameters<typeof Viewer>[2], { labels }: PreviewOptions): Viewer | null {
+    const { canvas, host } = this
+    canvas.className = 'preview-canvas'
+    for (const [name, value] of Object.entries({ tabindex: '0', role: 'application', 'aria-label': labels.canvas }))
+      canvas.setAttribute(name, value)
+    host.prepend(canvas)
+    const viewer = new Viewer(host, canvas, options)
+    canvas.addEventListener('keydown', event => {
+      const bare = !event.ctrlKey && !event.metaKey && !event.altKey
+      if (bare && press(event.key, viewer)) event.preventDefault()
+    })
+    return viewer
+  }
+}

@@ -1,0 +1,36 @@
+import type { Selection, TracedSkeleton } from '../state'
+import { lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
+import { along, distance, distanceToLine, nearestShare } from './plane'
+import { firstJoint, pieceTo } from './tracedBranch'
+
+/** What lies within `reach` photo px of a place: the nearest stroke, else the nearest branch that was traced. */
+export function pick(strokes: Strokes, skeleton: TracedSkeleton | null, at: Point, reach: number): Selection | null {
+  return pickStroke(strokes, at, reach) ?? (skeleton && pickTraced(strokes, skeleton, at, reach))
+}
+
+function pickStroke(strokes: Strokes, at: Point, reach: number): StrokeRef | null {
+  let [nearest, least]: [StrokeRef | null, number] = [null, reach]
+  for (const ref of strokeRefs(strokes)) {
+    const away = distanceToLine(lineOf(strokes, ref), at, ref.kind === 'crown')
+    if (away <= least) [nearest, least] = [ref, away]
+  }
+  return nearest
+}
+
+function pickTraced(strokes: Strokes, skeleton: TracedSkeleton, at: Point, reach: number): Selection | null {
+  let [nearest, least] = [-1, reach]
+  for (const joint of skeleton.points.keys()) {
+    const away = distanceToWood(skeleton, joint, at)
+    if (away < least) [nearest, least] = [joint, away]
+  }
+  if (nearest < 0) return null
+  const index = skeleton.stroke[nearest]!
+  if (index < 0) return { kind: 'traced', joint: firstJoint(skeleton, nearest) }
+  return index < strokes.branches.length ? { kind: 'branch', index } : null
+}
+
+/** How far outside the wood between a joint and its parent a place lies; negative inside. */
+function distanceToWood(skeleton: TracedSkeleton, joint: number, at: Point): number {
+  const piece = pieceTo(skeleton, joint)
+  return distance(along(piece, nearestShare(piece, at)), at) - skeleton.radii[joint]!
+}

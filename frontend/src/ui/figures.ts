@@ -1,0 +1,70 @@
+import type { Model } from '../state'
+import { text } from '../text'
+
+/** A figure of the score card: what, how much, and what that means. */
+export interface Figure {
+  readonly row: keyof typeof text.score.rows
+  readonly label: string
+  readonly value: string
+  readonly why: string
+}
+
+type Row = keyof typeof text.score.rows
+interface Report {
+  readonly seconds?: Readonly<Record<string, number>>
+  readonly counts?: Readonly<Record<string, number>>
+}
+
+const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 })
+const percent = new Intl.NumberFormat('en', { style: 'percent', maximumFractionDigits: 0 })
+
+/** List the figures of a finished model; those that the service does not give are left out. */
+export function figuresOfModel({ score, report }: Model): Figure[] {
+  const { counts, seconds } = (report ?? {}) as Report
+  const values: Record<Row, string | undefined> = {
+    silhouette: shown(score?.silhouette_iou, share => percent.format(share)),
+    reached: shown(score?.attractors_reached, share => percent.format(share)),
+    depth: shown(score?.depth_over_width, factor => text.score.times(factor.toFixed(2))),
+    branches: shown(counts?.branches, number => whole.format(number)),
+    leaves: shown(counts?.leaves, number => whole.format(number)),
+    triangles: shown(counts?.triangles, number => whole.format(number)),
+    size: shown(counts?.bytes, sizeOf),
+    time: shown(seconds && sum(Object.values(seconds)), time => text.score.seconds(time.toFixed(1))),
+  }
+  return (Object.keys(values) as Row[]).flatMap(row => {
+    const [label, why] = text.score.rows[row]
+    return values[row] === undefined ? [] : [{ row, label, value: values[row], why }]
+  })
+}
+
+/** Say in one line how well the model fits the photo. */
+export function matchOf({ score }: Model): string {
+  const fit = score?.silhouette_iou
+  return fit === undefined ? text.grow.standing.grown : text.score.match(percent.format(fit))
+}
+
+/** Say in a few words what the model is made of. */
+export function makingOf(model: Model): string {
+  const figure = (row: Row) => figuresOfModel(model).find(one => one.row === row)?.value
+  const triangles = figure('triangles')
+  return [triangles && text.score.triangles(triangles), figure('size')].filter(Boolean).join(' · ')
+}
+
+/** Judge the fit, for somebody who has seen no other. */
+export function judgementOf({ score }: Model): string {
+  const fit = score?.silhouette_iou ?? 0
+  return text.score.words.find(([least]) => fit >= least)?.[1] ?? ''
+}
+
+/** Write a number of bytes. */
+export function sizeOf(bytes: number): string {
+  return bytes < 1e6 ? `${whole.format(bytes / 1e3)} kB` : `${(bytes / 1e6).toFixed(1)} MB`
+}
+
+function shown<T>(value: T | undefined, write: (value: T) => string): string | undefined {
+  return value === undefined ? undefined : write(value)
+}
+
+function sum(numbers: readonly number[]): number {
+  return numbers.reduce((total, number) => total + number, 0)
+}

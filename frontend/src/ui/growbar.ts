@@ -1,0 +1,46 @@
+import type { Studio } from '../studio/studio'
+import { text } from '../text'
+import { button, el, icon } from './dom'
+import { downloadsPanel, hasTakings, treeLink } from './downloads'
+import { anotherButton, growButton } from './growButtons'
+import { type makePanel, opening } from './panel'
+import { progressBar, standingLine } from './progress'
+import { scorePanel } from './score'
+import { settingsPanel } from './settings'
+import { DOWN, DOWNLOAD, SLIDERS } from './treeIcons'
+import './growbar.css'
+
+const STANDING = 'standing'
+
+/** Make the bar below the preview: where growing stands, Grow with its settings, and what can be taken away. */
+export function growBar(studio: Studio, picture: () => Promise<Blob>): HTMLElement {
+  const settings = settingsPanel(studio)
+  const score = scorePanel(studio.store)
+  const downloads = downloadsPanel(studio, picture)
+  const grow = growButton(studio, STANDING)
+  const line = standingLine(studio, { id: STANDING, score, grow })
+  const more = opener(downloads, 'downloads-opener', text.files.more, icon(DOWNLOAD), icon(DOWN))
+  studio.store.watch(hasTakings, yes => {
+    more.hidden = !yes
+  })
+  const actions = el(
+    'div',
+    { class: 'grow-actions' },
+    grow,
+    anotherButton(studio),
+    opener(settings, 'settings-opener', text.grow.settings, icon(SLIDERS)),
+    treeLink(studio),
+    more,
+  )
+  return el('div', { class: 'growbar' }, progressBar(studio), line, actions, settings, score, downloads)
+}
+
+function opener(
+  panel: ReturnType<typeof makePanel>,
+  name: string,
+  label: string,
+  ...drawings: SVGSVGElement[]
+): HTMLElement {
+  const words = el('span', { class: 'opener-words' }, label)
+  return button({ class: `button outlined ${name}`, title: label, ...opening(panel) }, () => {}, ...drawings, words)
+}

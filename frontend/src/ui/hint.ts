@@ -1,0 +1,64 @@
+import { isOver } from '../api/follow'
+import type { PointerKind } from '../sketch/gesture'
+import type { State, StrokeWarning } from '../state'
+import { lineOf, type StrokeRef } from '../strokes'
+import { strokeAt } from '../studio/sentences'
+import { text } from '../text'
+import { strokeName } from './strokeNames'
+
+/** The next step, or what stands in its way. */
+export interface Hint {
+  readonly tone: 'step' | 'note' | 'fault'
+  readonly text: string
+  /** How the pointer does it. */
+  readonly how?: string
+  /** The stroke that can be deleted to be rid of a fault. */
+  readonly stroke?: StrokeRef
+  /** What is selected can be deleted. */
+  readonly deletes?: true
+}
+
+/** Say what comes next, and how the pointer in use does it. */
+export function hintOf(state: State, pointer: PointerKind): Hint {
+  const fault = state.faults.strokes
+  if (fault) return { tone: 'fault', text: fault.text, ...(fault.stroke && { stroke: fault.stroke }) }
+  if (!state.online) return { tone: 'note', text: text.hints.offline }
+  const next = step(state, pointer)
+  const warning = newWarning(state)
+  return warning && !next.deletes ? { tone: 'note', text: warningText(warning), how: next.text } : next
+}
+
+/** Find a warning about the stroke that was drawn last; older ones have been read. */
+function newWarning({ traced, history }: State): StrokeWarning | undefined {
+  const before = history.past.at(-1)
+  if (!before || traced?.of !== history.present) return undefined
+  return traced.answer.warnings.find(({ stroke }) => {
+    const ref = strokeAt(`/${stroke}`)
+    return ref && lineOf(history.present, ref) !== lineOf(before, ref)
+  })
+}
+
+function warningText({ code, stroke, detail }: StrokeWarning): string {
+  const ref = strokeAt(`/${stroke}`)
+  const known = (text.hints.warnings as Readonly<Record<string, string | ((stroke: string) => string)>>)[code]
+  if (typeof known === 'string') return known
+  const name = ref ? strokeName(ref) : stroke
+  return known ? known(name) : `${name}: ${detail}`
+}
+
+function step(state: State, pointer: PointerKind): Hint {
+  const { tool, selection, history, grown, model } = state
+  const { crown, branches } = history.present
+  const how = text.hints.how[pointer]
+  if (selection) return { tone: 'step', text: text.hints.selected(strokeName(selection)), deletes: true }
+  if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.takeCrown)
+  if (!branches.length) return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.takeBranch)
+  if (tool === 'select') return stepTo(text.hints.select, how.select)
+  if (model && !isOver(model)) return stepTo(text.hints.growing)
+  if (model?.status === 'succeeded' && state.modelOf === history.present) return stepTo(text.hints.done)
+  return stepTo(grown ? text.hints.refine : text.hints.waiting)
+}
+
+function stepTo(sentence: string, how?: string): Hint {
+  return { tone: 'step', text: sentence, ...(how && { how }) }
+}

@@ -1,0 +1,11 @@
+import type { Selection } from '../state'
+import { text } from '../text'
+
+/** Name a stroke as a person would; the first branch is the trunk. */
+export function strokeName(selection: Selection): string {
+  const { kind } = selection
+  if (kind === 'crown') return text.strokes.crown
+  if (kind === 'traced') return text.strokes.traced
+  if (kind === 'erase') return text.strokes.erase(selection.index + 1)
+  return selection.index === 0 ? text.strokes.trunk : text.strokes.branch(selection.index + 1)
+}

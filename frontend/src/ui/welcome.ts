@@ -1,0 +1,77 @@
+import type { Studio } from '../studio/studio'
+import { text } from '../text'
+import { button, el, icon } from './dom'
+import { draftCards } from './drafts'
+import { exampleCards } from './exampleCards'
+import { grownTrees } from './grownTrees'
+import { ICONS } from './icons'
+import { illustration } from './illustration'
+import { choose } from './intake'
+import './welcome.css'
+
+/** Lay out what is seen while no photo is open: what this is, and every way to begin. */
+export function mountWelcome(studio: Studio, main: HTMLElement): void {
+  const { store } = studio
+  const drafts = draftCards(studio)
+  const trees = grownTrees(studio)
+  const welcome = el('div', { class: 'welcome' }, hero(studio), drafts.section, examples(studio), trees.section)
+  main.append(welcome)
+  store.watch(
+    state => state.photo === null,
+    closed => {
+      welcome.hidden = !closed
+      if (closed) void Promise.all([drafts.show(), trees.show()])
+    },
+  )
+}
+
+function hero(studio: Studio): HTMLElement {
+  const begin = button(
+    { class: 'button chief hero-choose' },
+    () => choose(studio),
+    icon(ICONS.photo),
+    text.welcome.choose,
+  )
+  const fault = el('p', { class: 'fault', role: 'alert', hidden: true })
+  studio.store.watch(
+    state => state.faults.photo,
+    now => {
+      fault.hidden = !now
+      fault.textContent = now?.text ?? ''
+    },
+  )
+  const words = el(
+    'div',
+    { class: 'hero-words' },
+    el('h1', {}, ...phrases()),
+    lead(),
+    el('div', { class: 'hero-begin' }, begin, el('span', {}, text.welcome.otherWays)),
+    fault,
+    el('p', { class: 'soft' }, text.welcome.takes),
+  )
+  return el('section', { class: 'hero' }, words, el('div', { class: 'hero-art' }, illustration()))
+}
+
+function phrases(): (Node | string)[] {
+  return text.welcome.title.flatMap(phrase => [el('span', {}, phrase), ' '])
+}
+
+function lead(): HTMLElement {
+  const { before, leaves, between, trunk, after } = text.welcome.lead
+  const named = (kind: string, words: string) => el('span', { class: `lead-${kind}` }, words)
+  return el('p', { class: 'lead' }, before, named('leaves', leaves), between, named('trunk', trunk), after)
+}
+
+function examples(studio: Studio): HTMLElement {
+  return el(
+    'section',
+    { class: 'shelf', 'aria-labelledby': 'examples' },
+    el(
+      'div',
+      { class: 'shelf-head' },
+      el('h2', { id: 'examples' }, text.welcome.examples),
+      el('p', { class: 'soft' }, text.welcome.examplesHint),
+    ),
+    exampleCards(studio),
+  )
+}

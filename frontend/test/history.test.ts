@@ -1,0 +1,33 @@
+import { expect, test } from 'vitest'
+import { advance, begin, redo, undo } from '../src/history'
+
+const steps = (count: number) => Array.from({ length: count }, (_, step) => step + 1)
+const walked = (count: number) => steps(count).reduce(advance<number>, begin(0))
+
+test('all that was done can be undone, to the beginning', () => {
+  const before = steps(1000).reduce(undo, walked(1000))
+  expect(before.present).toBe(0)
+  expect(before.past).toEqual([])
+  expect(before.future).toEqual(steps(1000))
+})
+
+test('redo takes back each undo', () => {
+  const there = walked(5)
+  expect(redo(redo(undo(undo(there))))).toEqual(there)
+})
+
+test('at either end undo and redo change nothing', () => {
+  expect(undo(begin('a'))).toEqual(begin('a'))
+  expect(redo(walked(3))).toEqual(walked(3))
+})
+
+test('a new value after an undo makes what was undone go away', () => {
+  const elsewhere = advance(undo(walked(3)), 9)
+  expect(elsewhere).toEqual({ past: [0, 1, 2], present: 9, future: [] })
+  expect(redo(elsewhere).present).toBe(9)
+})
+
+test('going on to the same value is no step', () => {
+  const there = undo(walked(2))
+  expect(advance(there, there.present)).toBe(there)
+})

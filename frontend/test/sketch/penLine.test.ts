@@ -1,0 +1,102 @@
+import { expect, test } from 'vitest'
+import { PenLine } from '../../src/sketch/penLine'
+import type { Point } from '../../src/strokes'
+
+const PHOTO = { width: 1200, height: 1541 }
+
+function drawn(kind: 'crown' | 'branch', places: readonly Point[], apart = 0) {
+  const pen = new PenLine(kind, PHOTO)
+  for (const place of places) pen.add(place, apart)
+  return pen
+}
+
+test('places are kept to a hundredth of a pixel', () => {
+  expect(
+    drawn('branch', [
+      [0.126, 7],
+      [8.4449, 1000.994],
+    ]).finished(),
+  ).toEqual([
+    [0.13, 7],
+    [8.44, 1000.99],
+  ])
+})
+
+test('a stroke never leaves the photo', () => {
+  expect(
+    drawn('branch', [
+      [-50, 20],
+      [1300, 1700],
+    ]).finished(),
+  ).toEqual([
+    [0, 20],
+    [1200, 1541],
+  ])
+})
+
+test('places too near to the last one are left out', () => {
+  expect(
+    drawn(
+      'branch',
+      [
+        [0, 0],
+        [0.5, 0],
+        [0.9, 0],
+        [1.1, 0],
+        [1.9, 0],
+      ],
+      1,
+    ).points,
+  ).toEqual([
+    [0, 0],
+    [1.1, 0],
+  ])
+})
+
+test('a branch has two distinct points and a crown three', () => {
+  expect(
+    drawn('branch', [
+      [5, 5],
+      [5, 5],
+    ]).finished(),
+  ).toBeNull()
+  expect(
+    drawn('branch', [
+      [5, 5],
+      [6, 5],
+    ]).finished(),
+  ).toHaveLength(2)
+  expect(
+    drawn('crown', [
+      [5, 5],
+      [9, 9],
+      [5, 5],
+    ]).finished(),
+  ).toBeNull()
+  expect(
+    drawn('crown', [
+      [5, 5],
+      [9, 9],
+      [5, 9],
+    ]).finished(),
+  ).toHaveLength(3)
+})
+
+test('outside the photo a stroke falls together to what its edge leaves of it', () => {
+  expect(
+    drawn('branch', [
+      [-5, 7],
+      [-50, 7],
+      [-90, 7],
+    ]).finished(),
+  ).toBeNull()
+})
+
+test('an endless stroke is thinned, from its start to its end, and never has more than 10,000 points', () => {
+  const places = Array.from({ length: 70_000 }, (_, step): Point => [600 + 400 * Math.cos(step / 9), step / 50])
+  const line = drawn('branch', places).finished()!
+  expect(line.length).toBeLessThanOrEqual(10_000)
+  expect(line.length).toBeGreaterThan(4000)
+  expect(line[0]).toEqual([1000, 0])
+  expect(line.at(-1)![1]).toBeGreaterThan(1390)
+})

@@ -1,0 +1,80 @@
+import { expect, test } from 'vitest'
+import { fromWire, isEmpty, lineOf, NO_STROKES, strokeRefs, toWire, withoutStroke, withStroke } from '../src/strokes'
+
+const RING = [
+  [0, 0],
+  [10, 0],
+  [5, 8],
+] as const
+const UP = [
+  [5, 20],
+  [5, 9.25],
+] as const
+
+test('a second crown takes the place of the first', () => {
+  const once = withStroke(NO_STROKES, 'crown', RING)
+  expect(withStroke(once, 'crown', UP)).toEqual({ crown: UP, branches: [], erase: [] })
+})
+
+test('branches and erase strokes are added behind those that are there', () => {
+  const drawn = withStroke(withStroke(withStroke(NO_STROKES, 'branch', UP), 'branch', RING), 'erase', UP)
+  expect(drawn).toEqual({ crown: null, branches: [{ points: UP }, { points: RING }], erase: [UP] })
+})
+
+test('an edit leaves the value before it as it was', () => {
+  const before = withStroke(NO_STROKES, 'branch', UP)
+  withStroke(before, 'branch', RING)
+  withoutStroke(before, { kind: 'branch', index: 0 })
+  expect(before).toEqual({ crown: null, branches: [{ points: UP }], erase: [] })
+  expect(isEmpty(NO_STROKES)).toBe(true)
+})
+
+test('every stroke that is named can be left out, and only it goes', () => {
+  const drawn = { crown: RING, branches: [{ points: UP }, { points: RING }], erase: [UP, RING] }
+  for (const ref of strokeRefs(drawn)) {
+    const left = withoutStroke(drawn, ref)
+    expect(strokeRefs(left)).toHaveLength(4)
+    expect(strokeRefs(left).filter(other => other.kind !== ref.kind)).toEqual(
+      strokeRefs(drawn).filter(other => other.kind !== ref.kind),
+    )
+  }
+  expect(withoutStroke(drawn, { kind: 'branch', index: 0 }).branches).toEqual([{ points: RING }])
+})
+
+test('a stroke that is not there has no points', () => {
+  expect(lineOf(NO_STROKES, { kind: 'crown', index: 0 })).toEqual([])
+  expect(lineOf(NO_STROKES, { kind: 'branch', index: 3 })).toEqual([])
+  expect(lineOf({ ...NO_STROKES, erase: [UP] }, { kind: 'erase', index: 0 })).toBe(UP)
+})
+
+test('without a crown none is written, and the rest is read back the same', () => {
+  const drawn = withStroke(NO_STROKES, 'branch', UP)
+  expect(toWire(drawn)).not.toHaveProperty('crown')
+  expect(fromWire(JSON.parse(JSON.stringify(toWire(drawn))))).toEqual(drawn)
+})
+
+test('what is written for the service is read back the same', () => {
+  const drawn = { crown: RING, branches: [{ points: UP, width: 12.5 }, { points: RING }], erase: [UP] }
+  expect(fromWire(JSON.parse(JSON.stringify(toWire(drawn))))).toEqual(drawn)
+})
+
+test('a stroke file may leave everything out', () => {
+  expect(fromWire({})).toEqual(NO_STROKES)
+})
+
+test.each(
+  [
+    null,
+    [],
+    'crown',
+    { crown: [] },
+    { crown: { points: 'none' } },
+    { crown: { points: [[1]] } },
+    { crown: { points: [[1, 2, 3]] } },
+    { branches: [{ points: [[1, null]] }] },
+    { branches: [{ points: [[1, '2']] }] },
+    { erase: {} },
+  ].map(value => ({ value })),
+)('another form is refused: $value', ({ value }) => {
+  expect(() => fromWire(value)).toThrow(TypeError)
+})

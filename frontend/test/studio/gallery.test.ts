@@ -1,0 +1,72 @@
+import { afterEach, expect, test, vi } from 'vitest'
+import { Client } from '../../src/api/client'
+import { Store } from '../../src/state'
+import { Gallery } from '../../src/studio/gallery'
+import { model } from '../builders'
+import { type Call, problem, service } from '../service'
+
+afterEach(() => vi.unstubAllGlobals())
+
+function serve({ method, path, body }: Call): Response {
+  if (method === 'DELETE') return new Response(null, { status: 204 })
+  if (method === 'PATCH') return Response.json(model({ status: 'succeeded', name: body.name }))
+  if (path.endsWith('/restore')) return Response.json(model({ status: 'succeeded' }))
+  const last = path.includes('cursor=7')
+  return Response.json({ models: [model({ id: last ? 'mdl_2' : 'mdl_1' })], next: last ? null : '7' })
+}
+
+function begin() {
+  const store = new Store()
+  const grower = { leave: vi.fn() }
+  return { store, grower, gallery: new Gallery(store, new Client(), grower) }
+}
+
+test('pages follow each other until there is no more', async () => {
+  service(serve)
+  const { gallery } = begin()
+  expect((await gallery.more())?.map(({ id }) => id)).toEqual(['mdl_1'])
+  expect(gallery.hasMore).toBe(true)
+  expect((await gallery.more())?.map(({ id }) => id)).toEqual(['mdl_2'])
+  expect(gallery.hasMore).toBe(false)
+})
+
+test('a page that cannot be had is a sentence in the gallery, and asked for again it goes', async () => {
+  let down = true
+  service(call => (down ? problem(422, 'cursor_invalid', 'there is no such page') : serve(call)))
+  const { store, gallery } = begin()
+  expect(await gallery.more()).toBeNull()
+  expect(store.state.faults.gallery?.text).toBe('There is no such page.')
+  down = false
+  expect(await gallery.more()).toHaveLength(1)
+  expect(store.state.faults.gallery).toBeUndefined()
+})
+
+test('the tree that is looked at goes when it is deleted, the strokes stay, and undo brings it back', async () => {
+  service(serve)
+  const { store, grower, gallery } = begin()
+  const tree = new ArrayBuffer(4)
+  const drawn = store.strokes
+  store.set({ model: model({ status: 'succeeded' }), modelOf: drawn, tree, shows: 'model' })
+  await gallery.remove('mdl_1')
+  expect([store.state.model, store.state.tree, store.strokes]).toEqual([null, null, drawn])
+  expect(grower.leave).toHaveBeenCalledOnce()
+  await gallery.restore('mdl_1')
+  expect([store.state.model?.id, store.state.tree, store.state.modelOf]).toEqual(['mdl_1', tree, drawn])
+})
+
+test('another tree than the one looked at goes without a trace', async () => {
+  service(serve)
+  const { store, grower, gallery } = begin()
+  store.set({ model: model({ id: 'mdl_9' }) })
+  await gallery.remove('mdl_1')
+  expect(store.state.model?.id).toBe('mdl_9')
+  expect(grower.leave).not.toHaveBeenCalled()
+})
+
+test('the name of the tree that is looked at is that of the drawing too', async () => {
+  service(serve)
+  const { store, gallery } = begin()
+  store.set({ model: model({ status: 'succeeded' }), name: 'Oak' })
+  await gallery.rename('mdl_1', 'Old oak')
+  expect([store.state.name, store.state.model?.name]).toEqual(['Old oak', 'Old oak'])
+})

@@ -1,0 +1,97 @@
+// @vitest-environment jsdom
+import 'fake-indexeddb/auto'
+import { beforeEach, expect, test, vi } from 'vitest'
+import { Studio } from '../../src/studio/studio'
+import { growBar } from '../../src/ui/growbar'
+import { CROWN, model, photo, TRUNK } from '../builders'
+
+let studio: Studio
+let bar: HTMLElement
+
+beforeEach(() => {
+  studio = new Studio()
+  vi.spyOn(studio.client, 'trace').mockReturnValue(new Promise(() => {}))
+  bar = growBar(studio, async () => new Blob())
+  document.body.replaceChildren(bar)
+})
+
+function draw(): void {
+  studio.store.set({ photo: photo(), name: 'Old oak' })
+  studio.sketchbook.draw('crown', CROWN)
+  studio.sketchbook.draw('branch', TRUNK)
+}
+
+function named(label: string): HTMLElement {
+  return [...bar.querySelectorAll<HTMLElement>('.standing button')].find(({ textContent }) => textContent === label)!
+}
+
+const grow = () => bar.querySelector<HTMLButtonElement>('.grow')!
+const words = () => bar.querySelector('.standing-words')!.textContent
+const progress = () => bar.querySelector<HTMLElement>('[role=progressbar]')!
+const files = {
+  'tree.glb': '/m/tree.glb',
+  'preview.png': '/m/p.png',
+  'tree.usdz': '/m/tree.usdz',
+  project: '/m/project',
+}
+
+test('Grow asks for nothing and says why until there is a trunk', () => {
+  const asked = vi.spyOn(studio.grower, 'grow').mockResolvedValue()
+  studio.store.set({ photo: photo() })
+  grow().click()
+  expect([asked.mock.calls.length, grow().getAttribute('aria-disabled')]).toEqual([0, 'true'])
+  expect(document.getElementById(grow().getAttribute('aria-describedby')!)!.textContent).toBe(words())
+  draw()
+  grow().click()
+  expect([asked.mock.calls.length, grow().getAttribute('aria-disabled')]).toEqual([1, 'false'])
+})
+
+test('the bar shows how far a tree is, and no figure while it waits', () => {
+  draw()
+  studio.store.set({ model: model({ queue_position: 2 }) })
+  expect([words(), progress().hidden, progress().hasAttribute('aria-valuenow')]).toEqual([
+    '2nd in the queue',
+    false,
+    false,
+  ])
+  studio.store.set({ model: model({ status: 'running', phase: 'leaf', progress: 0.427 }) })
+  expect([words(), progress().getAttribute('aria-valuenow')]).toEqual(['Putting on leaves', '42'])
+  studio.store.set({ online: false })
+  expect(words()).toContain('connection is lost')
+})
+
+test('when Cancel vanishes under the focus, Grow has it', () => {
+  draw()
+  studio.store.set({ model: model({ status: 'running' }), modelOf: studio.store.strokes })
+  named('Cancel').focus()
+  studio.store.set({ model: model({ status: 'canceled' }) })
+  expect([document.activeElement, named('Cancel').hidden]).toEqual([grow(), true])
+  expect(grow().textContent).toBe('Grow again')
+})
+
+test('a failure says why and can be tried again', () => {
+  const asked = vi.spyOn(studio.grower, 'grow').mockResolvedValue()
+  draw()
+  studio.store.set({ model: model({ status: 'failed' }), modelOf: studio.store.strokes })
+  studio.store.fault('grow', { text: 'The disk is full.' })
+  expect([words(), named('Try again').hidden]).toEqual(['The disk is full.', false])
+  named('Try again').click()
+  expect(asked).toHaveBeenCalledOnce()
+})
+
+test('every file of a tree can be taken away, those of a later service too, under the name of the drawing', () => {
+  draw()
+  studio.store.set({ model: model({ status: 'succeeded', name: 'Old oak', files }) })
+  const links = [...bar.querySelectorAll<HTMLAnchorElement>('.panel a')]
+  expect(links.map(link => [link.getAttribute('href'), link.download])).toEqual([
+    ['/m/tree.glb', 'Old oak.glb'],
+    ['/m/tree.usdz', 'Old oak.tree.usdz'],
+  ])
+})
+
+test('without anything drawn there is nothing to take away', () => {
+  const opener = bar.querySelector<HTMLElement>('.downloads-opener')!
+  expect(opener.hidden).toBe(true)
+  draw()
+  expect(opener.hidden).toBe(false)
+})

@@ -1,0 +1,84 @@
+import { expect, test } from 'vitest'
+import { advance, begin } from '../../src/history'
+import { EMPTY, type Grown, type Model, type State, type StrokeWarning, type TraceAnswer } from '../../src/state'
+import { type Line, NO_STROKES, withStroke } from '../../src/strokes'
+import { text } from '../../src/text'
+import { hintOf } from '../../src/ui/hint'
+
+const LINE: Line = [
+  [0, 0],
+  [9, 9],
+]
+const crown = withStroke(NO_STROKES, 'crown', LINE)
+const trunk = withStroke(crown, 'branch', LINE)
+const two = withStroke(trunk, 'branch', [...LINE])
+const state = (change: Partial<State>): State => ({ ...EMPTY, ...change })
+const said = (change: Partial<State>) => hintOf(state(change), 'mouse').text
+const traced = (of: typeof two, ...warnings: StrokeWarning[]) => ({
+  of,
+  answer: { warnings } as unknown as TraceAnswer,
+})
+const JOINED = { code: 'branch_joined', stroke: 'branches/1', detail: 'it starts 80 px away' }
+
+test('a newcomer is led from the crown to the trunk to the tree', () => {
+  expect(said({})).toBe(text.hints.crown)
+  expect(said({ tool: 'branch', history: begin(crown) })).toBe(text.hints.trunk)
+  expect(said({ tool: 'branch', history: begin(trunk) })).toBe(text.hints.waiting)
+  expect(said({ tool: 'branch', history: begin(trunk), grown: {} as Grown })).toBe(text.hints.refine)
+  expect(said({ tool: 'branch', history: begin(trunk), model: { status: 'running' } as Model })).toBe(
+    text.hints.growing,
+  )
+})
+
+test('the finished tree is announced until the strokes change', () => {
+  const model = { status: 'succeeded' } as Model
+  const done = { tool: 'branch', grown: {} as Grown, model, modelOf: trunk } as const
+  expect(said({ ...done, history: begin(trunk) })).toBe(text.hints.done)
+  expect(said({ ...done, history: begin(two) })).toBe(text.hints.refine)
+})
+
+test('with the wrong tool in hand the right one is named', () => {
+  expect(said({ tool: 'branch' })).toBe(text.hints.takeCrown)
+  expect(said({ tool: 'select', history: begin(crown) })).toBe(text.hints.takeBranch)
+})
+
+test('the gesture is that of the pointer in use', () => {
+  expect(hintOf(EMPTY, 'mouse').how).toBe(text.hints.how.mouse.crown)
+  expect(hintOf(EMPTY, 'touch').how).toBe(text.hints.how.touch.crown)
+})
+
+test('a fault of the strokes comes before everything and names the stroke to delete', () => {
+  const stroke = { kind: 'branch', index: 0 } as const
+  const faults = { strokes: { text: 'Too short.', stroke } }
+  expect(hintOf(state({ online: false, faults }), 'mouse')).toEqual({ tone: 'fault', text: 'Too short.', stroke })
+})
+
+test('a lost connection is said', () => {
+  expect(said({ online: false })).toBe(text.hints.offline)
+})
+
+test('a warning about the stroke just drawn is said with the next step', () => {
+  const history = advance(begin(trunk), two)
+  const hint = hintOf(state({ tool: 'branch', history, traced: traced(two, JOINED) }), 'mouse')
+  expect(hint).toEqual({ tone: 'note', text: 'Branch 2 was joined to the nearest branch.', how: text.hints.waiting })
+})
+
+test('a warning about an older stroke is not said again', () => {
+  const three = withStroke(two, 'branch', [...LINE])
+  const history = advance(begin(two), three)
+  expect(said({ tool: 'branch', history, traced: traced(three, JOINED) })).toBe(text.hints.waiting)
+})
+
+test('a warning that the page does not know is said in the service’s words', () => {
+  const history = advance(begin(trunk), two)
+  const unknown = { code: 'new', stroke: 'branches/1', detail: 'it is odd' }
+  expect(said({ tool: 'branch', history, traced: traced(two, unknown) })).toBe('Branch 2: it is odd')
+})
+
+test('what is selected can be deleted from the line', () => {
+  const selection = { kind: 'crown', index: 0 } as const
+  expect(hintOf(state({ history: begin(two), selection }), 'mouse')).toMatchObject({
+    text: 'Crown is selected.',
+    deletes: true,
+  })
+})
