@@ -18,9 +18,7 @@ from treestroke.api.routes.page import PAGE
 
 HERE = Path(__file__).parent
 FLAGS = (
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--ignore-gpu-blocklist",
+    "--enable-unsafe-swiftshader",  # for WebGL only: the page itself is put together without it, which is quicker
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -77,7 +75,7 @@ def open_page(service: Service, browser: Browser, request: pytest.FixtureRequest
 
         def opened(
             path: str = "/",
-            viewport: tuple[int, int] = (1024, 700),
+            viewport: tuple[int, int] = (1440, 900),
             touch: bool = False,
             dark: bool = False,
             still: bool = False,

@@ -29,12 +29,14 @@ def last_branches(visitor: Visitor) -> list[Any]:
     return [branch["points"] for branch in visitor.traced[-1]["branches"]]
 
 
-def a_traced_joint(skeleton: dict[str, Any]) -> list[float]:
-    """Choose the joint of a traced branch that lies farthest from what was stroked."""
+def a_traced_joint(skeleton: dict[str, Any], crown: list[list[float]]) -> list[float]:
+    """Choose the joint of a traced branch that lies farthest from every stroke."""
+    ends = zip(crown, [*crown[1:], crown[0]], strict=True)
+    line = [[x + (u - x) * t / 20, y + (v - y) * t / 20] for (x, y), (u, v) in ends for t in range(20)]
     joints = list(zip(skeleton["points"], skeleton["stroke"], strict=True))
-    stroked = [point for point, stroke in joints if stroke >= 0]
+    strokes = line + [point for point, stroke in joints if stroke >= 0]
     traced = [point for point, stroke in joints if stroke < 0]
-    found: list[float] = max(traced, key=lambda point: min(math.dist(point, other) for other in stroked))
+    found: list[float] = max(traced, key=lambda point: min(math.dist(point, other) for other in strokes))
     return found
 
 
@@ -94,7 +96,7 @@ def test_a_traced_branch_that_is_deleted_is_gone_and_comes_back(visitor: Visitor
     page.get_by_role("button", name="Young oak").click()
     visitor.wait_for_preview("live")
     page.keyboard.press("v")
-    joint = a_traced_joint(visitor.skeleton())
+    joint = a_traced_joint(visitor.skeleton(), visitor.traced[-1]["crown"]["points"])
     page.mouse.click(*visitor.view().at(joint))
     expect(page.get_by_text("Traced branch is selected.")).to_be_visible()
     visitor.shot("traced-selected")
@@ -156,7 +158,7 @@ def test_the_whole_way_goes_by_keyboard(open_page: OpenPage) -> None:
     visitor.shot("by-keyboard")
     keys.press("g")
     visitor.wait_for_preview("model")
-    visitor.tab_to(page.get_by_role("link", name="GLB"))
+    visitor.tab_to(page.get_by_role("link", name="Download GLB"))
     with page.expect_download() as download:
         keys.press("Enter")
     assert download.value.suggested_filename.endswith(".glb")

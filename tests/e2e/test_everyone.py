@@ -27,19 +27,19 @@ def test_a_bad_file_leaves_an_open_drawing_as_it_was(visitor: Visitor, tmp_path:
     bad = tmp_path / "tree.png"
     bad.write_bytes(b"\x89PNG no picture")
     visitor.give(page.locator("body"), bad, how="paste", media_type="image/png")
-    expect(page.get_by_text("no JPEG, PNG or WebP").first).to_be_visible()
+    expect(page.get_by_text("no JPEG, PNG or WebP").filter(visible=True)).to_be_visible()
     expect(page.get_by_role("textbox", name="Name of the drawing")).to_have_value("Osage orange")
     visitor.wait_for_preview("model")
 
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_axe_finds_nothing_from_the_welcome_to_the_gallery(open_page: OpenPage, dark: bool) -> None:
-    visitor = open_page(dark=dark, still=True, viewport=(1200, 760))
+    visitor = open_page(dark=dark, still=True)
     page = visitor.page
     assert visitor.violations() == []
     page.get_by_role("button", name="Sugar maple in autumn").click()
     visitor.wait_for_preview("model")
-    expect(page.get_by_role("link", name="GLB")).to_be_visible()
+    expect(page.get_by_role("link", name="Download GLB")).to_be_visible()
     assert visitor.violations() == []
     for name in ("Settings", "Details", "More downloads", "Gallery", "Shortcuts"):
         page.get_by_role("button", name=name, exact=True).first.click()
@@ -60,7 +60,7 @@ def test_nothing_is_cut_off_at_any_size(open_page: OpenPage, size: tuple[int, in
     assert page.evaluate(OVERFLOW) <= 0
     visitor.shot(f"welcome-{size[0]}x{size[1]}-{percent}")
     page.get_by_role("button", name="Sugar maple in autumn").click()
-    visitor.wait_for_preview("live")
+    visitor.wait_for_preview("model")
     assert page.evaluate(OVERFLOW) <= 0
     visitor.shot(f"workspace-{size[0]}x{size[1]}-{percent}")
     for button in ("Crown", "Undo", "Grow"):

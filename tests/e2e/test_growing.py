@@ -11,8 +11,8 @@ LONG = "2000"
 """Rounds of growth that last long enough to do something meanwhile."""
 
 
-def begin(visitor: Visitor, seed: str) -> None:
-    """Have a large tree grown of an example's strokes."""
+def begin(visitor: Visitor, service: Service, seed: str) -> int:
+    """Have a large tree grown of an example's strokes; say how many models there are then."""
     page = visitor.page
     page.get_by_role("button", name="Young oak").click()
     visitor.wait_for_preview("model")
@@ -20,13 +20,15 @@ def begin(visitor: Visitor, seed: str) -> None:
     page.get_by_label("Growth", exact=True).first.fill(LONG)
     page.get_by_label("Seed").first.fill(seed)
     page.keyboard.press("Escape")
+    count = len(service.models())
     page.get_by_role("button", name="Grow again").click()
     expect(page.get_by_role("progressbar")).to_be_visible()
+    visitor.until(lambda: len(service.models()) == count + 1)
+    return count + 1
 
 
 def test_a_page_that_is_loaded_anew_finds_its_growing_tree(visitor: Visitor, service: Service) -> None:
-    begin(visitor, "11")
-    count = len(service.models())
+    count = begin(visitor, service, "11")
     visitor.shot("growing")
     visitor.reload()
     expect(visitor.page.get_by_role("progressbar")).to_be_visible()
@@ -36,9 +38,9 @@ def test_a_page_that_is_loaded_anew_finds_its_growing_tree(visitor: Visitor, ser
 
 
 def test_a_tree_that_is_canceled_stops_and_the_strokes_stay(visitor: Visitor, service: Service) -> None:
-    begin(visitor, "12")
+    begin(visitor, service, "12")
     visitor.page.get_by_role("button", name="Cancel").click()
-    expect(visitor.page.get_by_text("Growing was canceled.")).to_be_visible()
+    expect(visitor.page.get_by_text("Growing was canceled.").first).to_be_visible()
     visitor.shot("canceled")
     assert service.models()[0]["status"] == "canceled"
     expect(visitor.page.get_by_role("button", name="Grow again")).to_be_enabled()
@@ -105,5 +107,5 @@ def test_without_webgl_a_tree_is_grown_shown_as_a_picture_and_taken_home(open_pa
     expect(page.get_by_role("img", name="The grown tree")).to_be_visible()
     visitor.shot("without-webgl")
     with page.expect_download() as download:
-        page.get_by_role("link", name="GLB").click()
+        page.get_by_role("link", name="Download GLB").click()
     assert download.value.suggested_filename.endswith(".glb")

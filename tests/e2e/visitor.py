@@ -16,7 +16,7 @@ SHOTS = ROOT / "out" / "e2e"
 AXE = ROOT / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 PATIENCE_MS = 60_000
 """For one thing to happen: without a GPU a frame of a tree takes seconds."""
-REST_MS = 700
+REST_MS = 1200
 """Without a new frame for so long, the preview is at rest."""
 JSON = {"Content-Type": "application/json"}
 Point = Sequence[float]

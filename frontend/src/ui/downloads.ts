@@ -44,7 +44,7 @@ export function treeLink({ store }: Studio): HTMLElement {
     if (!model) return
     link.href = model.files['tree.glb']!
     link.download = fileName(model.name, '.glb')
-    link.setAttribute('aria-label', `${text.files.glb[0]} (${text.files.glbShort})`)
+    link.setAttribute('aria-label', text.files.download(text.files.glbShort))
   })
   return link
 }

@@ -53,7 +53,7 @@ function hero(studio: Studio): HTMLElement {
 }
 
 function phrases(): (Node | string)[] {
-  return text.welcome.title.flatMap(phrase => [el('span', {}, phrase), ' '])
+  return text.welcome.title.flatMap(phrase => [el('span', { class: 'phrase' }, phrase), ' '])
 }
 
 function lead(): HTMLElement {
