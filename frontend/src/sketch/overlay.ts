@@ -1,9 +1,9 @@
+import { along, distance } from '../plane'
 import type { Selection, TraceAnswer, TracedSkeleton } from '../state'
 import { type Line, lineOf, type Point, type StrokeKind, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
+import { branchAt } from '../tracedBranch'
 import { INK, WIDTH } from './ink'
 import { curve, foliagePath, smoothPath, woodAt, woodPath } from './paths'
-import { along, distance } from './plane'
-import { branchAt } from './tracedBranch'
 import type { View } from './viewport'
 
 /** What a canvas of the window is drawn with: its device px per CSS px, and where the photo lies. */

@@ -1,8 +1,8 @@
+import { distance, type Piece } from '../plane'
 import type { TraceAnswer, TracedSkeleton } from '../state'
 import type { Line } from '../strokes'
+import { continues, pieceTo } from '../tracedBranch'
 import { WIDTH } from './ink'
-import { distance, type Piece } from './plane'
-import { continues, pieceTo } from './tracedBranch'
 
 const smooth = new WeakMap<Line, Path2D>()
 const foliage = new WeakMap<TraceAnswer, Path2D>()

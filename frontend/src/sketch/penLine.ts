@@ -1,6 +1,6 @@
+import { distance } from '../plane'
 import type { Line, Point } from '../strokes'
 import type { DrawnKind } from './gesture'
-import { distance } from './plane'
 import { type Size, within } from './viewport'
 
 const MOST_POINTS = 10_000

@@ -1,7 +1,7 @@
+import { along, distance, distanceToLine, nearestShare } from '../plane'
 import type { Selection, TracedSkeleton } from '../state'
 import { lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
-import { along, distance, distanceToLine, nearestShare } from './plane'
-import { firstJoint, pieceTo } from './tracedBranch'
+import { firstJoint, pieceTo } from '../tracedBranch'
 
 /** What lies within `reach` photo px of a place: the nearest stroke, else the nearest branch that was traced. */
 export function pick(strokes: Strokes, skeleton: TracedSkeleton | null, at: Point, reach: number): Selection | null {

@@ -1,7 +1,7 @@
 import { advance, type History, redo, undo } from '../history'
-import { eraseLine } from '../sketch/tracedBranch'
 import type { Selection, Store, Tool } from '../state'
 import { isEmpty, type Line, NO_STROKES, type StrokeKind, type Strokes, withoutStroke, withStroke } from '../strokes'
+import { eraseLine } from '../tracedBranch'
 
 /** Edits of the strokes; each can be undone. */
 export class Sketchbook {

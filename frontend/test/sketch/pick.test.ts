@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
+import { distanceToLine } from '../../src/plane'
 import { pick } from '../../src/sketch/pick'
-import { distanceToLine } from '../../src/sketch/plane'
 import type { Strokes } from '../../src/strokes'
 import { TREE } from './tree'
 

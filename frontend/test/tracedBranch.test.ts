@@ -1,8 +1,8 @@
 import { expect, test } from 'vitest'
-import { cross, distance, type Piece } from '../../src/sketch/plane'
-import { branchAt, continues, eraseLine, firstJoint, pieceTo } from '../../src/sketch/tracedBranch'
-import type { TracedSkeleton } from '../../src/state'
-import { TREE } from './tree'
+import { cross, distance, type Piece } from '../src/plane'
+import type { TracedSkeleton } from '../src/state'
+import { branchAt, continues, eraseLine, firstJoint, pieceTo } from '../src/tracedBranch'
+import { TREE } from './sketch/tree'
 
 const traced = (skeleton: TracedSkeleton) => [...skeleton.points.keys()].filter(joint => skeleton.stroke[joint]! < 0)
 

@@ -1,4 +1,4 @@
-import type { Line, Point } from '../strokes'
+import type { Line, Point } from './strokes'
 
 /** Two ends of a straight piece. */
 export type Piece = readonly [from: Point, to: Point]

@@ -1,6 +1,6 @@
-import type { TracedSkeleton } from '../state'
-import type { Line, Point } from '../strokes'
 import { along, cross, distance, distanceToPiece, type Piece } from './plane'
+import type { TracedSkeleton } from './state'
+import type { Line, Point } from './strokes'
 
 /** Places where a branch's first step may be cut, as shares of the step. */
 const CUTS = [0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.9]
