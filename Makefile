@@ -34,7 +34,8 @@ page: $(PAGE_STAMP)
 
 test: $(STAMP) page redis chromium
 	@cd frontend && node_modules/.bin/vitest run
-	@$(PYTEST) -m "not golden and not alone" -n 3
+	@$(PYTEST) -m "not golden and not alone and not browser" -n 4
+	@$(PYTEST) -m browser -n 2
 	@$(PYTEST) -m alone
 
 # Tests need a Redis to start and kill, and a browser. CI installs them where they are missing; elsewhere the tests say so.
@@ -63,10 +64,11 @@ types: $(STAMP) $(NODE_STAMP)
 
 schema = $(BIN)/python frontend/openapi.py | $(NODE)/.bin/openapi-typescript
 
-bench: $(STAMP)
+bench: $(STAMP) page
 	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \
 	    --benchmark-sort=fullname
 	@$(BIN)/python -m tests.benchmarks.service_times
+	@$(BIN)/python -m tests.benchmarks.page_times
 	@$(BIN)/python -m tests.benchmarks.growth_ratio
 
 golden: $(STAMP)

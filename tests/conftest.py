@@ -24,15 +24,15 @@ LONGEST_FIRST = (
 
 
 class ByService(LoadScopeScheduling):
-    """Tests that share a running service go to one process: those of faults by broker, those of the API, else by file.
+    """Tests that share a running service go to one process: those of the API; of faults by file and broker; else by file.
 
-    To start one costs seconds of a processor.
+    To start one costs seconds of a processor; tests of faults wait more than they work.
     """
 
     def _split_scope(self, nodeid: str) -> str:
         path, _, name = nodeid.partition("::")
         if path.startswith("tests/faults/"):
-            return "redis" if "[redis]" in name else "files" if "[files]" in name else path
+            return path + name[name.find("[") :] if "[" in name else path
         return "api" if path.startswith("tests/api/") and "schemathesis" not in path else path
 
 

@@ -216,6 +216,7 @@ export const text = {
   },
   grow: {
     grow: 'Grow',
+    growing: 'Growing …',
     again: 'Grow again',
     tryAgain: 'Try again',
     another: 'Another tree',

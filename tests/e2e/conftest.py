@@ -75,7 +75,7 @@ def open_page(service: Service, browser: Browser, request: pytest.FixtureRequest
 
         def opened(
             path: str = "/",
-            viewport: tuple[int, int] = (1440, 900),
+            viewport: tuple[int, int] = (1360, 720),
             touch: bool = False,
             dark: bool = False,
             still: bool = False,
@@ -118,10 +118,10 @@ def visitor(open_page: OpenPage) -> Visitor:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let nothing run beside a browser that draws without a GPU."""
+    """Mark what needs a browser: one that draws without a GPU leaves little room beside it."""
     for item in items:
         if HERE in item.path.parents:
-            item.add_marker("alone")
+            item.add_marker("browser")
 
 
 @pytest.hookimpl(wrapper=True)

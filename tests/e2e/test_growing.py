@@ -7,7 +7,7 @@ from tests.e2e.visitor import Visitor
 NO_WEBGL = """HTMLCanvasElement.prototype.getContext = new Proxy(HTMLCanvasElement.prototype.getContext, {
     apply: (get, canvas, [kind, ...how]) => (kind.startsWith('webgl') ? null : get.call(canvas, kind, ...how)),
 })"""
-LONG = "2000"
+LONG = "1500"
 """Rounds of growth that last long enough to do something meanwhile."""
 
 

@@ -35,7 +35,7 @@ def poisoned(broker_url: str, tmp_path_factory: pytest.TempPathFactory) -> Itera
     """A web process, and beside it a worker for two models that knows poisoned jobs."""
     folder = tmp_path_factory.mktemp("poisoned")
     # On a Redis they take turns: the messages of one service mean nothing to the other.
-    with Service(folder, broker_url=broker_url.replace("/0", "/1"), workers=0, model_seconds=10) as service:
+    with Service(folder, broker_url=broker_url.replace("/0", "/1"), workers=0, model_seconds=7) as service:
         service.run("tests.faults.poisoned_worker", TREESTROKE_WORKERS=2)
         service.wait_for_workers(1)
         yield service

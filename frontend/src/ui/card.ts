@@ -2,8 +2,8 @@ import type { Model } from '../state'
 import { fileName } from '../studio/project'
 import { text } from '../text'
 import { button, el, icon } from './dom'
+import { ICONS } from './icons'
 import { drawPortrait } from './portrait'
-import { BIN, DOWNLOAD, PENCIL, TREE_FILE } from './treeIcons'
 import { ago } from './when'
 
 /** What can be done with a model of the gallery. */
@@ -32,22 +32,24 @@ export function makeCard(model: Model, actions: CardActions, longestName: number
     actions.open,
     pictureOf(model),
   )
-  const rename = tool(text.gallery.rename(name), PENCIL, () => editName(heading, rename, model, actions, longestName))
+  const rename = tool(text.gallery.rename(name), ICONS.pencil, () =>
+    editName(heading, rename, model, actions, longestName),
+  )
   const tools = el(
     'div',
     { class: 'card-tools' },
     rename,
     downloadOf(model),
-    tool(text.gallery.remove(name), BIN, actions.remove),
+    tool(text.gallery.remove(name), ICONS.remove, actions.remove),
   )
   return el('li', { class: 'card' }, picture, heading, el('div', { class: 'card-foot' }, when, tools))
 }
 
 function pictureOf(model: Model): HTMLElement {
   const url = model.files['preview.png']
-  if (!url) return el('span', { class: 'card-status' }, icon(TREE_FILE), statusOf(model))
+  if (!url) return el('span', { class: 'card-status' }, icon(ICONS.tree), statusOf(model))
   const canvas = el('canvas', { class: 'card-portrait', 'aria-hidden': 'true' })
-  void drawPortrait(canvas, url).catch(() => canvas.replaceWith(icon(TREE_FILE)))
+  void drawPortrait(canvas, url).catch(() => canvas.replaceWith(icon(ICONS.tree)))
   return canvas
 }
 
@@ -64,7 +66,7 @@ function downloadOf(model: Model): HTMLElement | null {
     ? el(
         'a',
         { class: 'button square', href, download: fileName(model.name, '.glb'), 'aria-label': label, title: label },
-        icon(DOWNLOAD),
+        icon(ICONS.download),
       )
     : null
 }

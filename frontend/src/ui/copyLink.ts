@@ -2,9 +2,9 @@ import type { Store } from '../state'
 import { text } from '../text'
 import { button, el, icon } from './dom'
 import { wordsOf } from './downloads'
+import { ICONS } from './icons'
 import { announce } from './live'
 import { copyText } from './saving'
-import { LINK } from './treeIcons'
 
 const SHOWN_MS = 2500
 
@@ -30,7 +30,7 @@ export function linkItem(store: Store): HTMLElement {
   const item = el(
     'div',
     {},
-    button({ class: 'taking' }, () => void copy(), icon(LINK), words),
+    button({ class: 'taking' }, () => void copy(), icon(ICONS.link), words),
     refused,
   )
   store.watch(

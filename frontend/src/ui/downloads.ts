@@ -1,14 +1,15 @@
 import type { Model, State } from '../state'
 import { toWire } from '../strokes'
-import { fileName, projectName, writeProject } from '../studio/project'
+import { fileName } from '../studio/project'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { linkItem } from './copyLink'
 import { button, el, icon } from './dom'
 import { figuresOfModel } from './figures'
+import { ICONS } from './icons'
 import { makePanel } from './panel'
+import { saveProject } from './projectFile'
 import { saveFile } from './saving'
-import { BOX, DOWNLOAD, PAPER, PICTURE, STROKE, TREE_FILE } from './treeIcons'
 
 type Words = readonly [label: string, about: string]
 
@@ -19,9 +20,9 @@ const KNOWN = ['tree.glb', 'preview.png', 'strokes.json', 'project']
 export function downloadsPanel(studio: Studio, picture: () => Promise<Blob>): HTMLElement {
   const { store } = studio
   const tree = el('div', { class: 'takings' })
-  const image = take(PICTURE, text.files.png, () => savePicture(studio, picture))
-  const project = take(BOX, text.files.project, () => saveProject(studio))
-  const strokes = take(STROKE, text.files.strokes, () => saveStrokes(studio))
+  const image = take(ICONS.photo, text.files.png, () => savePicture(studio, picture))
+  const project = take(ICONS.box, text.files.project, () => saveProject(studio))
+  const strokes = take(ICONS.stroke, text.files.strokes, () => saveStrokes(studio))
   const link = linkItem(store)
   store.watch(treeOf, model => tree.replaceChildren(...(model ? treeItems(model) : [])))
   store.watch(
@@ -38,7 +39,7 @@ export function downloadsPanel(studio: Studio, picture: () => Promise<Blob>): HT
 
 /** Make the link that downloads the tree at once. */
 export function treeLink({ store }: Studio): HTMLElement {
-  const link = el('a', { class: 'button outlined tree-link' }, icon(DOWNLOAD), text.files.glbShort)
+  const link = el('a', { class: 'button outlined tree-link' }, icon(ICONS.download), text.files.glbShort)
   store.watch(treeOf, model => {
     link.hidden = !model
     if (!model) return
@@ -63,7 +64,7 @@ function treeItems(model: Model): HTMLElement[] {
   const [label, about] = text.files.glb
   const size = figuresOfModel(model).find(({ row }) => row === 'size')?.value
   const glb = fileLink(
-    TREE_FILE,
+    ICONS.tree,
     [size ? `${label} · ${size}` : label, about],
     model.files['tree.glb']!,
     fileName(model.name, '.glb'),
@@ -72,7 +73,9 @@ function treeItems(model: Model): HTMLElement[] {
   const others = Object.entries(model.files).filter(([name]) => !KNOWN.includes(name))
   return [
     glb,
-    ...others.map(([name, url]) => fileLink(PAPER, [name, text.files.other], url, fileName(model.name, `.${name}`))),
+    ...others.map(([name, url]) =>
+      fileLink(ICONS.paper, [name, text.files.other], url, fileName(model.name, `.${name}`)),
+    ),
   ]
 }
 
@@ -83,12 +86,6 @@ async function savePicture({ store }: Studio, picture: () => Promise<Blob>): Pro
   } catch {
     store.fault('preview', { text: text.files.noPicture })
   }
-}
-
-async function saveProject({ store }: Studio): Promise<void> {
-  const { photo, settings, seed, name } = store.state
-  if (!photo) return
-  saveFile(await writeProject({ photo: photo.file, strokes: store.strokes, settings, seed }), projectName(name))
 }
 
 async function saveStrokes({ store }: Studio): Promise<void> {

@@ -3,11 +3,11 @@ import { text } from '../text'
 import { button, el, icon } from './dom'
 import { downloadsPanel, hasTakings, treeLink } from './downloads'
 import { anotherButton, growButton } from './growButtons'
+import { ICONS } from './icons'
 import { type makePanel, opening } from './panel'
 import { progressBar, standingLine } from './progress'
 import { scorePanel } from './score'
 import { settingsPanel } from './settings'
-import { DOWN, DOWNLOAD, SLIDERS } from './treeIcons'
 import './growbar.css'
 
 const STANDING = 'standing'
@@ -19,7 +19,7 @@ export function growBar(studio: Studio, picture: () => Promise<Blob>): HTMLEleme
   const downloads = downloadsPanel(studio, picture)
   const grow = growButton(studio, STANDING)
   const line = standingLine(studio, { id: STANDING, score, grow })
-  const more = opener(downloads, 'downloads-opener', text.files.more, icon(DOWNLOAD), icon(DOWN))
+  const more = opener(downloads, 'downloads-opener', text.files.more, icon(ICONS.download), icon(ICONS.down))
   studio.store.watch(hasTakings, yes => {
     more.hidden = !yes
   })
@@ -28,7 +28,7 @@ export function growBar(studio: Studio, picture: () => Promise<Blob>): HTMLEleme
     { class: 'grow-actions' },
     grow,
     anotherButton(studio),
-    opener(settings, 'settings-opener', text.grow.settings, icon(SLIDERS)),
+    opener(settings, 'settings-opener', text.grow.settings, icon(ICONS.sliders)),
     treeLink(studio),
     more,
   )

@@ -1,12 +1,15 @@
 import { text } from '../text'
 import { button, el, icon } from './dom'
-
-const CROSS = 'M6 6l12 12M18 6L6 18'
+import { ICONS } from './icons'
 
 /** Make a panel that opens over the stage, on a phone from below; Escape and a click beside it close it. */
 export function makePanel(id: string, title: string, ...content: readonly Node[]): HTMLElement {
   const heading = el('h2', { id: `${id}-title` }, title)
-  const cross = button({ class: 'button square', 'aria-label': text.close }, () => panel.hidePopover(), icon(CROSS))
+  const cross = button(
+    { class: 'button square', 'aria-label': text.close },
+    () => panel.hidePopover(),
+    icon(ICONS.cross),
+  )
   const head = el('header', { class: 'panel-head' }, heading, cross)
   const panel = el('div', { class: 'panel', id, popover: 'auto', role: 'dialog', 'aria-labelledby': heading.id }, head)
   panel.append(...content)

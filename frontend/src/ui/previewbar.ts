@@ -2,7 +2,7 @@ import type { Preview, PreviewStatus, View } from '../preview/preview'
 import type { Store } from '../state'
 import { text } from '../text'
 import { button, el, icon } from './dom'
-import { LEAF, MINUS, PLUS } from './treeIcons'
+import { ICONS } from './icons'
 
 const VIEWS: readonly View[] = ['photo', 'front', 'side', 'back', 'top']
 const STEP = 1.25
@@ -19,9 +19,9 @@ export function previewBar(preview: () => Preview): PreviewBar {
     button({ class: 'button', 'aria-pressed': 'false' }, () => preview().view(name), text.preview.view[name]),
   )
   let leafy = true
-  const leaves = tool(text.preview.leaves, LEAF, () => preview().setLeaves(!leafy))
-  const nearer = tool(text.preview.nearer, PLUS, () => preview().zoom(STEP))
-  const farther = tool(text.preview.farther, MINUS, () => preview().zoom(1 / STEP))
+  const leaves = tool(text.preview.leaves, ICONS.leaf, () => preview().setLeaves(!leafy))
+  const nearer = tool(text.preview.nearer, ICONS.plus, () => preview().zoom(STEP))
+  const farther = tool(text.preview.farther, ICONS.minus, () => preview().zoom(1 / STEP))
   const choice = viewChoice(name => preview().view(name))
   const turning = el('div', { class: 'afloat views', role: 'group', 'aria-label': text.preview.views }, ...views)
   const looking = el('div', { class: 'afloat looking' }, leaves, nearer, farther)

@@ -1,0 +1,76 @@
+"""What somebody at the page waits for, from the pen's lift to the picture; `make bench` prints it.
+
+A real browser, without a GPU, before a service on the same machine: a photo of 1200 x 1541 px with its crown and trunk,
+to which short branches are drawn by mouse, one after another, each when the preview is at rest.
+"""
+
+import json
+import random
+import shutil
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import sync_playwright
+from tests.benchmarks.service_times import PHOTO, STROKES, say
+from tests.e2e.conftest import FLAGS
+from tests.e2e.visitor import Visitor
+from tests.running import serving
+
+COUNT = 30
+_WATCH = """
+    window.traced = []
+    window.grown = []
+    let lifted = 0
+    addEventListener('pointerup', () => { lifted = performance.now() }, true)
+    // Two frames later what an answer changed is on the screen.
+    const painted = told => requestAnimationFrame(() => requestAnimationFrame(() => told(performance.now() - lifted)))
+    const { json } = Response.prototype
+    Response.prototype.json = async function () {
+        const answer = await json.call(this)
+        if (answer.skeleton) painted(time => (answer.grown ? grown : traced).push(time / 1000))
+        return answer
+    }
+"""
+
+
+def stroke(strokes: dict[str, Any]) -> list[list[float]]:
+    """Choose a short stroke off the trunk, somewhere in the crown."""
+    x, y = random.choice(strokes["branches"][0]["points"][6:])
+    side = random.choice((-1, 1))
+    return [[x, y], [x + side * random.uniform(40, 90), y - 40], [x + side * random.uniform(100, 200), y - 110]]
+
+
+def main() -> None:
+    """Draw, and say how long each stroke took to show."""
+    random.seed(1)
+    strokes = json.loads(STROKES.read_text())
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        serving(Path(folder) / "data") as url,
+        sync_playwright() as playwright,
+    ):
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=list(FLAGS))
+        context = browser.new_context(viewport={"width": 1440, "height": 900})
+        context.add_init_script(_WATCH)
+        visitor = Visitor(context.new_page(), url)
+        visitor.open()
+        visitor.choose(visitor.page.get_by_role("button", name="Choose a photo"), PHOTO)
+        visitor.draw(strokes["crown"]["points"], close=True)
+        visitor.draw(strokes["branches"][0]["points"], button="right")
+        visitor.wait_for_preview("live")
+        crown = visitor.page.evaluate("traced[0]")
+        visitor.page.evaluate("traced.length = grown.length = 0")
+        for number in range(COUNT):
+            visitor.wait_for_rest()
+            visitor.draw(stroke(strokes), button="right")
+            visitor.until(lambda done=number + 1: visitor.page.evaluate("grown.length") == done)
+        traced, grown = visitor.page.evaluate("[traced, grown]")
+        say("page: pen up to the overlay's paint", traced)
+        say("page: pen up to the live tree's paint", grown)
+        say("page: the same for a photo's first crown", [crown])
+        browser.close()
+
+
+if __name__ == "__main__":
+    main()
