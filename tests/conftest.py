@@ -24,7 +24,7 @@ LONGEST_FIRST = (
 
 
 class ByService(LoadScopeScheduling):
-    """Tests that share a running service go to one process: those of the API; of faults by file and broker; else by file.
+    """Tests that share a running service go to one process: the API's; faults by file and broker; else by file.
 
     To start one costs seconds of a processor; tests of faults wait more than they work.
     """

@@ -17,7 +17,7 @@ from tests.e2e.conftest import FLAGS
 from tests.e2e.visitor import Visitor
 from tests.running import serving
 
-COUNT = 30
+COUNT = 16
 _WATCH = """
     window.traced = []
     window.grown = []
@@ -57,9 +57,10 @@ def main() -> None:
         visitor.open()
         visitor.choose(visitor.page.get_by_role("button", name="Choose a photo"), PHOTO)
         visitor.draw(strokes["crown"]["points"], close=True)
+        visitor.until(lambda: visitor.page.evaluate("traced.length") == 1)
+        crown = visitor.page.evaluate("traced[0]")
         visitor.draw(strokes["branches"][0]["points"], button="right")
         visitor.wait_for_preview("live")
-        crown = visitor.page.evaluate("traced[0]")
         visitor.page.evaluate("traced.length = grown.length = 0")
         for number in range(COUNT):
             visitor.wait_for_rest()

@@ -53,11 +53,24 @@ def test_the_live_tree_is_the_one_that_the_model_grows(live: Trace, maple_photo:
 
 
 def test_the_live_tree_is_the_same_whether_its_foliage_is_known(live: Trace, maple_strokes: Path) -> None:
-    trunk = json.loads(maple_strokes.read_text())
-    before = treestroke.trace(live.photo, {**trunk, "branches": trunk["branches"][:1]})
+    crown = json.loads(maple_strokes.read_text())["crown"]
+    before = treestroke.trace(live.photo, {"crown": crown})
+    after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
+    assert after.found.seen.foliage is before.found.seen.foliage
+    assert same(after.grown, live.grown)
+
+
+def test_what_was_traced_of_the_same_strokes_is_not_traced_again(live: Trace, maple_strokes: Path) -> None:
+    before = treestroke.trace(live.photo, maple_strokes)
     after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
     assert after.found is before.found
     assert same(after.grown, live.grown)
+
+
+def test_another_erase_stroke_is_traced(live: Trace, maple_strokes: Path) -> None:
+    strokes = json.loads(maple_strokes.read_text())
+    erase = {"points": [[5.0, 5.0], [15.0, 15.0]]}
+    assert treestroke.trace(live.photo, {**strokes, "erase": [erase]}, after=live).found is not live.found
 
 
 def test_growing_changes_nothing_of_the_trace(live: Trace, maple_photo: Path, maple_strokes: Path) -> None:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from treestroke.core.geometry.camera import Floats
 
 
@@ -30,6 +32,19 @@ class Strokes:
     crown: Stroke
     branches: tuple[Stroke, ...] = ()
     erase: tuple[Stroke, ...] = ()
+
+
+def same_stroke(one: Stroke, other: Stroke) -> bool:
+    """Tell whether two lines have the same points and the same width."""
+    return one.width == other.width and np.array_equal(one.points, other.points)
+
+
+def same_strokes(one: Strokes, other: Strokes) -> bool:
+    """Tell whether the same was drawn twice."""
+    if len(one.branches) != len(other.branches) or len(one.erase) != len(other.erase):
+        return False
+    pairs = zip((one.crown, *one.branches, *one.erase), (other.crown, *other.branches, *other.erase), strict=True)
+    return all(same_stroke(*pair) for pair in pairs)
 
 
 @dataclass(frozen=True)

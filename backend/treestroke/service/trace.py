@@ -10,11 +10,10 @@ from treestroke.codec.overlay import draw_overlay
 from treestroke.codec.skeleton import plain_grown, plain_skeleton
 from treestroke.core.imaging.outline import rings_of_mask
 from treestroke.core.pipeline.growing import LiveTree
-from treestroke.core.pipeline.photo import grow_photo, trace_photo
+from treestroke.core.pipeline.photo import PhotoTrace, grow_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.segment.foliage import Foliage
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.strokes import StrokeWarning
+from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
 from treestroke.service.inputs import PhotoLike, StrokesLike, load_photo, load_strokes
 from treestroke.service.threads import one_thread
 
@@ -31,10 +30,10 @@ class Trace:
         (h, w), true on leaves (on a bare tree, on twigs).
     rings
         The same as closed outlines, each (n, 2), px, by the even-odd rule.
-    crown
-        (n, 2) the crown stroke's points, px.
+    given
+        The strokes that it was found by.
     found
-        The foliage with its colour models.
+        The same with what it was found from.
     skeleton
         The visible branches; None where there was no branch stroke.
     stroke
@@ -50,8 +49,8 @@ class Trace:
     photo: NDArray[np.uint8]
     foliage: NDArray[np.bool_]
     rings: list[NDArray[np.float64]]
-    crown: NDArray[np.float64]
-    found: Foliage
+    given: Strokes
+    found: PhotoTrace
     skeleton: Skeleton | None
     stroke: NDArray[np.int64]
     warnings: tuple[StrokeWarning, ...]
@@ -83,8 +82,8 @@ def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None, gr
 
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
     mapping or values. Without branch strokes the foliage alone is found. ``after`` is the last trace of the same photo:
-    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once. ``grow``
-    asks for the tree, too, that `model` would grow of them.
+    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once, and
+    everything while all strokes do. ``grow`` asks for the tree, too, that `model` would grow of them.
 
     Raises
     ------
@@ -93,14 +92,13 @@ def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None, gr
     """
     given = load_strokes(strokes)
     picture = load_photo(photo)
-    crown = given.crown.points
-    last = after if after is not None and np.array_equal(after.crown, crown) else None
-    known = None if last is None else last.found
+    last = after if after is not None and same_stroke(after.given.crown, given.crown) else None
     with one_thread():
-        if grow:
-            found, grown = grow_photo(picture, given, ModelSettings(), np.random.default_rng(0), known)
+        if last is not None and same_strokes(last.given, given):
+            found = last.found
         else:
-            found, grown = trace_photo(picture, given, known), None
+            found = trace_photo(picture, given, None if last is None else last.found.seen.foliage)
+        grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(found.foliage) if last is None else last.rings
-    what = found.foliage, rings, crown, found.found, found.skeleton, found.stroke, found.warnings
+    what = found.foliage, rings, given, found, found.skeleton, found.stroke, found.warnings
     return Trace(picture, *what, grow=grow, grown=grown)

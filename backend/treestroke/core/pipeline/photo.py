@@ -38,8 +38,8 @@ class PhotoTrace:
     ----------
     foliage
         (h, w) leaf pixels.
-    found
-        The foliage with its colour models, at the working size.
+    seen
+        What both of them show, at the working size.
     skeleton
         The visible branches; None without a branch stroke.
     stroke
@@ -49,7 +49,7 @@ class PhotoTrace:
     """
 
     foliage: Mask
-    found: Foliage
+    seen: Seen
     skeleton: Skeleton | None
     stroke: Indices
     warnings: tuple[StrokeWarning, ...]
@@ -86,8 +86,8 @@ def unseen(tree: LiveTree) -> None:
 def trace_photo(photo: Photo, strokes: Strokes, known: Foliage | None = None) -> PhotoTrace:
     """Find the foliage and the visible branches of a photo (h, w, 3), sRGB.
 
-    ``known`` is what an earlier trace ``found`` in the same photo with the same crown: it is kept, so that one more
-    branch stroke is answered at once.
+    ``known`` is the foliage that an earlier trace of the same photo has seen in the same crown: it is kept, so that one
+    more branch stroke is answered at once.
 
     Raises
     ------
@@ -97,20 +97,9 @@ def trace_photo(photo: Photo, strokes: Strokes, known: Foliage | None = None) ->
     return _in_photo(see(photo, strokes, known))
 
 
-def grow_photo(
-    photo: Photo, strokes: Strokes, settings: ModelSettings, rng: np.random.Generator, known: Foliage | None = None
-) -> tuple[PhotoTrace, LiveTree | None]:
-    """Trace a photo as `trace_photo` does, and let what was traced grow as `model_photo` does.
-
-    Nothing grows without a branch stroke.
-
-    Raises
-    ------
-    StrokesError
-        The strokes do not describe a tree.
-    """
-    seen = see(photo, strokes, known)
-    return _in_photo(seen), None if seen.traced is None else grow_tree(seen, settings, rng).live
+def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:
+    """Let what was traced grow as `model_photo` does; nothing grows without a branch stroke."""
+    return None if traced.seen.traced is None else grow_tree(traced.seen, settings, rng).live
 
 
 def model_photo(
@@ -163,10 +152,10 @@ def _in_photo(seen: Seen) -> PhotoTrace:
     scale, foliage, traced = seen.sight.scale, seen.foliage, seen.traced
     mask = cv2.resize(foliage.mask.astype(np.uint8), seen.sight.size, interpolation=cv2.INTER_NEAREST).astype(bool)
     if traced is None:
-        return PhotoTrace(mask, foliage, None, np.empty(0, dtype=np.int64), seen.sight.warnings)
+        return PhotoTrace(mask, seen, None, np.empty(0, dtype=np.int64), seen.sight.warnings)
     small = traced.skeleton
     full = Skeleton(small.points / scale, small.radii / scale, small.parents)
-    return PhotoTrace(mask, foliage, full, traced.stroke, seen.sight.warnings)
+    return PhotoTrace(mask, seen, full, traced.stroke, seen.sight.warnings)
 
 
 def _leaf(
