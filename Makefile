@@ -34,8 +34,8 @@ page: $(PAGE_STAMP)
 
 test: $(STAMP) page redis chromium
 	@cd frontend && node_modules/.bin/vitest run
-	@$(PYTEST) -m "not golden and not alone and not browser" -n 4
-	@$(PYTEST) -m browser -n 2
+	@$(PYTEST) -m "not golden and not alone and not browser" -n 3 --dist loadfile
+	@$(PYTEST) -m browser -n 2 --dist loadfile
 	@$(PYTEST) -m alone
 
 # Tests need a Redis to start and kill, and a browser. CI installs them where they are missing; elsewhere the tests say so.

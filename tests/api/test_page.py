@@ -1,6 +1,7 @@
 """The built page as the service gives it, and what the policy of its content asks of it."""
 
 import asyncio
+import gzip
 import os
 import re
 from html.parser import HTMLParser
@@ -12,6 +13,8 @@ from fastapi import FastAPI
 
 from treestroke.api.routes.page import PAGE, add_page
 
+MOST_SCRIPT_BYTES = 100_000
+"""Compressed; three.js lies beside them."""
 TYPES = {
     "html": "text/html; charset=utf-8",
     "js": "text/javascript; charset=utf-8",
@@ -123,6 +126,11 @@ def test_every_file_of_the_page_has_its_type_and_is_kept_as_long_as_it_holds(bui
         assert not hashed or re.search(r"-[\w-]{8}\.\w+$", name)
         wanted = "public, max-age=31536000, immutable" if hashed else "no-cache"
         assert answer.headers["cache-control"] == wanted, name
+
+
+def test_the_pages_own_scripts_are_light(built: Path) -> None:
+    own = [path for path in built.glob("assets/*.js") if not path.name.startswith("three-")]
+    assert 0 < sum(len(gzip.compress(path.read_bytes())) for path in own) < MOST_SCRIPT_BYTES
 
 
 def test_a_file_that_the_page_has_no_more_is_not_kept_as_missing(client: httpx.Client) -> None:

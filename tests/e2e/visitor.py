@@ -19,6 +19,7 @@ PATIENCE_MS = 60_000
 REST_MS = 1200
 """Without a new frame for so long, the preview is at rest."""
 JSON = {"Content-Type": "application/json"}
+expect.set_options(timeout=PATIENCE_MS)
 Point = Sequence[float]
 Path2D = Sequence[Point]
 
