@@ -10,6 +10,8 @@ from tests.e2e.visitor import ROOT, Visitor, strokes_of
 
 PHOTO = ROOT / "examples" / "sugar_maple_autumn.jpg"
 STROKES = strokes_of(PHOTO)
+STILL_MS = 500
+"""Until what the wheel or a drag has moved stands still."""
 LIMB = [[300.0, 430.0], [260.0, 380.0], [220.0, 340.0]]
 
 
@@ -78,12 +80,15 @@ def test_strokes_are_exact_when_the_photo_is_zoomed_and_moved(visitor: Visitor) 
     page.mouse.move(*visitor.view().at(LIMB[0]))
     for _ in range(4):
         page.mouse.wheel(0, -120)
+    page.wait_for_timeout(STILL_MS)
     page.keyboard.down("Space")
     x, y = visitor.view().at(LIMB[0])
+    page.mouse.move(600, 300)
     page.mouse.down()
-    page.mouse.move(x + 60, y + 45, steps=3)
+    page.mouse.move(660, 345, steps=3)
     page.mouse.up()
     page.keyboard.up("Space")
+    page.wait_for_timeout(STILL_MS)
     assert visitor.view().at(LIMB[0]) == pytest.approx((x + 60, y + 45), abs=0.6)
     visitor.draw(LIMB, button="right")
     visitor.until(lambda: len(last_branches(visitor)) == 2)

@@ -70,6 +70,7 @@ class Visitor:
         page.on("pageerror", lambda error: self.complaints.append(f"exception: {error}"))
         page.on("crash", lambda _: self.complaints.append("the page crashed"))
         page.on("request", self._asked)
+        page.on("filechooser", lambda _: None)  # from now on, or the first key might come before it is listened to
         page.add_init_script(_LISTEN)
 
     def _said(self, message: ConsoleMessage) -> None:
