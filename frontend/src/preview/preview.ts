@@ -73,11 +73,6 @@ export class Preview {
     this.viewer?.view(name)
   }
 
-  /** How much of the tree is seen in the photo's view: 0 only the photo, 1 only the tree. */
-  wipe(fraction: number): void {
-    this.viewer?.wipe(fraction)
-  }
-
   setLeaves(on: boolean): void {
     this.viewer?.turnLeaves(on)
   }

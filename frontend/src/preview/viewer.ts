@@ -123,10 +123,6 @@ export class Viewer {
     this.ask()
   }
 
-  wipe(fraction: number): void {
-    this.wiped.set(fraction)
-  }
-
   turnLeaves(on = !this.leaves): void {
     this.leaves = on
     this.leaf()
