@@ -141,6 +141,10 @@ class Visitor:
             assert time.monotonic() - began < PATIENCE_MS / 1000, "it never came to hold"
             self.page.wait_for_timeout(50)
 
+    def wait_until_traced(self) -> None:
+        """Wait until the page shows what was traced along the strokes as they are now."""
+        expect(self.page.locator(".sketch-stale")).to_have_count(0)
+
     def skeleton(self) -> dict[str, Any]:
         """Ask the service for what it traced last, once more."""
         answer = self.page.request.post(self._trace, data=json.dumps(self.traced[-1]), headers=JSON)
