@@ -228,6 +228,7 @@ export const text = {
       noPhoto: 'Open a photo of a tree to begin.',
       noCrown: 'First draw one loose stroke around the crown.',
       noTrunk: 'Now draw a stroke up the trunk, then it can grow.',
+      noSense: 'A stroke cannot be used: mend it, then the tree can grow.',
       ready: 'Ready to grow bark, twigs and leaves.',
       asking: 'Asking for the tree',
       bringing: 'Bringing the tree',

@@ -119,6 +119,7 @@ def test_a_stroke_at_fault_is_told_in_place_and_can_be_taken_back(visitor: Visit
     visitor.expect_complaint("422")
     visitor.draw([[20.0, 590.0], [60.0, 560.0], [80.0, 590.0]], button="right")
     expect(visitor.page.get_by_text("The trunk does not reach the crown.")).to_be_visible()
+    expect(visitor.page.get_by_role("button", name="Grow", exact=True)).to_have_attribute("aria-disabled", "true")
     visitor.shot("fault")
     visitor.page.get_by_role("button", name="Delete this stroke").click()
     expect(visitor.page.get_by_text("The trunk does not reach the crown.")).to_be_hidden()

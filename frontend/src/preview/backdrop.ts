@@ -157,10 +157,6 @@ export class Ground {
     this.uniforms.fallen.value = pictureOf(picture, side)
     this.uniforms.baked.value = 1
   }
-
-  dispose(): void {
-    this.uniforms.fallen.value.dispose()
-  }
 }
 
 const GROUND_HEAD = `varying vec2 vRound;

@@ -93,11 +93,6 @@ export class Preview {
     return this.viewer.png()
   }
 
-  dispose(): void {
-    this.viewer?.dispose()
-    this.canvas.remove()
-  }
-
   private opened(options: ConstructorParameters<typeof Viewer>[2], { labels }: PreviewOptions): Viewer | null {
     const { canvas, host } = this
     canvas.className = 'preview-canvas'

@@ -103,10 +103,6 @@ export class Rig {
     this.place(pose)
   }
 
-  dispose(): void {
-    this.controls.dispose()
-  }
-
   private flown(flight: NonNullable<Rig['flight']>, seconds: number): boolean {
     flight.spent = Math.min(flight.spent + seconds, flight.seconds)
     const t = flight.spent / flight.seconds

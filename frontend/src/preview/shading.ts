@@ -51,13 +51,11 @@ export function leafMaterial(
   material.onBeforeCompile = shader => {
     lightThroughCanopy(shader, shades)
     shader.uniforms.leafed = shades.leafed
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nuniform float leafed;')
-      .replace(
-        '#include <begin_vertex>',
-        `#include <begin_vertex>
-        if (fract(sin(float(gl_VertexID / 4) * 12.9898) * 43758.5453) > leafed) transformed = vec3(0.0);`,
-      )
+    addToVertex(
+      shader,
+      'uniform float leafed;',
+      'if (fract(sin(float(gl_VertexID / 4) * 12.9898) * 43758.5453) > leafed) transformed = vec3(0.0);',
+    )
     shader.fragmentShader = shader.fragmentShader
       .replace(
         '#include <normal_fragment_begin>',
@@ -74,14 +72,12 @@ export function woodMaterial(shades: Shades): MeshLambertMaterial {
   material.onBeforeCompile = shader => {
     lightThroughCanopy(shader, shades)
     shader.uniforms.age = shades.age
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nuniform float age;\nattribute vec2 stem;')
-      .replace(
-        '#include <begin_vertex>',
-        `#include <begin_vertex>
-        float thin = stem.x > 0.0 ? 1.0 - smoothstep(0.0, ${THICKENING}.0, age - stem.x) : 0.0;
-        transformed -= objectNormal * stem.y * thin;`,
-      )
+    addToVertex(
+      shader,
+      'uniform float age;\nattribute vec2 stem;',
+      `float thin = stem.x > 0.0 ? 1.0 - smoothstep(0.0, ${THICKENING}.0, age - stem.x) : 0.0;
+      transformed -= objectNormal * stem.y * thin;`,
+    )
   }
   return material
 }
@@ -89,12 +85,17 @@ export function woodMaterial(shades: Shades): MeshLambertMaterial {
 function lightThroughCanopy(shader: Shader, shades: Shades): void {
   shader.uniforms.baked = shades.baked
   shader.uniforms.canopy = shades.canopy
-  shader.vertexShader = shader.vertexShader
-    .replace('#include <common>', `#include <common>\n${LIT_VERTEX}`)
-    .replace('#include <begin_vertex>', '#include <begin_vertex>\nvLight = light;')
+  addToVertex(shader, LIT_VERTEX, 'vLight = light;')
   shader.fragmentShader = shader.fragmentShader
     .replace('#include <common>', `#include <common>\n${LIT_FRAGMENT}`)
     .replace('#include <lights_fragment_end>', LIT_END)
+}
+
+/** Let a vertex shader declare something and do something more to each vertex, `transformed`. */
+function addToVertex(shader: Shader, declared: string, done: string): void {
+  shader.vertexShader = shader.vertexShader
+    .replace('#include <common>', `#include <common>\n${declared}`)
+    .replace('#include <begin_vertex>', `#include <begin_vertex>\n${done}`)
 }
 
 /** three's Lambert shading with direct light of our own. */

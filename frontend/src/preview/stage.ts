@@ -106,13 +106,6 @@ export class Stage {
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
   }
 
-  dispose(): void {
-    this.show(null)
-    this.ground.dispose()
-    this.sun.dispose()
-    this.renderer.dispose()
-  }
-
   private fitSun({ min, max }: Box): void {
     const radius = Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2
     const { target, shadow } = this.sun

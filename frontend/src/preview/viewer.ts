@@ -158,18 +158,6 @@ export class Viewer {
     return sheet.convertToBlob({ type: 'image/png' })
   }
 
-  dispose(): void {
-    this.latest++
-    this.ageing.stop()
-    cancelAnimationFrame(this.pending)
-    clearTimeout(this.resting)
-    this.watch.disconnect()
-    this.dusk.removeEventListener('change', this.onDusk)
-    this.wiped.dispose()
-    this.rig.dispose()
-    this.stage.dispose()
-  }
-
   /** Put a tree in the place of the last; the first opens the view. */
   private stand(content: Content): void {
     const opens = this.content === null

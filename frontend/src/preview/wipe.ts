@@ -58,11 +58,6 @@ export class Wipe {
     pen.restore()
   }
 
-  dispose(): void {
-    this.photo.remove()
-    this.handle.remove()
-  }
-
   /** What part of the host, from left to right, the photo's rectangle takes. */
   private span(rect: Rect): [number, number] {
     return [Math.max(rect.x, 0), Math.min(rect.x + rect.width, this.room.width)]

@@ -47,10 +47,6 @@ export class Layers {
     this.touch(...NAMES)
   }
 
-  dispose(): void {
-    cancelAnimationFrame(this.#frame)
-  }
-
   #repaint(): void {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0

@@ -18,14 +18,14 @@ const PAGE_PX = 400
 const ZOOM = { wheel: 0.0018, pinch: 0.01 }
 const MOST_AT_ONCE = 150
 
-/** Hear the pointers on an element until `signal` ends it. */
-export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, hover }: Listener, signal: AbortSignal) {
+/** Hear the pointers on an element. */
+export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, hover }: Listener): void {
   const at = (event: MouseEvent): Point => {
     const { left, top } = element.getBoundingClientRect()
     return [event.clientX - left, event.clientY - top]
   }
   const on = <K extends keyof HTMLElementEventMap>(type: K, told: (event: HTMLElementEventMap[K]) => void) =>
-    element.addEventListener(type, told, { signal, passive: false })
+    element.addEventListener(type, told, { passive: false })
   on('pointerdown', event => {
     element.setPointerCapture(event.pointerId)
     const { button, isPrimary: alone } = event
@@ -53,15 +53,15 @@ export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, h
 }
 
 /** Hear the space bar, where no control of the page would take it. */
-export function listenToSpace(element: HTMLElement, told: (held: boolean) => void, signal: AbortSignal): void {
+export function listenToSpace(element: HTMLElement, told: (held: boolean) => void): void {
   const heard = (event: KeyboardEvent) => {
     if (event.key !== ' ' || (event.target !== element && event.target !== document.body)) return
     event.preventDefault()
     told(event.type === 'keydown')
   }
-  document.addEventListener('keydown', heard, { signal })
-  document.addEventListener('keyup', heard, { signal })
-  window.addEventListener('blur', () => told(false), { signal })
+  document.addEventListener('keydown', heard)
+  document.addEventListener('keyup', heard)
+  window.addEventListener('blur', () => told(false))
 }
 
 /** What a turn of the wheel at a place (CSS px) means: it zooms; sideways, or with Shift, it pans. */

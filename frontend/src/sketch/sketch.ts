@@ -37,7 +37,6 @@ const REACH: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
 /** The canvas over the photo that a person draws on. */
 export class Sketch {
   readonly #element = document.createElement('div')
-  readonly #ended = new AbortController()
   readonly #camera = new Camera(view => this.#looked(view))
   readonly #scene = new Scene(
     this.#element,
@@ -68,11 +67,10 @@ export class Sketch {
     this.#open(this.#state.photo)
     this.#resize()
     // A listener before this one may have gone on to a newer state already.
-    const unwatch = store.watch(
+    store.watch(
       state => state,
       () => this.#changed(store.state),
     )
-    this.#ended.signal.addEventListener('abort', unwatch)
   }
 
   fit(): void {
@@ -89,13 +87,6 @@ export class Sketch {
     this.#camera.zoom(factor)
   }
 
-  dispose(): void {
-    this.#ended.abort()
-    this.#resizing.disconnect()
-    this.#scene.layers.dispose()
-    this.#element.remove()
-  }
-
   #label({ canvas, keys }: SketchLabels): void {
     this.#element.className = 'sketch-surface'
     this.#element.tabIndex = 0
@@ -105,15 +96,14 @@ export class Sketch {
   }
 
   #listen(): void {
-    const { signal } = this.#ended
     const gesture = (event: GestureEvent) => this.#gestured(event)
     const tool = () => this.#state.tool
     const wheel = (intent: Intent) => this.#do(intent)
-    listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#hover(at) }, signal)
-    listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }), signal)
-    this.#element.addEventListener('keydown', event => this.#pressed(event), { signal })
-    this.#element.addEventListener('focus', () => this.#focused(), { signal })
-    this.#element.addEventListener('blur', () => this.#scene.layers.touch('pen'), { signal })
+    listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#hover(at) })
+    listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }))
+    this.#element.addEventListener('keydown', event => this.#pressed(event))
+    this.#element.addEventListener('focus', () => this.#focused())
+    this.#element.addEventListener('blur', () => this.#scene.layers.touch('pen'))
   }
 
   /** Who comes by keyboard sees where the pen is. */

@@ -19,9 +19,9 @@ export class Grower {
 
   /** Ask for a tree of what is drawn. */
   async grow(): Promise<void> {
-    const { photo, settings, seed, name } = this.store.state
+    const { photo, settings, seed, name, faults } = this.store.state
     const strokes = this.store.strokes
-    if (!photo || !strokes.branches.length || this.isGrowing) return
+    if (!photo || !strokes.branches.length || faults.strokes?.stroke || this.isGrowing) return
     this.store.fault('grow', null)
     this.store.set({ asking: true })
     try {

@@ -2,6 +2,7 @@ import { type DBSchema, type IDBPDatabase, openDB } from 'idb'
 import type { History } from '../history'
 import type { Settings, State, Store } from '../state'
 import { isEmpty, type Strokes } from '../strokes'
+import { Rounds } from './rounds'
 
 /** A drawing as the browser keeps it. */
 export interface Draft {
@@ -30,8 +31,7 @@ const KEYS = ['photo', 'name', 'history', 'settings', 'seed', 'model', 'modelOf'
 export class Keeper {
   #id: string | null = null
   #photo: Blob | null = null
-  #writing = false
-  #due = false
+  readonly #rounds = new Rounds(() => this.#write(this.store.state))
 
   constructor(
     private readonly store: Store,
@@ -81,18 +81,10 @@ export class Keeper {
   }
 
   async #keep(): Promise<void> {
-    this.#due = true
-    if (this.#writing) return
-    this.#writing = true
     try {
-      while (this.#due) {
-        this.#due = false
-        await this.#write(this.store.state)
-      }
+      await this.#rounds.ask()
     } catch {
       this.store.set({ kept: false }) // a private window, or a full disk: the page says so
-    } finally {
-      this.#writing = false
     }
   }
 

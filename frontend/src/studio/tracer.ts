@@ -1,6 +1,7 @@
 import { type Client, Refused, Unreachable } from '../api/client'
 import type { Photo, Store, TraceAnswer } from '../state'
 import type { Strokes } from '../strokes'
+import { Rounds } from './rounds'
 import { faultOf } from './sentences'
 
 const AGAIN_MS = 1500
@@ -12,8 +13,7 @@ const AGAIN_MS = 1500
  * live tree is asked for when nothing newer is waiting.
  */
 export class Tracer {
-  #running = false
-  #due = false
+  readonly #rounds = new Rounds(() => this.#catchUp())
   /** Strokes that the service refused: not sent again. */
   #refused: Strokes | null = null
   #grownOf: Strokes | null = null
@@ -25,25 +25,18 @@ export class Tracer {
   ) {
     store.watch(
       state => state.history.present,
-      () => this.#run(),
+      () => this.#rounds.ask(),
     )
     store.watch(
       state => state.photo,
-      () => this.#run(),
+      () => this.#rounds.ask(),
     )
   }
 
-  async #run(): Promise<void> {
-    this.#due = true
-    if (this.#running) return
-    this.#running = true
+  async #catchUp(): Promise<void> {
     try {
-      while (this.#due) {
-        this.#due = false
-        if (await this.#step()) this.#due = true
-      }
+      while (await this.#step()) {}
     } finally {
-      this.#running = false
       this.store.set({ tracing: false })
     }
   }

@@ -1,6 +1,5 @@
-import { text } from '../text'
-import { button, el, icon } from './dom'
-import { ICONS } from './icons'
+import { el } from './dom'
+import { sheetHead } from './sheetHead'
 import './dialog.css'
 
 let made = 0
@@ -9,8 +8,8 @@ let made = 0
 export function openDialog(title: string, ...content: readonly Node[]): HTMLDialogElement {
   const id = `dialog-${++made}`
   const dialog = el('dialog', { class: 'dialog', 'aria-labelledby': id })
-  const cross = button({ class: 'button square', 'aria-label': text.close }, () => dialog.close(), icon(ICONS.cross))
-  dialog.append(el('header', { class: 'dialog-head' }, el('h2', { id }, title), cross), ...content)
+  const head = sheetHead(id, title, () => dialog.close())
+  dialog.append(head, ...content)
   dialog.addEventListener('click', event => event.target === dialog && dialog.close())
   dialog.addEventListener('close', () => dialog.remove())
   document.body.append(dialog)

@@ -19,7 +19,8 @@ export function mountHintLine(studio: Studio, host: HTMLElement): void {
     line.dataset.tone = hint.tone
     line.replaceChildren(sentence(hint), ...actions(hint, studio))
   }
-  host.append(line, el('p', { class: 'hint-tracing', 'aria-hidden': 'true' }, text.hints.tracing))
+  const tracing = el('p', { class: 'hint-tracing', 'aria-hidden': 'true' }, text.hints.tracing)
+  host.append(el('div', { class: 'hint-over' }, line, tracing))
   store.watch(state => state, show)
   store.watch(
     state => state.tracing,

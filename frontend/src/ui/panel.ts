@@ -1,18 +1,12 @@
-import { text } from '../text'
-import { button, el, icon } from './dom'
-import { ICONS } from './icons'
+import { el } from './dom'
+import { sheetHead } from './sheetHead'
 
 /** Make a panel that opens over the stage, on a phone from below; Escape and a click beside it close it. */
 export function makePanel(id: string, title: string, ...content: readonly Node[]): HTMLElement {
-  const heading = el('h2', { id: `${id}-title` }, title)
-  const cross = button(
-    { class: 'button square', 'aria-label': text.close },
-    () => panel.hidePopover(),
-    icon(ICONS.cross),
-  )
-  const head = el('header', { class: 'panel-head' }, heading, cross)
-  const panel = el('div', { class: 'panel', id, popover: 'auto', role: 'dialog', 'aria-labelledby': heading.id }, head)
-  panel.append(...content)
+  const heading = `${id}-title`
+  const head = sheetHead(heading, title, () => panel.hidePopover())
+  const panel = el('div', { class: 'panel', id, popover: 'auto', role: 'dialog', 'aria-labelledby': heading })
+  panel.append(head, ...content)
   const place = () => placeOver(panel)
   panel.addEventListener('beforetoggle', event => {
     if (event.newState === 'open') place()

@@ -7,6 +7,7 @@ export type Standing =
   | 'noPhoto'
   | 'noCrown'
   | 'noTrunk'
+  | 'noSense'
   | 'ready'
   | 'asking'
   | 'queued'
@@ -29,6 +30,7 @@ export function standingOf(state: State): Standing {
   const { crown, branches } = state.history.present
   if (!crown) return 'noCrown'
   if (!branches.length) return 'noTrunk'
+  if (state.faults.strokes?.stroke) return 'noSense'
   return model ? standingOfEnded(state, model) : 'ready'
 }
 

@@ -66,6 +66,14 @@ test('without a trunk nothing is asked for', async () => {
   expect(calls).toHaveLength(0)
 })
 
+test('with a stroke that cannot be used nothing is asked for', async () => {
+  const calls = service(serve)
+  const { store, grower } = begin()
+  store.fault('strokes', { text: 'The trunk does not reach the crown.', stroke: { kind: 'branch', index: 0 } })
+  await grower.grow()
+  expect([calls.length, store.state.asking]).toEqual([0, false])
+})
+
 test('a request that got lost is sent again under the same key', async () => {
   vi.useFakeTimers()
   const keys: unknown[] = []

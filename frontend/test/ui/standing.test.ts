@@ -24,6 +24,13 @@ test('it says what is missing until there is a photo, a crown and a trunk', () =
   expect(standingOf(state())).toBe('ready')
 })
 
+test('a stroke that cannot be used keeps the tree from growing, a fault of the service does not', () => {
+  const fault = { text: 'The trunk does not reach the crown.' }
+  const faulty = (changes: Partial<State['faults']>) => standingOf(state({ faults: { ...EMPTY.faults, ...changes } }))
+  expect(faulty({ strokes: { ...fault, stroke: { kind: 'branch', index: 0 } } })).toBe('noSense')
+  expect(faulty({ strokes: fault })).toBe('ready')
+})
+
 test('a tree under way stands before everything else, even where its strokes are gone', () => {
   expect(standingOf(state({ asking: true }))).toBe('asking')
   expect(standingOf(state({ model: model() }))).toBe('queued')
@@ -50,7 +57,9 @@ test('a model that failed or was canceled says so until something else is drawn'
 })
 
 test('Grow works where a trunk is drawn and nothing is under way', () => {
-  expect((['noPhoto', 'noCrown', 'noTrunk', 'asking', 'queued', 'growing'] as const).some(canGrow)).toBe(false)
+  expect((['noPhoto', 'noCrown', 'noTrunk', 'noSense', 'asking', 'queued', 'growing'] as const).some(canGrow)).toBe(
+    false,
+  )
   expect((['ready', 'bringing', 'grown', 'strokesChanged', 'failed', 'canceled'] as const).every(canGrow)).toBe(true)
   expect([isBusy('queued'), isBusy('bringing')]).toEqual([true, false])
 })
