@@ -14,7 +14,7 @@ const AGAIN_MS = 1500
  */
 export class Tracer {
   readonly #rounds = new Rounds(() => this.#catchUp())
-  /** Strokes that the service refused: not sent again. */
+  /** Strokes that the service refused: not sent again until others have been drawn. */
   #refused: Strokes | null = null
   #grownOf: Strokes | null = null
 
@@ -46,6 +46,8 @@ export class Tracer {
     const { photo, traced, grown } = this.store.state
     const strokes = this.store.strokes
     if (!strokes.branches.length && grown) this.store.set({ grown: null })
+    if (!strokes.branches.length) this.#grownOf = null
+    if (strokes !== this.#refused) this.#refused = null
     if (!strokes.crown && traced) this.store.set({ traced: null, grown: null })
     if (!photo || !strokes.crown || strokes === this.#refused) return false
     const isTraced = traced?.of === strokes

@@ -92,6 +92,9 @@ test('refused strokes stay, say what is wrong with which, and are not sent again
   sketchbook.undo()
   await settle()
   expect(store.state.faults.strokes).toBeUndefined()
+  sketchbook.redo()
+  await settle()
+  expect(store.state.faults.strokes?.stroke).toEqual({ kind: 'branch', index: 0 })
 })
 
 test('while the service is away it is asked again, and the strokes are traced when it is back', async () => {
@@ -131,6 +134,27 @@ test('without a trunk there is no live tree any more', async () => {
   sketchbook.clear()
   await settle()
   expect(store.state.traced).toBeNull()
+})
+
+test('the live tree comes back with its strokes: after a trunk that was deleted, and after all was cleared', async () => {
+  service(traced)
+  const { store, sketchbook } = await begin()
+  sketchbook.draw('crown', CROWN)
+  sketchbook.draw('branch', TRUNK)
+  await settle()
+  for (const takeAway of [() => sketchbook.clear(), () => removeTrunk()]) {
+    takeAway()
+    await settle()
+    expect(store.state.grown).toBeNull()
+    sketchbook.undo()
+    await settle()
+    expect(store.state.grown).toEqual(grown(2))
+  }
+
+  function removeTrunk() {
+    sketchbook.select({ kind: 'branch', index: 0 })
+    sketchbook.remove()
+  }
 })
 
 test('a traced branch that was selected is let go when its joints are numbered anew', async () => {
