@@ -10,6 +10,8 @@ import sys
 import time
 from typing import Any, NoReturn
 
+import numpy as np
+
 from treestroke import queue, worker
 from treestroke.service import jobs
 from treestroke.service.jobs import Pulse
@@ -29,9 +31,10 @@ def _segfault(_: Pulse) -> NoReturn:
 
 
 def _memory(_: Pulse) -> NoReturn:
+    """Take addresses and write nothing there: they are what is limited, and writing 2 GB takes seconds."""
     taken = []
     while True:
-        taken.append(bytearray(CHUNK))
+        taken.append(np.empty(CHUNK, np.uint8))
 
 
 def _loop(pulse: Pulse) -> NoReturn:
