@@ -11,7 +11,7 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from tests.conftest import EXAMPLES
 
 import treestroke
-from treestroke.codec.gltf import encode_glb
+from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.codec.image import decode_photo
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 from treestroke.core.geometry.mesh import Surface
@@ -132,7 +132,8 @@ def test_making_the_bark_texture(benchmark: BenchmarkFixture, subject: Subject) 
 
 
 def test_encoding_the_glb(benchmark: BenchmarkFixture, subject: Subject) -> None:
-    arguments = subject.tree.bark, subject.tree.leaf, subject.tree.camera
+    parts = [Part("bark", subject.tree.bark), Part("leaf", subject.tree.leaf)]
+    arguments = parts, subject.tree.camera
     generator = {"generator": "treestroke"}
     assert benchmark.pedantic(encode_glb, arguments, generator, rounds=5)[:4] == b"glTF"
 

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.codec.raster import Floats, Indices, Planes, pixel_centres, planes, visible_triangles
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
+from treestroke.core.geometry.raster import Floats, Indices, Planes, pixel_centres, planes, visible_triangles
 
 _VIEW_HEIGHT, _MAX_ASPECT = 620, 1.5
 _FINER = 2

@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.codec.raster import Floats, Indices, planes, visible_triangles
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
+from treestroke.core.geometry.raster import Floats, Indices, planes, visible_triangles
 
 
 def silhouette(bark: Surface, leaf: Surface | None, camera: Camera, height: int) -> NDArray[np.bool_]:

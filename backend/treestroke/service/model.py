@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke import __version__
-from treestroke.codec.gltf import encode_glb
+from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.codec.preview import draw_preview
 from treestroke.codec.silhouette import likeness, silhouette
 from treestroke.core.pipeline.photo import OnGrown, TreeModel, model_photo, unseen
@@ -75,8 +75,12 @@ def model(
             picture = load_photo(photo, watch)
         tree = model_photo(picture, given, chosen, np.random.default_rng(seed), watch, on_grown)
         with watch.stage("write"):
-            glb = encode_glb(tree.bark, tree.leaf, tree.camera, generator=ENGINE)
+            glb = encode_glb(_parts(tree), tree.camera, generator=ENGINE)
     return Model(glb, _report(tree, len(glb), chosen, seed, watch), tree)
+
+
+def _parts(tree: TreeModel) -> list[Part]:
+    return [Part("bark", tree.bark)] + ([] if tree.leaf is None else [Part("leaf", tree.leaf)])
 
 
 def _report(tree: TreeModel, size: int, settings: ModelSettings, seed: int, watch: Stopwatch) -> dict[str, Any]:
@@ -89,7 +93,7 @@ def _report(tree: TreeModel, size: int, settings: ModelSettings, seed: int, watc
         "counts": {
             "iterations": tree.iterations,
             "branches": tree.branches,
-            "leaves": tree.leaves,
+            "leaves": 0 if tree.cards is None else len(tree.cards),
             "triangles": sum(len(surface.mesh.triangles) for surface in surfaces),
             "bytes": size,
         },

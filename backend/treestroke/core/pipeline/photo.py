@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.replacement import Grown
-from treestroke.core.leaf.atlas import leaf_atlas
+from treestroke.core.leaf.atlas import Atlas, leaf_atlas
 from treestroke.core.leaf.cards import cards
+from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
@@ -59,18 +61,33 @@ class PhotoTrace:
 class TreeModel:
     """A finished tree: its surfaces in the world's frame, and what it was made from.
 
-    ``likeness`` (h, w), at the working size, is what the front view should cover: foliage and traced branches.
+    Attributes
+    ----------
+    camera
+        That of the photo at its own size.
+    grown
+        The skeleton, and how it grew.
+    envelope
+        The crown's solid.
+    bark, leaf
+        What is seen of it; no leaf where it bears none.
+    cards, atlas
+        What the leaf surface was made from; both None where there is none.
+    likeness
+        (h, w), at the working size, what the front view should cover: foliage and traced branches.
     """
 
     camera: Camera
     grown: Grown
+    envelope: Envelope
     bark: Surface
     leaf: Surface | None
+    cards: Leaves | None
+    atlas: Atlas | None
     likeness: Mask
     foliage_kind: Kind
     iterations: int
     branches: int
-    leaves: int
     score: dict[str, float]
     warnings: tuple[StrokeWarning, ...]
 
@@ -125,7 +142,7 @@ def model_photo(
     tree = grow_tree(seen, settings, rng, report)
     on_grown(tree.live)
     report("leaf", 0.0)
-    leaf, count = _leaf(sight, foliage, _front(foliage, tree), tree, settings, rng, report)
+    leaf, sprays, atlas = _leaf(sight, foliage, _front(foliage, tree), tree, settings, rng, report)
     report("mesh", 0.0)
     wrapping = tubes(tree.grown.skeleton)
     report("mesh", 0.6)
@@ -135,13 +152,15 @@ def model_photo(
     return TreeModel(
         camera=tree.camera,
         grown=grown,
+        envelope=tree.envelope,
         bark=bark,
         leaf=leaf,
+        cards=sprays,
+        atlas=atlas,
         likeness=foliage.mask | tree.wood,
         foliage_kind=tree.kind,
         iterations=settings.iterations,
         branches=_branch_count(grown.skeleton),
-        leaves=count,
         score={"attractors_reached": grown.attractors_reached, "depth_over_width": _depth_over_width(bark, leaf)},
         warnings=sight.warnings,
     )
@@ -166,18 +185,18 @@ def _leaf(
     settings: ModelSettings,
     rng: np.random.Generator,
     report: Report,
-) -> tuple[Surface | None, int]:
-    """Hang leaves on the grown tree: their surface and their number."""
+) -> tuple[Surface, Leaves, Atlas] | tuple[None, None, None]:
+    """Hang leaves on the grown tree: their surface, and what it is made from."""
     kind, leafy = tree.kind, np.isposinf(front)
     if kind == "bare" or settings.leaf_density == 0 or not leafy.any():
-        return None, 0
+        return None, None, None
     pure = foliage.pure & leafy
     coloured = pure if pure.sum() > 0.1 * leafy.sum() else leafy
     atlas = leaf_atlas(sight.photo, coloured, kind, rng)
     report("leaf", 0.2)
     params = LeafParams(settings.leaf_size, settings.leaf_density, kind=kind)
     leaves = place_leaves(tree.grown.skeleton, front, tree.envelope, sight.photo, atlas, params, rng, report)
-    return (Surface(cards(leaves, atlas), atlas.image), len(leaves)) if len(leaves) else (None, 0)
+    return (Surface(cards(leaves, atlas), atlas.image), leaves, atlas) if len(leaves) else (None, None, None)
 
 
 def _front(foliage: Foliage, tree: GrownTree) -> NDArray[np.float32]:

@@ -1,14 +1,18 @@
 """The settings of one model: the one table for command line, library and documents."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from treestroke.core.errors import SettingsError, shown
+from treestroke.core.leaf.seasons import SEASONS
+from treestroke.core.leaf.species import SPECIES
 
 MAX_SEED = 2**63 - 1
+FILES = ("gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv")
+"""Other forms of a tree: other formats, leaves as instances, the solid that things bump into, the skeleton."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +54,46 @@ class Choice:
         return str(value)
 
 
-def _setting(default: object, allowed: Span | Choice, meaning: str) -> Any:
-    return field(default=default, metadata={"allowed": allowed, "meaning": meaning})
+@dataclass(frozen=True)
+class Toggle:
+    """Yes or no."""
+
+    def __str__(self) -> str:
+        return "true or false"
+
+    def holds(self, value: object) -> bool:
+        """Tell whether a value is true or false."""
+        return isinstance(value, bool | np.bool_)
+
+    def plain(self, value: bool) -> bool:
+        """Give a truth value as Python's own."""
+        return bool(value)
+
+
+@dataclass(frozen=True)
+class Several:
+    """Any of a few names, none too."""
+
+    names: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"any of {', '.join(self.names)}"
+
+    def holds(self, value: object) -> bool:
+        """Tell whether a value is a list of the names."""
+        return isinstance(value, list | tuple) and all(isinstance(one, str) and one in self.names for one in value)
+
+    def plain(self, value: Sequence[str]) -> tuple[str, ...]:
+        """Give the names once each, in their own order."""
+        return tuple(name for name in self.names if name in value)
+
+
+Allowed = Span | Choice | Toggle | Several
+Group = Literal["tree", "leaves", "file"]
+
+
+def _setting(default: object, allowed: Allowed, meaning: str, group: Group) -> Any:
+    return field(default=default, metadata={"allowed": allowed, "meaning": meaning, "group": group})
 
 
 @dataclass(frozen=True)
@@ -64,14 +106,25 @@ class ModelSettings:
         A value is not allowed.
     """
 
-    height: float = _setting(10.0, Span(0.1, 150), "metres, from the root to the foliage's top")
+    height: float = _setting(10.0, Span(0.1, 150), "metres, from the root to the foliage's top", "tree")
     library: str = _setting(
-        "auto", Choice(("auto", "visible", "type1", "type2", "both")), "subtrees that growth may use"
+        "auto", Choice(("auto", "visible", "type1", "type2", "both")), "subtrees that growth may use", "tree"
     )
-    iterations: int = _setting(300, Span(0, 2000, whole=True), "rounds of growth")
-    foliage: str = _setting("auto", Choice(("auto", "leaves", "needles", "bare")), "what the twigs bear")
-    leaf_size: float = _setting(1.0, Span(0.3, 3), "factor on the size of the leaves")
-    leaf_density: float = _setting(1.0, Span(0, 3), "factor on the number of leaves")
+    iterations: int = _setting(300, Span(0, 2000, whole=True), "rounds of growth", "tree")
+    variants: int = _setting(1, Span(1, 16, whole=True), "trees grown of the photo, each by the next seed", "tree")
+    species: str = _setting("auto", Choice(("auto", *SPECIES)), "shape and place of leaves, relief of bark", "leaves")
+    season: str = _setting("photo", Choice(("photo", *SEASONS)), "colour and number of leaves", "leaves")
+    foliage: str = _setting("auto", Choice(("auto", "leaves", "needles", "bare")), "what the twigs bear", "leaves")
+    leaf_size: float = _setting(1.0, Span(0.3, 3), "factor on the size of the leaves", "leaves")
+    leaf_density: float = _setting(1.0, Span(0, 3), "factor on the number of leaves", "leaves")
+    wind: str = _setting(
+        "none", Choice(("none", "breeze", "all")), "movements in the file: a breeze, and a gust", "file"
+    )
+    lod: str = _setting(
+        "none", Choice(("none", "files", "one")), "levels of detail: as files of their own, or in the one file", "file"
+    )
+    compress: bool = _setting(False, Toggle(), "a file about a third as large (meshopt, WebP)", "file")
+    files: tuple[str, ...] = _setting((), Several(FILES), "further files", "file")
 
     def __post_init__(self) -> None:
         for entry in fields(self):

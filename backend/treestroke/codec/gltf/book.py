@@ -1,4 +1,4 @@
-"""Surfaces to a glTF 2.0 binary (GLB)."""
+"""The tables and the buffer of a glTF 2.0 document as they fill."""
 
 import json
 from collections.abc import Mapping
@@ -10,49 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from treestroke.codec.skeleton import plain_camera
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
+from treestroke.core.geometry.mesh import Mesh, Surface
 
 _BYTE, _SHORT, _INT, _FLOAT = 5121, 5123, 5125, 5126  # component types, glTF 2.0, 3.6.2.2
 _COMPONENTS = {np.uint8: _BYTE, np.uint16: _SHORT, np.uint32: _INT, np.float32: _FLOAT}
 _KINDS = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
 _VERTICES, _INDICES = 34962, 34963  # buffer view targets
-_LINEAR, _MIPMAPPED, _CLAMP, _REPEAT = 9729, 9987, 33071, 10497
+_LINEAR, _MIPMAPPED = 9729, 9987
 _JPEG_QUALITY = 88
 _JSON_CHUNK, _BINARY_CHUNK = b"JSON", b"BIN\0"
 
-BARK_MATERIAL = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.95}}
-LEAF_MATERIAL = {
-    "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0},
-    "alphaMode": "MASK",
-    "alphaCutoff": ALPHA_CUT,
-    "doubleSided": True,
-}
-
-
-def encode_glb(bark: Surface, leaf: Surface | None, camera: Camera, *, generator: str) -> bytes:
-    """Write a tree as a self-contained GLB.
-
-    Nodes, meshes and materials are named ``bark`` and ``leaf``; the scene's ``extras.photo`` holds the
-    camera. The bark's texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at `ALPHA_CUT`. Texture
-    coordinates within 0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Equal input gives equal bytes.
-    """
-    book = _Book()
-    book.add("bark", bark, BARK_MATERIAL, _REPEAT)
-    if leaf is not None:
-        book.add("leaf", leaf, LEAF_MATERIAL, _CLAMP)
-    scene = {"nodes": list(range(len(book.tables["nodes"]))), "extras": {"photo": plain_camera(camera)}}
-    head = {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [scene]}
-    return _container({**head, **book.tables, "buffers": [{"byteLength": len(book.binary)}]}, bytes(book.binary))
-
 
 @dataclass(eq=False)
-class _Book:
+class Book:
     """The tables of a glTF document as they fill, and the buffer that they point into."""
 
     binary: bytearray = field(default_factory=bytearray)
     tables: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
+
+    def glb(self, head: Mapping[str, Any]) -> bytes:
+        """Close the document under what stands before its tables."""
+        return _container({**head, **self.tables, "buffers": [{"byteLength": len(self.binary)}]}, bytes(self.binary))
 
     def add(self, name: str, surface: Surface, material: Mapping[str, Any], wrap: int) -> None:
         """Enter a surface with all that it needs."""

@@ -1,6 +1,6 @@
 import numpy as np
 
-from treestroke.codec.raster import Indices, planes, visible_triangles
+from treestroke.core.geometry.raster import Indices, planes, visible_triangles
 
 RIGHT_HALF = [[20.0, 0.0], [40.0, 0.0], [20.0, 20.0]]
 

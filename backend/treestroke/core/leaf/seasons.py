@@ -1,0 +1,3 @@
+"""The seasons: colour and number of leaves."""
+
+SEASONS = ("spring", "summer", "autumn", "bare")
