@@ -11,7 +11,7 @@ import numpy as np
 from treestroke.codec.json_text import read_json
 from treestroke.core.errors import StrokesError, shown
 from treestroke.core.stroke_rules import MAX_POINTS, Place, check_count
-from treestroke.core.strokes import Stroke, Strokes
+from treestroke.core.strokes import Length, Stroke, Strokes
 
 
 def parse_strokes(text: str | bytes, name: str) -> Strokes:
@@ -38,7 +38,7 @@ def strokes_from(value: object) -> Strokes:
     StrokesError
         As `parse_strokes`.
     """
-    table = _table(value, (), ("crown", "branches", "erase"))
+    table = _table(value, (), ("crown", "branches", "erase", "scale"))
     if "crown" not in table:
         raise StrokesError.at(("crown",), "it is missing; draw one stroke around the foliage", "crown_missing")
     branches, erase = (_list(table.get(key, []), (key,)) for key in ("branches", "erase"))
@@ -47,16 +47,19 @@ def strokes_from(value: object) -> Strokes:
         crown=_stroke(table["crown"], ("crown",), ("points",)),
         branches=tuple(_stroke(one, ("branches", i), ("points", "width")) for i, one in enumerate(branches)),
         erase=tuple(_stroke(one, ("erase", i), ("points",)) for i, one in enumerate(erase)),
+        scale=_length(table["scale"]) if "scale" in table else None,
     )
 
 
 def encode_strokes(strokes: Strokes) -> str:
     """Write strokes as JSON that `parse_strokes` reads back."""
-    value = {
+    value: dict[str, object] = {
         "crown": _plain(strokes.crown),
         "branches": [_plain(stroke) for stroke in strokes.branches],
         "erase": [_plain(stroke) for stroke in strokes.erase],
     }
+    if strokes.scale is not None:
+        value["scale"] = {"points": strokes.scale.points.tolist(), "metres": strokes.scale.metres}
     return json.dumps(value)
 
 
@@ -93,6 +96,15 @@ def _stroke(value: object, place: Place, known: Sequence[str]) -> Stroke:
     pairs = [_pair(one, (*place, "points", i)) for i, one in enumerate(points)]
     width = _number(table["width"], (*place, "width")) if "width" in table else None
     return Stroke(np.array(pairs, dtype=np.float64).reshape(-1, 2), width)
+
+
+def _length(value: object) -> Length:
+    place: Place = ("scale",)
+    table = _table(value, place, ("points", "metres"))
+    if "metres" not in table:
+        raise StrokesError.at(place, "it has no metres; give the line's length", "missing_key")
+    metres = _number(table["metres"], (*place, "metres"))
+    return Length(_stroke({"points": table.get("points", [])}, place, ("points",)).points, metres)
 
 
 def _pair(value: object, place: Place) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.imaging.outline import filled_and_crossing
-from treestroke.core.strokes import MendedStrokes, Stroke, Strokes, StrokeWarning
+from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes, StrokeWarning
 
 MAX_STROKES = 200
 MAX_POINTS = 10_000
@@ -19,6 +19,8 @@ CHECKED_SIDE = 1500
 """Long side, px, of the picture in which strokes are checked, whatever the photo's size."""
 TOUCH_SHARE = 0.02
 """Of the photo's long side: as near as a loose stroke comes to what it is meant to touch."""
+TREE_HEIGHTS = (0.1, 150.0)
+"""Metres, the least and the greatest height of a tree."""
 STEM_SHARE = 0.03
 """Of the tree's height: a later stroke that starts this near the root is a stem of its own."""
 Place = tuple[str | int, ...]
@@ -37,13 +39,16 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     ------
     StrokesError
         Too many strokes or points, a value that is not finite, too few distinct points, a crown that is too small,
-        or a trunk that neither touches nor points into the crown. The message names the stroke.
+        a trunk that neither touches nor points into the crown, or a known length that makes no tree of it. The message
+    names the stroke.
     """
     check_count(1 + len(strokes.branches) + len(strokes.erase))
+    scale = None if strokes.scale is None else _known_length(strokes.scale, width, height)
     inside = Strokes(
         crown=_clamped(strokes.crown, ("crown",), width, height, 3),
         branches=tuple(_clamped(s, ("branches", i), width, height, 2) for i, s in enumerate(strokes.branches)),
         erase=tuple(_clamped(s, ("erase", i), width, height, 2) for i, s in enumerate(strokes.erase)),
+        scale=scale,
     )
     coarse = min(1.0, CHECKED_SIDE / max(width, height))
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
@@ -53,6 +58,7 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     if not inside.branches:
         return MendedStrokes(inside, warnings)
     _check_trunk(inside, crown, coarse, max(width, height))
+    _check_scale(inside)
     branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
     return MendedStrokes(replace(inside, branches=branches), warnings + joined)
 
@@ -103,6 +109,29 @@ def _clamped(stroke: Stroke, place: Place, width: int, height: int, least: int) 
         held = f"it has {distinct} distinct point{'s' * (distinct != 1)} inside the photo"
         raise StrokesError.at(place, f"{held}, at least {least} are needed; draw it longer", "stroke_too_short")
     return Stroke(points, stroke.width)
+
+
+def _known_length(scale: Length, width: int, height: int) -> Length:
+    """Check a known length by itself and move its ends into the photo."""
+    if len(scale.points) != 2:
+        what = f"it has {len(scale.points)} points, it needs 2; draw a straight line"
+        raise StrokesError.at(("scale",), what, "scale_invalid", key="points")
+    ends = _clamped(Stroke(scale.points), ("scale",), width, height, 2).points
+    if not (np.isfinite(scale.metres) and scale.metres > 0):
+        what = f"{scale.metres} metres is no length; give metres above 0"
+        raise StrokesError.at(("scale",), what, "scale_invalid", key="metres")
+    return Length(ends, float(scale.metres))
+
+
+def _check_scale(strokes: Strokes) -> None:
+    """Refuse a known length by which the crown's top is higher, or lower, than any tree's."""
+    if strokes.scale is None:
+        return
+    height_px = strokes.branches[0].points[0, 1] - strokes.crown.points[:, 1].min()
+    height_m = height_px * strokes.scale.metres / float(np.hypot(*np.diff(strokes.scale.points, axis=0)[0]))
+    if not TREE_HEIGHTS[0] <= height_m <= TREE_HEIGHTS[1]:
+        what = f"by it the tree is {height_m:.3g} m high, not {TREE_HEIGHTS[0]:g} to {TREE_HEIGHTS[1]:g} m"
+        raise StrokesError.at(("scale",), f"{what}; check its metres and its ends", "scale_unlikely")
 
 
 def _check_crown(crown: NDArray[np.bool_]) -> None:

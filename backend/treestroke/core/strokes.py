@@ -16,6 +16,14 @@ class Stroke:
 
 
 @dataclass(frozen=True, eq=False)
+class Length:
+    """A line over something of known length: its two ends (2, 2) in px of the upright photo, and its metres."""
+
+    points: Floats
+    metres: float
+
+
+@dataclass(frozen=True, eq=False)
 class Strokes:
     """All strokes of one tree.
 
@@ -27,11 +35,14 @@ class Strokes:
         The first runs from the root up the trunk, each later one outward from its parent.
     erase
         Each drops the traced (not stroked) branches that it crosses.
+    scale
+        What sets the tree's scale in place of its height, at the tree's own distance from the camera.
     """
 
     crown: Stroke
     branches: tuple[Stroke, ...] = ()
     erase: tuple[Stroke, ...] = ()
+    scale: Length | None = None
 
 
 def same_stroke(one: Stroke, other: Stroke) -> bool:
@@ -43,8 +54,16 @@ def same_strokes(one: Strokes, other: Strokes) -> bool:
     """Tell whether the same was drawn twice."""
     if len(one.branches) != len(other.branches) or len(one.erase) != len(other.erase):
         return False
+    if not _same_length(one.scale, other.scale):
+        return False
     pairs = zip((one.crown, *one.branches, *one.erase), (other.crown, *other.branches, *other.erase), strict=True)
     return all(same_stroke(*pair) for pair in pairs)
+
+
+def _same_length(one: Length | None, other: Length | None) -> bool:
+    if one is None or other is None:
+        return one is other
+    return one.metres == other.metres and np.array_equal(one.points, other.points)
 
 
 @dataclass(frozen=True)

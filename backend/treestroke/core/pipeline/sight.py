@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.stroke_rules import mend_strokes
-from treestroke.core.strokes import Stroke, Strokes, StrokeWarning
+from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
 
 Photo = NDArray[np.uint8]
 Mask = NDArray[np.bool_]
@@ -37,9 +37,11 @@ class Sight:
         return max(float(self.strokes.branches[0].points[0, 1]) - top, 1.0)
 
     def camera(self, mask: Mask, height_m: float) -> Camera:
-        """Set the scale by the tree's height."""
-        root = self.strokes.branches[0].points[0]
+        """Set the scale by the known length, or by the tree's height where there is none."""
+        root, known = self.strokes.branches[0].points[0], self.strokes.scale
         scale = height_m / self.height_px(mask)
+        if known is not None:
+            scale = known.metres / float(np.hypot(*(known.points[1] - known.points[0])))
         return Camera(self.photo.shape[1], self.photo.shape[0], scale, (float(root[0]), float(root[1])))
 
     def unreduced(self, camera: Camera) -> Camera:
@@ -74,5 +76,6 @@ def look(photo: Photo, strokes: Strokes) -> Sight:
         return tuple(Stroke(s.points * scale, None if s.width is None else s.width * scale) for s in strokes)
 
     given = mended.strokes
-    fitted = Strokes(reduced((given.crown,))[0], reduced(given.branches), reduced(given.erase))
+    known = None if given.scale is None else Length(given.scale.points * scale, given.scale.metres)
+    fitted = Strokes(reduced((given.crown,))[0], reduced(given.branches), reduced(given.erase), known)
     return Sight(small, fitted, scale, (width, height), mended.warnings)
