@@ -6,7 +6,7 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
@@ -14,7 +14,7 @@ from typing import Any, NoReturn, TextIO
 
 from treestroke import __version__
 from treestroke.core.errors import TreestrokeError
-from treestroke.core.pipeline.settings import ModelSettings, Span
+from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
@@ -94,10 +94,19 @@ def _parser() -> Parser:
     model.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
     model.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
     model.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
+    model.add_argument("--leaf", metavar="LEAF.png", help="a leaf cut out, stalk down, that the tree is to bear")
     for entry in fields(ModelSettings):
         names = dict.fromkeys(f"--{entry.name.replace('_', mark)}" for mark in "-_")
-        about = f"{entry.metadata['meaning']}: {entry.metadata['allowed']} (default {entry.default})"
-        model.add_argument(*names, dest=entry.name, metavar="VALUE", help=about)
+        allowed, meaning = entry.metadata["allowed"], entry.metadata["meaning"]
+        if isinstance(allowed, Toggle):
+            model.add_argument(*names, dest=entry.name, action=argparse.BooleanOptionalAction, help=meaning)
+        else:
+            default = "none" if isinstance(allowed, Several) else entry.default
+            about, form = (
+                f"{meaning}: {allowed} (default {default})",
+                "A,B" if isinstance(allowed, Several) else "VALUE",
+            )
+            model.add_argument(*names, dest=entry.name, metavar=form, help=about)
     trace = commands.add_parser("trace", help="find foliage and branches", allow_abbrev=False)
     trace.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP")
     trace.add_argument("--strokes", metavar="STROKES.json", required=True)
@@ -126,7 +135,7 @@ def _parser() -> Parser:
 
 def _model(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "report", "preview"))
-    photo, strokes, settings, seed = _model_inputs(options)
+    photo, strokes, settings, seed, leaf = _model_inputs(options)
     from treestroke.codec.image import encode_png
     from treestroke.service.inputs import load_settings
     from treestroke.service.model import model
@@ -135,7 +144,7 @@ def _model(options: argparse.Namespace) -> None:
     chosen = load_settings(settings)
     line = ProgressLine(sys.stderr, chosen.iterations) if sys.stderr.isatty() else None
     try:
-        result = model(photo, strokes, chosen, seed, line or silent)
+        result = model(photo, strokes, chosen, seed, line or silent, leaf=leaf, name=_stem(options.out))
     finally:
         if line:
             line.clear()
@@ -144,7 +153,23 @@ def _model(options: argparse.Namespace) -> None:
         "report": lambda: json.dumps(result.report, indent=2).encode() + b"\n",
         "preview": lambda: encode_png(result.preview()),
     }
-    write_whole({path: makers[name]() for name, path in outputs.items()})
+    further = {options.out.with_name(name): content for name, content in list(result.files.items())[1:]}
+    _check_further(options, further)
+    write_whole({path: makers[name]() for name, path in outputs.items()} | further)
+
+
+def _stem(out: Path) -> str:
+    """Give the name that all files beside OUT begin with."""
+    return out.stem if out.suffix.lower() == ".glb" else out.name
+
+
+def _check_further(options: argparse.Namespace, further: Collection[Path]) -> None:
+    """Refuse to write over what was read."""
+    read = {os.path.realpath(given) for given in (options.photo, options.strokes, options.leaf) if given is not None}
+    for path in further:
+        if os.path.realpath(path) in read or path.is_dir():
+            problem = "the command reads it" if path.is_file() else "it is a folder"
+            raise UsageError(f"{path}: a file of this name is to be written, but {problem}; choose another --out")
 
 
 def _trace(options: argparse.Namespace) -> None:
@@ -199,28 +224,33 @@ def _service_settings(options: argparse.Namespace) -> Any:
     return read_settings(**{name: value for name, value in given.items() if value is not None})
 
 
-def _model_inputs(options: argparse.Namespace) -> tuple[Any, Any, dict[str, Any], Any]:
-    """Collect photo, strokes, settings and seed from the flags and, where one is given, the project file."""
+def _model_inputs(options: argparse.Namespace) -> tuple[Any, Any, dict[str, Any], Any, Any]:
+    """Collect photo, strokes, settings, seed and leaf from the flags and, where one is given, the project file."""
     flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
-    settings: dict[str, Any] = {name: _number(name, text) for name, text in flags.items() if text is not None}
+    settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
     if options.seed is not None:
         settings["seed"] = _whole(options.seed)
     if not options.photo.endswith(".treestroke"):
         if options.strokes is None:
             raise UsageError("--strokes is missing; name the strokes' JSON file")
-        return options.photo, options.strokes, settings, settings.pop("seed", 0)
+        return options.photo, options.strokes, settings, settings.pop("seed", 0), options.leaf
     if options.strokes is not None:
         raise UsageError("--strokes: a project has its own strokes; leave the flag out")
     from treestroke.service.inputs import load_project
 
     project = load_project(options.photo)
     settings = {**project.settings, **settings}
-    return project.photo, project.strokes, settings, settings.pop("seed", 0)
+    leaf = project.leaf if options.leaf is None else options.leaf
+    return project.photo, project.strokes, settings, settings.pop("seed", 0), leaf
 
 
-def _number(name: str, text: str) -> object:
+def _value(name: str, text: str | bool) -> object:
     """Read a flag's value as the setting's kind; what does not fit stays text, which the settings refuse by name."""
     allowed = {entry.name: entry.metadata["allowed"] for entry in fields(ModelSettings)}[name]
+    if isinstance(text, bool):
+        return text
+    if isinstance(allowed, Several):
+        return [one.strip() for one in text.split(",") if one.strip()]
     if not isinstance(allowed, Span):
         return text
     try:

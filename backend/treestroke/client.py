@@ -1,5 +1,6 @@
 """A client of the service: photos up, traces and trees down. It needs none of the modelling packages."""
 
+import base64
 import hashlib
 import json
 import math
@@ -109,7 +110,7 @@ class Client:
         OSError
             The file cannot be read.
         """
-        content = photo if isinstance(photo, bytes) else Path(photo).read_bytes()
+        content = _content(photo)
         headers = {"Content-Type": "application/octet-stream"}
         return _read(Photo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
 
@@ -142,11 +143,14 @@ class Client:
         seed: int = 0,
         name: str = "",
         idempotency_key: str | None = None,
+        leaf: str | os.PathLike[str] | bytes | None = None,
     ) -> Model:
         """Ask for a tree; `wait` for it. The request may be cut off and sent again: it makes one model.
 
         Parameters
         ----------
+        leaf
+            A path or the bytes of a PNG of a leaf cut out, that the tree is to bear.
         idempotency_key
             The same key with the same request gives the same model, for a day, from another process too; a new key by
             default.
@@ -163,6 +167,8 @@ class Client:
             "seed": seed,
             "name": name,
         }
+        if leaf is not None:
+            body["leaf"] = base64.b64encode(_content(leaf)).decode()
         headers = {"Idempotency-Key": idempotency_key or secrets.token_hex(16)}
         return _read(Model, self._ask("POST", "/v1/models", json=body, headers=headers).content)
 
@@ -362,6 +368,10 @@ def _plain(strokes: StrokesLike) -> dict[str, Any]:
         return dict(strokes)
     plain: dict[str, Any] = json.loads(Path(strokes).read_bytes())
     return plain
+
+
+def _content(file: str | os.PathLike[str] | bytes) -> bytes:
+    return file if isinstance(file, bytes) else Path(file).read_bytes()
 
 
 def _id(thing: Photo | Model | str) -> str:

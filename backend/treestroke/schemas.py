@@ -6,8 +6,31 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from pydantic.json_schema import SkipJsonSchema
 
 Point = tuple[float, float]
+Species = Literal[
+    "auto",
+    "ash",
+    "beech",
+    "birch",
+    "cherry",
+    "elm",
+    "horse_chestnut",
+    "larch",
+    "linden",
+    "locust",
+    "maple",
+    "oak",
+    "pine",
+    "plane",
+    "poplar",
+    "spruce",
+    "walnut",
+    "willow",
+]
+FurtherFile = Literal["gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv"]
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 
+MAX_LEAF_TEXT = 5_400_000
+"""Characters of base64 that the largest picture of a leaf needs."""
 NAME_PATTERN = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]*$"
 """A line of text: no controls, no line ends, nothing that turns the direction of what follows it."""
 _CROWN: list[JsonValue] = [[210, 300], [390, 120], [610, 140], [760, 330], [700, 560], [480, 640], [270, 560]]
@@ -52,6 +75,13 @@ class EraseStroke(_Wire):
     points: list[Point] = Field(min_length=2, max_length=10_000)
 
 
+class KnownLength(_Wire):
+    """A straight line over something of known length, as far from the camera as the tree; it sets the tree's height."""
+
+    points: list[Point] = Field(min_length=2, max_length=2)
+    metres: float = Field(gt=0, description="the line's length")
+
+
 class Strokes(_Wire):
     """What was drawn over a photo."""
 
@@ -60,6 +90,7 @@ class Strokes(_Wire):
     crown: CrownStroke
     branches: list[BranchStroke] = Field(default_factory=list, max_length=199)
     erase: list[EraseStroke] = Field(default_factory=list, max_length=199)
+    scale: KnownLength | SkipJsonSchema[None] = Field(default=None, json_schema_extra=_no_default)
 
 
 class TraceRequest(Strokes):
@@ -149,8 +180,15 @@ class ModelSettings(_Wire):
     library: Literal["auto", "visible", "type1", "type2", "both"] = "auto"
     iterations: int = Field(default=300, ge=0, le=2000)
     foliage: Literal["auto", "leaves", "needles", "bare"] = "auto"
+    variants: int = Field(default=1, ge=1, le=16, description="trees grown of the photo, each by the next seed")
+    species: Species = "auto"
+    season: Literal["photo", "spring", "summer", "autumn", "bare"] = "photo"
     leaf_size: float = Field(default=1, ge=0.3, le=3)
     leaf_density: float = Field(default=1, ge=0, le=3)
+    wind: Literal["none", "breeze", "all"] = "none"
+    lod: Literal["none", "files", "one"] = "none"
+    compress: bool = False
+    files: list[FurtherFile] = Field(default_factory=list, description="further files")
 
 
 class ModelRequest(_Wire):
@@ -166,6 +204,12 @@ class ModelRequest(_Wire):
     settings: ModelSettings = ModelSettings()
     seed: int = Field(default=0, ge=0, le=2**63 - 1)
     name: str = Field(default="", max_length=200, json_schema_extra={"pattern": NAME_PATTERN})
+    leaf: str | SkipJsonSchema[None] = Field(
+        default=None,
+        max_length=MAX_LEAF_TEXT,
+        description="PNG of a leaf cut out, base64",
+        json_schema_extra={"contentEncoding": "base64", "contentMediaType": "image/png", "default": None},
+    )
 
 
 class Rename(_Wire):
@@ -294,6 +338,7 @@ class Limits(_Wire):
     points: int
     json_bytes: int
     name_length: int
+    leaf_bytes: int = Field(description="of the picture of a leaf")
     trace_seconds: float
     model_seconds: float
     wait_seconds: float

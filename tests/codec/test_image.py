@@ -6,8 +6,16 @@ import pytest
 from PIL import Image, ImageCms
 
 import treestroke.codec.image
-from treestroke.codec.image import MAX_BYTES, check_size, decode_photo, decode_stored, encode_png, encode_stored
-from treestroke.core.errors import PhotoError
+from treestroke.codec.image import (
+    MAX_BYTES,
+    check_size,
+    decode_leaf,
+    decode_photo,
+    decode_stored,
+    encode_png,
+    encode_stored,
+)
+from treestroke.core.errors import LeafError, PhotoError
 
 UPRIGHT = np.zeros((80, 100, 3), dtype=np.uint8)
 UPRIGHT[:40, :50] = (250, 10, 10)
@@ -230,3 +238,41 @@ def test_damage_is_refused_or_decoded_but_never_breaks(maple_photo: Path, kind: 
             assert decode_photo(bytes(broken), "photo").dtype == np.uint8
         except PhotoError as error:
             assert "\n" not in str(error)
+
+
+def leaf_png(alpha: np.ndarray, colour: tuple[int, int, int] = (60, 120, 40)) -> bytes:
+    pixels = np.dstack([np.full((*alpha.shape, 3), colour, np.uint8), alpha.astype(np.uint8)])
+    out = io.BytesIO()
+    Image.fromarray(pixels).save(out, "PNG")
+    return out.getvalue()
+
+
+def disc_alpha(side: int = 64) -> np.ndarray:
+    y, x = np.mgrid[:side, :side] + 0.5 - side / 2
+    return np.where(np.hypot(x, y) < 0.4 * side, 255, 0)
+
+
+def test_a_leaf_keeps_its_colour_and_its_alpha() -> None:
+    leaf = decode_leaf(leaf_png(disc_alpha()), "leaf.png")
+    assert leaf.shape == (64, 64, 4)
+    assert leaf[32, 32].tolist() == [60, 120, 40, 255]
+    assert leaf[0, 0, 3] == 0
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        (b"", "leaf_unreadable"),
+        (b"no picture", "leaf_unreadable"),
+        (leaf_png(disc_alpha())[:200], "leaf_unreadable"),
+        (leaf_png(disc_alpha(8)), "leaf_size"),
+        (leaf_png(np.full((64, 64), 255)), "leaf_not_cut_out"),
+        (leaf_png(np.zeros((64, 64))), "leaf_not_cut_out"),
+        (b"\x89PNG" + bytes(4_000_000), "leaf_too_large"),
+    ],
+    ids=["empty", "text", "cut short", "tiny", "opaque", "clear", "large"],
+)
+def test_what_is_no_leaf_cut_out_is_refused(data: bytes, code: str) -> None:
+    with pytest.raises(LeafError, match=r"^leaf\.png: ") as refused:
+        decode_leaf(data, "leaf.png")
+    assert refused.value.code == code

@@ -25,6 +25,14 @@ def test_branches_and_erase_may_be_absent() -> None:
     assert strokes.branches == strokes.erase == ()
 
 
+def test_a_known_length_is_kept() -> None:
+    strokes = strokes_from({**GOOD, "scale": {"points": [[1, 2], [3, 4]], "metres": 1.8}})
+    again = parse_strokes(encode_strokes(strokes), "strokes")
+    assert again.scale is not None
+    assert (again.scale.points.tolist(), again.scale.metres) == ([[1, 2], [3, 4]], 1.8)
+    assert strokes_from(GOOD).scale is None
+
+
 def test_a_width_is_kept() -> None:
     assert strokes_from(GOOD).branches[0].width == 4.0
 
@@ -43,6 +51,11 @@ def test_a_byte_order_mark_is_forgiven() -> None:
         ({**GOOD, "crown": {}}, "crown"),
         ({**GOOD, "crown": {"points": SQUARE, "width": 3}}, "'width'"),
         ({**GOOD, "branches": {}}, "branches"),
+        ({**GOOD, "scale": None}, "scale"),
+        ({**GOOD, "scale": {"points": [[1, 2], [3, 4]]}}, "scale: it has no metres"),
+        ({**GOOD, "scale": {"points": [[1, 2], [3, 4]], "metres": "2"}}, "scale/metres"),
+        ({**GOOD, "scale": {"points": [[1, 2], [3]], "metres": 2}}, "scale/points/1"),
+        ({**GOOD, "scale": {"points": [[1, 2], [3, 4]], "metres": 2, "unit": "m"}}, "'unit'"),
         ({**GOOD, "branches": [{"points": [[1, 2], [3]]}]}, "branches/0/points/1"),
         ({**GOOD, "branches": [{"points": [[1, 2], ["3", 4]]}]}, "branches/0/points/1"),
         ({**GOOD, "branches": [{"points": [[1, 2], [True, 4]]}]}, "branches/0/points/1"),

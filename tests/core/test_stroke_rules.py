@@ -1,9 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import mend_strokes, require_trunk
-from treestroke.core.strokes import MendedStrokes, Stroke, Strokes
+from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes
 
 WIDTH, HEIGHT = 400, 300
 CROWN = [[100, 40], [300, 40], [300, 160], [100, 160]]
@@ -57,6 +59,37 @@ def test_a_width_that_is_not_positive_is_refused() -> None:
     with pytest.raises(StrokesError, match="^branches/0: width") as refused:
         mend_strokes(strokes, WIDTH, HEIGHT)
     assert (refused.value.code, refused.value.pointer) == ("width_invalid", "/branches/0/width")
+
+
+def with_length(points: object, metres: float) -> MendedStrokes:
+    strokes = Strokes(Stroke(np.array(CROWN, float)), (Stroke(np.array(TRUNK, float)),))
+    return mend_strokes(replace(strokes, scale=Length(np.array(points, float), metres)), WIDTH, HEIGHT)
+
+
+def test_a_known_length_is_clamped_to_the_photo() -> None:
+    scale = with_length([[50, 200], [50, 900]], 2.0).strokes.scale
+    assert scale is not None
+    assert scale.points.tolist() == [[50, 200], [50, 300]]
+
+
+@pytest.mark.parametrize(
+    ("points", "metres", "message", "code"),
+    [
+        ([[50, 200]], 2.0, "^scale: it has 1 points", "scale_invalid"),
+        ([[50, 200], [60, 210], [70, 220]], 2.0, "^scale: it has 3 points", "scale_invalid"),
+        ([[50, 200], [50, 200]], 2.0, "^scale: it has 1 distinct point", "stroke_too_short"),
+        ([[50, 200], [np.nan, 250]], 2.0, "^scale: a coordinate", "non_finite_number"),
+        ([[50, 200], [50, 250]], 0.0, "^scale: 0.0 metres is no length", "scale_invalid"),
+        ([[50, 200], [50, 250]], np.nan, "^scale: nan metres is no length", "scale_invalid"),
+        ([[50, 200], [50, 250]], 100.0, "^scale: by it the tree is 500 m high", "scale_unlikely"),
+        ([[50, 50], [50, 299]], 0.01, "^scale: by it the tree is 0.01 m high", "scale_unlikely"),
+    ],
+)
+def test_a_length_that_makes_no_tree_is_refused(points: object, metres: float, message: str, code: str) -> None:
+    with pytest.raises(StrokesError, match=message) as refused:
+        with_length(points, metres)
+    assert refused.value.code == code
+    assert refused.value.pointer.startswith("/scale")
 
 
 def test_a_trunk_that_points_into_the_crown_from_afar_is_taken() -> None:

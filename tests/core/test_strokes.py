@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from treestroke.core.strokes import Stroke, Strokes, same_strokes
+from treestroke.core.strokes import Length, Stroke, Strokes, same_strokes
 
 LINE = Stroke(np.array([[1.0, 2.0], [3.0, 4.0]]))
 DRAWN = Strokes(LINE, (LINE, Stroke(LINE.points + 5, 3.0)), (LINE,))
@@ -19,6 +19,12 @@ def test_copies_are_the_same() -> None:
     assert same_strokes(DRAWN, Strokes(copied(DRAWN.crown), branches, erase))
 
 
+def test_a_known_length_is_compared_by_its_ends_and_its_metres() -> None:
+    lengths = [Length(LINE.points.copy(), 2.0), Length(LINE.points, 2.5), Length(MOVED.points, 2.0)]
+    measured = replace(DRAWN, scale=Length(LINE.points, 2.0))
+    assert [same_strokes(measured, replace(DRAWN, scale=one)) for one in lengths] == [True, False, False]
+
+
 @pytest.mark.parametrize(
     "other",
     [
@@ -28,8 +34,9 @@ def test_copies_are_the_same() -> None:
         replace(DRAWN, branches=(LINE,)),
         replace(DRAWN, erase=()),
         replace(DRAWN, branches=(*DRAWN.branches, LINE), erase=()),
+        replace(DRAWN, scale=Length(LINE.points, 2.0)),
     ],
-    ids=["crown", "points", "width", "fewer", "erase", "moved over"],
+    ids=["crown", "points", "width", "fewer", "erase", "moved over", "scale"],
 )
 def test_any_other_stroke_is_noticed(other: Strokes) -> None:
     assert not same_strokes(DRAWN, other)

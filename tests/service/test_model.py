@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,9 @@ def maple(maple_photo: Path, maple_strokes: Path) -> Model:
 
 def test_the_report_has_the_contract_s_fields(maple: Model) -> None:
     report = maple.report
-    assert set(report) == {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
-    assert set(report["seconds"]) == set(STAGES)
+    needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
+    assert set(report) == needed | {"measures", "variants", "files"}
+    assert set(report["seconds"]) == set(STAGES) - {"levels"}
     assert set(report["counts"]) == {"iterations", "branches", "leaves", "triangles", "bytes"}
     assert set(report["score"]) == {"silhouette_iou", "attractors_reached", "depth_over_width"}
     assert all(type(count) is int for count in report["counts"].values())
@@ -45,12 +47,12 @@ def test_another_seed_gives_another_tree(maple: Model, maple_photo: Path, maple_
 def test_progress_goes_through_the_stages_in_order(maple_photo: Path, maple_strokes: Path) -> None:
     seen: list[tuple[str, float]] = []
     treestroke.model(maple_photo, maple_strokes, QUICK, report=lambda stage, fraction: seen.append((stage, fraction)))
-    assert list(dict.fromkeys(stage for stage, _ in seen)) == list(STAGES)
+    assert list(dict.fromkeys(stage for stage, _ in seen)) == [stage for stage in STAGES if stage != "levels"]
     assert all(0.0 <= fraction <= 1.0 for _, fraction in seen)
 
 
 def test_no_stage_falls_back(maple_photo: Path, maple_strokes: Path) -> None:
-    told: dict[str, list[float]] = {stage: [] for stage in STAGES}
+    told: dict[str, list[float]] = {stage: [] for stage in STAGES if stage != "levels"}
     treestroke.model(maple_photo, maple_strokes, QUICK, report=lambda stage, fraction: told[stage].append(fraction))
     assert all(fractions == sorted(fractions) for fractions in told.values())
     assert min(len(fractions) for fractions in told.values()) >= 1
@@ -77,6 +79,25 @@ def test_an_exception_in_a_report_ends_the_work(maple_photo: Path, maple_strokes
 
     with pytest.raises(CancelledError):
         treestroke.model(maple_photo, maple_strokes, QUICK, report=stop)
+
+
+def test_variants_are_the_trees_of_the_next_seeds(maple: Model, maple_photo: Path, maple_strokes: Path) -> None:
+    both = treestroke.model(maple_photo, maple_strokes, {**QUICK, "variants": 2}, seed=0)
+    assert list(both.files) == ["tree.glb", "tree.v2.glb"]
+    assert both.files["tree.v2.glb"] == maple.glb
+    first, second = both.report["variants"]
+    assert (first["seed"], second["seed"]) == (0, 1)
+    assert second["score"] == maple.report["score"]
+    assert abs(first["score"]["silhouette_iou"] - second["score"]["silhouette_iou"]) < 0.05
+
+
+def test_a_known_length_sets_the_height(maple_photo: Path, maple_strokes: Path) -> None:
+    strokes = json.loads(maple_strokes.read_text())
+    (x, y), top = strokes["branches"][0]["points"][0], min(y for _, y in strokes["crown"]["points"])
+    strokes["scale"] = {"points": [[x, y], [x, (y + top) / 2]], "metres": 4.0}
+    measures = treestroke.model(maple_photo, strokes, {**QUICK, "height": 100}).report["measures"]
+    assert measures["height"]["value"] == pytest.approx(8.0, rel=0.1)
+    assert (measures["height"]["basis"], measures["scale"]["basis"]) == ("measured", "measured")
 
 
 def test_the_preview_is_a_picture(maple: Model) -> None:

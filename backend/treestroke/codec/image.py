@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
-from treestroke.core.errors import PhotoError
+from treestroke.core.errors import LeafError, PhotoError
 from treestroke.core.progress import Report, silent
 
 Picture = NDArray[np.uint8]
@@ -23,6 +23,8 @@ MAX_PIXELS = 50_000_000
 MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
 """A stored photo is no larger: noise that does not compress, a byte a channel, and 1 % for the PNG around it."""
 
+MAX_LEAF_BYTES = 4_000_000
+MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 _FORMATS = ("JPEG", "PNG", "WEBP")
 _BEGINNING = re.compile(rb"\xff\xd8\xff|\x89PNG\r\n\x1a\n|RIFF....WEBP", re.DOTALL)
 _PHONE_BRANDS = {"AVIF": (b"avif", b"avis"), "HEIC": (b"heic", b"heix", b"hevc", b"hevx", b"heim", b"heis", b"mif1")}
@@ -86,6 +88,36 @@ def decode_stored(data: bytes, report: Report = silent) -> Picture:
         As `decode_photo`, save for the file's size.
     """
     return decode_photo(StoredPhoto(data), "photo", report)
+
+
+def decode_leaf(data: bytes, name: str) -> Picture:
+    """Decode the PNG of a leaf cut out to (h, w, 4) uint8 sRGB, straight alpha; ``name`` appears in messages.
+
+    Raises
+    ------
+    LeafError
+        Another format, damaged, too small or too large, or nothing is cut out of it.
+    """
+    if len(data) > MAX_LEAF_BYTES:
+        what = f"the leaf's picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
+        raise LeafError(f"{name}: {what}", code="leaf_too_large")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image = Image.open(io.BytesIO(data), formats=("PNG",))
+            if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
+                what = f"the leaf's picture is {image.width} x {image.height} px, each side must be {MIN_LEAF_SIDE} to"
+                raise LeafError(f"{name}: {what} {MAX_LEAF_SIDE} px; resize it", code="leaf_size")
+            leaf = np.asarray(image.convert("RGBA"))
+    except _DAMAGED as error:
+        what = f"this is no PNG picture that can be read ({_brief(error)}); save the leaf as PNG"
+        raise LeafError(f"{name}: {what}") from error
+    drawn = float((leaf[..., 3] > 127).mean())
+    if not 0.01 <= drawn <= 0.99:
+        lacks = "no leaf: all is clear" if drawn < 0.01 else "nothing clear around the leaf"
+        what = f"the picture has {lacks}; cut the leaf out, with an alpha channel"
+        raise LeafError(f"{name}: {what}", code="leaf_not_cut_out")
+    return np.ascontiguousarray(leaf)
 
 
 def check_size(width: int, height: int, name: str) -> None:

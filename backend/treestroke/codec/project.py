@@ -1,4 +1,4 @@
-"""Project files: NAME.treestroke, a ZIP of photo, strokes.json and settings.json."""
+"""Project files: NAME.treestroke, a ZIP of photo, strokes.json, settings.json and perhaps leaf.png."""
 
 import io
 import json
@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Any
 
-from treestroke.codec.image import MAX_STORED_BYTES, StoredPhoto
+from treestroke.codec.archive import zipped
+from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, StoredPhoto
 from treestroke.codec.json_text import read_json
 from treestroke.core.errors import SettingsError, TreestrokeError
 
@@ -16,14 +17,13 @@ MAX_TEXT_BYTES = 64_000_000
 """More than the longest strokes that are allowed ever need."""
 
 
+LEAF = "leaf.png"
 _ENDINGS = {b"\xff\xd8": "jpg", b"RIFF": "webp"}
-_NO_TIME = (1980, 1, 1, 0, 0, 0)
-_UNIX, _READABLE = 3, 0o644
 
 
 @dataclass(frozen=True)
 class Project:
-    """The photo's bytes, the strokes' JSON text, and the settings by name (``seed`` may be among them).
+    """The photo's bytes, the strokes' JSON text, the settings by name (``seed`` may be among them), a leaf's picture.
 
     What a service stored may be larger than an upload, so the photo in a project may be, too.
     """
@@ -31,12 +31,13 @@ class Project:
     photo: bytes
     strokes: bytes
     settings: dict[str, Any]
+    leaf: bytes | None = None
 
 
 def read_project(data: bytes, name: str) -> Project:
     """Open a project file; ``name`` appears in messages.
 
-    The photo is the one member called ``photo`` with any ending; settings.json may be absent.
+    The photo is the one member called ``photo`` with any ending; settings.json and leaf.png may be absent.
 
     Raises
     ------
@@ -56,28 +57,21 @@ def read_project(data: bytes, name: str) -> Project:
             strokes = _member(archive, members["strokes.json"], MAX_TEXT_BYTES, name)
             has_settings = "settings.json" in members
             settings = _member(archive, members["settings.json"], MAX_TEXT_BYTES, name) if has_settings else b"{}"
+            leaf = _member(archive, members[LEAF], MAX_LEAF_BYTES, name) if LEAF in members else None
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         what = f"this is no project file that can be read ({error}); export it anew"
         raise TreestrokeError(f"{name}: {what}", code="project_unreadable") from error
-    return Project(StoredPhoto(photo), strokes, _settings(settings, name))
+    return Project(StoredPhoto(photo), strokes, _settings(settings, name), leaf)
 
 
 def write_project(project: Project) -> bytes:
     """Write a project file that `read_project` reads back; equal projects give equal bytes."""
     ending = next((ending for start, ending in _ENDINGS.items() if project.photo.startswith(start)), "png")
     settings = json.dumps(project.settings, indent=2, sort_keys=True).encode()
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
-        _add(archive, f"photo.{ending}", project.photo, zipfile.ZIP_STORED)  # it is compressed already
-        _add(archive, "strokes.json", project.strokes, zipfile.ZIP_DEFLATED)
-        _add(archive, "settings.json", settings, zipfile.ZIP_DEFLATED)
-    return out.getvalue()
-
-
-def _add(archive: zipfile.ZipFile, member: str, data: bytes, compression: int) -> None:
-    info = zipfile.ZipInfo(member, _NO_TIME)
-    info.create_system, info.external_attr, info.compress_type = _UNIX, _READABLE << 16, compression
-    archive.writestr(info, data)
+    leaf = {} if project.leaf is None else {LEAF: project.leaf}
+    return zipped(
+        {f"photo.{ending}": project.photo, "strokes.json": project.strokes, "settings.json": settings, **leaf}
+    )
 
 
 def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, limit: int, name: str) -> bytes:

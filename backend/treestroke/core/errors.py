@@ -2,6 +2,7 @@
 
 TreestrokeError              the user's input cannot be used; the message says what, where, how to mend it
 ├── PhotoError               the picture itself
+├── LeafError                the picture of a leaf
 ├── StrokesError             a stroke or the stroke file
 └── SettingsError            a setting's name or value
 
@@ -53,6 +54,13 @@ class PhotoError(TreestrokeError):
 
     usual_code = "photo_unreadable"
     whole = "photo"
+
+
+class LeafError(TreestrokeError):
+    """The picture of a leaf cannot be read, or has no leaf cut out."""
+
+    usual_code = "leaf_unreadable"
+    whole = "leaf"
 
 
 class StrokesError(TreestrokeError):

@@ -7,16 +7,25 @@ from typing import Any
 
 import numpy as np
 
-from treestroke.codec.image import MAX_BYTES, MAX_STORED_BYTES, Picture, check_size, decode_photo
+from treestroke.codec.image import (
+    MAX_BYTES,
+    MAX_LEAF_BYTES,
+    MAX_STORED_BYTES,
+    Picture,
+    check_size,
+    decode_leaf,
+    decode_photo,
+)
 from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
 from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
+from treestroke.core.errors import LeafError, PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import Strokes
 
 PhotoLike = str | os.PathLike[str] | bytes | Picture
 StrokesLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Strokes
+LeafLike = str | os.PathLike[str] | bytes | None
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
 
@@ -75,6 +84,21 @@ def load_strokes(strokes: StrokesLike) -> Strokes:
     if isinstance(strokes, bytes):
         return parse_strokes(strokes, "strokes")
     return parse_strokes(read_input(strokes, MAX_TEXT_BYTES, StrokesError), os.fspath(strokes))
+
+
+def load_leaf(leaf: LeafLike) -> Picture | None:
+    """Bring the picture of a leaf (path or PNG bytes, or absent) to pixels (h, w, 4).
+
+    Raises
+    ------
+    LeafError
+        As `decode_leaf`; or the file cannot be read.
+    """
+    if leaf is None:
+        return None
+    if isinstance(leaf, bytes):
+        return decode_leaf(leaf, "leaf")
+    return decode_leaf(read_input(leaf, MAX_LEAF_BYTES, LeafError), os.fspath(leaf))
 
 
 def load_settings(settings: SettingsLike) -> ModelSettings:

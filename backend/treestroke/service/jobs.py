@@ -3,6 +3,7 @@
 import json
 import threading
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
@@ -10,11 +11,15 @@ from typing import Any, Self
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
+from treestroke.codec.archive import zipped
 from treestroke.codec.image import StoredPhoto, encode_png
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.growing import LiveTree
+from treestroke.service.course import Course
 from treestroke.service.failures import problem_of, problem_of_input, ran_out_of_memory
+from treestroke.service.files import Bundle
+from treestroke.service.inputs import load_settings
 from treestroke.service.model import Model as MadeModel
 from treestroke.service.model import model
 from treestroke.store.blobs import Blobs
@@ -25,19 +30,6 @@ from treestroke.store.tables import Model
 GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
 _BEAT_SECONDS = 2.0
 _LISTEN_SECONDS = 0.5
-_WEIGHTS = {
-    "decode": 0.03,
-    "foliage": 0.2,
-    "trace": 0.06,
-    "lift": 0.01,
-    "grow": 0.15,
-    "leaf": 0.15,
-    "mesh": 0.12,
-    "write": 0.03,
-    "preview": 0.25,
-}
-"""Share of a model's time that each phase takes, measured on photos of 1500 px."""
-PHASES = tuple(_WEIGHTS)
 log = structlog.get_logger()
 
 
@@ -59,6 +51,7 @@ class Pulse:
     def __init__(self, database: Database, job: Model, seconds: float) -> None:
         self._database, self._job = database, job
         self._deadline = time.monotonic() + seconds
+        self._course = Course(load_settings(job.settings))
         self._state: tuple[str | None, float, float] = (None, 0.0, 0.0)
         self._order: type[Exception] | None = None
         self._over = threading.Event()
@@ -84,8 +77,7 @@ class Pulse:
             raise self._order
         if time.monotonic() > self._deadline:
             raise TimeLimit
-        before = sum(_WEIGHTS[earlier] for earlier in PHASES[: PHASES.index(phase)])
-        self._state = phase, fraction, max(before + fraction * _WEIGHTS[phase], self._state[2])
+        self._state = phase, fraction, self._course.progress(phase, fraction)
 
     def _run(self) -> None:
         shown, beaten, pause = self._state, 0.0, 0.0
@@ -155,13 +147,23 @@ def _make(
         with database.writing() as session:
             add_file(session, job, GROWTH, blob, len(content), **first)
 
-    made: MadeModel = model(photo, blobs.get(job.strokes_blob), job.settings, job.seed, pulse.report, show)
+    leaf = None if job.leaf_blob is None else blobs.get(job.leaf_blob)
+    given = photo, blobs.get(job.strokes_blob), job.settings, job.seed
+    made: MadeModel = model(*given, pulse.report, show, leaf=leaf)
     pulse.report("preview", 0.0)
-    contents = {GLB: made.glb, PREVIEW: encode_png(made.preview())}
+    contents = {**_packed(made.bundles), PREVIEW: encode_png(made.preview())}
     pulse.report("preview", 1.0)
     files = {name: (blobs.put(content), len(content)) for name, content in contents.items()}
     pulse.report("preview", 1.0)
     return made.report, files
+
+
+def _packed(bundles: Mapping[str, Bundle]) -> dict[str, bytes]:
+    """Give each bundle as one file: what is one already, else a ZIP."""
+    return {
+        name if len(bundle) == 1 else f"{name}.zip": next(iter(bundle.values())) if len(bundle) == 1 else zipped(bundle)
+        for name, bundle in bundles.items()
+    }
 
 
 def _publish(database: Database, job: Model, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> None:

@@ -74,7 +74,8 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
     photo = brought or _photo_for(shelf, wish, key)
     shelf.tracers(photo.blob, tracing.check_wish, shelf.blobs.path(photo.blob), wish.strokes)
     strokes = shelf.blobs.put(wish.strokes)
-    fingerprint = _digest([photo.blob, strokes, wish.settings, wish.seed, ENGINE])
+    leaf = None if wish.leaf is None else shelf.blobs.put(wish.leaf)
+    fingerprint = _digest([photo.blob, strokes, leaf, wish.settings, wish.seed, ENGINE])
     used = _digest([fingerprint, wish.name, photo.sha256])
     with shelf.database.writing() as session:
         first = session.get(Replay, key) if key else None
@@ -84,7 +85,7 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
             found = queries.model(session, first.model, deleted=True)
             if found is not None:
                 return _seen(session, found)
-        row = _new_row(photo, wish, strokes, fingerprint)
+        row = _new_row(photo, wish, strokes, leaf, fingerprint)
         session.add_all([row, photo] if brought else [row])
         session.flush()
         _answer_from_twin(session, row)
@@ -185,7 +186,8 @@ def project_of(shelf: Shelf, id: str) -> tuple[Model, str]:
     """
     row = see(shelf.database, id).row
     photo, strokes = shelf.blobs.get(row.photo_blob), shelf.blobs.get(row.strokes_blob)
-    return row, shelf.blobs.put(write_project(Project(photo, strokes, {**row.settings, "seed": row.seed})))
+    leaf = None if row.leaf_blob is None else shelf.blobs.get(row.leaf_blob)
+    return row, shelf.blobs.put(write_project(Project(photo, strokes, {**row.settings, "seed": row.seed}, leaf)))
 
 
 def _photo_for(shelf: Shelf, wish: Wish, key: str | None) -> Photo:
@@ -213,13 +215,14 @@ def _seen(session: Session, row: Model) -> Seen:
     return Seen(row, queries.files(session, row.id), position, eta_s)
 
 
-def _new_row(photo: Photo, wish: Wish, strokes: str, fingerprint: str) -> Model:
+def _new_row(photo: Photo, wish: Wish, strokes: str, leaf: str | None, fingerprint: str) -> Model:
     return Model(
         id=queries.new_id("mdl"),
         name=wish.name,
         photo=photo.id,
         photo_blob=photo.blob,
         strokes_blob=strokes,
+        leaf_blob=leaf,
         settings=wish.settings,
         seed=wish.seed,
         engine=ENGINE,

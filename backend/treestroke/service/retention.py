@@ -52,5 +52,5 @@ def referenced(database: Database) -> set[str]:
 
 
 def _referenced(session: Session) -> set[str]:
-    columns = (Photo.blob, Model.photo_blob, Model.strokes_blob, File.blob)
-    return {blob for column in columns for blob in session.scalars(select(column))}
+    columns = (Photo.blob, Model.photo_blob, Model.strokes_blob, Model.leaf_blob, File.blob)
+    return {blob for column in columns for blob in session.scalars(select(column)) if blob is not None}

@@ -3,21 +3,22 @@
 Each process remembers the photos that it saw last, with their foliage, so that one more stroke is answered at once.
 """
 
+import base64
 import json
 import re
 from collections import OrderedDict
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from treestroke.codec.image import Picture, decode_photo, decode_stored, encode_stored
+from treestroke.codec.image import MAX_LEAF_BYTES, Picture, decode_leaf, decode_photo, decode_stored, encode_stored
 from treestroke.codec.json_text import read_json
 from treestroke.codec.strokes import encode_strokes, parse_strokes, strokes_from
-from treestroke.core.errors import StrokesError, TreestrokeError, shown
-from treestroke.core.pipeline.settings import check_seed, settings_from
+from treestroke.core.errors import LeafError, StrokesError, TreestrokeError, shown
+from treestroke.core.pipeline.settings import check_seed, plain_settings, settings_from
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES, mend_strokes, require_trunk
-from treestroke.schemas import NAME_PATTERN
+from treestroke.schemas import MAX_LEAF_TEXT, NAME_PATTERN
 from treestroke.service.trace import Trace, trace
 from treestroke.store.blobs import Blobs
 
@@ -49,6 +50,7 @@ class Wish:
     settings: dict[str, Any]
     seed: int
     name: str
+    leaf: bytes | None = None
 
 
 _MOST_SIGNS = {b"[": 1.1 * MAX_STROKES * MAX_POINTS, b"{": 1000 * MAX_STROKES, b",": 2.2 * MAX_STROKES * MAX_POINTS}
@@ -96,23 +98,26 @@ def read_wish(body: bytes) -> Wish:
         It is no such request, or something in it cannot be used; the pointer leads into the request.
     """
     request = _object(body)
-    _check_keys(request, ("photo", "strokes"), ("settings", "seed", "name"))
+    _check_keys(request, ("photo", "strokes"), ("settings", "seed", "name", "leaf"))
     if not isinstance(request["photo"], str) or len(request["photo"]) > MAX_ID:
         raise TreestrokeError.at(("photo",), "it must be a photo's id; upload the photo first", "wrong_type")
-    return _wish(**request)
+    leaf = _decoded_leaf(request.pop("leaf")) if "leaf" in request else None
+    return _wish(**request, leaf=leaf)
 
 
 def read_fields(fields: dict[str, bytes]) -> Wish:
-    """Read a request for a model from a form's fields but the photo, each JSON text (the name plain text).
+    """Read a request for a model from a form's fields but the photo, each JSON text (the name plain, the leaf a PNG).
 
     Raises
     ------
     TreestrokeError
         As `read_wish`.
     """
-    _check_keys(fields, ("strokes",), ("settings", "seed", "name"))
-    given: dict[str, Any] = {key: _json(text, key) for key, text in fields.items() if key != "name" and text.strip()}
-    return _wish("", **{"strokes": None, **given}, name=fields.get("name", b"").decode("utf-8", "surrogateescape"))
+    _check_keys(fields, ("strokes",), ("settings", "seed", "name", "leaf"))
+    texts = {key: text for key, text in fields.items() if key not in ("name", "leaf") and text.strip()}
+    given: dict[str, Any] = {"strokes": None} | {key: _json(text, key) for key, text in texts.items()}
+    name = fields.get("name", b"").decode("utf-8", "surrogateescape")
+    return _wish("", **given, name=name, leaf=fields.get("leaf") or None)
 
 
 def check_wish(photo: Path, strokes: bytes) -> None:
@@ -157,20 +162,46 @@ def check_name(name: object) -> str:
     return name
 
 
-def _wish(photo: str, strokes: object, settings: object = _DEFAULTS, seed: object = 0, name: object = "") -> Wish:
+def _wish(
+    photo: str,
+    strokes: object,
+    settings: object = _DEFAULTS,
+    seed: object = 0,
+    name: object = "",
+    leaf: bytes | None = None,
+) -> Wish:
     try:
         given = strokes_from(strokes)
         require_trunk(given)
     except StrokesError as error:
         raise _inside("strokes", error) from error
-    return Wish(photo, encode_strokes(given).encode(), _settings(settings), check_seed(seed), check_name(name))
+    if leaf is not None:
+        _check_leaf(leaf)
+    return Wish(photo, encode_strokes(given).encode(), _settings(settings), check_seed(seed), check_name(name), leaf)
+
+
+def _decoded_leaf(text: object) -> bytes:
+    if not isinstance(text, str) or len(text) > MAX_LEAF_TEXT:
+        what = f"it must be base64 of a PNG of at most {MAX_LEAF_BYTES // 10**6} MB"
+        raise LeafError.at(("leaf",), what, "wrong_type")
+    try:
+        return base64.b64decode(text, validate=True)
+    except ValueError as error:
+        raise LeafError.at(("leaf",), "this is no base64; encode the PNG anew", "leaf_unreadable") from error
+
+
+def _check_leaf(leaf: bytes) -> None:
+    try:
+        decode_leaf(leaf, "leaf")
+    except LeafError as error:
+        raise LeafError(str(error), code=error.code, pointer="/leaf") from error
 
 
 def _settings(given: object) -> dict[str, Any]:
     if not isinstance(given, dict):
         raise TreestrokeError.at(("settings",), "it must be an object; leave it out for defaults", "wrong_type")
     try:
-        return asdict(settings_from(given))
+        return plain_settings(settings_from(given))
     except TreestrokeError as error:
         raise _inside("settings", error) from error
 

@@ -52,6 +52,7 @@ class Model(Table):
     photo: Mapped[str] = mapped_column(String(40))
     photo_blob: Mapped[str] = mapped_column(String(64))
     strokes_blob: Mapped[str] = mapped_column(String(64))
+    leaf_blob: Mapped[str | None] = mapped_column(String(64))
     settings: Mapped[dict[str, Any]]
     seed: Mapped[int] = mapped_column(BigInteger)
     engine: Mapped[str] = mapped_column(String(40))

@@ -8,15 +8,18 @@ from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, check_see
 
 
 def test_nothing_given_means_the_defaults() -> None:
-    assert settings_from({}) == ModelSettings(10.0, "auto", 300, "auto", 1.0, 1.0)
+    plain = settings_from({})
+    assert (plain.height, plain.library, plain.iterations, plain.variants) == (10.0, "auto", 300, 1)
+    assert (plain.species, plain.season, plain.foliage) == ("auto", "photo", "auto")
+    assert (plain.wind, plain.lod, plain.compress, plain.files) == ("none", "none", False, ())
 
 
 @pytest.mark.parametrize(
     ("name", "low", "high"),
-    [("height", 0.1, 150), ("iterations", 0, 2000), ("leaf_size", 0.3, 3), ("leaf_density", 0, 3)],
+    [("height", 0.1, 150), ("iterations", 0, 2000), ("variants", 1, 16), ("leaf_size", 0.3, 3), ("leaf_density", 0, 3)],
 )
 def test_numbers_are_held_to_their_range(name: str, low: float, high: float) -> None:
-    step = 1 if name == "iterations" else 0.01
+    step = 1 if name in ("iterations", "variants") else 0.01
     for allowed in (low, high):
         assert getattr(settings_from({name: allowed}), name) == allowed
     for beyond in (low - step, high + step):
@@ -43,13 +46,35 @@ def test_a_choice_is_one_of_its_names(name: str, value: object) -> None:
 
 
 def test_an_unknown_name_is_refused_with_the_known_ones() -> None:
-    with pytest.raises(SettingsError, match=r"^wind: .*height, library, iterations, foliage, leaf_size, leaf_density$"):
-        settings_from({"wind": 1})
+    with pytest.raises(SettingsError, match=r"^gust: .*height, library, .*, leaf_density, wind, lod, compress, files$"):
+        settings_from({"gust": 1})
 
 
 def test_values_take_their_setting_s_own_type() -> None:
-    settings = settings_from({"height": np.float32(12), "iterations": np.int64(5)})
-    assert [type(getattr(settings, f.name)) for f in fields(settings)] == [float, str, int, str, float, float]
+    settings = settings_from({"height": np.float32(12), "iterations": np.int64(5), "compress": np.True_, "files": []})
+    for field in fields(settings):
+        assert type(getattr(settings, field.name)) is type(field.default)
+
+
+def test_several_are_taken_once_each_in_their_own_order() -> None:
+    assert settings_from({"files": ["swc", "obj", "swc"]}).files == ("obj", "swc")
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("compress", "yes", "true or false"),
+        ("compress", 1, "true or false"),
+        ("files", "obj", "any of gltf, obj"),
+        ("files", ["fbx"], "any of gltf, obj"),
+        ("files", [["obj"]], "any of gltf, obj"),
+        ("wind", "storm", "none, breeze, all"),
+        ("species", "palm", "auto, ash, beech"),
+    ],
+)
+def test_other_kinds_say_what_they_allow(name: str, value: object, allowed: str) -> None:
+    with pytest.raises(SettingsError, match=f"^{name}: .* is not allowed; give {allowed}"):
+        settings_from({name: value})
 
 
 @pytest.mark.parametrize("seed", [0, MAX_SEED, np.int64(7)])
@@ -66,7 +91,7 @@ def test_another_seed_is_refused(seed: object) -> None:
 @pytest.mark.parametrize(
     ("values", "code", "pointer"),
     [
-        ({"wind": 1}, "unknown_setting", "/wind"),
+        ({"gust": 1}, "unknown_setting", "/gust"),
         ({"w/ind\n": 1}, "unknown_setting", r"/w~1ind\n"),
         ({"height": 1000}, "setting_not_allowed", "/height"),
         ({"height": float("inf")}, "non_finite_number", "/height"),

@@ -1,6 +1,9 @@
 """A model's files."""
 
-from fastapi import APIRouter, Request, Response
+import re
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Path, Request, Response
 from fastapi.responses import FileResponse
 
 from treestroke.api.deps import ModelId, ShelfOf
@@ -12,18 +15,40 @@ from treestroke.service.photos import NotFound, Shelf
 
 router = APIRouter(prefix="/v1/models/{id}", tags=["files"])
 _GLB, _PNG, _ZIP, _JSON = "model/gltf-binary", "image/png", "application/zip", "application/json"
+_OTHER = "application/octet-stream"
+_KINDS = {
+    ".glb": _GLB,
+    ".zip": _ZIP,
+    ".json": _JSON,
+    ".usdz": "model/vnd.usdz+zip",
+    ".ply": _OTHER,
+    ".swc": "text/plain; charset=utf-8",
+    ".csv": "text/csv; charset=utf-8",
+}
+"""Media types by ending."""
+_TREE_FILE = r"^tree(\.[a-z0-9]{2,10}){1,3}$"
+_MANY: dict[int | str, dict[str, Any]] = {
+    status: {
+        **answer,
+        "content": {kind: {"schema": {"type": "string", "format": "binary"}} for kind in _KINDS.values()},
+    }
+    if status in (200, 206)
+    else answer
+    for status, answer in file_answers(_GLB).items()
+}
+TreeFile = Annotated[str, Path(json_schema_extra={"pattern": _TREE_FILE, "example": GLB})]
 
 
 @router.get("/tree.glb", response_class=FileResponse, responses=file_answers(_GLB))
 def get_tree(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Download the tree."""
-    return _file(request, shelf, id, GLB, _GLB)
+    return _file(request, shelf, id, GLB)
 
 
 @router.get("/preview.png", response_class=FileResponse, responses=file_answers(_PNG))
 def get_preview(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Look at the tree: the front view at the photo's framing beside a 3/4 view."""
-    return _file(request, shelf, id, PREVIEW, _PNG)
+    return _file(request, shelf, id, PREVIEW)
 
 
 @router.get("/strokes.json", response_class=FileResponse, responses=file_answers(_JSON, "Strokes"))
@@ -39,9 +64,20 @@ def get_project(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     return send_blob(request, shelf, blob, _ZIP, f"{row.name or row.id}.treestroke")
 
 
-def _file(request: Request, shelf: Shelf, id: str, name: str, kind: str) -> Response:
-    seen = models.see(shelf.database, id)
-    if seen.row.status != "succeeded":
+@router.get("/{file}", response_class=FileResponse, responses=_MANY)
+def get_tree_file(request: Request, shelf: ShelfOf, id: ModelId, file: TreeFile) -> Response:
+    """Download one of the further files that the settings asked for; ``files`` of the model names them."""
+    if not re.fullmatch(_TREE_FILE, file):
         raise NotFound("file")
-    download = f"{seen.row.name or seen.row.id}.glb" if name == GLB else None
-    return send_blob(request, shelf, seen.files[name].blob, kind, download)
+    return _file(request, shelf, id, file)
+
+
+def _file(request: Request, shelf: Shelf, id: str, name: str) -> Response:
+    seen = models.see(shelf.database, id)
+    found = seen.files.get(name)
+    if seen.row.status != "succeeded" or found is None:
+        raise NotFound("file")
+    if name == PREVIEW:
+        return send_blob(request, shelf, found.blob, _PNG)
+    kind = _KINDS.get(name[name.rindex(".") :], _OTHER)
+    return send_blob(request, shelf, found.blob, kind, f"{seen.row.name or seen.row.id}{name.removeprefix('tree')}")

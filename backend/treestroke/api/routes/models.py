@@ -33,12 +33,12 @@ _LOCATION = {
     "Location": {"schema": {"type": "string", "pattern": "^/v1/models/mdl_[0-9a-f]{24}$"}, "description": "the model"},
     "Preference-Applied": {"schema": {"type": "string"}, "description": "the wait that Prefer asked for"},
 }
-_FILES = ("get_tree", "get_preview", "get_strokes", "get_project")
+_FILES = ("get_tree", "get_preview", "get_strokes", "get_project", "get_tree_file")
 _CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
 _TEXT = {"type": "string"}
-_TEXTS = ("strokes", "settings", "seed", "name")
+_TEXTS = ("strokes", "settings", "seed", "name", "leaf")
 _ASK: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -57,6 +57,7 @@ _ASK: dict[str, Any] = {
                         "settings": {**_TEXT, "description": "ModelSettings, as JSON"},
                         "seed": {**_TEXT, "pattern": "^[0-9]{1,18}$"},
                         "name": {**_TEXT, "maxLength": MAX_NAME, "pattern": NAME_PATTERN},
+                        "leaf": {"type": "string", "format": "binary", "description": "PNG of a leaf cut out"},
                     },
                     "additionalProperties": False,
                 },

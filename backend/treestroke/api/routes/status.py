@@ -8,9 +8,9 @@ from treestroke import __version__
 from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf
 from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
-from treestroke.codec.image import MAX_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
+from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.project import MAX_TEXT_BYTES
-from treestroke.core.pipeline.settings import Choice, ModelSettings, Span
+from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
@@ -48,6 +48,7 @@ def limits(settings: SettingsOf) -> Limits:
         points=MAX_POINTS,
         json_bytes=MAX_TEXT_BYTES,
         name_length=MAX_NAME,
+        leaf_bytes=MAX_LEAF_BYTES,
         trace_seconds=settings.trace_seconds,
         model_seconds=settings.model_seconds,
         wait_seconds=MAX_WAIT_SECONDS,
@@ -55,6 +56,7 @@ def limits(settings: SettingsOf) -> Limits:
             entry.name: {
                 "default": entry.default,
                 "meaning": entry.metadata["meaning"],
+                "group": entry.metadata["group"],
                 **_allowed(entry.metadata["allowed"]),
             }
             for entry in fields(ModelSettings)
@@ -69,7 +71,13 @@ def version() -> Version:
     return Version(version=__version__, engine=ENGINE, api="v1")
 
 
-def _allowed(allowed: Span | Choice) -> dict[str, object]:
-    if isinstance(allowed, Span):
-        return {"min": allowed.low, "max": allowed.high, "whole": allowed.whole}
-    return {"names": list(allowed.names)}
+def _allowed(allowed: Allowed) -> dict[str, object]:
+    match allowed:
+        case Span():
+            return {"min": allowed.low, "max": allowed.high, "whole": allowed.whole}
+        case Toggle():
+            return {"toggle": True}
+        case Several():
+            return {"names": list(allowed.names), "several": True}
+        case Choice():
+            return {"names": list(allowed.names)}

@@ -1,7 +1,7 @@
 """The settings of one model: the one table for command line, library and documents."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Literal
 
 import numpy as np
@@ -149,6 +149,11 @@ def settings_from(values: Mapping[str, Any]) -> ModelSettings:
             what = f"there is no such setting; the settings are {', '.join(known)}"
             raise SettingsError.at((name,), what, "unknown_setting")
     return ModelSettings(**values)
+
+
+def plain_settings(settings: ModelSettings) -> dict[str, Any]:
+    """Write settings by name as JSON has them."""
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(settings).items()}
 
 
 SEED = Span(0, MAX_SEED, whole=True)

@@ -65,6 +65,7 @@ class Measures:
 
 def measure_tree(
     skeleton: Skeleton,
+    height: float,
     trunk_seen: bool,
     foliage: Floats | None,
     leaf_area: float,
@@ -77,6 +78,8 @@ def measure_tree(
     ----------
     skeleton
         The grown tree, metres.
+    height
+        From its root to the top of its foliage in the photo, metres.
     trunk_seen
         Whether the photo shows how thick it is at breast height.
     foliage
@@ -89,9 +92,8 @@ def measure_tree(
         What metres rest on.
     """
     crown = skeleton.points if foliage is None else foliage
-    top = float(max(skeleton.points[:, 1].max(), crown[:, 1].max()))
     figures = {
-        "height": _figure(top, "m", "height", scale, "measured" if scale.known else "given", HEIGHT),
+        "height": _height(height, scale),
         "crown_width": _figure(_spread(crown[:, 0]), "m", "crown_width", scale, "measured", WIDTH),
         "crown_depth": _figure(_spread(crown[:, 2]), "m", "crown_depth", scale, "derived", DEPTH),
         "trunk_diameter": _trunk(skeleton, trunk_seen, scale),
@@ -107,6 +109,13 @@ DEPTH = "of the crown along the view, which no single photo shows: as grown"
 DIAMETER = f"of the thickest stem {BREAST_HEIGHT} m above the root"
 VOLUME = "of the solid whose level sections are circles as wide as the crown in the photo"
 LEAF_AREA = "one side of all leaves, as grown: the photo shows the outermost only"
+
+
+def _height(height: float, scale: Scale) -> Measure:
+    """Take a height that was given as it is."""
+    if not scale.known:
+        return Measure(height, "m", height, height, "given", HEIGHT)
+    return _figure(height, "m", "height", scale, "measured", HEIGHT)
 
 
 def _figure(value: float | None, unit: str, name: str, scale: Scale, basis: Basis, meaning: str) -> Measure:
