@@ -171,5 +171,6 @@ def test_the_project_opens_on_the_command_line_and_gives_the_same_tree(
 
 
 def test_the_report_is_the_command_lines(client: httpx.Client, made: dict[str, Any]) -> None:
-    assert set(made["report"]) == {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
+    needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
+    assert set(made["report"]) == needed | {"measures", "variants", "files"}
     assert made["report"]["counts"]["bytes"] == len(client.get(made["files"]["tree.glb"]).content)

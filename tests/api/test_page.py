@@ -82,6 +82,7 @@ def test_the_page_is_asked_for_anew_and_not_sent_anew(built: Path, client: httpx
     assert answer.headers["cache-control"] == "no-cache"
     again = client.get("/", headers={"If-None-Match": answer.headers["etag"]})
     assert (again.status_code, again.content, again.headers["cache-control"]) == (304, b"", "no-cache")
+    assert again.headers["content-security-policy"] == answer.headers["content-security-policy"]
 
 
 def test_the_page_has_a_head(built: Path, client: httpx.Client) -> None:
@@ -99,6 +100,7 @@ def test_the_policy_lets_nothing_in_from_elsewhere_and_nothing_inline(built: Pat
         "img-src": ["'self'", "blob:", "data:"],
         "connect-src": ["'self'", "blob:", "data:"],
         "object-src": ["'none'"],
+        "script-src": ["'self'", "'wasm-unsafe-eval'"],
         "base-uri": ["'none'"],
         "frame-ancestors": ["'none'"],
     }

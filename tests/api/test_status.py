@@ -107,6 +107,7 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "get_preview",
         "get_strokes",
         "get_project",
+        "get_tree_file",
         "live",
         "ready",
         "limits",

@@ -17,7 +17,7 @@ PATIENCE_SECONDS = 30.0
 SLOWEST_BYTES_PER_SECOND = 20_000
 """A body that comes more slowly, after the first half minute, is given up."""
 # A GLB's textures are read from blob: addresses, by fetch as well as by image.
-_POLICY = (
+POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob: data:; object-src 'none'; "
     "base-uri 'none'; frame-ancestors 'none'"
 )
@@ -26,7 +26,7 @@ _HEADERS = {
     "referrer-policy": "no-referrer",
     "cross-origin-resource-policy": "same-origin",
     "cross-origin-opener-policy": "same-origin",
-    "content-security-policy": _POLICY,
+    "content-security-policy": POLICY,
 }
 
 

@@ -126,7 +126,7 @@ def test_indices_are_as_narrow_as_they_can_be(count: int, width: int) -> None:
 
 
 def test_views_are_aligned_and_positions_bounded() -> None:
-    book = document(encode_glb([Part("bark", bark(7)), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
+    book = document(encode_glb([Part("bark", bark(2)), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
     assert all(view["byteOffset"] % 4 == 0 for view in book["bufferViews"])
     positions = book["accessors"][book["meshes"][1]["primitives"][0]["attributes"]["POSITION"]]
     assert (positions["min"], positions["max"]) == ([0, 0, 0], [1, 1, 1])
@@ -137,3 +137,28 @@ def test_equal_surfaces_give_equal_bytes() -> None:
         encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1") for _ in range(2)
     )
     assert first == second
+
+
+def test_leaves_let_light_through_in_the_colours_of_their_picture() -> None:
+    book = document(encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
+    wood, leaf = book["materials"]
+    through = leaf["extensions"]["KHR_materials_diffuse_transmission"]
+    assert through["diffuseTransmissionColorTexture"] == leaf["pbrMetallicRoughness"]["baseColorTexture"]
+    assert 0.3 <= through["diffuseTransmissionFactor"] <= 0.5
+    assert book["extensionsUsed"] == ["KHR_materials_diffuse_transmission"]
+    assert "extensions" not in wood
+    assert "extensionsRequired" not in book
+
+
+def test_relief_is_a_normal_texture() -> None:
+    relief = np.full((8, 4, 3), (128, 128, 255), np.uint8)
+    surface = Surface(bark().mesh, bark().texture, relief)
+    book = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
+    texture = book["textures"][book["materials"][0]["normalTexture"]["index"]]
+    assert book["images"][texture["source"]]["name"] == "bark_relief"
+    assert book["accessors"][book["meshes"][0]["primitives"][0]["attributes"]["TANGENT"]]["type"] == "VEC4"
+
+
+def test_a_texture_s_sides_must_be_powers_of_two() -> None:
+    with pytest.raises(ValueError, match="powers of two"):
+        encode_glb([Part("bark", bark(7))], CAMERA, generator="treestroke 1")

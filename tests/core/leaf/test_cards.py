@@ -26,6 +26,12 @@ def test_corners_stand_half_extents_off_the_centre(leaves, atlas):
     assert corners.tolist() == [[-1, 5.5, 1], [1, 5.5, 1], [1, 6.5, 1], [-1, 6.5, 1]]
 
 
+def test_a_card_holds_to_its_joint(leaves, atlas):
+    hold = cards(leaves, atlas).hold
+    assert hold.joints.tolist() == np.repeat([[1, 1], [2, 2], [3, 3]], 4, axis=0).tolist()
+    assert not hold.share.any()
+
+
 def test_normals_are_unit_and_lean_outward(leaves, atlas):
     normals = cards(leaves, atlas).normals
     assert np.linalg.norm(normals, axis=1) == pytest.approx(1, abs=1e-6)

@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
+from treestroke.core.mesh.grain import Form, bark_grain
 
 BROWN = np.array([120.0, 90.0, 70.0])
 
@@ -88,3 +89,25 @@ def test_a_long_trunk_that_is_seen_at_its_tip_alone_gets_the_hidden_colour() -> 
     trunk, radii = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]]), np.array([0.0, 0.0, 2.5])
     texture = bark_texture(photo_of_a_trunk(2.5), trunk, radii, BarkParams(), np.random.default_rng(0))
     assert texture.reshape(-1, 3).mean(axis=0) == pytest.approx(np.array(BarkParams().hidden_colour), rel=0.1)
+
+
+def test_a_known_form_shapes_the_bark_of_a_hidden_trunk_and_mildly_that_of_a_seen_one() -> None:
+    trunk = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]])
+    plates = bark_grain(TEXTURE_SIZE, np.random.default_rng(5), "plated")
+
+    def likeness(radius: float) -> float:
+        params, rng = BarkParams(form="plated"), np.random.default_rng(0)
+        texture = bark_texture(photo_of_a_trunk(30.0), trunk, np.full(3, radius), params, rng, plates)
+        return float(np.corrcoef(texture.mean(axis=2).ravel(), plates.ravel())[0, 1])
+
+    assert likeness(0.0) > 0.9
+    assert 0.15 < likeness(30.0) < 0.7
+
+
+def test_smooth_bark_has_less_contrast_than_furrowed() -> None:
+    def contrast(form: Form) -> float:
+        trunk, params = np.array([[150.0, 390.0], [150.0, 20.0]]), BarkParams(form=form)
+        texture = bark_texture(photo_of_a_trunk(30.0), trunk, np.zeros(2), params, np.random.default_rng(0))
+        return float(texture.mean(axis=2).std())
+
+    assert contrast("smooth") < 0.5 * contrast("furrowed")

@@ -1,20 +1,48 @@
+from typing import get_args
+
 import numpy as np
 import pytest
 
-from treestroke.core.mesh.grain import bark_grain
+from treestroke.core.mesh.grain import Form, bark_grain
+
+FORMS = get_args(Form)
 
 
-def test_grain_has_mean_0_and_deviation_1() -> None:
-    grain = bark_grain((128, 64), np.random.default_rng(3))
+@pytest.mark.parametrize("form", FORMS)
+def test_grain_has_mean_0_and_deviation_1(form: Form) -> None:
+    grain = bark_grain((128, 64), np.random.default_rng(3), form)
     assert (grain.mean(), grain.std()) == pytest.approx((0.0, 1.0), abs=1e-9)
 
 
-def test_grain_repeats_without_seam() -> None:
-    grain = bark_grain((256, 128), np.random.default_rng(3))
-    inside = np.abs(np.diff(grain, axis=1)).mean()
-    assert np.abs(grain[:, 0] - grain[:, -1]).mean() < 1.5 * inside
+@pytest.mark.parametrize("form", FORMS)
+def test_grain_repeats_without_seam(form: Form) -> None:
+    grain = bark_grain((256, 128), np.random.default_rng(3), form)
+    for lines in (grain, grain.T):
+        step = np.abs(np.diff(lines, axis=0)).mean(axis=1)
+        assert np.abs(lines[0] - lines[-1]).mean() < 1.5 * step.max()
 
 
 def test_fissures_run_upright() -> None:
     grain = bark_grain((256, 128), np.random.default_rng(3))
     assert np.abs(np.diff(grain, axis=1)).mean() > 1.5 * np.abs(np.diff(grain, axis=0)).mean()
+
+
+def test_bands_and_lenticels_run_around_the_stem() -> None:
+    grain = bark_grain((256, 128), np.random.default_rng(3), "banded")
+    assert np.abs(np.diff(grain, axis=0)).mean() > 3 * np.abs(np.diff(grain, axis=1)).mean()
+
+
+def test_lenticels_are_few_and_dark() -> None:
+    grain = bark_grain((256, 128), np.random.default_rng(3), "banded")
+    assert ((grain - grain.mean()) ** 3).mean() < -0.5
+
+
+def test_scales_are_smaller_than_plates() -> None:
+    plates, scales = (bark_grain((512, 256), np.random.default_rng(3), form) < -1 for form in ("plated", "scaly"))
+    assert np.abs(np.diff(scales.astype(int), axis=1)).sum() > 1.5 * np.abs(np.diff(plates.astype(int), axis=1)).sum()
+
+
+def test_forms_differ() -> None:
+    patterns = [bark_grain((128, 64), np.random.default_rng(3), form).ravel() for form in FORMS]
+    alike = np.corrcoef(patterns) - np.eye(len(FORMS))
+    assert alike.max() < 0.9

@@ -53,6 +53,36 @@ def test_a_stick_is_a_closed_solid_of_the_right_volume() -> None:
     assert solid.volume == pytest.approx(np.pi * 0.1**2 * 4.0, rel=0.05)
 
 
+@given(st.integers(0, 100_000))
+@settings(max_examples=30, deadline=None)
+def test_vertices_hold_to_joints_of_one_path_to_the_root(seed: int) -> None:
+    tree = any_tree(seed)
+    hold = tubes(tree, TubeParams()).hold
+    assert hold.joints.min() >= 0
+    assert ((hold.share >= 0) & (hold.share < 1)).all()
+    for near, far in np.unique(hold.joints, axis=0).tolist():
+        while far > near:
+            far = int(tree.parents[far])
+        assert far == near
+
+
+def test_vertices_hold_to_where_their_rings_stand() -> None:
+    tree = oak()
+    mesh = tubes(tree, PLAIN)
+    share = mesh.hold.share[:, None]
+    held = tree.points[mesh.hold.joints[:, 0]] * (1 - share) + tree.points[mesh.hold.joints[:, 1]] * share
+    away = np.linalg.norm(mesh.positions - held, axis=1)
+    thick = np.maximum(*tree.radii[mesh.hold.joints].T)
+    assert (away <= 1.05 * thick).mean() > 0.9
+    assert away.max() < 2 * thick.max()
+
+
+def test_a_limb_starts_from_the_joint_that_bears_it() -> None:
+    hold = tubes(fork()).hold
+    assert {(2, 2), (5, 5), (6, 6)} <= {(a, b) for a, b in hold.joints.tolist()}
+    assert not ((hold.joints == 3) | (hold.joints == 4)).any(axis=1)[hold.joints.max(axis=1) > 4].any()
+
+
 def _welded(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     rounded = np.round(mesh.positions.astype(np.float64), 6)
     vertices, index = np.unique(rounded, axis=0, return_inverse=True)

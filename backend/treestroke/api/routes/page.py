@@ -8,6 +8,8 @@ from fastapi.responses import FileResponse, PlainTextResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.types import Scope
 
+from treestroke.api.guard import POLICY
+
 PAGE = Path(__file__).parents[1] / "page"
 _FOREVER = "public, max-age=31536000, immutable"
 _ASK_FIRST = "no-cache"
@@ -18,6 +20,8 @@ The page is not built here. In treestroke's source folder run
 
 and load this again. The API answers as it is: see /openapi.json.
 """
+_POLICY = f"{POLICY}; script-src 'self' 'wasm-unsafe-eval'"
+"""The page's own: what unpacks compressed trees is WebAssembly."""
 # What a system's own table says may be wrong or missing, and browsers are told to believe us.
 _TYPES = {
     ".css": "text/css; charset=utf-8",
@@ -66,7 +70,9 @@ def add_page(app: FastAPI, folder: Path = PAGE) -> None:
     async def page(request: Request) -> Response:
         if not built.index.is_file():
             return PlainTextResponse(_NOT_BUILT, 404)
-        return await built.get_response(built.index.name, request.scope)
+        response = await built.get_response(built.index.name, request.scope)
+        response.headers["content-security-policy"] = _POLICY
+        return response
 
     @app.api_route("/favicon.ico", methods=["GET", "HEAD"], include_in_schema=False)
     def icon() -> Response:

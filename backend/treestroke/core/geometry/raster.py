@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +14,7 @@ Cut = Callable[[Indices, Floats, Floats], NDArray[np.bool_]]
 
 _CHUNK = 2_000
 """Triangles at a time: enough for numpy, few enough for the cache."""
+_GOLDEN = 0.6180339887
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +93,29 @@ def visible_triangles(corners_px: Floats, nearness: Floats, cut: Cut, height: in
         # Where an index is named twice the last assignment stays: the nearest comes last.
         shown[pixel[there][::-1]] = triangle[there][::-1]
     return shown.reshape(height, width)
+
+
+def covered_pixels(corners_px: Floats, cut: Cut, seen: NDArray[np.bool_]) -> None:
+    """Mark in ``seen`` (height, width) the pixels whose centres triangles (t, 3, 2) cover, as far as they are not cut.
+
+    Triangles come in an order that spreads them; those that lie wholly within what is marked are skipped.
+    """
+    height, width = seen.shape
+    columns = np.ascontiguousarray(corners_px.transpose(2, 1, 0))
+    low, high = np.floor(columns.min(axis=1)), np.ceil(columns.max(axis=1))
+    inside = (low < [[width], [height]]).all(axis=0) & (high > 0).all(axis=0)
+    (left, top), (right, bottom) = (np.clip(edge.T, 0, (width, height)).astype(np.int64).T for edge in (low, high))
+    order = np.argsort(np.arange(len(corners_px)) * _GOLDEN % 1.0, kind="stable")
+    order = order[inside[order]]
+    while len(order):
+        free = cv2.integral((~seen).astype(np.uint8))
+        needed = free[bottom, right] - free[top, right] - free[bottom, left] + free[top, left] > 0
+        order = order[needed[order]]
+        triangle, pixel = _fragments(columns, order[:_CHUNK], height, width)
+        open_ = ~seen.ravel()[pixel]
+        triangle, pixel = triangle[open_], pixel[open_]
+        seen.ravel()[pixel[cut(triangle, *pixel_centres(pixel, width))]] = True
+        order = order[_CHUNK:]
 
 
 def _fragments(columns: Floats, chosen: Indices, height: int, width: int) -> tuple[Indices, Indices]:

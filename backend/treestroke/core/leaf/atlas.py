@@ -1,12 +1,15 @@
 """The leaf atlas: one texture of sprays, drawn in the colours of this photo."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.leaf.palette import Palette, foliage_palette, lab_from_rgb
+from treestroke.core.leaf.picture import draw_pictured, opaque_part, picture_recolour, reduced
+from treestroke.core.leaf.seasons import LEAFY, Recolour, own_palette, recolour_bare, recolour_for
+from treestroke.core.leaf.species import AUTO, Species
 from treestroke.core.leaf.sprays import Shape, draw_spray
 
 Floats = NDArray[np.float64]
@@ -23,6 +26,37 @@ BLOSSOM_SHARE = 0.3
 
 
 @dataclass(frozen=True, eq=False)
+class LeafLook:
+    """What is known of the leaves apart from the photo.
+
+    Attributes
+    ----------
+    species
+        What they are drawn as.
+    season
+        One of `treestroke.core.leaf.seasons.SEASONS`, or ``photo`` for their colours as they stand.
+    shown
+        Whether the photo shows leaves; if not, all colours are the season's.
+    picture
+        A leaf, (h, w, 4) uint8, sRGB with straight alpha, its stalk down, kept as its opaque part; None to draw one.
+
+    Raises
+    ------
+    ValueError
+        The picture is none, or transparent.
+    """
+
+    species: Species = AUTO
+    season: str = "photo"
+    shown: bool = True
+    picture: NDArray[np.uint8] | None = None
+
+    def __post_init__(self) -> None:
+        if self.picture is not None:
+            object.__setattr__(self, "picture", reduced(opaque_part(self.picture)))
+
+
+@dataclass(frozen=True, eq=False)
 class Atlas:
     """Tiles of one texture; each holds another spray.
 
@@ -34,18 +68,27 @@ class Atlas:
         (k, 4) left, top, right, bottom of each tile in texture coordinates, 0 to 1, v down.
     colours
         (k, 3) mean colour of each tile's opaque part, sRGB, 0 to 255.
+    recolour
+        How the photo's colours became the tiles', or None where they are the same.
     """
 
     image: NDArray[np.uint8]
     boxes: Floats
     colours: Floats
+    recolour: Recolour | None = None
 
 
-def leaf_atlas(photo: NDArray[np.uint8], mask: NDArray[np.bool_], kind: Kind, rng: np.random.Generator) -> Atlas:
+def leaf_atlas(
+    photo: NDArray[np.uint8],
+    mask: NDArray[np.bool_],
+    kind: Kind,
+    rng: np.random.Generator,
+    look: LeafLook = LeafLook(),
+) -> Atlas:
     """Draw sprays of leaves (or needles, or blossom) in up to 16 colours of the photo's foliage.
 
     Every tile is another drawing; where the foliage has fewer colours, the common ones have several tiles.
-    Very pale clusters of a broad-leaved tree are drawn as blossom.
+    Very pale clusters of a broad-leaved tree are drawn as blossom. A season other than the photo's recolours them.
 
     Raises
     ------
@@ -53,13 +96,17 @@ def leaf_atlas(photo: NDArray[np.uint8], mask: NDArray[np.bool_], kind: Kind, rn
         The mask (h, w) is empty or not of the photo's size (h, w, 3).
     """
     tiles = COLUMNS * COLUMNS
-    palette = foliage_palette(photo, mask, tiles, rng)
+    palette = foliage_palette(photo, mask, tiles, rng) if look.shown else own_palette(tiles, rng)
+    flower = _in_flower(palette, kind, look)
+    recolour = None if flower and look.picture is None else _recolour(palette, kind, look)
+    shapes = _shapes(palette, kind, look, flower)
+    if recolour is not None:
+        palette = recolour.palette(palette, tiles, rng)
     image = np.zeros((COLUMNS * TILE_SIDE, COLUMNS * TILE_SIDE, 4), dtype=np.uint8)
-    shapes = _shapes(palette, kind)
     for tile, window in enumerate(_windows()):
-        cluster = tile % len(shapes)
-        image[window] = draw_spray(shapes[cluster], TILE_SIDE, palette.members[cluster], rng)
-    return Atlas(image, _boxes(), _mean_colours(image))
+        cluster = tile % len(palette.members)
+        image[window] = _tile(shapes[cluster % len(shapes)], palette.members[cluster], look, rng)
+    return Atlas(image, _boxes(), _mean_colours(image), recolour if look.shown else _blind(recolour))
 
 
 def tile_alphas(atlas: Atlas) -> NDArray[np.uint8]:
@@ -74,15 +121,44 @@ def tile_labs(atlas: Atlas) -> Floats:
     return lab_from_rgb(np.rint(atlas.colours).astype(np.uint8))
 
 
-def _shapes(palette: Palette, kind: Kind) -> list[Shape]:
-    """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
-    if kind == "needles":
-        return ["needles"] * len(palette.shares)
+def _in_flower(palette: Palette, kind: Kind, look: LeafLook) -> bool:
+    """Tell whether much of the tree looks like blossom, at a season when it may."""
     lightness, red, yellow = palette.centres.T
     pale = (np.hypot(red, yellow) < BLOSSOM_CHROMA) & (lightness > BLOSSOM_LIGHTNESS)
     pink = (red > 8) & (yellow < 6) & (lightness > 45)
-    in_flower = palette.shares[pale | pink].sum() > BLOSSOM_SHARE
-    return ["blossom" if in_flower and bright else "broad" for bright in lightness > 45]
+    its_time = look.season == "spring" and (look.species.flowers or look.species == AUTO)
+    blooms = look.shown and kind != "needles" and (look.season not in LEAFY or its_time)
+    return bool(blooms and palette.shares[pale | pink].sum() > BLOSSOM_SHARE)
+
+
+def _shapes(palette: Palette, kind: Kind, look: LeafLook, flower: bool) -> list[Shape]:
+    """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
+    if kind == "needles":
+        return ["needles"]
+    if look.species.flowers and look.season == "spring":
+        return ["blossom"]
+    return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]
+
+
+def _recolour(palette: Palette, kind: Kind, look: LeafLook) -> Recolour | None:
+    """Tell how the photo's colours become the leaves'."""
+    if look.picture is not None:
+        return picture_recolour(look.picture, palette)
+    if not look.shown:
+        return recolour_bare(look.season, look.species, kind == "needles")
+    return recolour_for(look.season, look.species, palette, kind == "needles")
+
+
+def _blind(recolour: Recolour | None) -> Recolour | None:
+    """Take no notice of a photo that shows no leaves."""
+    return None if recolour is None else replace(recolour, kept=np.zeros(3))
+
+
+def _tile(shape: Shape, members: Floats, look: LeafLook, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Draw one spray."""
+    if look.picture is not None:
+        return draw_pictured(look.picture, look.species, TILE_SIDE, members, rng)
+    return draw_spray(shape, TILE_SIDE, members, rng, look.species)
 
 
 def _windows() -> list[tuple[slice, slice]]:

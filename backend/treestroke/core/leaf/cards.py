@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.mesh import Mesh
+from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.leaves import Floats, Leaves
@@ -18,7 +18,7 @@ def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
     """Build two triangles a card (4 vertices each), in the order of the leaves.
 
     Normals lean out of the crown, whose middle is that of the cards; both corners and cards differ, so that a clump
-    is rounded. Shades become vertex brightness.
+    is rounded. Shades become vertex brightness. A card holds to its own joint.
     """
     m = len(leaves)
     corners = leaves.centres[:, None] + CORNERS[:, :1] * leaves.rights[:, None] + CORNERS[:, 1:] * leaves.ups[:, None]
@@ -32,6 +32,7 @@ def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
         _uvs(leaves, atlas),
         triangles,
         np.repeat(leaves.shades, 4).astype(np.float32),
+        Hold(np.repeat(leaves.joints, 8).reshape(-1, 2), np.zeros(4 * m)),
     )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.palette import Floats, Indices, nearest_colour
+from treestroke.core.leaf.seasons import Recolour
 
 SHOWN_DEPTH = 0.35
 """Places nearer to the viewer than this share of the crown's half depth are taken as seen by the photo."""
@@ -20,6 +21,10 @@ COLOUR_SCATTER = 3.0
 """Standard deviation, Lab units, of a card's colour about the photo's, so that neighbours mix their tiles."""
 FOREIGN = 20.0
 """Lab distance from all tiles at which a pixel is no leaf's (sky, wood); the colour around it is taken instead."""
+CLUMP = 0.6
+"""Lengths of the waves by which a season's colour changes through the crown, against those of the displacement."""
+MOOD_SCATTER = 0.45
+"""Deviation of a card's place in a season's colours about its clump's, whose own is 1."""
 DARKEST = 0.55
 """Brightness deep inside the crown and at its foot, against 1 at its outside."""
 
@@ -51,6 +56,10 @@ class Colouring:
         (k, 3) mean colours of the atlas's tiles, CIE Lab.
     sideways, updown
         Smooth fields that say from where a hidden place fetches its colour.
+    recolour
+        How the photo's colours became the tiles', or None where they are the same.
+    mood
+        Smooth field that says where in a season's colours a clump stands, if they are recoloured.
     """
 
     grid: FoliageGrid
@@ -58,6 +67,8 @@ class Colouring:
     tile_labs: Floats
     sideways: _Waves
     updown: _Waves
+    recolour: Recolour | None = None
+    mood: _Waves | None = None
 
     def tiles(self, points: Floats, rng: np.random.Generator) -> Indices:
         """Choose a tile for each place (n, 3), metres: of the photo's colour there if it shows the place.
@@ -73,6 +84,10 @@ class Colouring:
         y = points[:, 1] + hidden * UPDOWN * height * self.updown.at(points)
         x, y = self._folded(x, y)
         cells, scatter = self.grid.flat_cells(x, y), rng.normal(0, COLOUR_SCATTER, points.shape)
+        if self.recolour is not None and self.mood is not None:
+            moods = _shares(self.mood.at(points) + rng.normal(0, MOOD_SCATTER, len(points)))
+            labs = self.recolour.at(self.grid.labs[cells], moods)
+            return nearest_colour(labs + scatter, self.tile_labs)[0]
         tiles, square = nearest_colour(self.grid.labs[cells] + scatter, self.tile_labs)
         foreign = square > FOREIGN**2
         tiles[foreign] = nearest_colour(self.grid.broad_labs[cells[foreign]] + scatter[foreign], self.tile_labs)[0]
@@ -91,10 +106,19 @@ class Colouring:
         return inward, np.asarray((camera.root_px[1] - row - 0.5) * camera.metres_per_pixel)
 
 
-def colouring_of(grid: FoliageGrid, envelope: Envelope, tile_labs: Floats, rng: np.random.Generator) -> Colouring:
+def colouring_of(
+    grid: FoliageGrid, envelope: Envelope, tile_labs: Floats, recolour: Recolour | None, rng: np.random.Generator
+) -> Colouring:
     """Draw the smooth displacements for one crown."""
     width = 2 * envelope.radius_px.max() * grid.camera.metres_per_pixel
-    return Colouring(grid, envelope, tile_labs, _draw_waves(width, rng), _draw_waves(width, rng))
+    sideways, updown = _draw_waves(width, rng), _draw_waves(width, rng)
+    mood = None if recolour is None else _draw_waves(CLUMP * width, rng)
+    return Colouring(grid, envelope, tile_labs, sideways, updown, recolour, mood)
+
+
+def _shares(values: Floats) -> Floats:
+    """Turn values (n,) of about mean 0 and deviation 1 into shares, 0 to 1, spread about evenly."""
+    return np.asarray(1 / (1 + np.exp(-1.6 * values)))
 
 
 def _draw_waves(width: float, rng: np.random.Generator) -> _Waves:

@@ -90,5 +90,5 @@ def crown_of(grid: FoliageGrid, envelope: Envelope, atlas: Atlas, size: float, r
     columns = np.flatnonzero(grid.inside.any(axis=0))
     side = size * float(columns[-1] - columns[0] + 1) * grid.cell_m
     area = float((alphas > 127).mean()) * (side * sum(SIDES) / 2) ** 2
-    colouring = colouring_of(grid, envelope, tile_labs(atlas), rng)
+    colouring = colouring_of(grid, envelope, tile_labs(atlas), atlas.recolour, rng)
     return Crown(grid, envelope, colouring, outlines_of(alphas), middle, max(top, top - bottom), side, area)

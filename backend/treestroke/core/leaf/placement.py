@@ -27,6 +27,8 @@ RESERVE = 0.25
 """Share of the cards that is kept for what the first ones leave uncovered."""
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
 """Sizes at which a card that would leave the foliage is tried again, each time turned anew."""
+LEAST_SIZE = 0.3
+"""Least factor on a card's side."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class LeafParams:
     kind: Kind = "leaves"
 
     def __post_init__(self) -> None:
-        if not 0.3 <= self.size <= 3:
+        if not LEAST_SIZE <= self.size <= 3:
             raise ValueError(f"size must be 0.3 to 3, got {self.size}")
         if not 0 <= self.density <= 3:
             raise ValueError(f"density must be 0 to 3, got {self.density}")

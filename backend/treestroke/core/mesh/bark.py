@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import smoothed
 from treestroke.core.imaging.quilting import QuiltParams, quilt
-from treestroke.core.mesh.grain import bark_grain
+from treestroke.core.mesh.grain import Form, bark_grain
 
 Floats = NDArray[np.float64]
 
@@ -24,6 +24,8 @@ _SMOOTH = (70.0, 45.0)  # px along and across; slower changes are light, not bar
 _OUTLIER = 3.5  # deviations from the trunk's colour, from which on a pixel is leaf, grass or sky
 _COLOUR_KEPT = 0.5  # of the differences in hue; much of them is the camera's noise and light through leaves
 _GRAIN = 0.22  # deviation of log light of fissures that are our own
+_MILD = 0.3  # of that, for a known form on bark that the photo shows
+_STRENGTH: dict[Form | None, float] = {None: 1.0, "smooth": 0.4, "furrowed": 1.35, "plated": 1.25, "peeling": 0.8}
 _CONTRAST = (0.16, 0.42)  # least and greatest deviation of log light in the texture
 
 
@@ -37,10 +39,13 @@ class BarkParams:
         Trunk stretches thinner than this show no bark; 0 as radius means hidden.
     hidden_colour
         sRGB colour of bark where no trunk can be seen.
+    form
+        Its pattern; None is furrows, and only where the photo shows too little.
     """
 
     smallest_radius_px: float = 2.5
     hidden_colour: tuple[int, int, int] = (104, 93, 82)
+    form: Form | None = None
 
     def __post_init__(self) -> None:
         if not self.smallest_radius_px > 0 or not all(0 <= c <= 255 for c in self.hidden_colour):
@@ -48,13 +53,19 @@ class BarkParams:
 
 
 def bark_texture(
-    photo: NDArray[np.uint8], trunk_px: Floats, radii_px: Floats, params: BarkParams, rng: np.random.Generator
+    photo: NDArray[np.uint8],
+    trunk_px: Floats,
+    radii_px: Floats,
+    params: BarkParams,
+    rng: np.random.Generator,
+    grain: Floats | None = None,
 ) -> NDArray[np.uint8]:
     """Make a bark texture (512, 256, 3) uint8 sRGB that repeats in both directions and holds no light of the photo.
 
     The trunk's front is unrolled, cleaned of pixels that are not bark, freed of slow changes of light (its
     mean colour stays), and quilted. The fewer pixels the trunk has, the more fissures of our own are added
-    to its colours; where none is to be seen they stand alone, in ``hidden_colour``.
+    to its colours; where none is to be seen they stand alone, in ``hidden_colour``. A known form
+    is always added a little.
 
     Parameters
     ----------
@@ -62,8 +73,11 @@ def bark_texture(
         (h, w, 3) sRGB.
     trunk_px, radii_px
         (n, 2) the visible trunk's axis from the root up, photo points, and (n,) its radius there, px; n >= 2.
+    grain
+        (512, 256) the pattern of our own, as `bark_grain` draws it; None draws one of ``params.form``.
     """
-    grain = bark_grain(TEXTURE_SIZE, rng)[..., None]
+    own = bark_grain(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
+    grain = _STRENGTH.get(params.form, 1.0) * own[..., None]
     found = _unrolled(photo, trunk_px, radii_px, params)
     hidden = _linear(np.array(params.hidden_colour, dtype=np.float64))
     if found is None:
@@ -78,7 +92,7 @@ def bark_texture(
     detail = _flattened(strip, clean)
     quilted = quilt(*_tall_enough(detail, clean), QuiltParams(TEXTURE_SIZE), rng)
     # an enlarged strip holds nothing finer than a photo pixel: give it fissures in its own contrast
-    added = np.clip((pixels_per_pixel - 2.0) / 8.0, 0.0, 1.0)
+    added = np.clip((pixels_per_pixel - 2.0) / 8.0, 0.0 if params.form is None else _MILD, 1.0)
     return _painted(_evened(quilted) + added * _GRAIN * grain, _mean_colour(strip, clean))
 
 

@@ -32,6 +32,8 @@ class Chains:
         (m,) ascending, which limb a joint is of.
     forks
         (m,) bool, whether other limbs start at the joint.
+    joint
+        (m,) index of the skeleton's joint; a limb's first is that of its bearer.
     bearer
         (k,) radius of the wood that a limb starts in, metres; 0 for a stem.
     bearer_direction
@@ -42,6 +44,7 @@ class Chains:
     radii: Floats
     limb: Indices
     forks: NDArray[np.bool_]
+    joint: Indices
     bearer: Floats
     bearer_direction: Floats
 
@@ -80,7 +83,7 @@ def chains_of(skeleton: Skeleton, thinnest: float) -> Chains:
     radii[first] = np.where(stem, radii[first], np.minimum(radii[own], 0.95 * radii[first]))
     starts = np.bincount(joint[first][~stem], minlength=len(skeleton))
     direction = np.where(stem[:, None], [0.0, 1.0, 0.0], _directions(skeleton, successors)[joint[first]])
-    whole = Chains(skeleton.points[joint], radii, limb, starts[joint] > 0, bearer, direction)
+    whole = Chains(skeleton.points[joint], radii, limb, starts[joint] > 0, joint, bearer, direction)
     return _spaced(whole, 1e-3 * thinnest)
 
 
@@ -97,15 +100,40 @@ def thinned(chains: Chains, tolerance: Floats) -> Chains:
         limb = chains.limb[keep]
         middle = np.flatnonzero((limb[1:-1] == limb[:-2]) & (limb[1:-1] == limb[2:])) + 1
         middle = middle[middle % 2 == turn % 2]
-        missed = _missed(chains, keep[middle - 1], keep[middle], keep[middle + 1]) + charged[keep[middle]]
+        missed = _off_cone(chains, keep[middle - 1], keep[middle], keep[middle + 1]) + charged[keep[middle]]
         out = middle[missed * weight[keep[middle]] < tolerance[keep[middle]]]
         np.maximum.at(charged, keep[out - 1], missed[np.isin(middle, out)])
         np.maximum.at(charged, keep[out + 1], missed[np.isin(middle, out)])
         keep = np.delete(keep, out)
-    return _taken(chains, keep)
+    return subset(chains, keep)
 
 
-def _missed(chains: Chains, before: Indices, at: Indices, after: Indices) -> Floats:
+def missed_without(chains: Chains) -> Floats:
+    """Tell for each joint (m,) how far a limb misses it without it and all less important ones; infinite at ends.
+
+    The miss is that of the axis or that of the radius.
+
+    Notes
+    -----
+    After Douglas and Peucker 1973, all limbs at once.
+    """
+    missed = np.full(len(chains.limb), np.inf)
+    start, end, most = chains.first, chains.last, np.full(len(chains.first), np.inf)
+    while len(start):
+        inner = end - start > 1
+        start, end, most = start[inner], end[inner], most[inner]
+        piece = np.repeat(np.arange(len(start)), end - start - 1)
+        begins = np.cumsum(end - start - 1) - (end - start - 1)
+        joint = np.arange(len(piece)) - begins[piece] + start[piece] + 1
+        off = _off_cone(chains, start[piece], joint, end[piece])
+        worst = np.lexsort((off, piece))[np.append(begins[1:], len(piece)) - 1] if len(start) else begins
+        split = joint[worst]
+        missed[split] = most = np.minimum(most, off[worst])
+        start, end, most = np.append(start, split), np.append(split, end), np.append(most, most)
+    return missed
+
+
+def _off_cone(chains: Chains, before: Indices, at: Indices, after: Indices) -> Floats:
     """Give how far joints ``at`` lie from the cone between their neighbours, in position or in radius."""
     chord = chains.points[after] - chains.points[before]
     way = chains.points[at] - chains.points[before]
@@ -134,10 +162,10 @@ def _spaced(chains: Chains, gap: float) -> Chains:
     keep = keep[counts[chains.limb[keep]] >= 2]
     if keep.size == 0:
         raise ValueError("a skeleton without length has no tubes")
-    return _taken(chains, keep)
+    return subset(chains, keep)
 
 
-def _taken(chains: Chains, keep: Indices) -> Chains:
+def subset(chains: Chains, keep: Indices) -> Chains:
     """Take joints ``keep``, ascending, with the limbs that they are of."""
     left, limb = np.unique(chains.limb[keep], return_inverse=True)
     return Chains(
@@ -145,6 +173,7 @@ def _taken(chains: Chains, keep: Indices) -> Chains:
         chains.radii[keep],
         limb.astype(np.int64),
         chains.forks[keep],
+        chains.joint[keep],
         chains.bearer[left],
         chains.bearer_direction[left],
     )

@@ -1,25 +1,127 @@
-"""Bark from nothing: fissures and ridges where the photo shows none."""
+"""Bark from nothing: the pattern of a kind of bark, where the photo shows none or too little."""
+
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Form = Literal["smooth", "furrowed", "plated", "peeling", "banded", "scaly"]
 
 _BANDS = ((5.0, 26.0, 1.0), (2.2, 9.0, 0.55), (0.9, 1.6, 0.25))  # (width px, height px, weight) of each size of feature
 _RIDGE = 0.75  # how much of the coarse band is ridges between fissures, the rest even noise
+_PLATE, _SCALE = (62.0, 112.0), (23.0, 27.0)  # width and height, px, of a pine's plates and a spruce's scales
+_WARP = 5.0  # px by which the borders of plates are bent
+_COARSE = 2  # plates are laid out on every second pixel
+_LENTICELS = 150
+_LENTICEL = (10.0, 34.0)  # shortest and longest half width of a lenticel, px
 
 
-def bark_grain(size: tuple[int, int], rng: np.random.Generator) -> Floats:
-    """Make a pattern of upright fissures (h, w), mean 0, deviation 1, that repeats without seam.
+def bark_grain(size: tuple[int, int], rng: np.random.Generator, form: Form = "furrowed") -> Floats:
+    """Make a pattern of bark (h, w), mean 0, deviation 1, that repeats without seam; what is low and dark is negative.
 
-    Ridged noise after Musgrave ("Texturing and Modeling", 1994), in three sizes, stretched upright.
+    Furrows are ridged noise after Musgrave ("Texturing and Modeling", 1994), in three sizes, stretched upright;
+    plates and scales are cells about random points (Worley 1996), peeling bark flat flakes at three levels.
     """
+    match form:
+        case "furrowed":
+            return _furrows(size, rng)
+        case "smooth":
+            return _smooth(size, rng)
+        case "plated":
+            return unit(_plates(size, _PLATE, 0.3, rng) + 0.22 * _fine(size, rng))
+        case "scaly":
+            return unit(_plates(size, _SCALE, 0.45, rng) + 0.25 * _fine(size, rng))
+        case "peeling":
+            return _flakes(size, rng)
+        case "banded":
+            return _bands(size, rng)
+
+
+def _furrows(size: tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Cut upright fissures between ridges."""
     total = np.zeros(size)
     for width, height, weight in _BANDS:
         noise = _blobs(size, width, height, rng)
-        ridged = _unit(0.8 - np.abs(_blobs(size, 1.6 * width, 2.0 * height, rng)))
+        ridged = unit(0.8 - np.abs(_blobs(size, 1.6 * width, 2.0 * height, rng)))
         total += weight * ((1.0 - _RIDGE) * noise + _RIDGE * np.maximum(ridged, -2.0))
-    return _unit(total)
+    return unit(total)
+
+
+def _fine(size: tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Give what is finer than any form."""
+    return unit(_blobs(size, 1.0, 1.6, rng) + 0.7 * _blobs(size, 2.5, 5.0, rng))
+
+
+def _smooth(size: tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Give shallow dents and faint wrinkles around the stem."""
+    return unit(_blobs(size, 14.0, 18.0, rng) + 0.3 * _blobs(size, 14.0, 1.4, rng) + 0.35 * _fine(size, rng))
+
+
+def _plates(size: tuple[int, int], plate: tuple[float, float], crack: float, rng: np.random.Generator) -> Floats:
+    """Lay plates of this width and height, px, domed and each at its own level, with cracks between them."""
+    across, down = max(2, round(size[1] / plate[0])), max(2, round(size[0] / plate[1]))
+    within, level = rng.uniform(0.08, 0.92, (down, across, 2)), rng.normal(0, 0.35, (down, across))
+    y, x = np.indices((size[0] // _COARSE, size[1] // _COARSE)) * float(_COARSE)
+    y, x = (
+        (at + _WARP * _blobs(size, 6.0, 9.0, rng)[::_COARSE, ::_COARSE]) * count / extent
+        for at, count, extent in ((y, down, size[0]), (x, across, size[1]))
+    )
+    nearest, second, own = _two_nearest(y, x, within, level)
+    return unit(_enlarged(np.minimum((second - nearest) / crack, 1.0) ** 0.6 * (1.5 + own)))
+
+
+def _two_nearest(y: Floats, x: Floats, within: Floats, level: Floats) -> tuple[Floats, Floats, Floats]:
+    """Distances of places to the nearest and second nearest of one point a cell, and the nearest's level."""
+    down, across = level.shape
+    row, column = np.floor(y).astype(np.int64), np.floor(x).astype(np.int64)
+    nearest, second, own = np.full(y.shape, np.inf), np.full(y.shape, np.inf), np.zeros(y.shape)
+    for step_y in (-1, 0, 1):
+        for step_x in (-1, 0, 1):
+            cell = (row + step_y) % down, (column + step_x) % across
+            far = np.hypot(row + step_y + within[cell][..., 0] - y, column + step_x + within[cell][..., 1] - x)
+            second = np.minimum(second, np.maximum(nearest, far))
+            own = np.where(far < nearest, level[cell], own)
+            nearest = np.minimum(nearest, far)
+    return nearest, second, own
+
+
+def _flakes(size: tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Shed thin flakes in patches, as a plane does: three levels with sharp edges."""
+    first, second = (_blobs(size, w, h, rng) + 0.25 * _blobs(size, 4.0, 5.0, rng) for w, h in ((13, 22), (9, 15)))
+    steps = _step(first) + 0.8 * _step(second - 0.5) - 0.7 * _step(-first - 1.0)
+    return unit(steps + 0.08 * _fine(size, rng))
+
+
+def _bands(size: tuple[int, int], rng: np.random.Generator) -> Floats:
+    """Draw faint bands around a smooth stem, and lenticels, short dark dashes, as a birch and a cherry have."""
+    rows, columns = np.arange(size[0]), np.arange(size[1])
+    dashes = np.zeros(size)
+    half = rng.uniform(*_LENTICEL, _LENTICELS) * rng.random(_LENTICELS) ** 0.7
+    thick, strength = rng.uniform(0.8, 2.2, _LENTICELS), rng.uniform(0.4, 1.0, _LENTICELS)
+    middle = rng.random((_LENTICELS, 2)) * size
+    for index in range(_LENTICELS):
+        off_y = np.mod(rows - middle[index, 0] + size[0] / 2, size[0]) - size[0] / 2
+        off_x = np.mod(columns - middle[index, 1] + size[1] / 2, size[1]) - size[1] / 2
+        high = np.exp(-0.5 * (off_y / thick[index]) ** 2)
+        wide = 1.0 / (1.0 + np.exp(np.clip((np.abs(off_x) - half[index]) / 1.5, -30, 30)))
+        dashes = np.maximum(dashes, strength[index] * high[:, None] * wide)
+    bands = 0.09 * _blobs(size, 40.0, 2.0, rng) + 0.05 * _blobs(size, 12.0, 14.0, rng)
+    return unit(bands - dashes + 0.03 * _fine(size, rng))
+
+
+def _step(values: Floats) -> Floats:
+    """0 below 0 and 1 above, over a few pixels."""
+    return np.asarray(1.0 / (1.0 + np.exp(-9.0 * np.clip(values, -3, 3))))
+
+
+def _enlarged(coarse: Floats) -> Floats:
+    """Fill in the pixels between coarse ones, around the edges."""
+    for axis in (0, 1):
+        between = 0.5 * (coarse + np.roll(coarse, -1, axis))
+        shape = [n * (2 if k == axis else 1) for k, n in enumerate(coarse.shape)]
+        coarse = np.stack([coarse, between], axis=axis + 1).reshape(shape)
+    return coarse
 
 
 def _blobs(size: tuple[int, int], width: float, height: float, rng: np.random.Generator) -> Floats:
@@ -27,9 +129,9 @@ def _blobs(size: tuple[int, int], width: float, height: float, rng: np.random.Ge
     frequency_y = np.fft.fftfreq(size[0])[:, None]
     frequency_x = np.fft.rfftfreq(size[1])[None, :]
     kept = np.exp(-2.0 * np.pi**2 * ((frequency_x * width) ** 2 + (frequency_y * height) ** 2))
-    return _unit(np.fft.irfft2(np.fft.rfft2(rng.standard_normal(size)) * kept, s=size))
+    return unit(np.fft.irfft2(np.fft.rfft2(rng.standard_normal(size)) * kept, s=size))
 
 
-def _unit(values: Floats) -> Floats:
+def unit(values: Floats) -> Floats:
     """Shift and scale to mean 0 and deviation 1."""
     return np.asarray((values - values.mean()) / max(float(values.std()), 1e-12))

@@ -1,6 +1,6 @@
 """Where the rings of a tube stand: smooth curves through the joints, with collars, root flares and caps."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +37,9 @@ class Stations:
         (r,) ascending, which limb a ring is of.
     swell
         (r,) 0 to 1, how much of its limb's collar or root flare a ring has.
+    joints, share
+        (r, 2) the skeleton's joints that a ring stands between, and (r,) how far from the first to the second, 0 to 1;
+        twice the same on a joint and in a cap.
     """
 
     points: Floats
@@ -44,11 +47,17 @@ class Stations:
     radii: Floats
     limb: Indices
     swell: Floats
+    joints: Indices
+    share: Floats
 
     @property
     def first(self) -> Indices:
         """Index (k,) of each limb's first ring."""
         return np.flatnonzero(np.diff(self.limb, prepend=-1)).astype(np.int64)
+
+    def select(self, kept: Indices) -> "Stations":
+        """Take rings ``kept``, in that order."""
+        return Stations(*(getattr(self, field.name)[kept] for field in fields(self)))
 
 
 def stations_of(chains: Chains, detail: float, blunt: float, collared: float) -> Stations:
@@ -78,7 +87,8 @@ def stations_of(chains: Chains, detail: float, blunt: float, collared: float) ->
     travelled = along[edge] + t * (along[after] - along[edge]) - along[chains.first[limb]]
     swell = _swell(chains, limb, travelled, collared)
     axes = _upright(axes, swell, chains.bearer[limb] == 0)
-    return _closed(Stations(points, axes, radii, limb, swell), places, chains, blunt)
+    joints = chains.joint[np.stack([edge, np.where(t > 0, after, edge)], axis=1)]
+    return _closed(Stations(points, axes, radii, limb, swell, joints, t), places, chains, blunt)
 
 
 def _exit_lengths(chains: Chains) -> Floats:
@@ -220,23 +230,17 @@ def _closed(rings: Stations, places: Floats, chains: Chains, blunt: float) -> St
     radii = rings.radii.copy()
     round_end = radii[last] >= blunt
     radii[last[~round_end]] = 0.0
-    rings = Stations(rings.points, rings.tangents, radii, rings.limb, rings.swell)
+    rings = replace(rings, radii=radii)
     caps = [(_taken(rings, first[chains.bearer == 0], 0.0, 0.0), chains.first[chains.bearer == 0] - 0.5)]
     for beyond, radius in DOME_STEPS:
         caps.append((_taken(rings, last[round_end], beyond, radius), chains.last[round_end] + 0.5 * beyond))
     order = np.argsort(np.concatenate([places, *(at for _, at in caps)]), kind="stable")
     whole = [rings, *(cap for cap, _ in caps)]
-    return Stations(
-        np.concatenate([part.points for part in whole])[order],
-        np.concatenate([part.tangents for part in whole])[order],
-        np.concatenate([part.radii for part in whole])[order],
-        np.concatenate([part.limb for part in whole])[order],
-        np.concatenate([part.swell for part in whole])[order],
-    )
+    return Stations(*(np.concatenate([getattr(part, f.name) for part in whole])[order] for f in fields(Stations)))
 
 
 def _taken(rings: Stations, index: Indices, beyond: float, radius: float) -> Stations:
     """Copy rings ``index``, moved ``beyond`` radii along the axis, their radius times ``radius``."""
-    own = rings.radii[index]
-    points = rings.points[index] + rings.tangents[index] * (beyond * own)[:, None]
-    return Stations(points, rings.tangents[index], own * radius, rings.limb[index], rings.swell[index])
+    cap = rings.select(index)
+    points = cap.points + cap.tangents * (beyond * cap.radii)[:, None]
+    return replace(cap, points=points, radii=cap.radii * radius)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.geometry.frames import rotation_minimizing_normals
-from treestroke.core.geometry.mesh import Mesh
+from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.mesh.chains import Chains, chains_of, thinned
 from treestroke.core.mesh.sheath import Grid, smooth_normals, texture_coordinates
 from treestroke.core.mesh.stations import Stations, stations_of
@@ -13,7 +13,7 @@ from treestroke.core.mesh.swelling import collar, flare, merged_normals, nearnes
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 
 _LEAST_DETAIL = 0.003  # where every limb is a cone or two; less saves no more triangles
-_THINNEST = 1.2e-4  # radius of the thinnest twig, in tree heights: a third of a pixel in a 1500 px photo
+THINNEST = 1.2e-4  # radius of the thinnest twig, in tree heights: a third of a pixel in a 1500 px photo
 _SIDES_PER_ROOT_HEIGHT = 105.0  # sides = 2.3 + this * sqrt(radius / height): 17 on a trunk, 4 on a twig
 _MISSED = 3e-4  # of the height: how far a thin limb's axis may miss its joints, half a pixel in that photo
 _BLUNT = 1.2e-3  # of the height: tips from this radius on are round
@@ -66,7 +66,8 @@ def tubes(skeleton: Skeleton, params: TubeParams = TubeParams()) -> Mesh:
     its bearer to its tip. The strongest child continues its parent's tube; others start on the bearer's
     axis, hidden inside it, and leave it with a collar that widens along the bearer. Stems swell to the
     root in lobes, stand level and are closed below; tips are closed. Texture repeats a whole number of
-    times around and its scale along follows the radius, so texels stay square.
+    times around and its scale along follows the radius, so texels stay square. Each vertex holds to the joints
+    that its ring stands between.
 
     Raises
     ------
@@ -81,14 +82,14 @@ def tubes(skeleton: Skeleton, params: TubeParams = TubeParams()) -> Mesh:
     if skeleton.points.shape[1] != 3:
         raise ValueError(f"tubes need a 3D skeleton, got {skeleton.points.shape[1]} coordinates")
     height = max(float(np.ptp(skeleton.points, axis=0).max()), 1e-6)
-    chains = chains_of(skeleton, _THINNEST * height)
+    chains = chains_of(skeleton, THINNEST * height)
     detail = 1.0
     while detail > _LEAST_DETAIL:
         rings = _rings(chains, height, detail)
         sides = _sides(chains, height, detail, params.max_sides)
         grid = Grid.of(rings, sides)
         if len(grid.triangles) <= params.max_triangles:
-            return _mesh(grid, rings, chains, params)
+            return wrapping(grid, rings, chains, params)
         detail *= min(0.95, (params.max_triangles / len(grid.triangles)) ** 0.6)
     raise ValueError(f"{params.max_triangles} triangles do not suffice for {len(chains.bearer)} limbs")
 
@@ -107,8 +108,8 @@ def _sides(chains: Chains, height: float, detail: float, most: int) -> Indices:
     return np.clip(sides, 3, most).astype(np.int64)
 
 
-def _mesh(grid: Grid, rings: Stations, chains: Chains, params: TubeParams) -> Mesh:
-    """Place the grid's vertices."""
+def wrapping(grid: Grid, rings: Stations, chains: Chains, params: TubeParams) -> Mesh:
+    """Place the grid's vertices on the rings along limbs, swollen where stems stand and limbs start."""
     seeds = np.broadcast_to(_BACK, (len(rings.first), 3))
     normal = rotation_minimizing_normals(rings.points, rings.tangents, rings.first, seeds)
     binormal = np.cross(rings.tangents, normal)
@@ -126,4 +127,5 @@ def _mesh(grid: Grid, rings: Stations, chains: Chains, params: TubeParams) -> Me
         normals.astype(np.float32),
         uvs.astype(np.float32),
         grid.triangles,
+        hold=Hold(rings.joints[ring], rings.share[ring]),
     )

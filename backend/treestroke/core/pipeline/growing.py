@@ -12,6 +12,8 @@ from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import Grown, grow
+from treestroke.core.leaf.seasons import LEAFY
+from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sight import Mask, Photo, Sight, look
@@ -30,6 +32,13 @@ BULGE = 1.08
 that the photo shows some limbs reach further (4 trees known in 3D; 1.15 is too deep again for a slim one)."""
 CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
 """Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
+LEAFED_SHARE = 0.14
+"""The same for a bare tree that is to have leaves: between its twigs."""
+CLUMP, FRAY = 0.045, 0.05
+"""Size of its clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
+GAP = 1.9
+"""Deviations of clumps' density below their mean at which sky is seen through."""
+_KINDS: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +77,10 @@ class GrownTree:
     ----------
     kind
         What the twigs bear.
+    shows_leaves
+        Whether the photo shows leaves, or the bare tree that is to have some.
+    leafy
+        (h, w) where the tree is to have leaves, as it is seen: the foliage, or the closed crown of a bare tree.
     traced
         The visible branches.
     wood
@@ -85,6 +98,8 @@ class GrownTree:
     """
 
     kind: Kind
+    shows_leaves: bool
+    leafy: Mask
     traced: Traced
     wood: Mask
     visible: Skeleton
@@ -132,9 +147,11 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
     report("lift", 0.0)
-    kind = _kind(sight, foliage, settings)
+    shown = _shown_kind(sight, foliage, settings)
+    kind = _borne_kind(shown, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
-    crown = _closed(foliage.mask | (wood & foliage.region), kind)
+    shows_leaves = shown != "bare" or kind == "bare"
+    crown = _closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
     camera = sight.camera(foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
     envelope = replace(envelope, radius_px=BULGE * envelope.radius_px)
@@ -144,7 +161,8 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
     library = choose_library(settings.library, kind, lifted)
     grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
     depth_m, own = lifted.points[:, 2], sight.unreduced(camera)
-    return GrownTree(kind, traced, wood, visible, owner, depth_m, envelope, grown, own)
+    leafy = foliage.mask if shows_leaves else _frayed(crown, rng)
+    return GrownTree(kind, shows_leaves, leafy, traced, wood, visible, owner, depth_m, envelope, grown, own)
 
 
 def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
@@ -168,17 +186,41 @@ def drawn_depth(
     return drawn
 
 
-def _kind(sight: Sight, foliage: Foliage, settings: ModelSettings) -> Kind:
-    """Take the kind that was asked for, or judge by the picture."""
-    if settings.foliage == "auto":
+def _shown_kind(sight: Sight, foliage: Foliage, settings: ModelSettings) -> Kind:
+    """Take the kind that was asked for, or judge by the picture; a season may ask for leaves that it does not show."""
+    if settings.foliage == "auto" or settings.season in LEAFY:
         return foliage_kind(foliage.look, foliage.mask, sight.strokes.branches[0].points)
-    kinds: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
-    return kinds[settings.foliage]
+    return _KINDS[settings.foliage]
 
 
-def _closed(mask: Mask, kind: Kind) -> Mask:
+def _borne_kind(shown: Kind, settings: ModelSettings) -> Kind:
+    """Tell what the twigs bear: what was asked for, else what season, species and photo say, in this order."""
+    species = KINDS[settings.species]
+    if settings.season == "bare" or settings.foliage == "bare":
+        return "bare"
+    if settings.foliage != "auto":
+        return _KINDS[settings.foliage]
+    if shown == "bare" and settings.season not in LEAFY and not species.evergreen:
+        return "bare"
+    if species == AUTO:
+        return "leaves" if shown == "bare" else shown
+    return "leaves" if species.needles is None else "needles"
+
+
+def _closed(mask: Mask, share: float) -> Mask:
     """Close small holes and bays of a foliage mask."""
-    size = max(3, int(2 * CLOSED_SHARE[kind] * np.sqrt(mask.sum())) | 1)
+    size = max(3, int(2 * share * np.sqrt(mask.sum())) | 1)
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     edge = cv2.copyMakeBorder(mask.astype(np.uint8), size, size, size, size, cv2.BORDER_CONSTANT, value=0)
     return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)
+
+
+def _frayed(crown: Mask, rng: np.random.Generator) -> Mask:
+    """Fray the outline of a crown whose leaves nobody has seen into clumps, and open some gaps."""
+    size = float(np.sqrt(crown.sum()))
+    height, width = crown.shape
+    coarse = (max(2, round(width / (CLUMP * size))), max(2, round(height / (CLUMP * size))))
+    clumps = cv2.resize(rng.standard_normal(coarse[::-1]), (width, height), interpolation=cv2.INTER_CUBIC)
+    inward = cv2.distanceTransform(np.pad(crown.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
+    bays = FRAY * size * np.clip(0.3 - 0.5 * clumps, 0.0, 1.0)
+    return np.asarray(crown & (inward > bays) & (clumps > -GAP))

@@ -1,7 +1,7 @@
 """System A: a 3D tree from one photo and a few strokes (Tan et al. 2008). The recipe reads top to bottom."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -12,24 +12,19 @@ from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.replacement import Grown
-from treestroke.core.leaf.atlas import Atlas, leaf_atlas
-from treestroke.core.leaf.cards import cards
+from treestroke.core.leaf.area import leaf_area
+from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.leaves import Leaves
-from treestroke.core.leaf.placement import LeafParams, place_leaves
-from treestroke.core.mesh.bark import BarkParams, bark_texture
-from treestroke.core.mesh.tubes import tubes
-from treestroke.core.pipeline.growing import GrownTree, LiveTree, Seen, drawn_depth, grow_tree, see
+from treestroke.core.pipeline.dressing import bark_surface, first_stem, leaf_surface
+from treestroke.core.pipeline.growing import BULGE, GrownTree, LiveTree, Seen, grow_tree, see
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sight import Mask, Photo, Sight
+from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.segment.kind import Kind
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning
-from treestroke.core.trace.tracing import Traced
-
-BARE_BREADTH = 0.5
-"""Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
+from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Measures, Scale, measure_tree
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +83,7 @@ class TreeModel:
     foliage_kind: Kind
     iterations: int
     branches: int
+    measures: Measures
     score: dict[str, float]
     warnings: tuple[StrokeWarning, ...]
 
@@ -126,27 +122,43 @@ def model_photo(
     rng: np.random.Generator,
     report: Report = silent,
     on_grown: OnGrown = unseen,
+    leaf_picture: NDArray[np.uint8] | None = None,
 ) -> TreeModel:
-    """Turn a photo (h, w, 3), sRGB, and its strokes (one branch at least) into a tree.
-
-    ``report(stage, fraction)`` is called with the stages foliage, trace, lift, grow, leaf and mesh; ``on_grown`` with
-    the grown tree, before it has leaves and bark.
+    """Turn a photo (h, w, 3), sRGB, and its strokes (one branch at least) into a tree: see, then `model_seen`.
 
     Raises
     ------
     StrokesError
         The strokes do not describe a tree.
     """
-    seen = see(photo, strokes, None, report)
-    sight, foliage = seen.sight, seen.foliage
+    return model_seen(see(photo, strokes, None, report), settings, rng, report, on_grown, leaf_picture)
+
+
+def model_seen(
+    seen: Seen,
+    settings: ModelSettings,
+    rng: np.random.Generator,
+    report: Report = silent,
+    on_grown: OnGrown = unseen,
+    leaf_picture: NDArray[np.uint8] | None = None,
+) -> TreeModel:
+    """Turn what was seen in a photo into a tree; other seeds give other trees of the same photo.
+
+    ``report(stage, fraction)`` is called with the stages lift, grow, leaf and mesh; ``on_grown`` with the grown tree,
+    before it has leaves and bark. ``leaf_picture`` (h, w, 4), sRGB with straight alpha, stalk down, is drawn instead of
+    the species' leaf.
+
+    Raises
+    ------
+    ValueError
+        Nothing was traced, or the picture of a leaf is none or transparent.
+    """
     tree = grow_tree(seen, settings, rng, report)
     on_grown(tree.live)
     report("leaf", 0.0)
-    leaf, sprays, atlas = _leaf(sight, foliage, _front(foliage, tree), tree, settings, rng, report)
+    leaf, sprays, atlas = leaf_surface(seen, tree, settings, leaf_picture, rng, report)
     report("mesh", 0.0)
-    wrapping = tubes(tree.grown.skeleton)
-    report("mesh", 0.6)
-    bark = Surface(wrapping, _bark_texture(sight, tree.traced, rng))
+    bark = bark_surface(seen, tree, settings, rng, report)
     report("mesh", 1.0)
     grown = tree.grown
     return TreeModel(
@@ -157,12 +169,13 @@ def model_photo(
         leaf=leaf,
         cards=sprays,
         atlas=atlas,
-        likeness=foliage.mask | tree.wood,
+        likeness=tree.leafy | tree.wood,
         foliage_kind=tree.kind,
         iterations=settings.iterations,
         branches=_branch_count(grown.skeleton),
+        measures=_measures(seen, tree, sprays, atlas),
         score={"attractors_reached": grown.attractors_reached, "depth_over_width": _depth_over_width(bark, leaf)},
-        warnings=sight.warnings,
+        warnings=seen.sight.warnings,
     )
 
 
@@ -177,51 +190,26 @@ def _in_photo(seen: Seen) -> PhotoTrace:
     return PhotoTrace(mask, seen, full, traced.stroke, seen.sight.warnings)
 
 
-def _leaf(
-    sight: Sight,
-    foliage: Foliage,
-    front: NDArray[np.float32],
-    tree: GrownTree,
-    settings: ModelSettings,
-    rng: np.random.Generator,
-    report: Report,
-) -> tuple[Surface, Leaves, Atlas] | tuple[None, None, None]:
-    """Hang leaves on the grown tree: their surface, and what it is made from."""
-    kind, leafy = tree.kind, np.isposinf(front)
-    if kind == "bare" or settings.leaf_density == 0 or not leafy.any():
-        return None, None, None
-    pure = foliage.pure & leafy
-    coloured = pure if pure.sum() > 0.1 * leafy.sum() else leafy
-    atlas = leaf_atlas(sight.photo, coloured, kind, rng)
-    report("leaf", 0.2)
-    params = LeafParams(settings.leaf_size, settings.leaf_density, kind=kind)
-    leaves = place_leaves(tree.grown.skeleton, front, tree.envelope, sight.photo, atlas, params, rng, report)
-    return (Surface(cards(leaves, atlas), atlas.image), leaves, atlas) if len(leaves) else (None, None, None)
+def _measures(seen: Seen, tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Measures:
+    """Measure the tree as it was grown, by the scale that the strokes or the height set."""
+    sight, metres = seen.sight, tree.envelope.camera.metres_per_pixel
+    known, error = sight.strokes.scale, 0.0
+    if known is not None:
+        ends_px = ENDS_PX * max(sight.photo.shape) / WORKING_SIDE
+        error = min(0.9, ends_px / float(np.hypot(*(known.points[1] - known.points[0]))))
+    scale = Scale(metres * sight.scale, known is not None, error)
+    crown = None if leaves is None else leaves.centres
+    area = 0.0 if leaves is None or atlas is None else leaf_area(leaves, atlas)
+    unbulged = replace(tree.envelope, radius_px=tree.envelope.radius_px / BULGE)
+    height = sight.height_px(seen.foliage.mask) * metres
+    return measure_tree(tree.grown.skeleton, height, _trunk_seen(tree, metres), crown, area, unbulged, scale)
 
 
-def _front(foliage: Foliage, tree: GrownTree) -> NDArray[np.float32]:
-    """World Z (h, w), metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
-
-    What is a leaf by its colour hangs before the wood.
-    """
-    traced = tree.traced
-    what = tree.visible, traced.measured[tree.owner], tree.depth_m, foliage.mask.shape
-    wood, middle = drawn_depth(*what, 1.0), drawn_depth(*what, BARE_BREADTH)
-    front = np.where(np.isnan(wood) | ~foliage.region, -np.inf, wood)
-    front[foliage.mask & (np.isnan(middle) | (foliage.pure & ~traced.wood))] = np.inf
-    return front.astype(np.float32)
-
-
-def _bark_texture(sight: Sight, traced: Traced, rng: np.random.Generator) -> Photo:
-    """Read the bark off the first stem's visible pixels."""
-    trunk = _trunk(traced)
-    radii = np.where(traced.measured[trunk], traced.skeleton.radii[trunk], 0.0)
-    return bark_texture(sight.photo, traced.skeleton.points[trunk], radii, BarkParams(), rng)
-
-
-def _trunk(traced: Traced) -> Indices:
-    """Joints under the first stroke, root first."""
-    return np.flatnonzero(traced.stroke == 0)
+def _trunk_seen(tree: GrownTree, metres_per_pixel: float) -> bool:
+    """Tell whether the photo shows how thick the trunk is at breast height."""
+    trunk = first_stem(tree.traced)
+    heights = (tree.traced.skeleton.points[trunk[0], 1] - tree.traced.skeleton.points[trunk, 1]) * metres_per_pixel
+    return bool(tree.traced.measured[trunk[np.abs(heights - BREAST_HEIGHT).argmin()]])
 
 
 def _branch_count(tree: Skeleton) -> int:

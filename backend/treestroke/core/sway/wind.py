@@ -28,6 +28,8 @@ class Rig:
         (b,) -1 for the root, else smaller than the bone's own index.
     heads
         (b, 3) where each bone starts and turns about, metres, world.
+    ends
+        (b, 3) where it ends: at the next bone of its limb or at the limb's tip; the root where it starts.
     radii
         (b,) radius of the wood at the head, metres; 0 for flutter.
     joint_bones
@@ -35,12 +37,14 @@ class Rig:
     joint_share
         (n,) weight of the second of them, 0 to 1.
     flutter
-        (b,) the flutter bone that the outer corners of leaves on a bone follow, or -1.
+        (b,) the flutter bone that the outer corners of leaves on a bone follow, or -1: its own child, or that of its
+        nearest ancestor with one.
     """
 
     names: tuple[str, ...]
     parents: Indices
     heads: Floats
+    ends: Floats
     radii: Floats
     joint_bones: Indices
     joint_share: Floats

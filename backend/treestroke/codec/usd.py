@@ -1,0 +1,173 @@
+"""A tree as USDZ, for Apple's viewers and film tools."""
+
+import json
+import re
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+from zipfile import ZipFile, ZipInfo
+
+import numpy as np
+
+from treestroke.codec.gltf.book import RELIEF_QUALITY, encode_picture
+from treestroke.codec.skeleton import plain_camera
+from treestroke.core.errors import SettingsError
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
+
+_ALIGNED = 64  # bytes: where the content of each file in a package starts, by USDZ's specification
+_LOCAL_HEADER, _EXTRA_HEADER = 30, 4  # bytes of a zip file's, before the name and before the padding
+_PADDING_ID = b"\x86\x19"  # of the extra field that pads
+_MISSING = "usdz needs the package usd-core; install it by `pip install treestroke[usd]` or `make usd`"
+
+
+def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) -> bytes:
+    """Write a tree as a USDZ package: metres, Y up, UsdPreviewSurface, one mesh each for bark and leaf.
+
+    The layer's own values hold the photo's camera. Shades of leaves are left out: UsdPreviewSurface mixes no vertex
+    colours with textures. Equal input gives equal bytes.
+
+    Raises
+    ------
+    SettingsError
+        The optional package usd-core is not installed.
+    """
+    name = re.sub(r"^(?=\d)|\W", "_", stem, flags=re.ASCII)
+    worn = {"bark": bark} if leaf is None else {"bark": bark, "leaf": leaf}
+    pictures: dict[str, bytes] = {}
+    for part, surface in worn.items():
+        pictures[_picture(part, surface)] = encode_picture(surface.texture)[1]
+        if surface.relief is not None:
+            pictures[_relief(part)] = encode_picture(surface.relief, RELIEF_QUALITY)[1]
+    return package({f"{name}.usdc": _layer(name, worn, camera), **pictures})
+
+
+def _picture(part: str, surface: Surface) -> str:
+    return f"textures/{part}.{'png' if surface.texture.shape[2] == 4 else 'jpg'}"
+
+
+def _relief(part: str) -> str:
+    return f"textures/{part}_relief.jpg"
+
+
+def _layer(name: str, worn: Mapping[str, Surface], camera: Camera) -> bytes:
+    """Write the scene as binary USD."""
+    try:
+        from pxr import Kind, Usd, UsdGeom
+    except ImportError:
+        raise SettingsError.at(("files",), _MISSING, "usd_missing") from None
+    stage = Usd.Stage.CreateInMemory()
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    root = UsdGeom.Xform.Define(stage, f"/{name}")
+    prim = root.GetPrim()
+    Usd.ModelAPI(prim).SetKind(Kind.Tokens.component)
+    stage.SetDefaultPrim(prim)
+    layer = stage.GetRootLayer()
+    layer.customLayerData = {"photo": json.dumps(plain_camera(camera))}
+    for part, surface in worn.items():
+        _dress(stage, f"/{name}", part, surface)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "tree.usdc"
+        layer.Export(str(path))
+        return path.read_bytes()
+
+
+def _dress(stage: Any, root: str, part: str, surface: Surface) -> None:
+    """Add a mesh and the material that it wears."""
+    from pxr import UsdShade
+
+    material = _material(stage, f"{root}/materials/{part}", part, surface)
+    shape = _shape(stage, f"{root}/{part}", surface.mesh)
+    shape.CreateDoubleSidedAttr(surface.texture.shape[2] == 4)
+    prim = shape.GetPrim()
+    UsdShade.MaterialBindingAPI.Apply(prim).Bind(material)
+
+
+def _shape(stage: Any, path: str, mesh: Mesh) -> Any:
+    """Add a mesh; v is upward, as USD has it."""
+    from pxr import Sdf, UsdGeom, Vt
+
+    shape = UsdGeom.Mesh.Define(stage, path)
+    points = np.ascontiguousarray(mesh.positions, dtype=np.float32)
+    normals = np.ascontiguousarray(mesh.normals, dtype=np.float32)
+    upward = np.ascontiguousarray(mesh.uvs * np.array([1, -1]) + np.array([0, 1]), dtype=np.float32)
+    corners = np.ascontiguousarray(mesh.triangles.ravel(), dtype=np.int32)
+    shape.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    shape.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(points))
+    shape.CreateFaceVertexCountsAttr(Vt.IntArray.FromNumpy(np.full(len(mesh.triangles), 3, dtype=np.int32)))
+    shape.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(corners))
+    shape.CreateExtentAttr(Vt.Vec3fArray.FromNumpy(np.stack([points.min(axis=0), points.max(axis=0)])))
+    shape.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(normals))
+    shape.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
+    primvars = UsdGeom.PrimvarsAPI(shape)
+    st = primvars.CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex)
+    st.Set(Vt.Vec2fArray.FromNumpy(upward))
+    return shape
+
+
+def _material(stage: Any, path: str, part: str, surface: Surface) -> Any:
+    """Add a material of one picture, cut by its alpha where it has one, and its relief."""
+    from pxr import Sdf, UsdShade
+
+    kinds = Sdf.ValueTypeNames
+    cut = surface.texture.shape[2] == 4
+    material = UsdShade.Material.Define(stage, path)
+    shader = _shader(stage, f"{path}/surface", "UsdPreviewSurface")
+    reader = _shader(stage, f"{path}/st", "UsdPrimvarReader_float2")
+    reader.CreateInput("varname", kinds.String).Set("st")
+    place = reader.CreateOutput("result", kinds.Float2)
+    picture = _texture(stage, f"{path}/picture", _picture(part, surface), place, "clamp" if cut else "repeat", "sRGB")
+    shader.CreateInput("diffuseColor", kinds.Color3f).ConnectToSource(picture.CreateOutput("rgb", kinds.Float3))
+    shader.CreateInput("roughness", kinds.Float).Set(1.0)
+    shader.CreateInput("metallic", kinds.Float).Set(0.0)
+    if cut:
+        shader.CreateInput("opacity", kinds.Float).ConnectToSource(picture.CreateOutput("a", kinds.Float))
+        shader.CreateInput("opacityThreshold", kinds.Float).Set(ALPHA_CUT)
+    if surface.relief is not None:
+        relief = _texture(stage, f"{path}/relief", _relief(part), place, "repeat", "raw")
+        relief.CreateInput("scale", kinds.Float4).Set((2.0, 2.0, 2.0, 1.0))
+        relief.CreateInput("bias", kinds.Float4).Set((-1.0, -1.0, -1.0, 0.0))
+        shader.CreateInput("normal", kinds.Normal3f).ConnectToSource(relief.CreateOutput("rgb", kinds.Float3))
+    material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", kinds.Token))
+    return material
+
+
+def _texture(stage: Any, path: str, file: str, place: Any, wrap: str, colours: str) -> Any:
+    """Add a picture that is read at a place."""
+    from pxr import Sdf
+
+    texture = _shader(stage, path, "UsdUVTexture")
+    texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(Sdf.AssetPath(file))
+    texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(place)
+    texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set(colours)
+    for side in ("wrapS", "wrapT"):
+        texture.CreateInput(side, Sdf.ValueTypeNames.Token).Set(wrap)
+    return texture
+
+
+def _shader(stage: Any, path: str, kind: str) -> Any:
+    from pxr import UsdShade
+
+    shader = UsdShade.Shader.Define(stage, path)
+    shader.CreateIdAttr(kind)
+    return shader
+
+
+def package(files: Mapping[str, bytes]) -> bytes:
+    """Put files, the scene first, into a USDZ: a zip without compression, each content at a multiple of 64 bytes.
+
+    Equal files give equal bytes.
+    """
+    out = BytesIO()
+    with ZipFile(out, "w") as package:
+        for name, content in files.items():
+            entry = ZipInfo(name)
+            entry.create_system = 0
+            start = out.tell() + _LOCAL_HEADER + len(name.encode()) + _EXTRA_HEADER
+            padding = -start % _ALIGNED
+            entry.extra = _PADDING_ID + padding.to_bytes(2, "little") + bytes(padding)
+            package.writestr(entry, content)
+    return out.getvalue()

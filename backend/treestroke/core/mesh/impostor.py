@@ -1,0 +1,260 @@
+"""A tree as pictures of itself from eight sides, on planes that cross in it: for where it is seen very small."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
+from treestroke.core.geometry.mipmaps import Cutout, Mipmaps, stacked
+from treestroke.core.geometry.raster import Floats, Indices, pixel_centres, planes, visible_triangles
+from treestroke.core.geometry.silhouette import AZIMUTHS_RAD, Framing, framing
+
+TILE_SIDE = 256
+"""Side of a picture in the atlas, px."""
+COLUMNS, ROWS = 4, 2
+"""Tiles of the atlas: azimuth by azimuth, row by row."""
+BANDS = 6
+"""Pieces of a plane, one above the other, that lean to where the tree's middle is at their height."""
+_MARGIN = 4
+"""Clear texels around a tile's picture, so that smaller copies do not mix neighbours."""
+_INNER = TILE_SIDE - 2 * _MARGIN
+_FINER = 2
+"""Samples a side of a texel."""
+_TRIM_ROWS = 64
+"""Rows of the view in which a tree's outline is told when its pictures are trimmed: about as it is seen."""
+_ASKEW = float(np.sqrt(0.5))
+"""Breadth of a plane seen from its neighbour's azimuth, over its own."""
+_GAMMA = 2.2
+_FLATTEST = 0.15
+"""Least part of a normal that points to the viewer."""
+
+Colours = NDArray[np.float32]
+_Place = tuple[Floats, Floats]
+
+
+@dataclass(frozen=True, eq=False)
+class _Picture:
+    """What one azimuth shows: linear colours and normals (h, w, 3), x right, y up, z to the viewer; 0 where nothing is.
+
+    ``there`` (h, w) is 1 where something is.
+    """
+
+    colours: Colours
+    normals: Colours
+    there: Colours
+
+    def box(self, part: slice) -> "_Picture":
+        """Cut columns out."""
+        return _Picture(self.colours[:, part], self.normals[:, part], self.there[:, part])
+
+
+def impostor(surfaces: Sequence[Surface]) -> Surface:
+    """Bake a tree into an atlas of eight views, and stand them on four planes with two sides each.
+
+    A view shows the base colours and, as relief, the normals; it is drawn on the side of a plane that faces its
+    azimuth, upright, at its own size. The planes cross in the tree's middle at each height: seen from one azimuth the
+    neighbours' pictures, foreshortened, stay nearly within its own. All triangles are to be seen from the front only.
+
+    Returns
+    -------
+    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where half of a texel is covered, and
+    colours beneath its clear part too; its relief is a tangent-space normal map.
+    """
+    view = framing(surfaces, _FINER * _INNER)
+    texels = [_premultiplied(surface.texture) for surface in surfaces]
+    pictures = [_drawn(surfaces, texels, view, azimuth) for azimuth in AZIMUTHS_RAD.tolist()]
+    boxes = [_columns(picture.there) for picture in pictures]
+    middles = np.stack([_middles(picture.there, view) for picture in pictures])
+    if any(surface.texture.shape[2] == 4 for surface in surfaces):
+        trimmed = _trimmed(np.stack([picture.there for picture in pictures]), middles, view)
+        pictures = [
+            replace(picture, there=picture.there * kept) for picture, kept in zip(pictures, trimmed, strict=True)
+        ]
+    tiles = [_tile(picture.box(slice(*box))) for picture, box in zip(pictures, boxes, strict=True)]
+    strips = [_strip(k, box, middles[(k + 2) % len(boxes)], view) for k, box in enumerate(boxes)]
+    texture, relief = (
+        np.concatenate([np.concatenate(row, axis=1) for row in _rows(side)]) for side in zip(*tiles, strict=True)
+    )
+    return Surface(_joined(strips), texture, relief)
+
+
+def _rows(tiles: Sequence[NDArray[np.uint8]]) -> list[Sequence[NDArray[np.uint8]]]:
+    """Lay tiles out in the atlas's rows."""
+    return [tiles[row * COLUMNS : (row + 1) * COLUMNS] for row in range(ROWS)]
+
+
+def _drawn(surfaces: Sequence[Surface], texels: Sequence[Colours], view: Framing, azimuth_rad: float) -> _Picture:
+    """Draw one view; ``texels`` are those of each surface's texture and its smaller copies."""
+    right = np.array([np.cos(azimuth_rad), 0.0, -np.sin(azimuth_rad)])
+    turn = np.stack([right, [0.0, 1.0, 0.0], np.cross(right, [0.0, 1.0, 0.0])])
+    corners = [surface.mesh.positions.astype(np.float64)[surface.mesh.triangles] for surface in surfaces]
+    corners_px = [view.project(each, azimuth_rad) for each in corners]
+    nearness = np.concatenate([each @ turn[2] for each in corners]).mean(axis=1)
+    cut = _Cuts(
+        [Cutout(surface, at) for surface, at in zip(surfaces, corners_px, strict=True)], [len(c) for c in corners]
+    )
+    shown = visible_triangles(np.concatenate(corners_px), nearness, cut, view.height, view.width).ravel()
+    colours, normals = (np.zeros((len(shown), 3), dtype=np.float32) for _ in range(2))
+    for surface, worn, at, start in zip(surfaces, texels, corners_px, cut.starts[:-1].tolist(), strict=True):
+        pixel = np.flatnonzero((shown >= start) & (shown < start + len(at)))
+        triangle, place = shown[pixel] - start, pixel_centres(pixel, view.width)
+        colours[pixel] = _colours(surface, worn, at, triangle, place)
+        normals[pixel] = _normals(surface.mesh, at, triangle, place, turn)
+    size = (view.height, view.width)
+    there = (shown >= 0).astype(np.float32).reshape(size)
+    return _Picture(colours.reshape(*size, 3), normals.reshape(*size, 3), there)
+
+
+class _Cuts:
+    """Tells where the triangles of several surfaces, one after the other, are not cut away."""
+
+    def __init__(self, cuts: Sequence[Cutout], counts: Sequence[int]) -> None:
+        self.cuts, self.starts = cuts, np.cumsum([0, *counts])
+
+    def __call__(self, triangle: Indices, x: Floats, y: Floats) -> NDArray[np.bool_]:
+        """Tell which points (m,), px, of the triangles named are there."""
+        there = np.empty(len(triangle), dtype=bool)
+        for cut, start, end in zip(self.cuts, self.starts[:-1], self.starts[1:], strict=True):
+            mine = np.flatnonzero((triangle >= start) & (triangle < end))
+            there[mine] = cut(triangle[mine] - start, x[mine], y[mine])
+        return there
+
+
+def _colours(surface: Surface, texels: Colours, corners_px: Floats, triangle: Indices, place: _Place) -> Colours:
+    """Give the linear colours (m, 3) of the triangles (m,) of a surface at places."""
+    mesh = surface.mesh
+    worn = texels[Mipmaps(surface, corners_px).texels(triangle, *place)]
+    colours = worn[:, :3] / worn[:, 3:]
+    if mesh.shades is None:
+        return np.asarray(colours)
+    shades = planes(corners_px, mesh.shades[mesh.triangles].astype(np.float64)[:, :, None]).at(triangle, *place)[0]
+    return np.asarray(colours * np.clip(shades, 0.0, 1.0)[:, None], dtype=np.float32)
+
+
+def _normals(mesh: Mesh, corners_px: Floats, triangle: Indices, place: _Place, turn: Floats) -> Colours:
+    """Give the normals (m, 3) as the viewer sees them of the triangles (m,) of a mesh at places."""
+    turned = mesh.normals.astype(np.float64) @ turn.T
+    normals = planes(corners_px, turned[mesh.triangles]).at(triangle, *place).T
+    first, second = (corners_px[triangle, corner] - corners_px[triangle, 0] for corner in (1, 2))
+    # A leaf seen from behind turns its normal about, as it does in a viewer.
+    normals[first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0] > 0] *= -1.0
+    normals[:, 2] = np.maximum(normals[:, 2], _FLATTEST)
+    return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True), dtype=np.float32)
+
+
+def _premultiplied(texture: NDArray[np.uint8]) -> Colours:
+    """Give all copies' texels (n, 4): linear colours times alpha, and alpha."""
+    linear = ((np.arange(256) / 255.0) ** _GAMMA).astype(np.float32)[texture[:, :, :3]]
+    alpha = np.ones(texture.shape[:2], np.float32) if texture.shape[2] == 3 else texture[:, :, 3] / np.float32(255)
+    alpha = np.maximum(alpha, np.float32(1e-3))
+    return stacked(np.concatenate([linear * alpha[:, :, None], alpha[:, :, None]], axis=2))
+
+
+def _columns(there: Colours) -> tuple[int, int]:
+    """Find the columns, first and end, that show anything."""
+    shown = np.flatnonzero(there.any(axis=0))
+    return (int(shown[0]), int(shown[-1]) + 1) if shown.size else (0, there.shape[1])
+
+
+def _tile(picture: _Picture) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Shrink a picture to a tile: colours with alpha (side, side, 4), and normals (side, side, 3)."""
+    colours, normals = (_bled(_small(layer, picture.there)) for layer in (picture.colours, picture.normals))
+    alpha = 255.0 * np.interp(colours[:, :, 3], [0.0, 0.5, 1.0], [0.0, ALPHA_CUT, 1.0])
+    coded = 255.0 * np.clip(colours[:, :, :3], 0.0, 1.0) ** (1.0 / _GAMMA)
+    directions = normals[:, :, :3] / np.maximum(np.linalg.norm(normals[:, :, :3], axis=2, keepdims=True), 1e-6)
+    texture = np.concatenate([coded, alpha[:, :, None]], axis=2)
+    return np.rint(texture).astype(np.uint8), np.rint(127.5 + 127.5 * directions).astype(np.uint8)
+
+
+def _small(layer: Colours, there: Colours) -> Colours:
+    """Shrink a layer (h, w, 3) and its cover to a tile (side, side, 4) with a clear edge."""
+    small = cv2.resize(np.dstack([layer, there]), (_INNER, _INNER), interpolation=cv2.INTER_AREA)
+    return np.asarray(np.pad(small, ((_MARGIN, _MARGIN), (_MARGIN, _MARGIN), (0, 0))))
+
+
+def _bled(layer: Colours) -> Colours:
+    """Divide a layer (h, w, 3 + 1) by its cover, the last channel, and carry it on to where there is none."""
+    cover, size = layer[:, :, 3], layer.shape[1::-1]
+    filled, known = np.zeros_like(layer), np.zeros(cover.shape, dtype=bool)
+    for side in (TILE_SIDE >> step for step in range(TILE_SIDE.bit_length())):
+        sums = cv2.resize(cv2.resize(layer, (side, side), interpolation=cv2.INTER_AREA), size)
+        new = ~known & (sums[:, :, 3] > 1e-4)
+        filled[new] = sums[new] / sums[new][:, 3:]
+        known |= new
+    filled[:, :, 3] = cover
+    return filled
+
+
+def _middles(there: Colours, view: Framing) -> Floats:
+    """Give how far to the right (bands + 1,), metres, a view's middle is at the edges of the bands, from the bottom."""
+    rows = there.astype(np.float64)
+    columns = np.arange(view.width) + 0.5 - 0.5 * view.width
+    edges = np.linspace(view.height, 0, BANDS + 1)
+    reach = 0.5 * view.height / BANDS
+    found = []
+    for edge in edges.tolist():
+        band = rows[int(max(edge - reach, 0)) : int(np.ceil(edge + reach))].sum(axis=0)
+        found.append(float(columns @ band) / max(float(band.sum()), 1e-9) / view.px_per_m)
+    return np.array(found)
+
+
+def _trimmed(there: Colours, middles: Floats, view: Framing) -> NDArray[np.bool_]:
+    """Tell what each view (8, h, w) keeps: not what, seen foreshortened from its neighbours, would lie beside the tree.
+
+    A pixel goes where that costs its own view less than it costs its neighbours.
+    """
+    kernel = (max(1, round(view.height / _TRIM_ROWS)),) * 2
+    shown = np.stack([cv2.blur(each, kernel) >= 0.5 for each in there])
+    rows = np.arange(view.height)
+    edges = np.linspace(0, view.height, BANDS + 1)
+    # How far each row of a plane stands out of the axis to its own viewer, px: seen from there, all is in place.
+    out = np.stack([-np.interp(rows + 0.5, edges, m[::-1]) for m in np.roll(middles, -2, axis=0)]) * view.px_per_m
+    column = np.arange(view.width) + 0.5 - 0.5 * view.width
+    kept = shown.copy()
+    for k in range(len(there)):
+        lost, covered = np.zeros(shown[k].shape), np.zeros(shown[k].shape, dtype=bool)
+        for j, sign in (((k + 1) % len(there), -1.0), ((k - 1) % len(there), 1.0)):
+            lost += _ASKEW * ~_read(shown[j], rows, _ASKEW * (column + sign * out[k][:, None]))
+            covered |= _read(kept[j], rows, column / _ASKEW + sign * out[j][:, None])
+        kept[k] = lost <= np.where(covered | ~shown[k], 0.0, 1.0)
+    return kept
+
+
+def _read(mask: NDArray[np.bool_], rows: Indices, across: Floats) -> NDArray[np.bool_]:
+    """Read a mask (h, w) in each row at distances (h, n), px, to the right of its middle; false outside."""
+    column = np.floor(across + 0.5 * mask.shape[1]).astype(np.int64)
+    inside = (column >= 0) & (column < mask.shape[1])
+    return np.asarray(mask[rows[:, None], np.clip(column, 0, mask.shape[1] - 1)] & inside)
+
+
+def _strip(tile: int, box: tuple[int, int], middles: Floats, view: Framing) -> Mesh:
+    """Stand a tile's picture up, band on band; ``middles`` are those of the view from a quarter turn further."""
+    azimuth = AZIMUTHS_RAD[tile]
+    right, out = np.array([np.cos(azimuth), 0.0, -np.sin(azimuth)]), np.array([np.sin(azimuth), 0.0, np.cos(azimuth)])
+    across = (np.array(box) - 0.5 * view.width) / view.px_per_m
+    up = (view.bottom_px - np.linspace(view.height, 0, BANDS + 1)) / view.px_per_m
+    # Seen from a quarter turn further, what is nearer to this viewer is further left.
+    spine = up[:, None] * [0.0, 1.0, 0.0] - middles[:, None] * out
+    positions = (spine[:, None] + across[None, :, None] * right).reshape(-1, 3)
+    corner = np.array([tile % COLUMNS, tile // COLUMNS], dtype=np.float64)
+    u = (corner[0] + np.array([_MARGIN, TILE_SIDE - _MARGIN]) / TILE_SIDE) / COLUMNS
+    v = (corner[1] + np.linspace(TILE_SIDE - _MARGIN, _MARGIN, BANDS + 1) / TILE_SIDE) / ROWS
+    uvs = np.stack(np.broadcast_arrays(u[None, :], v[:, None]), axis=-1).reshape(-1, 2)
+    first = 2 * np.arange(BANDS, dtype=np.uint32)[:, None, None]
+    triangles = (first + np.array([[0, 1, 3], [0, 3, 2]], dtype=np.uint32)).reshape(-1, 3)
+    normals = np.broadcast_to(out, positions.shape)
+    return Mesh(positions.astype(np.float32), normals.astype(np.float32), uvs.astype(np.float32), triangles)
+
+
+def _joined(strips: Sequence[Mesh]) -> Mesh:
+    """Put strips of equal size into one mesh."""
+    count = len(strips[0].positions)
+    return Mesh(
+        np.concatenate([strip.positions for strip in strips]),
+        np.concatenate([strip.normals for strip in strips]),
+        np.concatenate([strip.uvs for strip in strips]),
+        np.concatenate([strip.triangles + np.uint32(count * k) for k, strip in enumerate(strips)]),
+    )

@@ -1,0 +1,110 @@
+"""Levels of detail: the same grown tree for where it is seen smaller."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from treestroke.core.geometry.mesh import Surface
+from treestroke.core.geometry.polyline import Floats
+from treestroke.core.geometry.silhouette import Framing, Mask, framing, silhouette_ious, silhouettes
+from treestroke.core.leaf.cards import cards
+from treestroke.core.leaf.thinning import thin_leaves
+from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
+from treestroke.core.mesh.impostor import impostor
+from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.progress import Report, silent
+
+HEIGHTS_PX = (400, 150, 64)
+"""How tall a tree is seen, px, at which the first and second level and the impostor are judged."""
+_SHARES = (0.30, 0.08)
+"""Of the whole tree's triangles, in the first and second level."""
+_BARE_MORE = 1.04
+"""A leafless tree's bark may have so much more, for no leaves fill the rest."""
+_LEAST_WOOD, _MOST_WOOD = 0.12, 0.9
+"""Share of a level's triangles that is bark: where foliage hides all wood, and where wood stands nearly alone (5 photos)."""
+_HIDDEN_BY_WOOD = 0.1
+"""Worth of covering by leaves what wood covers already."""
+
+
+@dataclass(frozen=True, eq=False)
+class Level:
+    """A tree of fewer triangles; it wears the whole tree's textures, the same arrays."""
+
+    bark: Surface
+    leaf: Surface | None
+
+    @property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """Bark and, where there are, leaves."""
+        return (self.bark,) if self.leaf is None else (self.bark, self.leaf)
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """What a tree shows when it is seen smaller and smaller.
+
+    Attributes
+    ----------
+    lod1, lod2
+        Bark and leaves of 30 % and 8 % of the triangles; their vertices hold to the whole tree's skeleton.
+    impostor
+        Pictures of the tree on crossed planes, to be seen from the front of each triangle only; it stands still.
+    """
+
+    lod1: Level
+    lod2: Level
+    impostor: Surface
+
+
+def levels(tree: TreeModel, report: Report = silent) -> Levels:
+    """Make the levels of detail of a finished tree; there are some of every tree.
+
+    Deterministic. ``report("levels", fraction)`` is called as they are done.
+    """
+    whole = Level(tree.bark, tree.leaf)
+    view = framing(whole.surfaces, HEIGHTS_PX[1])
+    wanted = silhouettes(whole.surfaces, view)
+    report("levels", 0.2)
+    wood = _wood_share(tree, view, wanted)
+    lod1 = _level(tree, 0, wood, view, wanted)
+    report("levels", 0.4)
+    lod2 = _level(tree, 1, wood, view, wanted)
+    report("levels", 0.5)
+    baked = impostor(lod1.surfaces)
+    report("levels", 1.0)
+    return Levels(lod1, lod2, baked)
+
+
+def level_ious(tree: TreeModel, made: Levels) -> dict[str, float]:
+    """Compare the levels' silhouettes with the whole tree's, each at its own height, px: the least IoU of 8 azimuths."""
+    whole = Level(tree.bark, tree.leaf).surfaces
+    coarse = {"lod1": made.lod1.surfaces, "lod2": made.lod2.surfaces, "impostor": (made.impostor,)}
+    sizes = zip(coarse.items(), HEIGHTS_PX, strict=True)
+    return {name: float(silhouette_ious(whole, surfaces, height).min()) for (name, surfaces), height in sizes}
+
+
+def _wood_share(tree: TreeModel, view: Framing, wanted: Mask) -> float:
+    """Choose the share of triangles that is bark: more where more of the silhouettes is wood alone."""
+    if tree.leaf is None:
+        return 1.0
+    alone = float((wanted & ~silhouettes((tree.leaf,), view)).sum()) / max(int(wanted.sum()), 1)
+    return float(np.clip(_LEAST_WOOD + alone, _LEAST_WOOD, _MOST_WOOD))
+
+
+def _level(tree: TreeModel, number: int, wood: float, view: Framing, wanted: Mask) -> Level:
+    """Make the first (0) or second (1) level."""
+    cards_before = 0 if tree.cards is None else len(tree.cards)
+    whole = len(tree.bark.mesh.triangles) + 2 * cards_before
+    aim = _SHARES[number] * whole * (_BARE_MORE if tree.leaf is None else 1.0)
+    most = int(max(wood * aim, aim - 2 * cards_before, LEAST_TRIANGLES))
+    bark = replace(tree.bark, mesh=coarse_tubes(tree.grown.skeleton, CoarseParams(most, HEIGHTS_PX[number])))
+    left = max(0, int(aim - len(bark.mesh.triangles)) // 2)
+    return Level(bark, _thinned(tree, left, view, np.where(silhouettes((bark,), view), _HIDDEN_BY_WOOD, 1.0) * wanted))
+
+
+def _thinned(tree: TreeModel, count: int, view: Framing, worth: Floats) -> Surface | None:
+    """Keep as many cards, one at least where there are any."""
+    if tree.leaf is None or tree.cards is None or tree.atlas is None:
+        return None
+    kept = thin_leaves(tree.cards, tree.atlas, max(1, count), view, worth)
+    return replace(tree.leaf, mesh=cards(kept, tree.atlas))
