@@ -15,7 +15,7 @@ export default defineConfig({
     chunkSizeWarningLimit: 700, // three.js is one file
     rolldownOptions: {
       output: {
-        codeSplitting: { groups: [{ name: 'three', test: /node_modules[\\/]three/ }] },
+        codeSplitting: { groups: [{ name: 'three', test: /node_modules[\\/]three[\\/](?!.*meshopt)/ }] },
       },
     },
   },

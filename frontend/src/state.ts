@@ -25,13 +25,13 @@ export interface Photo {
 }
 
 /** What the pointer does on the photo. */
-export type Tool = 'crown' | 'branch' | 'select'
+export type Tool = 'crown' | 'branch' | 'scale' | 'select'
 
 /** A stroke, or a traced branch by the first of its joints. */
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
 /** Where an error stands on the page. */
-export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery'
+export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf'
 
 /** A sentence that says what is wrong and what to do. */
 export interface Fault {
@@ -52,6 +52,8 @@ export interface State {
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
+  /** The person's own picture of a leaf, a PNG. */
+  readonly leaf: Blob | null
   readonly tool: Tool
   readonly selection: Selection | null
   /** A photo or project is being read. */
@@ -66,9 +68,13 @@ export interface State {
   readonly model: Model | null
   /** The strokes that the model was made of. */
   readonly modelOf: Strokes | null
+  /** The leaf that the model was made with. */
+  readonly modelLeaf: Blob | null
+  /** Which of the model's trees is looked at, from 1. */
+  readonly variant: number
   /** The model's skeleton, when it has just been grown. */
   readonly growth: Grown | null
-  /** The model's GLB. */
+  /** The GLB of that tree. */
   readonly tree: ArrayBuffer | null
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
@@ -85,9 +91,16 @@ export const DEFAULT_SETTINGS: Settings = {
   height: 10,
   library: 'auto',
   iterations: 300,
+  variants: 1,
+  species: 'auto',
+  season: 'photo',
   foliage: 'auto',
   leaf_size: 1,
   leaf_density: 1,
+  wind: 'none',
+  lod: 'none',
+  compress: false,
+  files: [],
 }
 
 export const EMPTY: State = {
@@ -96,6 +109,7 @@ export const EMPTY: State = {
   history: begin(NO_STROKES),
   settings: DEFAULT_SETTINGS,
   seed: 0,
+  leaf: null,
   tool: 'crown',
   selection: null,
   opening: false,
@@ -105,6 +119,8 @@ export const EMPTY: State = {
   asking: false,
   model: null,
   modelOf: null,
+  modelLeaf: null,
+  variant: 1,
   growth: null,
   tree: null,
   shows: 'live',

@@ -11,17 +11,25 @@ export interface Branch {
   readonly width?: number
 }
 
+/** A straight line over something of known length: its two ends, and its metres. */
+export interface Scale {
+  readonly points: Line
+  readonly metres: number
+}
+
 /** What is drawn over a photo. Never changed in place: every edit gives a new value. */
 export interface Strokes {
   readonly crown: Line | null
   readonly branches: readonly Branch[]
   /** Each crosses one traced branch that is to go. */
   readonly erase: readonly Line[]
+  /** What sets the tree's scale in place of its height. */
+  readonly scale: Scale | null
 }
 
-export type StrokeKind = 'crown' | 'branch' | 'erase'
+export type StrokeKind = 'crown' | 'branch' | 'erase' | 'scale'
 
-/** One stroke: the crown, or a branch or an erase stroke by its place. */
+/** One stroke: the crown or the measured line, or a branch or an erase stroke by its place. */
 export interface StrokeRef {
   readonly kind: StrokeKind
   readonly index: number
@@ -29,19 +37,25 @@ export interface StrokeRef {
 
 type WireStrokes = components['schemas']['Strokes']
 
-export const NO_STROKES: Strokes = { crown: null, branches: [], erase: [] }
+export const NO_STROKES: Strokes = { crown: null, branches: [], erase: [], scale: null }
 
 /** Add a stroke; a second crown takes the first one's place. */
-export function withStroke(strokes: Strokes, kind: StrokeKind, points: Line): Strokes {
+export function withStroke(strokes: Strokes, kind: Exclude<StrokeKind, 'scale'>, points: Line): Strokes {
   if (kind === 'crown') return { ...strokes, crown: points }
   if (kind === 'branch') return { ...strokes, branches: [...strokes.branches, { points }] }
   return { ...strokes, erase: [...strokes.erase, points] }
+}
+
+/** Set the scale by a line of so many metres, in the place of another. */
+export function withScale(strokes: Strokes, points: Line, metres: number): Strokes {
+  return { ...strokes, scale: { points, metres } }
 }
 
 /** Leave a stroke out. */
 export function withoutStroke(strokes: Strokes, { kind, index }: StrokeRef): Strokes {
   if (kind === 'crown') return { ...strokes, crown: null }
   if (kind === 'branch') return { ...strokes, branches: strokes.branches.toSpliced(index, 1) }
+  if (kind === 'scale') return { ...strokes, scale: null }
   return { ...strokes, erase: strokes.erase.toSpliced(index, 1) }
 }
 
@@ -52,6 +66,7 @@ export function strokeRefs(strokes: Strokes): StrokeRef[] {
     ...of('crown', strokes.crown ? 1 : 0),
     ...of('branch', strokes.branches.length),
     ...of('erase', strokes.erase.length),
+    ...of('scale', strokes.scale ? 1 : 0),
   ]
 }
 
@@ -59,6 +74,7 @@ export function strokeRefs(strokes: Strokes): StrokeRef[] {
 export function lineOf(strokes: Strokes, { kind, index }: StrokeRef): Line {
   if (kind === 'crown') return strokes.crown ?? []
   if (kind === 'branch') return strokes.branches[index]?.points ?? []
+  if (kind === 'scale') return strokes.scale?.points ?? []
   return strokes.erase[index] ?? []
 }
 
@@ -67,17 +83,18 @@ export function isEmpty(strokes: Strokes): boolean {
 }
 
 /** Write strokes as stroke files and the service have them; the service takes none without a crown. */
-export function toWire({ crown, branches, erase }: Strokes): Partial<WireStrokes> {
+export function toWire({ crown, branches, erase, scale }: Strokes): Partial<WireStrokes> {
   return {
     ...(crown && { crown: { points: crown.map(toPair) } }),
     branches: branches.map(branch => ({ ...branch, points: branch.points.map(toPair) })),
     erase: erase.map(points => ({ points: points.map(toPair) })),
+    ...(scale && { scale: { points: scale.points.map(toPair), metres: scale.metres } }),
   }
 }
 
 /** Read strokes from a stroke file, or throw a TypeError where they have another form. */
 export function fromWire(value: unknown): Strokes {
-  const { crown, branches, erase } = fields(value)
+  const { crown, branches, erase, scale } = fields(value)
   return {
     crown: crown === undefined ? null : line(fields(crown).points),
     branches: list(branches ?? []).map(branch => {
@@ -85,7 +102,16 @@ export function fromWire(value: unknown): Strokes {
       return { points: line(points), ...(typeof width === 'number' && { width }) }
     }),
     erase: list(erase ?? []).map(stroke => line(fields(stroke).points)),
+    scale: scale === undefined || scale === null ? null : scaleFrom(fields(scale)),
   }
+}
+
+/** Read a measured line; there is none without its length. */
+function scaleFrom({ points, metres }: Record<string, unknown>): Scale {
+  if (typeof metres !== 'number' || !(metres > 0)) throw new TypeError('no length')
+  const ends = line(points)
+  if (ends.length !== 2) throw new TypeError('no straight line')
+  return { points: ends, metres }
 }
 
 function toPair([x, y]: Point): [number, number] {

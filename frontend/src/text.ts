@@ -1,11 +1,6 @@
-/** How a setting is spoken of. */
-export interface SettingText {
-  readonly label: string
-  readonly unit?: string
-  readonly why: string
-  /** Of its choices. */
-  readonly names?: Readonly<Record<string, string>>
-}
+import { filesText } from './text/files'
+import { scoreText } from './text/score'
+import { settingsText } from './text/settings'
 
 /** Every English text of the page. */
 export const text = {
@@ -64,16 +59,18 @@ export const text = {
     divider: 'Width of the drawing',
     canvas: 'Photo to draw on',
     canvasKeys:
-      'Arrow keys move the pen, with Shift by small steps. Enter sets it down and lifts it up. C takes the crown, B the branch. Escape drops the stroke.',
+      'Arrow keys move the pen, with Shift by small steps. Enter sets it down and lifts it up. C takes the crown, B the branch, M the measured line. Escape drops the stroke.',
   },
   tools: {
     group: 'Drawing tools',
     crown: 'Crown',
     branch: 'Branch',
+    scale: 'Measure',
     select: 'Select',
     taken: {
       crown: 'Crown: draw around the leaves.',
       branch: 'Branch: draw along it.',
+      scale: 'Measure: draw a line over something of known length.',
       select: 'Select: choose a stroke.',
     },
     undo: 'Undo',
@@ -99,6 +96,9 @@ export const text = {
     branch: (number: number) => `Branch ${number}`,
     erase: (number: number) => `Removed branch ${number}`,
     traced: 'Traced branch',
+    scale: 'Measured line',
+    scaleOf: (length: string) => `Measured line, ${length}`,
+    measured: (length: string) => `The measured line is ${length} long.`,
     delete: (name: string) => `Delete ${name}`,
     selected: (name: string) => `${name} selected.`,
     drawn: (name: string) => `${name} drawn.`,
@@ -120,6 +120,9 @@ export const text = {
     refine: 'Add branches you see, or grow the tree.',
     growing: 'Your tree is growing. You can draw on meanwhile.',
     done: 'Here is your tree. Draw on to refine it, then grow it again.',
+    measure: 'Draw a line over something whose length you know, beside the tree: a door, a person, a post.',
+    measureNear: 'It must stand as far from the camera as the trunk.',
+    measured: 'Give the length of the line; it sets how large the tree is.',
     select: 'Choose a stroke or a traced branch, to delete it.',
     selected: (name: string) => `${name} is selected.`,
     how: {
@@ -185,6 +188,15 @@ export const text = {
     keys: { delete: 'Delete', enter: 'Enter', escape: 'Esc', to: 'to', or: 'or' },
   },
   close: 'Close',
+  /** A length, for people. */
+  metres: (metres: number) => `${Number(metres.toPrecision(3))} m`,
+  length: {
+    label: 'Length',
+    unit: 'm',
+    field: 'Length of the measured line, in metres',
+    wrong: 'Give metres above 0.',
+    delete: 'Delete the measured line',
+  },
   examples: {
     burr_oak_dusk: 'Bur oak at dusk',
     oak_02: 'Young oak',
@@ -212,6 +224,15 @@ export const text = {
       crown_too_small: 'The crown is very small. Draw it around all of the leaves.',
       stroke_too_short: 'This stroke is too short. Draw it longer.',
       too_many_strokes: 'There are more strokes than the service takes. Delete some.',
+      scale_unlikely: 'By the measured line the tree would be no tree: check the length and both ends of the line.',
+    },
+    leaf: {
+      noPng: 'This is no PNG. Save the leaf as a PNG whose background is transparent.',
+      tooLarge: (megabytes: number, most: number) =>
+        `This picture has ${megabytes.toFixed(1)} MB; at most ${most.toFixed(0)} MB are taken. Make it smaller.`,
+      unreadable: 'This picture is damaged and cannot be read. Save it anew.',
+      opaque: 'Nothing of this picture is transparent. Cut the leaf out, so that its background is.',
+      empty: 'There is nothing to be seen in this picture: all of it is transparent.',
     },
   },
   grow: {
@@ -234,54 +255,13 @@ export const text = {
       bringing: 'Bringing the tree',
       strokesChanged: 'The strokes have changed since this tree was grown.',
       settingsChanged: 'The settings have changed since this tree was grown.',
+      filesChanged: 'Grow makes the files that you chose; the tree stays the same.',
       canceled: 'Growing was canceled. Your strokes are as they were.',
       grown: 'The tree is grown.',
       failed: 'The tree could not be grown.',
     },
   },
-  settings: {
-    title: 'How it grows',
-    reset: 'Reset to defaults',
-    seed: 'Seed',
-    seedWhy: 'The same seed gives the same tree. Any other number gives another one.',
-    range: (low: string, high: string, whole: boolean) =>
-      `Give a ${whole ? 'whole ' : ''}number from ${low} to ${high}.`,
-    /** By the service's names; one that is missing here shows the service's own words. */
-    known: {
-      height: {
-        label: 'Height',
-        unit: 'm',
-        why: 'From the foot of the trunk to the highest leaf, in metres. It sets the scale of the file.',
-      },
-      library: {
-        label: 'Branch patterns',
-        why: 'How branches divide inside the crown.',
-        names: {
-          auto: 'Choose for me',
-          visible: 'Those of the photo',
-          type1: 'Forks at the tips',
-          type2: 'Side shoots along the branch',
-          both: 'Forks and side shoots',
-        },
-      },
-      iterations: {
-        label: 'Growth',
-        unit: 'rounds',
-        why: 'More rounds give finer twigs; 0 keeps only what is seen in the photo.',
-      },
-      foliage: {
-        label: 'Foliage',
-        why: 'What the twigs bear.',
-        names: { auto: 'As in the photo', leaves: 'Leaves', needles: 'Needles', bare: 'Nothing (winter)' },
-      },
-      leaf_size: { label: 'Leaf size', unit: '×', why: '1 is the size that suits the tree.' },
-      leaf_density: {
-        label: 'Leaf density',
-        unit: '×',
-        why: '1 is as dense as in the photo; 0 leaves the twigs bare.',
-      },
-    } as Readonly<Record<string, SettingText>>,
-  },
+  settings: settingsText,
   progress: {
     label: 'Growing the tree',
     phases: {
@@ -292,6 +272,7 @@ export const text = {
       grow: 'Growing branches',
       leaf: 'Putting on leaves',
       mesh: 'Wrapping it in bark',
+      levels: 'Making levels of detail',
       write: 'Writing the file',
       preview: 'Taking its picture',
     } as Readonly<Record<string, string>>,
@@ -315,6 +296,16 @@ export const text = {
     nearer: 'Zoom in',
     farther: 'Zoom out',
     shows: 'What is shown',
+    wind: {
+      group: 'Wind',
+      names: { still: 'Still', breeze: 'Breeze', gust: 'Gust' } as Readonly<Record<string, string>>,
+      none: 'Add wind',
+      noneWhy: 'This file holds no wind. Choose it in Settings, under File, and grow again.',
+    },
+    variants: {
+      group: 'Tree',
+      oneOf: (number: number, count: number) => `Tree ${number} of ${count}`,
+    },
     live: ['Live', ' skeleton'],
     grown: ['Grown', ' tree'],
     absent: 'This browser shows no 3D (WebGL is off). All else works, downloads too.',
@@ -322,47 +313,8 @@ export const text = {
     unreadable: 'The tree cannot be shown here. Its download is whole; or grow it again.',
     picture: 'The grown tree, from the front and from the side',
   },
-  score: {
-    details: 'Details',
-    title: 'How well it turned out',
-    match: (percent: string) => `${percent} match with the photo`,
-    /** By the least silhouette fit that each needs, the best first. */
-    words: [
-      [0.9, 'A very close likeness.'],
-      [0.8, 'A good likeness.'],
-      [0.65, 'A fair likeness; a few more branch strokes would help.'],
-      [0, 'A loose likeness; draw the crown closer and add a few branches.'],
-    ] as readonly (readonly [number, string])[],
-    rows: {
-      silhouette: ['Silhouette', 'How much of its outline agrees with the photo.'],
-      reached: ['Leaves reached', 'Leafy places of the photo that a twig grew to.'],
-      depth: ['Depth', 'As deep as wide is 1, which is usual for a tree that stands free.'],
-      branches: ['Branches', 'All of them, down to the finest twigs.'],
-      leaves: ['Leaves', 'Or tufts of needles.'],
-      triangles: ['Triangles', 'What a game or a renderer has to draw.'],
-      size: ['File size', 'Of the GLB, textures included.'],
-      time: ['Grown in', 'The time that the service took.'],
-    },
-    triangles: (count: string) => `${count} triangles`,
-    seconds: (seconds: string) => `${seconds} s`,
-    times: (factor: string) => `${factor} ×`,
-  },
-  files: {
-    title: 'Take it away',
-    more: 'More downloads',
-    glb: ['3D tree', 'GLB, opens in Blender, Godot, Unity, Unreal and on the web'],
-    glbShort: 'GLB',
-    download: (what: string) => `Download ${what}`,
-    png: ['Picture of this view', 'PNG'],
-    project: ['Project', 'Photo, strokes and settings: opens here and on the command line'],
-    strokes: ['Strokes', 'JSON'],
-    other: 'File of this tree',
-    link: ['Copy link', 'Opens this tree in any browser that reaches this service'],
-    copied: 'Copied',
-    copyYourself: 'The browser does not let the page copy. Copy the link from here:',
-    noPicture: 'The picture could not be taken. Try again.',
-    unnamed: 'tree',
-  },
+  score: scoreText,
+  files: filesText,
   gallery: {
     title: 'Your trees',
     unnamed: 'Unnamed tree',

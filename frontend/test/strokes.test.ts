@@ -13,27 +13,32 @@ const UP = [
 
 test('a second crown takes the place of the first', () => {
   const once = withStroke(NO_STROKES, 'crown', RING)
-  expect(withStroke(once, 'crown', UP)).toEqual({ crown: UP, branches: [], erase: [] })
+  expect(withStroke(once, 'crown', UP)).toEqual({ crown: UP, branches: [], erase: [], scale: null })
 })
 
 test('branches and erase strokes are added behind those that are there', () => {
   const drawn = withStroke(withStroke(withStroke(NO_STROKES, 'branch', UP), 'branch', RING), 'erase', UP)
-  expect(drawn).toEqual({ crown: null, branches: [{ points: UP }, { points: RING }], erase: [UP] })
+  expect(drawn).toEqual({ crown: null, branches: [{ points: UP }, { points: RING }], erase: [UP], scale: null })
 })
 
 test('an edit leaves the value before it as it was', () => {
   const before = withStroke(NO_STROKES, 'branch', UP)
   withStroke(before, 'branch', RING)
   withoutStroke(before, { kind: 'branch', index: 0 })
-  expect(before).toEqual({ crown: null, branches: [{ points: UP }], erase: [] })
+  expect(before).toEqual({ crown: null, branches: [{ points: UP }], erase: [], scale: null })
   expect(isEmpty(NO_STROKES)).toBe(true)
 })
 
 test('every stroke that is named can be left out, and only it goes', () => {
-  const drawn = { crown: RING, branches: [{ points: UP }, { points: RING }], erase: [UP, RING] }
+  const drawn = {
+    crown: RING,
+    branches: [{ points: UP }, { points: RING }],
+    erase: [UP, RING],
+    scale: { points: UP, metres: 2 },
+  }
   for (const ref of strokeRefs(drawn)) {
     const left = withoutStroke(drawn, ref)
-    expect(strokeRefs(left)).toHaveLength(4)
+    expect(strokeRefs(left)).toHaveLength(5)
     expect(strokeRefs(left).filter(other => other.kind !== ref.kind)).toEqual(
       strokeRefs(drawn).filter(other => other.kind !== ref.kind),
     )
@@ -54,7 +59,12 @@ test('without a crown none is written, and the rest is read back the same', () =
 })
 
 test('what is written for the service is read back the same', () => {
-  const drawn = { crown: RING, branches: [{ points: UP, width: 12.5 }, { points: RING }], erase: [UP] }
+  const drawn = {
+    crown: RING,
+    branches: [{ points: UP, width: 12.5 }, { points: RING }],
+    erase: [UP],
+    scale: { points: UP, metres: 1.8 },
+  }
   expect(fromWire(JSON.parse(JSON.stringify(toWire(drawn))))).toEqual(drawn)
 })
 
@@ -74,6 +84,34 @@ test.each(
     { branches: [{ points: [[1, null]] }] },
     { branches: [{ points: [[1, '2']] }] },
     { erase: {} },
+    { scale: {} },
+    {
+      scale: {
+        points: [
+          [0, 0],
+          [1, 1],
+        ],
+      },
+    },
+    {
+      scale: {
+        points: [
+          [0, 0],
+          [1, 1],
+        ],
+        metres: 0,
+      },
+    },
+    {
+      scale: {
+        points: [
+          [0, 0],
+          [1, 1],
+          [2, 2],
+        ],
+        metres: 1,
+      },
+    },
   ].map(value => ({ value })),
 )('another form is refused: $value', ({ value }) => {
   expect(() => fromWire(value)).toThrow(TypeError)

@@ -6,6 +6,7 @@ type Schemas = components['schemas']
 
 /** Refusals that only ask to come again. */
 const BUSY = ['overloaded', 'database_unavailable']
+const PART = 0x8000
 
 /** The service refused: `detail` is a sentence for the user, `pointer` the field at fault, such as /branches/0. */
 export class Refused extends Error {
@@ -29,6 +30,8 @@ export interface Wish {
   readonly settings: Settings
   readonly seed: number
   readonly name: string
+  /** The person's own picture of a leaf. */
+  readonly leaf: Blob | null
 }
 
 /** The service's calls that the page makes; each throws `Refused` or `Unreachable`. */
@@ -53,8 +56,9 @@ export class Client {
   }
 
   /** Ask for a model; the same `key` asks for the same one, however often it is sent. */
-  grow({ strokes, ...wish }: Wish, key: string): Promise<Model> {
-    return ask('POST', '/v1/models', json({ ...wish, strokes: toWire(strokes) }, { 'Idempotency-Key': key }))
+  async grow({ strokes, leaf, ...wish }: Wish, key: string): Promise<Model> {
+    const body = { ...wish, strokes: toWire(strokes), ...(leaf && { leaf: await base64(leaf) }) }
+    return ask('POST', '/v1/models', json(body, { 'Idempotency-Key': key }))
   }
 
   getModel(id: string): Promise<Model> {
@@ -81,10 +85,6 @@ export class Client {
     return ask('POST', `/v1/models/${id}/cancel`)
   }
 
-  getStrokes(id: string): Promise<unknown> {
-    return ask('GET', `/v1/models/${id}/strokes.json`)
-  }
-
   /** Read a file, such as a model's GLB or a photo's picture. */
   async getFile(url: string): Promise<Blob> {
     return (await answer('GET', url)).blob()
@@ -108,4 +108,12 @@ async function answer(method: string, url: string, request: RequestInit = {}): P
 
 function json(body: unknown, headers: Record<string, string> = {}): RequestInit {
   return { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json', ...headers } }
+}
+
+async function base64(file: Blob): Promise<string> {
+  const bytes = new Uint8Array(await file.arrayBuffer())
+  let letters = ''
+  // By parts: a call takes no more arguments than that.
+  for (let at = 0; at < bytes.length; at += PART) letters += String.fromCharCode(...bytes.subarray(at, at + PART))
+  return btoa(letters)
 }

@@ -283,6 +283,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/models/{id}/{file}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Tree File
+         * @description Download one of the further files that the settings asked for; ``files`` of the model names them.
+         */
+        get: operations["get_tree_file"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/livez": {
         parameters: {
             query?: never;
@@ -436,6 +456,11 @@ export interface components {
             json_bytes: number;
             /** Name Length */
             name_length: number;
+            /**
+             * Leaf Bytes
+             * @description of the picture of a leaf
+             */
+            leaf_bytes: number;
             /** Trace Seconds */
             trace_seconds: number;
             /** Model Seconds */
@@ -688,6 +713,22 @@ export interface components {
             detail: string;
         };
         /**
+         * KnownLength
+         * @description A straight line over something of known length, as far from the camera as the tree; it sets the tree's height.
+         */
+        KnownLength: {
+            /** Points */
+            points: [
+                number,
+                number
+            ][];
+            /**
+             * Metres
+             * @description the line's length
+             */
+            metres: number;
+        };
+        /**
          * ModelRequest
          * @description A tree that is wished for.
          */
@@ -701,8 +742,15 @@ export interface components {
              *       "library": "auto",
              *       "iterations": 300,
              *       "foliage": "auto",
+             *       "variants": 1,
+             *       "species": "auto",
+             *       "season": "photo",
              *       "leaf_size": 1,
-             *       "leaf_density": 1
+             *       "leaf_density": 1,
+             *       "wind": "none",
+             *       "lod": "none",
+             *       "compress": false,
+             *       "files": []
              *     }
              */
             settings: components["schemas"]["ModelSettings"];
@@ -716,6 +764,12 @@ export interface components {
              * @default
              */
             name: string;
+            /**
+             * Leaf
+             * @description PNG of a leaf cut out, base64
+             * @default null
+             */
+            leaf: string;
         };
         /**
          * ModelSettings
@@ -746,6 +800,24 @@ export interface components {
              */
             foliage: "auto" | "leaves" | "needles" | "bare";
             /**
+             * Variants
+             * @description trees grown of the photo, each by the next seed
+             * @default 1
+             */
+            variants: number;
+            /**
+             * Species
+             * @default auto
+             * @enum {string}
+             */
+            species: "auto" | "ash" | "beech" | "birch" | "cherry" | "elm" | "horse_chestnut" | "larch" | "linden" | "locust" | "maple" | "oak" | "pine" | "plane" | "poplar" | "spruce" | "walnut" | "willow";
+            /**
+             * Season
+             * @default photo
+             * @enum {string}
+             */
+            season: "photo" | "spring" | "summer" | "autumn" | "bare";
+            /**
              * Leaf Size
              * @default 1
              */
@@ -755,6 +827,28 @@ export interface components {
              * @default 1
              */
             leaf_density: number;
+            /**
+             * Wind
+             * @default none
+             * @enum {string}
+             */
+            wind: "none" | "breeze" | "all";
+            /**
+             * Lod
+             * @default none
+             * @enum {string}
+             */
+            lod: "none" | "files" | "one";
+            /**
+             * Compress
+             * @default false
+             */
+            compress: boolean;
+            /**
+             * Files
+             * @description further files
+             */
+            files?: ("gltf" | "obj" | "usdz" | "ply" | "instanced" | "collision" | "json" | "swc" | "csv")[];
         };
         /**
          * Problem
@@ -792,6 +886,8 @@ export interface components {
             branches?: components["schemas"]["BranchStroke"][];
             /** Erase */
             erase?: components["schemas"]["EraseStroke"][];
+            /** Scale */
+            scale?: components["schemas"]["KnownLength"];
         };
         /**
          * TraceRequest
@@ -803,6 +899,8 @@ export interface components {
             branches?: components["schemas"]["BranchStroke"][];
             /** Erase */
             erase?: components["schemas"]["EraseStroke"][];
+            /** Scale */
+            scale?: components["schemas"]["KnownLength"];
             /**
              * Rev
              * @description comes back with the answer
@@ -1262,6 +1360,11 @@ export interface operations {
                     settings?: string;
                     seed?: string;
                     name?: string;
+                    /**
+                     * Format: binary
+                     * @description PNG of a leaf cut out
+                     */
+                    leaf?: string;
                 };
             };
         };
@@ -2012,6 +2115,94 @@ export interface operations {
             /** @description Insufficient Storage */
             507: {
                 headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_tree_file: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+                file: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "model/gltf-binary": string;
+                    "application/zip": string;
+                    "application/json": string;
+                    "model/vnd.usdz+zip": string;
+                    "application/octet-stream": string;
+                    "text/plain; charset=utf-8": string;
+                    "text/csv; charset=utf-8": string;
+                };
+            };
+            /** @description The part that Range asks for */
+            206: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    /** @description bytes FIRST-LAST/ALL */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "model/gltf-binary": string;
+                    "application/zip": string;
+                    "application/json": string;
+                    "model/vnd.usdz+zip": string;
+                    "application/octet-stream": string;
+                    "text/plain; charset=utf-8": string;
+                    "text/csv; charset=utf-8": string;
+                };
+            };
+            /** @description If-None-Match names this very file */
+            304: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Requested Range Not Satisfiable */
+            416: {
+                headers: {
+                    /** @description bytes FIRST-LAST/ALL */
+                    "Content-Range"?: string;
                     [name: string]: unknown;
                 };
                 content: {

@@ -1,8 +1,20 @@
-import { Box3, type BufferGeometry, Group, type Material, type Mesh, type Object3D, Vector3 } from 'three'
+import {
+  Box3,
+  type BufferGeometry,
+  Group,
+  Mesh,
+  type MeshLambertMaterial,
+  type Object3D,
+  SkinnedMesh,
+  type Texture,
+  Vector3,
+} from 'three'
 import type { PhotoFrame } from '../state'
 import { type Box, unitsPerMetre } from './camera'
 import { groundShadow } from './canopy'
+import { restMatrix } from './resting'
 import { SUN } from './sun'
+import type { Sway } from './sway'
 
 /** Something the preview shows: a tree in the preview's world, where 1 unit is the photo's height. */
 export interface Content {
@@ -13,6 +25,8 @@ export interface Content {
   readonly triangles: number
   /** Where it has leaves of its own. */
   readonly leaves: Mesh | null
+  /** Where its file has wind. */
+  readonly sway: Sway | null
   /** How old it is, as a share of its growth: branches for the skeleton, leaves for the model. */
   age(share: number): void
   dispose(): void
@@ -50,9 +64,11 @@ export function shadowOf(content: Content, side: number): Uint8Array {
   const fallen: number[] = []
   const vertex = new Vector3()
   content.group.traverseVisible(part => {
-    const position = (part as Mesh).geometry?.getAttribute('position')
-    for (let at = 0; position && at < position.count; at += 2) {
-      vertex.fromBufferAttribute(position, at).applyMatrix4(part.matrixWorld)
+    if (!(part instanceof Mesh)) return
+    const position = part.geometry.getAttribute('position')
+    const rest = restMatrix(part)
+    for (let at = 0; at < position.count; at += 2) {
+      vertex.fromBufferAttribute(position, at).applyMatrix4(rest)
       fallen.push(vertex.x, vertex.y, vertex.z)
     }
   })
@@ -62,9 +78,14 @@ export function shadowOf(content: Content, side: number): Uint8Array {
 /** Free what a mesh holds on the GPU. */
 export function disposeMesh(mesh: Mesh): void {
   mesh.geometry.dispose()
-  const material = mesh.material as Material & { map?: { image?: unknown; dispose(): void } | null }
-  if (material.map?.image instanceof ImageBitmap) material.map.image.close()
-  material.map?.dispose()
+  const material = mesh.material as MeshLambertMaterial
+  for (const texture of [material.map, material.normalMap]) disposeTexture(texture)
   material.dispose()
   mesh.customDepthMaterial?.dispose()
+  if (mesh instanceof SkinnedMesh) mesh.skeleton.dispose()
+}
+
+function disposeTexture(texture: Texture | null): void {
+  if (texture?.image instanceof ImageBitmap) texture.image.close()
+  texture?.dispose()
 }

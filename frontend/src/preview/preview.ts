@@ -14,6 +14,21 @@ export interface PreviewStatus {
   shows: 'empty' | 'live' | 'growing' | 'model'
   leaves: boolean
   triangles: number
+  /** What winds there are; none where the file has none. */
+  winds: readonly string[]
+  /** The one that blows. */
+  wind: string | null
+}
+
+/** Nothing is shown yet. */
+export const NOTHING_SHOWN: PreviewStatus = {
+  webgl: 'ok',
+  view: 'photo',
+  shows: 'empty',
+  leaves: true,
+  triangles: 0,
+  winds: [],
+  wind: null,
 }
 
 /** How the preview speaks and to whom. `software`: what is known of the WebGL; absent, it is found out. */
@@ -40,7 +55,7 @@ export class Preview {
     const certain = options.software !== undefined
     this.viewer =
       webgl === 'absent' ? null : this.opened({ ...options, software, certain, label: options.labels.wipe }, options)
-    if (!this.viewer) options.onStatus({ webgl: 'absent', view: 'free', shows: 'empty', leaves: true, triangles: 0 })
+    if (!this.viewer) options.onStatus({ ...NOTHING_SHOWN, webgl: 'absent', view: 'free' })
   }
 
   /** The picture for the wipe, of the upright photo; null takes it away. */
@@ -75,6 +90,11 @@ export class Preview {
 
   setLeaves(on: boolean): void {
     this.viewer?.turnLeaves(on)
+  }
+
+  /** Let a wind of the file blow, by its name; null for none. */
+  blow(wind: string | null): void {
+    this.viewer?.blow(wind)
   }
 
   /** Turn by radians: `azimuth` to the right, `polar` downwards. */

@@ -1,4 +1,10 @@
-import { DoubleSide, MeshLambertMaterial, type Texture, type WebGLProgramParametersWithUniforms } from 'three'
+import {
+  DoubleSide,
+  MeshLambertMaterial,
+  type MeshStandardMaterial,
+  type Texture,
+  type WebGLProgramParametersWithUniforms,
+} from 'three'
 
 /** Numbers that the shaders of a tree share and that change while it is shown. */
 export interface Shades {
@@ -32,9 +38,14 @@ const LEAF_DIRECT = `
   reflectedLight.directDiffuse += directLight.color * RECIPROCAL_PI
     * (material.diffuseColor * saturate((facing + 0.3) / 1.3) + through);`
 
-/** Bark as the GLB's texture has it, lit through the canopy. */
-export function barkMaterial(map: Texture | null, gain: number, shades: Shades): MeshLambertMaterial {
-  const material = new MeshLambertMaterial({ map })
+/* A leaf that has not come is drawn together to one point. */
+const YET_TO_COME = `
+  if (fract(sin(float(gl_VertexID / 4) * 12.9898) * 43758.5453) > leafed) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);`
+
+/** Bark as the GLB's textures have it, its relief too, lit through the canopy. */
+export function barkMaterial(given: MeshStandardMaterial, gain: number, shades: Shades): MeshLambertMaterial {
+  const { map, normalMap, normalScale } = given
+  const material = new MeshLambertMaterial({ map, normalMap, normalScale })
   material.color.setScalar(gain)
   material.onBeforeCompile = shader => lightThroughCanopy(shader, shades)
   return material
@@ -51,10 +62,11 @@ export function leafMaterial(
   material.onBeforeCompile = shader => {
     lightThroughCanopy(shader, shades)
     shader.uniforms.leafed = shades.leafed
-    addToVertex(
-      shader,
-      'uniform float leafed;',
-      'if (fract(sin(float(gl_VertexID / 4) * 12.9898) * 43758.5453) > leafed) transformed = vec3(0.0);',
+    addToVertex(shader, 'uniform float leafed;', '')
+    // At the very end, or bones would pull apart what is drawn together here.
+    shader.vertexShader = shader.vertexShader.replace(
+      '#include <project_vertex>',
+      `#include <project_vertex>\n${YET_TO_COME}`,
     )
     shader.fragmentShader = shader.fragmentShader
       .replace(

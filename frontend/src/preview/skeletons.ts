@@ -27,6 +27,7 @@ export function skeletonContent(grown: Grown, shades: Shades): Content {
     box: boxOf(group),
     triangles: trianglesOf(mesh.geometry),
     leaves: null,
+    sway: null,
     age: share => growTo(mesh, tube, shades, share),
     dispose: () => disposeMesh(mesh),
   }

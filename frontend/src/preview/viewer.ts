@@ -25,6 +25,8 @@ const FLIGHT = 0.9
 const NUDGE = 0.16
 const GROWTH = 2.5
 const LEAFING = 0.6
+/** What blows in a tree that has wind until something else is chosen, where frames are quick and motion is welcome. */
+const FIRST_WIND = 'breeze'
 /** A frame that takes longer than this, in milliseconds, is drawn by a processor, whatever it calls itself. */
 const SLOW = 150
 /** Frames with a tree in them that are timed; the first compiles the shaders. */
@@ -45,6 +47,7 @@ export class Viewer {
   private latest = 0
   private seen: View | 'free' = 'free'
   private leaves = true
+  private wind: string | null
   private lost = false
   private software: boolean
   private frames = 0
@@ -60,6 +63,7 @@ export class Viewer {
     private readonly options: ViewerOptions,
   ) {
     this.software = options.software
+    this.wind = options.reducedMotion() || options.software ? null : FIRST_WIND
     if (options.certain) this.timed = TIMED
     this.stage = new Stage(canvas, this.software)
     this.rig = new Rig(canvas, {
@@ -130,6 +134,14 @@ export class Viewer {
     this.ask()
   }
 
+  blow(wind: string | null): void {
+    this.wind = wind
+    this.catchWind()
+    this.stage.relight()
+    this.tell()
+    this.ask()
+  }
+
   orbit(azimuth: number, polar: number): void {
     const { goal } = this.rig
     const tilted = Math.min(Math.max(goal.polar + polar, 0.03), Math.PI / 2)
@@ -165,9 +177,18 @@ export class Viewer {
     this.content = content
     this.stage.show(content)
     this.leaf()
+    this.catchWind()
     if (opens) this.rig.stand(openingPose(content, this.room))
     if (opens) this.seen = 'free'
     this.ask()
+  }
+
+  /** Let what is shown move in the wind that was chosen, or in the first that it has. */
+  private catchWind(): void {
+    const sway = this.content?.sway
+    if (!sway) return
+    if (this.wind !== null && !sway.winds.includes(this.wind)) this.wind = sway.winds[0] ?? null
+    sway.blow(this.wind)
   }
 
   private leaf(): void {
@@ -217,10 +238,18 @@ export class Viewer {
     if (this.lost || !this.room.width || !this.room.height) return
     const seconds = this.last === null ? 1 / 60 : Math.min((now - this.last) / 1000, 0.25)
     const moved = this.rig.step(seconds)
-    const moving = this.ageing.step(seconds) || moved
+    const blown = this.blown(seconds)
+    const moving = this.ageing.step(seconds) || moved || blown
     this.last = moving ? now : null
     this.draw(moving)
     if (moving) this.ask()
+  }
+
+  /** Let the wind blow on; says whether it does. A processor has no time for shadows that move with it. */
+  private blown(seconds: number): boolean {
+    const moves = this.content?.sway?.step(seconds) ?? false
+    if (moves && !this.software) this.stage.relight()
+    return moves
   }
 
   private draw(moving: boolean): void {
@@ -247,6 +276,7 @@ export class Viewer {
     if (this.timed === 1 || performance.now() - start < SLOW) return
     this.software = true
     this.stage.setSoftware(true)
+    this.blow(null)
     this.tell()
     this.ask()
   }
@@ -254,8 +284,17 @@ export class Viewer {
   private tell(): void {
     const shows = this.ageing.running && this.content?.kind === 'live' ? 'growing' : (this.content?.kind ?? 'empty')
     const webgl = this.lost ? 'lost' : this.software ? 'software' : 'ok'
-    const { leaves, seen: view } = this
-    const status: PreviewStatus = { webgl, view, shows, leaves, triangles: this.content?.triangles ?? 0 }
+    const { leaves, seen: view, content } = this
+    const [triangles, winds] = [content?.triangles ?? 0, content?.sway?.winds ?? []]
+    const status: PreviewStatus = {
+      webgl,
+      view,
+      shows,
+      leaves,
+      triangles,
+      winds,
+      wind: winds.length ? this.wind : null,
+    }
     this.host.dataset.state = shows
     if (this.told === JSON.stringify(status)) return
     this.told = JSON.stringify(status)

@@ -2,7 +2,7 @@ import type { Tool } from '../state'
 import type { Line, Point } from '../strokes'
 
 export type PointerKind = 'mouse' | 'pen' | 'touch'
-export type DrawnKind = 'crown' | 'branch'
+export type DrawnKind = 'crown' | 'branch' | 'scale'
 
 export interface Down {
   readonly type: 'down'

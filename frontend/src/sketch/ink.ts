@@ -9,6 +9,8 @@ export const INK = {
   crown: '#c9f27a',
   branch: '#ffe2ae',
   erase: '#ffb9a8',
+  scale: '#bfe8ff',
+  label: 'rgba(20, 28, 34, 0.78)',
   casing: 'rgba(24, 20, 10, 0.6)',
   fault: '#ff4a3d',
   faultHalo: 'rgba(255, 84, 70, 0.6)',
@@ -21,7 +23,7 @@ export const INK = {
 
 /** Widths on the screen, CSS px. */
 export const WIDTH = {
-  line: { crown: 2.25, branch: 1.75, erase: 2 },
+  line: { crown: 2.25, branch: 1.75, erase: 2, scale: 2 },
   casing: 2.25,
   halo: 11,
   rim: 1.4,

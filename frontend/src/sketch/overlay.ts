@@ -3,7 +3,8 @@ import type { Selection, TraceAnswer, TracedSkeleton } from '../state'
 import { type Line, lineOf, type Point, type StrokeKind, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { branchAt } from '../tracedBranch'
 import { INK, WIDTH } from './ink'
-import { curve, foliagePath, smoothPath, woodAt, woodPath } from './paths'
+import { drawLength } from './lengthLabel'
+import { curve, foliagePath, rulerPath, smoothPath, woodAt, woodPath } from './paths'
 import type { View } from './viewport'
 
 /** What a canvas of the window is drawn with: its device px per CSS px, and where the photo lies. */
@@ -29,6 +30,7 @@ interface Look {
 
 const DASH = [7, 6]
 const CROSS = 5
+const TICK = 7
 const AIM = { inner: 4, outer: 13 }
 
 /** Draw what was traced: the foliage's tint and the branches. */
@@ -58,14 +60,17 @@ export function drawMarks(sheet: Sheet, marks: Marks): void {
     const colour = same(ref, marks.fault) ? INK.fault : same(ref, marks.selection) ? INK.selected : INK[ref.kind]
     drawStroke(sheet, lineOf(marks.strokes, ref), pathOf(sheet, marks.strokes, ref), { kind: ref.kind, colour })
   }
+  // What is selected has its length in a field beside it.
+  if (marks.strokes.scale && marks.selection?.kind !== 'scale') drawLength(sheet, marks.strokes.scale)
 }
 
 /** Draw the stroke under way. */
-export function drawPenLine(sheet: Sheet, line: Line, kind: 'crown' | 'branch'): void {
+export function drawPenLine(sheet: Sheet, line: Line, kind: Exclude<StrokeKind, 'erase'>): void {
   onPhoto(sheet)
   sheet.ctx.lineCap = 'round'
   sheet.ctx.lineJoin = 'round'
-  drawStroke(sheet, line, curve(line), { kind, colour: INK[kind] })
+  const path = kind === 'scale' ? rulerPath(line, TICK / sheet.view.scale) : curve(line)
+  drawStroke(sheet, line, path, { kind, colour: INK[kind] })
 }
 
 /** Draw where the keyboard's pen is. */
@@ -135,6 +140,7 @@ function drawBranchHalo(sheet: Sheet, skeleton: TracedSkeleton | null, joint: nu
 
 function pathOf({ view }: Sheet, strokes: Strokes, ref: StrokeRef): Path2D {
   const line = lineOf(strokes, ref)
+  if (ref.kind === 'scale') return rulerPath(line, TICK / view.scale)
   return ref.kind === 'erase' ? crossPath(line, CROSS / view.scale) : smoothPath(line)
 }
 

@@ -28,6 +28,21 @@ export function curve(line: Line): Path2D {
   return path
 }
 
+/** A straight line with a tick of `arm` photo px to either side of each end. */
+export function rulerPath([from, to]: Line, arm: number): Path2D {
+  const path = new Path2D()
+  if (!from || !to) return path
+  const length = distance(from, to) || 1
+  const [right, down] = [((from[1] - to[1]) / length) * arm, ((to[0] - from[0]) / length) * arm]
+  path.moveTo(...from)
+  path.lineTo(...to)
+  for (const [x, y] of [from, to]) {
+    path.moveTo(x - right, y - down)
+    path.lineTo(x + right, y + down)
+  }
+  return path
+}
+
 /** The rings of the foliage, to be filled by the even-odd rule. Made once for each answer. */
 export function foliagePath(answer: TraceAnswer): Path2D {
   return once(foliage, answer, () => {

@@ -4,17 +4,21 @@ import type { DrawnKind } from './gesture'
 import { type Size, within } from './viewport'
 
 const MOST_POINTS = 10_000
-const LEAST_DISTINCT = { crown: 3, branch: 2 }
+const LEAST_DISTINCT = { crown: 3, branch: 2, scale: 2 }
 
 /** A stroke under way, in photo px. It never leaves the photo. */
 export class PenLine {
   #points: Point[] = []
   #coarseness = 1
 
+  /** A measured line of which one end is moved begins at its other one. */
   constructor(
     readonly kind: DrawnKind,
     readonly photo: Size,
-  ) {}
+    from: Point | null = null,
+  ) {
+    if (from) this.#points.push(from)
+  }
 
   get points(): Line {
     return this.#points
@@ -25,6 +29,7 @@ export class PenLine {
     const next = rounded(place, this.photo)
     const last = this.#points.at(-1)
     if (last && distance(last, next) < Math.max(apart * this.#coarseness, 0.01)) return false
+    if (this.kind === 'scale') this.#points.splice(1)
     if (this.#points.length === MOST_POINTS) this.#thin()
     this.#points.push(next)
     return true

@@ -8,6 +8,13 @@ export function pick(strokes: Strokes, skeleton: TracedSkeleton | null, at: Poin
   return pickStroke(strokes, at, reach) ?? (skeleton && pickTraced(strokes, skeleton, at, reach))
 }
 
+/** The end of the measured line that stays where the one within `reach` photo px of a place is moved. */
+export function otherEnd({ scale }: Strokes, at: Point, reach: number): Point | null {
+  const [from, to] = scale?.points ?? []
+  if (!from || !to || Math.min(distance(from, at), distance(to, at)) > reach) return null
+  return distance(from, at) < distance(to, at) ? to : from
+}
+
 function pickStroke(strokes: Strokes, at: Point, reach: number): StrokeRef | null {
   let [nearest, least]: [StrokeRef | null, number] = [null, reach]
   for (const ref of strokeRefs(strokes)) {

@@ -2,9 +2,9 @@ import type { Tool } from '../state'
 import type { Point } from '../strokes'
 import type { GestureEvent, Intent, PointerKind } from './gesture'
 
-/** Where the events go; `tool` is the one in use. */
+/** Where the events go; `tool` is the one in use at a place. */
 export interface Listener {
-  readonly tool: () => Tool
+  readonly tool: (at: Point) => Tool
   readonly gesture: (event: GestureEvent) => void
   readonly wheel: (intent: Intent) => void
   readonly hover: (at: Point | null) => void
@@ -29,7 +29,7 @@ export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, h
   on('pointerdown', event => {
     element.setPointerCapture(event.pointerId)
     const { button, isPrimary: alone } = event
-    gesture({ ...contact(event), type: 'down', at: at(event), button, alone, tool: tool() })
+    gesture({ ...contact(event), type: 'down', at: at(event), button, alone, tool: tool(at(event)) })
   })
   // The middle button would scroll.
   on('mousedown', event => {

@@ -4,7 +4,7 @@ import { Camera } from './camera'
 import { AT_REST, type DrawnKind, type GestureEvent, gestured, type Intent, type PointerKind } from './gesture'
 import { type KeyCommand, keyCommand, stepped } from './keys'
 import { PenLine } from './penLine'
-import { pick } from './pick'
+import { otherEnd, pick } from './pick'
 import { listenToPointers, listenToSpace } from './pointing'
 import { Scene, type Sight } from './scene'
 import './sketch.css'
@@ -23,8 +23,8 @@ export interface SketchEvents {
   selected(selection: Selection | null): void
   /** What is selected is to go. */
   remove(): void
-  /** CSS px per photo px. */
-  zoomed(scale: number): void
+  /** Where the photo lies in the window now. */
+  looked(view: View): void
   /** What the keyboard's pen does, in photo px. */
   said(what: { pen: 'down' | 'up' | 'move'; at: Point }): void
 }
@@ -33,6 +33,8 @@ export interface SketchEvents {
 const APART = 0.7
 /** A click takes what lies as near, CSS px. */
 const REACH: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
+/** A press as near to an end of the measured line moves it, CSS px. */
+const END_REACH = 14
 
 /** The canvas over the photo that a person draws on. */
 export class Sketch {
@@ -50,6 +52,8 @@ export class Sketch {
   /** The keyboard's pen, photo px. */
   #aim: Point | null = null
   #hovered: Selection | null = null
+  /** The pointer is over an end of the measured line, which can be moved. */
+  #overEnd = false
   /** What was traced of a photo that is gone. */
   #foreign: TraceAnswer | null = null
 
@@ -97,7 +101,7 @@ export class Sketch {
 
   #listen(): void {
     const gesture = (event: GestureEvent) => this.#gestured(event)
-    const tool = () => this.#state.tool
+    const tool = (at: Point) => (this.#state.tool === 'select' && this.#otherEnd(at) ? 'scale' : this.#state.tool)
     const wheel = (intent: Intent) => this.#do(intent)
     listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#hover(at) })
     listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }))
@@ -122,7 +126,7 @@ export class Sketch {
   #looked({ scale, x, y }: View): void {
     this.#element.dataset.view = [scale, x, y].join(',')
     this.#scene.layers.touchAll()
-    this.events.zoomed(scale)
+    this.events.looked({ scale, x, y })
   }
 
   #changed(now: State): void {
@@ -185,7 +189,7 @@ export class Sketch {
 
   #begin(kind: DrawnKind, at: Point): void {
     this.#aim = null
-    this.#pen = new PenLine(kind, this.#state.photo!)
+    this.#pen = new PenLine(kind, this.#state.photo!, kind === 'scale' ? this.#otherEnd(at) : null)
     this.#extend([at])
   }
 
@@ -217,9 +221,18 @@ export class Sketch {
     return pick(this.#state.history.present, skeleton, toPhoto(view, at), reach / view.scale)
   }
 
+  /** The end that stays where the one at a place in the window is moved. */
+  #otherEnd(at: Point): Point | null {
+    const { view } = this.#camera
+    return otherEnd(this.#state.history.present, toPhoto(view, at), END_REACH / view.scale)
+  }
+
   #hover(at: Point | null): void {
-    const free = at && this.#state.tool === 'select' && this.#gesture.mode.name === 'idle' && this.#state.photo
-    const hovered = free ? this.#pick(at, REACH.mouse) : null
+    const { photo, tool } = this.#state
+    const free = photo && this.#gesture.mode.name === 'idle' ? at : null
+    this.#overEnd = Boolean(free && (tool === 'select' || tool === 'scale') && this.#otherEnd(free))
+    this.#pointAt()
+    const hovered = free && tool === 'select' ? this.#pick(free, REACH.mouse) : null
     if (JSON.stringify(hovered) === JSON.stringify(this.#hovered)) return
     this.#hovered = hovered
     this.#scene.layers.touch('strokes')
@@ -229,7 +242,7 @@ export class Sketch {
   #pointAt(): void {
     const { mode, space } = this.#gesture
     const panning = mode.name === 'pinch' || (mode.name === 'pan' && (mode.far || !mode.clicks))
-    const choosing = this.#hovered ? 'take' : this.#state.tool === 'select' ? 'choose' : 'draw'
+    const choosing = this.#overEnd ? 'end' : this.#hovered ? 'take' : this.#state.tool === 'select' ? 'choose' : 'draw'
     this.#element.dataset.pointer = panning ? 'panning' : space ? 'pan' : choosing
   }
 

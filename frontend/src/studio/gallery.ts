@@ -4,9 +4,17 @@ import type { Model, State, Store } from '../state'
 import type { Grower } from './grower'
 import { faultOf } from './sentences'
 
-type Looked = Pick<State, 'model' | 'modelOf' | 'growth' | 'tree' | 'shows'>
+type Looked = Pick<State, 'model' | 'modelOf' | 'modelLeaf' | 'variant' | 'growth' | 'tree' | 'shows'>
 
-const NONE: Looked = { model: null, modelOf: null, growth: null, tree: null, shows: 'live' }
+const NONE: Looked = {
+  model: null,
+  modelOf: null,
+  modelLeaf: null,
+  variant: 1,
+  growth: null,
+  tree: null,
+  shows: 'live',
+}
 
 /** One's models, newest first, page by page. What goes wrong stands in the gallery's place of the state. */
 export class Gallery {
@@ -45,9 +53,9 @@ export class Gallery {
   remove(id: string): Promise<true | null> {
     return this.#trying<true>(async () => {
       await this.client.removeModel(id)
-      const { model, modelOf, growth, tree, shows } = this.store.state
+      const { model, modelOf, modelLeaf, variant, growth, tree, shows } = this.store.state
       if (model?.id !== id) return true
-      this.#looked = { model, modelOf, growth, tree, shows }
+      this.#looked = { model, modelOf, modelLeaf, variant, growth, tree, shows }
       this.grower.leave()
       this.store.set(NONE)
       return true

@@ -4,6 +4,7 @@ import type { Model, Store } from '../state'
 import type { Strokes } from '../strokes'
 import { text } from '../text'
 import { faultOf } from './sentences'
+import { treeOf } from './variants'
 
 const AGAIN_MS = 2000
 const TRIES = 5
@@ -11,6 +12,8 @@ const TRIES = 5
 /** Has trees grown and follows them until they stand in the preview. */
 export class Grower {
   #leave = () => {}
+  /** Of the model that is looked at, by their addresses. */
+  readonly #trees = new Map<string, ArrayBuffer>()
 
   constructor(
     private readonly store: Store,
@@ -19,14 +22,14 @@ export class Grower {
 
   /** Ask for a tree of what is drawn. */
   async grow(): Promise<void> {
-    const { photo, settings, seed, name, faults } = this.store.state
+    const { photo, settings, seed, name, leaf, faults } = this.store.state
     const strokes = this.store.strokes
     if (!photo || !strokes.branches.length || faults.strokes?.stroke || this.isGrowing) return
     this.store.fault('grow', null)
     this.store.set({ asking: true })
     try {
-      const wish = { photo: photo.id, strokes, settings, seed, name }
-      this.show(await patiently(key => this.client.grow(wish, key)), strokes)
+      const wish = { photo: photo.id, strokes, settings, seed, name, leaf }
+      this.show(await patiently(key => this.client.grow(wish, key)), strokes, leaf)
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     } finally {
@@ -45,16 +48,26 @@ export class Grower {
     return asking || (model !== null && !isOver(model))
   }
 
-  /** Follow a model, made of `strokes`, into the preview. */
-  show(model: Model, strokes: Strokes): void {
+  /** Follow a model, made of `strokes` and with a leaf of one's own or none, into the preview. */
+  show(model: Model, strokes: Strokes, leaf: Blob | null): void {
     this.leave()
-    this.store.set({ model, modelOf: strokes, growth: null, tree: null, shows: 'model' })
+    this.#trees.clear()
+    const looked = { modelOf: strokes, modelLeaf: leaf, variant: 1 }
+    this.store.set({ model, ...looked, growth: null, tree: null, shows: 'model' })
     this.#leave = follow(model.id, {
       changed: now => this.#change(now),
       grew: growth => this.store.set({ growth, shows: 'model' }),
       connected: online => this.store.set({ online }),
       gone: () => this.#forget(),
     })
+  }
+
+  /** Look at another of the model's trees, from 1; the one before stays in sight until it has come. */
+  async choose(variant: number): Promise<void> {
+    const { model } = this.store.state
+    if (!model || !treeOf(model, variant)) return
+    this.store.set({ variant, shows: 'model' })
+    await this.#fetch(model)
   }
 
   /** Follow no model any more. */
@@ -79,17 +92,26 @@ export class Grower {
     if (model.status === 'succeeded') this.#fetch(model)
   }
 
-  /** Bring the finished tree. */
+  /** Bring the finished tree, or the one of them that was chosen. */
   async #fetch(model: Model): Promise<void> {
+    const { variant } = this.store.state
     try {
-      const file = await patiently(() => this.client.getFile(model.files['tree.glb']!))
-      const tree = await file.arrayBuffer()
-      if (this.store.state.model?.id !== model.id) return
+      const tree = await this.#bring(treeOf(model, variant)!)
+      const { state } = this.store
+      if (state.model?.id !== model.id || state.variant !== variant) return
       this.store.set({ tree, shows: 'model' })
       this.store.fault('grow', null)
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     }
+  }
+
+  async #bring(url: string): Promise<ArrayBuffer> {
+    const known = this.#trees.get(url)
+    if (known) return known
+    const tree = await (await patiently(() => this.client.getFile(url))).arrayBuffer()
+    this.#trees.set(url, tree)
+    return tree
   }
 
   #forget(): void {

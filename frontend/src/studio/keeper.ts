@@ -17,6 +17,15 @@ export interface Draft {
   /** The model that was grown of it last, and of which strokes. */
   readonly model: string | null
   readonly modelOf: Strokes | null
+  /** Whether its leaf is another than the one that is kept here. */
+  readonly modelHadOtherLeaf?: boolean
+}
+
+/** A drawing with its photo and, where it has one, the person's own leaf. */
+export interface Kept {
+  readonly draft: Draft
+  readonly photo: Blob
+  readonly leaf: Blob | null
 }
 
 interface Shelf extends DBSchema {
@@ -25,12 +34,14 @@ interface Shelf extends DBSchema {
 }
 
 const KEPT = 12
-const KEYS = ['photo', 'name', 'history', 'settings', 'seed', 'model', 'modelOf'] as const
+const KEYS = ['photo', 'name', 'history', 'settings', 'seed', 'leaf', 'model', 'modelOf'] as const
+const NO_LEAF = Symbol('no leaf was kept yet')
 
 /** Keeps every drawing in the browser as it is drawn, with its undo history, so that a reload or a crash loses nothing. */
 export class Keeper {
   #id: string | null = null
   #photo: Blob | null = null
+  #leaf: Blob | null | typeof NO_LEAF = NO_LEAF
   readonly #rounds = new Rounds(() => this.#write(this.store.state))
 
   constructor(
@@ -54,6 +65,7 @@ export class Keeper {
   begin(id: string | null): void {
     this.#id = id ?? crypto.randomUUID()
     this.#photo = null
+    this.#leaf = NO_LEAF
   }
 
   /** List what is kept, the latest first; drawings without a stroke are not worth coming back to. */
@@ -62,11 +74,12 @@ export class Keeper {
     return drafts.filter(({ history }) => !isEmpty(history.present)).reverse()
   }
 
-  /** Find a drawing and its photo. */
-  async find(id: string): Promise<{ draft: Draft; photo: Blob } | null> {
+  /** Find a drawing and its pictures. */
+  async find(id: string): Promise<Kept | null> {
     const shelf = await this.shelf
-    const [draft, photo] = await Promise.all([shelf.get('drafts', id), shelf.get('photos', id)])
-    return draft && photo ? { draft, photo } : null
+    const pictures = [id, leafKey(id)].map(key => shelf.get('photos', key))
+    const [draft, photo, leaf] = await Promise.all([shelf.get('drafts', id), ...pictures])
+    return draft && photo ? { draft, photo, leaf: leaf ?? null } : null
   }
 
   async remove(id: string): Promise<void> {
@@ -74,9 +87,10 @@ export class Keeper {
   }
 
   /** Put a drawing back that was removed. */
-  async restore(draft: Draft, photo: Blob): Promise<void> {
+  async restore({ draft, photo, leaf }: Kept): Promise<void> {
     const shelf = await this.shelf
     await shelf.put('photos', photo, draft.id)
+    if (leaf) await shelf.put('photos', leaf, leafKey(draft.id))
     await shelf.put('drafts', draft)
   }
 
@@ -95,15 +109,26 @@ export class Keeper {
     const shelf = await this.shelf
     const isNew = this.#photo !== file
     if (isNew) await shelf.put('photos', file, id)
-    const { name, history, settings, seed, modelOf } = state
+    const { name, history, settings, seed, leaf, modelOf, modelLeaf } = state
+    if (this.#leaf !== leaf) await putLeaf(shelf, id, leaf)
     await shelf.put('drafts', {
       ...{ id, saved: Date.now(), name, photo: { id: photo, width, height }, history, settings, seed, modelOf },
-      model: state.model?.id ?? null,
+      ...{ model: state.model?.id ?? null, modelHadOtherLeaf: modelLeaf !== leaf },
     })
     if (isNew) await prune(shelf)
-    if (this.#id === id) this.#photo = file
+    if (this.#id === id) [this.#photo, this.#leaf] = [file, leaf]
     if (!state.kept) this.store.set({ kept: true })
   }
+}
+
+/** Under which key a drawing's leaf lies beside the photos. */
+function leafKey(id: string): string {
+  return `${id}/leaf`
+}
+
+async function putLeaf(shelf: IDBPDatabase<Shelf>, id: string, leaf: Blob | null): Promise<void> {
+  if (leaf) await shelf.put('photos', leaf, leafKey(id))
+  else await shelf.delete('photos', leafKey(id))
 }
 
 /** Asynchronous, so that a browser without a shelf rejects instead of throwing. */
@@ -127,6 +152,7 @@ async function removeAll(shelf: IDBPDatabase<Shelf>, ids: readonly string[]): Pr
   for (const id of ids) {
     change.objectStore('drafts').delete(id)
     change.objectStore('photos').delete(id)
+    change.objectStore('photos').delete(leafKey(id))
   }
   await change.done
 }

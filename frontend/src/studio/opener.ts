@@ -16,7 +16,11 @@ interface Drawing {
   readonly history: History<Strokes>
   readonly settings?: Settings
   readonly seed?: number
+  readonly leaf?: Blob | null
 }
+
+/** In the place of a leaf that is no longer known: another than any. */
+const FORGOTTEN_LEAF = new Blob([])
 
 /** Opens photos, projects, examples, kept drawings and models; what was open before stays until that has worked. */
 export class Opener {
@@ -50,11 +54,13 @@ export class Opener {
     return this.#opening(async () => {
       const found = await this.keeper.find(id)
       if (!found) throw new Unusable(text.faults.draftGone)
-      const { draft, photo: file } = found
+      const { draft, photo: file, leaf } = found
       const url = await pictureOf(file, draft.photo, `/v1/photos/${draft.photo.id}/image`)
-      this.#put({ ...draft, photo: { ...draft.photo, file, url } }, id)
+      const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
+      this.#put({ ...draft, photo: { ...draft.photo, file, url }, settings, leaf }, id)
       const model = draft.model && (await this.#find(draft.model))
-      if (model && draft.modelOf) this.grower.show(model, draft.modelOf)
+      const modelLeaf = draft.modelHadOtherLeaf ? FORGOTTEN_LEAF : leaf
+      if (model && draft.modelOf) this.grower.show(model, draft.modelOf, modelLeaf)
     })
   }
 
@@ -63,11 +69,11 @@ export class Opener {
     return this.#opening(async () => {
       const model = await this.#find(id)
       if (!model) throw new Unusable(text.faults.modelGone)
-      const strokes = fromWire(await this.client.getStrokes(id))
+      const { strokes, leaf, photo: file } = await readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
-      const photo = await this.#photoOf(model)
-      this.#put({ photo, name: model.name, history: begin(strokes), settings, seed: model.seed })
-      this.grower.show(model, strokes)
+      const photo = await this.#photoOf(model, file)
+      this.#put({ photo, name: model.name, history: begin(strokes), settings, seed: model.seed, leaf })
+      this.grower.show(model, strokes, leaf)
     })
   }
 
@@ -91,8 +97,8 @@ export class Opener {
     }
   }
 
-  async #openProject({ photo, strokes, settings, seed }: Project, name: string): Promise<void> {
-    this.#put({ photo: await this.#upload(photo), name: stem(name), history: begin(strokes), settings, seed })
+  async #openProject({ photo, strokes, ...project }: Project, name: string): Promise<void> {
+    this.#put({ photo: await this.#upload(photo), name: stem(name), history: begin(strokes), ...project })
   }
 
   async #upload(file: Blob): Promise<Photo> {
@@ -102,14 +108,14 @@ export class Opener {
     return { id, width, height, file, url: await pictureOf(file, { width, height }, image) }
   }
 
-  /** Find a model's photo, or take the model's own copy of it. */
-  async #photoOf(model: Model): Promise<Photo> {
+  /** Find a model's photo, or send the model's own copy of it again. */
+  async #photoOf(model: Model, file: Blob): Promise<Photo> {
     try {
       const { id, width, height, image } = await this.client.getPhoto(model.photo)
-      return { id, width, height, file: await this.client.getFile(image), url: image }
+      return { id, width, height, file, url: image }
     } catch (error) {
       if (!(error instanceof Refused)) throw error
-      return this.#upload((await readProject(await this.client.getFile(model.files.project!))).photo)
+      return this.#upload(file)
     }
   }
 
@@ -122,12 +128,13 @@ export class Opener {
     }
   }
 
-  #put({ photo, name, history, settings = DEFAULT_SETTINGS, seed = 0 }: Drawing, draft: string | null = null): void {
+  #put(drawing: Drawing, draft: string | null = null): void {
+    const { photo, name, history, settings = DEFAULT_SETTINGS, seed = 0, leaf = null } = drawing
     const { limits, online } = this.store.state
     this.grower.leave()
     this.keeper.begin(draft)
     const tool = history.present.crown ? 'branch' : 'crown'
-    this.store.set({ ...EMPTY, limits, online, opening: true, photo, name, history, settings, seed, tool })
+    this.store.set({ ...EMPTY, limits, online, opening: true, photo, name, history, settings, seed, leaf, tool })
   }
 }
 

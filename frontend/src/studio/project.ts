@@ -10,9 +10,12 @@ export interface Project {
   readonly strokes: Strokes
   readonly settings: Settings
   readonly seed: number
+  /** The person's own picture of a leaf. */
+  readonly leaf: Blob | null
 }
 
 const ENDING = '.treestroke'
+const LEAF = 'leaf.png'
 const TYPES: Readonly<Record<string, string>> = { jpg: 'image/jpeg', png: 'image/png', webp: 'image/webp' }
 
 export function isProject(file: File): boolean {
@@ -29,11 +32,12 @@ export function fileName(name: string, ending: string): string {
   return `${name.replace(/[\\/:*?"<>|]/g, '_') || 'tree'}${ending}`
 }
 
-/** Write a project as the command line and the service do: a ZIP of the photo, strokes.json and settings.json. */
-export async function writeProject({ photo, strokes, settings, seed }: Project): Promise<Blob> {
+/** Write a project as the command line and the service do: a ZIP of the pictures, strokes.json and settings.json. */
+export async function writeProject({ photo, strokes, settings, seed, leaf }: Project): Promise<Blob> {
   const ending = Object.keys(TYPES).find(key => TYPES[key] === photo.type) ?? 'jpg'
   const archive = zipSync({
     [`photo.${ending}`]: [new Uint8Array(await photo.arrayBuffer()), { level: 0 }],
+    ...(leaf && { [LEAF]: [new Uint8Array(await leaf.arrayBuffer()), { level: 0 }] }),
     'strokes.json': strToU8(JSON.stringify(toWire(strokes))),
     'settings.json': strToU8(JSON.stringify({ ...settings, seed }, null, 2)),
   })
@@ -52,6 +56,7 @@ export async function readProject(file: Blob): Promise<Project> {
     strokes: strokesOf(strokes),
     settings: { ...DEFAULT_SETTINGS, ...settings },
     seed: seed ?? 0,
+    leaf: members[LEAF] ? new Blob([new Uint8Array(members[LEAF])], { type: 'image/png' }) : null,
   }
 }
 

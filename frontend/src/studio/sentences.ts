@@ -1,6 +1,6 @@
 import { Refused, Unreachable } from '../api/client'
 import type { Fault } from '../state'
-import type { StrokeRef } from '../strokes'
+import type { StrokeKind, StrokeRef } from '../strokes'
 import { text } from '../text'
 
 /** Says what is wrong and what to do; thrown where the page itself finds the fault. */
@@ -15,11 +15,11 @@ export function faultOf(error: unknown): Fault {
   return { text: wording(error.code) ?? withoutPlace(error.message), ...(stroke && { stroke }) }
 }
 
-/** Find the stroke that a JSON pointer leads to: /crown, /branches/2/points, /strokes/erase/0. */
+/** Find the stroke that a JSON pointer leads to: /crown, /branches/2/points, /strokes/erase/0, /scale/metres. */
 export function strokeAt(pointer: string | null): StrokeRef | null {
-  const found = pointer?.match(/^(?:\/strokes)?\/(crown|branches|erase)(?:\/(\d+))?/)
+  const found = pointer?.match(/^(?:\/strokes)?\/(crown|branches|erase|scale)(?:\/(\d+))?/)
   if (!found) return null
-  const kind = found[1] === 'branches' ? 'branch' : (found[1] as 'crown' | 'erase')
+  const kind = found[1] === 'branches' ? 'branch' : (found[1] as StrokeKind)
   return { kind, index: Number(found[2] ?? 0) }
 }
 

@@ -1,7 +1,19 @@
 import { advance, type History, redo, undo } from '../history'
 import type { Selection, Store, Tool } from '../state'
-import { isEmpty, type Line, NO_STROKES, type StrokeKind, type Strokes, withoutStroke, withStroke } from '../strokes'
+import {
+  isEmpty,
+  type Line,
+  NO_STROKES,
+  type StrokeKind,
+  type Strokes,
+  withoutStroke,
+  withScale,
+  withStroke,
+} from '../strokes'
 import { eraseLine } from '../tracedBranch'
+import { metresOf } from './scaling'
+
+const SCALE: Selection = { kind: 'scale', index: 0 }
 
 /** Edits of the strokes; each can be undone. */
 export class Sketchbook {
@@ -9,9 +21,20 @@ export class Sketchbook {
 
   /** Take a finished stroke; after the crown the trunk is what comes next. */
   draw(kind: StrokeKind, points: Line): void {
+    if (kind === 'scale') {
+      this.#span(points)
+      return
+    }
     const first = kind === 'crown' && !this.store.strokes.crown
     this.#advance(withStroke(this.store.strokes, kind, points))
     if (first && this.store.state.tool === 'crown') this.store.set({ tool: 'branch' })
+  }
+
+  /** Say how long the measured line is, metres. */
+  measure(metres: number): void {
+    const { scale } = this.store.strokes
+    if (!scale || scale.metres === metres) return
+    this.#advance(withScale(this.store.strokes, scale.points, metres), SCALE)
   }
 
   select(selection: Selection | null): void {
@@ -42,12 +65,20 @@ export class Sketchbook {
     this.#set(redo(this.store.state.history))
   }
 
-  #advance(strokes: Strokes): void {
-    this.#set(advance(this.store.state.history, strokes))
+  /** Lay the measured line; an end that was moved leaves its length as it was said, a line of its own guesses it. */
+  #span(points: Line): void {
+    const { scale } = this.store.strokes
+    const moved = scale?.points.some(end => points.includes(end))
+    const metres = scale && moved ? scale.metres : metresOf(points, this.store.state)
+    this.#advance(withScale(this.store.strokes, points, metres), SCALE)
   }
 
-  #set(history: History<Strokes>): void {
-    this.store.set({ history, selection: null })
+  #advance(strokes: Strokes, selection: Selection | null = null): void {
+    this.#set(advance(this.store.state.history, strokes), selection)
+  }
+
+  #set(history: History<Strokes>, selection: Selection | null = null): void {
+    this.store.set({ history, selection })
     this.store.fault('strokes', null)
   }
 }

@@ -1,6 +1,7 @@
 import { Client } from '../api/client'
 import { Store } from '../state'
 import { Grower } from './grower'
+import { Herbarium } from './herbarium'
 import { Keeper } from './keeper'
 import { Opener } from './opener'
 import { Sketchbook } from './sketchbook'
@@ -12,6 +13,7 @@ export class Studio {
   readonly client = new Client()
   readonly keeper = new Keeper(this.store)
   readonly sketchbook = new Sketchbook(this.store)
+  readonly herbarium = new Herbarium(this.store)
   readonly grower = new Grower(this.store, this.client)
   readonly opener = new Opener(this.store, this.client, this.keeper, this.grower)
   readonly tracer = new Tracer(this.store, this.client)

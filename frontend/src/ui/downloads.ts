@@ -2,29 +2,46 @@ import type { Model, State } from '../state'
 import { toWire } from '../strokes'
 import { fileName } from '../studio/project'
 import type { Studio } from '../studio/studio'
+import { aloneOf, treeOf, variantsOf } from '../studio/variants'
 import { text } from '../text'
 import { linkItem } from './copyLink'
 import { button, el, icon } from './dom'
-import { figuresOfModel } from './figures'
+import './downloads.css'
 import { ICONS } from './icons'
 import { makePanel } from './panel'
 import { saveProject } from './projectFile'
 import { saveFile } from './saving'
+import { type Shelf, type Taking, takingsOf } from './takings'
 
 type Words = readonly [label: string, about: string]
 
-/** What has an entry of its own, or is none to take away. */
-const KNOWN = ['tree.glb', 'preview.png', 'strokes.json', 'project']
+const DRAWINGS: Readonly<Record<Shelf, string>> = {
+  tree: ICONS.tree,
+  levels: ICONS.layers,
+  formats: ICONS.paper,
+  skeleton: ICONS.bones,
+}
 
-/** Make the panel with everything that can be taken away; `picture` takes one of what is shown. */
-export function downloadsPanel(studio: Studio, picture: () => Promise<Blob>): HTMLElement {
+/** What the panel asks of the page: a picture of what is shown, and the settings of what files there are. */
+export interface DownloadsAsk {
+  picture(): Promise<Blob>
+  moreFormats(): void
+}
+
+/** Make the panel with everything that can be taken away. */
+export function downloadsPanel(studio: Studio, ask: DownloadsAsk): HTMLElement {
   const { store } = studio
   const tree = el('div', { class: 'takings' })
-  const image = take(ICONS.photo, text.files.png, () => savePicture(studio, picture))
+  const image = take(ICONS.photo, text.files.png, () => savePicture(studio, ask.picture))
   const project = take(ICONS.box, text.files.project, () => saveProject(studio))
   const strokes = take(ICONS.stroke, text.files.strokes, () => saveStrokes(studio))
+  const more = take(ICONS.sliders, text.files.moreFormats, async () => ask.moreFormats())
+  more.classList.add('more-formats')
   const link = linkItem(store)
-  store.watch(treeOf, model => tree.replaceChildren(...(model ? treeItems(model) : [])))
+  store.watch(chosenOf, () => {
+    const { model, variant } = store.state
+    tree.replaceChildren(...(model && treeOf(model, variant) ? treeItems(model, variant) : []))
+  })
   store.watch(
     state => state,
     state => {
@@ -32,51 +49,50 @@ export function downloadsPanel(studio: Studio, picture: () => Promise<Blob>): HT
       image.hidden = !state.grown && !state.tree
       project.hidden = !state.photo || !crown
       strokes.hidden = project.hidden
+      more.hidden = chosenOf(state) === null
     },
   )
-  return makePanel('downloads', text.files.title, tree, image, project, strokes, link)
+  const drawing = shelf(text.files.groups.drawing, image, project, strokes, link)
+  return makePanel('downloads', text.files.title, tree, more, drawing)
 }
 
 /** Make the link that downloads the tree at once. */
 export function treeLink({ store }: Studio): HTMLElement {
   const link = el('a', { class: 'button outlined tree-link' }, icon(ICONS.download), text.files.glbShort)
-  store.watch(treeOf, model => {
-    link.hidden = !model
-    if (!model) return
-    link.href = model.files['tree.glb']!
-    link.download = fileName(model.name, '.glb')
+  store.watch(chosenOf, url => {
+    const { model, variant } = store.state
+    link.hidden = !url
+    if (!url || !model) return
+    link.href = url
+    link.download = takingsOf(model, variant)[0]!.saved
     link.setAttribute('aria-label', text.files.download(text.files.glbShort))
   })
   return link
 }
 
 /** Tell whether there is anything to take away. */
-export function hasTakings({ photo, history, model }: State): boolean {
-  return treeOf({ model }) !== null || (photo !== null && history.present.crown !== null)
+export function hasTakings(state: State): boolean {
+  return chosenOf(state) !== null || (state.photo !== null && state.history.present.crown !== null)
 }
 
-function treeOf({ model }: { readonly model: Model | null }): Model | null {
-  return model?.files['tree.glb'] ? model : null
+/** Where the tree is that is looked at; another address says that there are other files to take. */
+function chosenOf({ model, variant }: State): string | null {
+  return (model && treeOf(model, variant)) ?? null
 }
 
-/** List the tree and those of its files that this page does not know. */
-function treeItems(model: Model): HTMLElement[] {
-  const [label, about] = text.files.glb
-  const size = figuresOfModel(model).find(({ row }) => row === 'size')?.value
-  const glb = fileLink(
-    ICONS.tree,
-    [size ? `${label} · ${size}` : label, about],
-    model.files['tree.glb']!,
-    fileName(model.name, '.glb'),
-  )
-  glb.classList.add('first')
-  const others = Object.entries(model.files).filter(([name]) => !KNOWN.includes(name))
-  return [
-    glb,
-    ...others.map(([name, url]) =>
-      fileLink(ICONS.paper, [name, text.files.other], url, fileName(model.name, `.${name}`)),
-    ),
-  ]
+/** List the files of one tree, shelf by shelf. */
+function treeItems(model: Model, variant: number): HTMLElement[] {
+  const count = variantsOf(model)
+  const takings = takingsOf(aloneOf(model, variant), variant)
+  const shelves = [...new Set(takings.map(taking => taking.shelf))]
+  return shelves.map(name => {
+    const title = name === 'tree' && count > 1 ? text.files.variant(variant, count) : text.files.groups[name]
+    return shelf(title, ...takings.filter(taking => taking.shelf === name).map(fileLink))
+  })
+}
+
+function shelf(title: string, ...items: readonly HTMLElement[]): HTMLElement {
+  return el('section', { class: 'taking-shelf' }, el('h3', {}, title), ...items)
 }
 
 async function savePicture({ store }: Studio, picture: () => Promise<Blob>): Promise<void> {
@@ -97,8 +113,11 @@ function take(drawing: string, words: Words, save: () => Promise<void>): HTMLBut
   return button({ class: 'taking' }, () => void save(), icon(drawing), wordsOf(words))
 }
 
-function fileLink(drawing: string, words: Words, href: string, download: string): HTMLElement {
-  return el('a', { class: 'taking', href, download }, icon(drawing), wordsOf(words))
+function fileLink({ shelf, label, about, size, url, saved }: Taking): HTMLElement {
+  const words = wordsOf([size ? `${label} · ${size}` : label, about])
+  const link = el('a', { class: 'taking', href: url, download: saved }, icon(DRAWINGS[shelf]), words)
+  link.classList.toggle('first', shelf === 'tree')
+  return link
 }
 
 /** Give an entry's name and, below it, what it is. */

@@ -56,7 +56,7 @@ async function removeDraft({ id, name }: Draft, { keeper }: Studio, changed: () 
   await keeper.remove(id)
   await changed()
   const restore = async () => {
-    if (found) await keeper.restore(found.draft, found.photo)
+    if (found) await keeper.restore(found)
     await changed()
   }
   const action = { label: text.welcome.undo, run: () => void restore() }

@@ -9,6 +9,9 @@ export function editSaid(before: History<Strokes>, now: History<Strokes>): strin
   if (now.past.at(-1) !== before.present) return null
   if (before.future[0] === now.present) return text.strokes.redone
   if (isEmpty(now.present)) return text.strokes.cleared
+  const { scale } = now.present
+  if (scale && before.present.scale?.points === scale.points && before.present.scale !== scale)
+    return text.strokes.measured(text.metres(scale.metres))
   const gone = missing(before.present, now.present)
   const come = missing(now.present, before.present)
   if (come) return text.strokes.drawn(strokeName(come))

@@ -8,7 +8,8 @@ export interface Row {
   show(): void
 }
 
-interface Words {
+/** What is said of a setting. */
+export interface Words {
   readonly name: string
   readonly label: string
   readonly why: string

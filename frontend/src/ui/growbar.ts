@@ -7,16 +7,19 @@ import { ICONS } from './icons'
 import { type makePanel, opening } from './panel'
 import { progressBar, standingLine } from './progress'
 import { scorePanel } from './score'
-import { settingsPanel } from './settings'
+import type { SettingsPanel } from './settings'
 import './growbar.css'
 
 const STANDING = 'standing'
 
 /** Make the bar below the preview: where growing stands, Grow with its settings, and what can be taken away. */
-export function growBar(studio: Studio, picture: () => Promise<Blob>): HTMLElement {
-  const settings = settingsPanel(studio)
+export function growBar(
+  studio: Studio,
+  { panel: settings, open }: SettingsPanel,
+  picture: () => Promise<Blob>,
+): HTMLElement {
   const score = scorePanel(studio.store)
-  const downloads = downloadsPanel(studio, picture)
+  const downloads = downloadsPanel(studio, { picture, moreFormats: () => open('file') })
   const grow = growButton(studio, STANDING)
   const line = standingLine(studio, { id: STANDING, score, grow })
   const more = opener(downloads, 'downloads-opener', text.files.more, icon(ICONS.download), icon(ICONS.down))

@@ -50,7 +50,9 @@ function step(state: State, pointer: PointerKind): Hint {
   const { tool, selection, history, grown, model } = state
   const { crown, branches } = history.present
   const how = text.hints.how[pointer]
+  if (selection?.kind === 'scale') return stepTo(text.hints.measured)
   if (selection) return { tone: 'step', text: text.hints.selected(strokeName(selection)), deletes: true }
+  if (tool === 'scale') return stepTo(text.hints.measure, text.hints.measureNear)
   if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.takeCrown)
   if (!branches.length) return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.takeBranch)
   if (tool === 'select') return stepTo(text.hints.select, how.select)

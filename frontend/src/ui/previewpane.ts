@@ -1,4 +1,4 @@
-import { Preview, type PreviewStatus } from '../preview/preview'
+import { NOTHING_SHOWN, Preview, type PreviewStatus } from '../preview/preview'
 import type { State } from '../state'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
@@ -9,25 +9,34 @@ import { heraldGrowth } from './herald'
 import { announce } from './live'
 import { previewBar, showsSwitch } from './previewbar'
 import { sapling } from './sapling'
+import { settingsPanel } from './settings'
+import { variantChoice } from './variantChoice'
+import { windSwitch } from './windSwitch'
 import './previewpane.css'
 
 /** Put the tree's side of the page into `host`: the preview with its buttons, and the bar that has it grown. */
 export function mountPreviewPane(studio: Studio, host: HTMLElement): Preview {
   const { store } = studio
   const scene = el('div', { class: 'scene' })
+  const settings = settingsPanel(studio)
   const bar = previewBar(() => preview)
+  const wind = windSwitch(
+    () => preview,
+    () => settings.open('file'),
+  )
   const aside = beside(studio)
-  const stage = el('div', { class: 'stage' }, scene, aside.element, showsSwitch(store), ...bar.elements)
-  host.append(el('div', { class: 'previewpane' }, stage, growBar(studio, picture)))
-  let status: PreviewStatus = { webgl: 'ok', view: 'photo', shows: 'empty', leaves: true, triangles: 0 }
-  bar.show(status)
+  const below = el('div', { class: 'afoot' }, showsSwitch(store), variantChoice(studio), wind.element)
+  const stage = el('div', { class: 'stage' }, scene, aside.element, ...bar.elements, below)
+  host.append(el('div', { class: 'previewpane' }, stage, growBar(studio, settings, picture)))
+  let status = NOTHING_SHOWN
+  const parts = [bar, wind, aside]
+  for (const part of parts) part.show(status)
   const preview = new Preview(scene, {
     labels: { wipe: text.preview.wipe, canvas: text.preview.canvas },
     reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
     onStatus: now => {
       status = now
-      bar.show(now)
-      aside.show(now)
+      for (const part of parts) part.show(now)
     },
   })
   followState(store, preview)

@@ -1,5 +1,6 @@
 import type { State } from '../state'
 import type { Studio } from '../studio/studio'
+import { aloneOf } from '../studio/variants'
 import { text } from '../text'
 import { button, el } from './dom'
 import { makingOf, matchOf } from './figures'
@@ -68,7 +69,9 @@ function sentenceOf(state: State): string {
   if (state.faults.grow && state.photo) return state.faults.grow.text
   if (busy && !state.online) return text.progress.offline
   if (standing === 'asking' || standing === 'queued' || standing === 'growing') return stepOf(standing, state.model)
-  return standing === 'grown' && state.model ? matchOf(state.model) : text.grow.standing[standing]
+  return standing === 'grown' && state.model
+    ? matchOf(aloneOf(state.model, state.variant))
+    : text.grow.standing[standing]
 }
 
 /** Give what stands beside the sentence: how far it is, or what the finished tree is made of. */
@@ -77,7 +80,7 @@ function figuresBeside(state: State): string {
   const { model } = state
   if (!model || state.faults.grow) return ''
   if (standing === 'growing') return state.online ? figuresOf(model) : ''
-  return standing === 'grown' ? makingOf(model) : ''
+  return standing === 'grown' ? makingOf(aloneOf(model, state.variant)) : ''
 }
 
 /** Change a text only where it changes, so that nothing is drawn or read anew for nothing. */

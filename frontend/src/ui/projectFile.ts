@@ -6,10 +6,10 @@ import { saveFile } from './saving'
 
 /** Save the drawing as a project file among the browser's downloads. */
 export async function saveProject({ store }: Studio): Promise<void> {
-  const { photo, name, settings, seed } = store.state
+  const { photo, name, settings, seed, leaf } = store.state
   if (!photo) return
   const file = projectName(name)
-  saveFile(await writeProject({ photo: photo.file, strokes: store.strokes, settings, seed }), file)
+  saveFile(await writeProject({ photo: photo.file, strokes: store.strokes, settings, seed, leaf }), file)
   notify(text.header.saved(file))
 }
 

@@ -1,78 +1,96 @@
-import type { Limits, Settings } from '../state'
-import { DEFAULT_SETTINGS } from '../state'
+import type { Limits, State } from '../state'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el } from './dom'
-import { numberField, type Row, selectField } from './fields'
+import { numberField, type Row } from './fields'
 import { anotherButton } from './growButtons'
+import { leafRow } from './leafRow'
 import { makePanel } from './panel'
+import { settingField } from './settingField'
+import { defaultsOf, type Group, groupsOf } from './settingGroups'
+import './settings.css'
 import type { Span } from './spans'
+import { standingOf } from './standing'
+import { makeTabs, type Tab, type Tabs } from './tabs'
 
-type Value = string | number
-/** What the service says of a setting: a span of numbers, or names. */
-type Allowed = Partial<Span> & { readonly default: Value; readonly meaning: string; readonly names?: readonly string[] }
+/** The settings; `open` shows those of a group, by its name. */
+export interface SettingsPanel {
+  readonly panel: HTMLElement
+  open(group: string): void
+}
 
 const SEED: Span = { min: 0, max: Number.MAX_SAFE_INTEGER, whole: true }
 
-/** Make the panel with every setting that the service takes, and the seed. */
-export function settingsPanel(studio: Studio): HTMLElement {
+/** Make the panel with every setting that the service takes, the seed and the person's own leaf. */
+export function settingsPanel(studio: Studio): SettingsPanel {
   const { store } = studio
-  const rows = el('div', { class: 'settings' })
-  const reset = button(
-    { class: 'button outlined' },
-    () => store.set({ settings: defaultsOf(store.state.limits) }),
-    text.settings.reset,
-  )
-  const panel = makePanel('settings', text.settings.title, rows, el('footer', { class: 'settings-foot' }, reset))
-  let fields: Row[] = []
+  const place = el('div', { class: 'settings' })
+  const panel = makePanel('settings', text.settings.title, place, foot(studio))
+  let rows: Row[] = []
+  let tabs: Tabs | null = null
   store.watch(
     state => state.limits,
     limits => {
-      fields = limits ? fieldsOf(studio, limits) : []
-      rows.replaceChildren(...fields.map(field => field.element), ...(limits ? [seedRow(studio)] : []))
+      rows = []
+      tabs = limits ? tabsOf(studio, limits, rows) : null
+      place.replaceChildren(...(tabs ? [tabs.element] : []))
     },
   )
   panel.addEventListener('toggle', () => {
-    for (const field of fields) field.show()
+    for (const row of rows) row.show()
   })
-  return panel
+  const open = (group: string) => {
+    tabs?.open(group)
+    panel.showPopover()
+  }
+  return { panel, open }
 }
 
-/** Give what the service takes where nothing is chosen. */
-export function defaultsOf(limits: Limits | null): Settings {
-  const known = Object.entries((limits?.settings ?? {}) as Record<string, Allowed>)
-  return { ...DEFAULT_SETTINGS, ...Object.fromEntries(known.map(([name, { default: value }]) => [name, value])) }
+/** Make the groups' tabs; their rows are entered in `rows`. */
+function tabsOf(studio: Studio, limits: Limits, rows: Row[]): Tabs {
+  const tabs = groupsOf(limits).map((group): Tab => {
+    const fields = group.settings.map(([name, allowed]) => [name, settingField(studio, name, allowed)] as const)
+    rows.push(...fields.map(([, row]) => row))
+    const height = fields.find(([name]) => name === 'height')?.[1]
+    if (height) followScale(studio, height)
+    const parts = fields.flatMap(([name, row]) => (name === 'species' ? [row.element, leafRow(studio)] : [row.element]))
+    return { ...group, content: [lead(group), ...parts, ...(group.name === 'tree' ? [seedRow(studio)] : [])] }
+  })
+  return makeTabs('settings', text.settings.groupsLabel, tabs)
 }
 
-function fieldsOf(studio: Studio, limits: Limits): Row[] {
-  return Object.entries(limits.settings as Record<string, Allowed>).map(([name, allowed]) =>
-    fieldOf(studio, name, allowed),
+function lead({ name }: Group): Node {
+  const words = text.settings.leads[name]
+  return words ? el('p', { class: 'settings-lead' }, words) : document.createDocumentFragment()
+}
+
+/** Say at the height that the measured line has taken its place. */
+function followScale({ store }: Studio, { element }: Row): void {
+  const note = el('p', { class: 'setting-note', id: 'setting-height-note' })
+  element.append(note)
+  const inputs = [...element.querySelectorAll('input')]
+  store.watch(
+    state => state.history.present.scale,
+    scale => {
+      note.textContent = scale ? text.settings.heightMeasured(text.metres(scale.metres)) : ''
+      for (const input of inputs) input.disabled = scale !== null
+    },
   )
 }
 
-function fieldOf({ store }: Studio, name: string, allowed: Allowed): Row {
-  const chosen = () => (store.state.settings as Readonly<Record<string, Value>>)[name] ?? allowed.default
-  const choose = (value: Value) => store.set({ settings: { ...store.state.settings, [name]: value } })
-  const words = { name, ...wordsOf(name, allowed) }
-  const { min, max, whole, names } = allowed
-  const row = names
-    ? selectField(
-        { ...words, choices: names.map(key => [key, words.names?.[key] ?? key]) },
-        () => String(chosen()),
-        choose,
-      )
-    : numberField(
-        { ...words, span: { min: min ?? 0, max: max ?? 1, whole: whole ?? false } },
-        () => Number(chosen()),
-        choose,
-      )
-  store.watch(state => state.settings, row.show)
-  return row
+function foot(studio: Studio): HTMLElement {
+  const { store } = studio
+  const defaults = () => store.set({ settings: defaultsOf(store.state.limits) })
+  const reset = button({ class: 'button outlined' }, defaults, text.settings.reset)
+  const again = el('p', { class: 'settings-again', role: 'status' })
+  store.watch(onlyFilesChanged, yes => {
+    again.textContent = yes ? text.settings.fileAgain : ''
+  })
+  return el('footer', { class: 'settings-foot' }, reset, again)
 }
 
-function wordsOf(name: string, { meaning }: Allowed) {
-  const label = name.charAt(0).toUpperCase() + name.slice(1).replaceAll('_', ' ')
-  return text.settings.known[name] ?? { label, why: meaning }
+function onlyFilesChanged(state: State): boolean {
+  return standingOf(state) === 'filesChanged'
 }
 
 function seedRow(studio: Studio): HTMLElement {

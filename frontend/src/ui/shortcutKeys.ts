@@ -7,6 +7,7 @@ export type Command = Tool | 'undo' | 'redo' | 'remove' | 'save' | 'open' | 'gro
 const PLAIN: Readonly<Record<string, Command>> = {
   c: 'crown',
   b: 'branch',
+  m: 'scale',
   v: 'select',
   g: 'grow',
   f: 'fit',

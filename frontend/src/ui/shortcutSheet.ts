@@ -23,6 +23,7 @@ function groups(): [string, Row[]][] {
         [tools.crown, 'C'],
         [tools.branch, 'B'],
         [said.rightDrag, said.rightButton],
+        [tools.scale, 'M'],
         [tools.select, 'V'],
       ],
     ],

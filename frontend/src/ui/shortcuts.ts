@@ -25,6 +25,7 @@ function commandsOf(studio: Studio, sketch: Zoomed): Readonly<Record<Command, ()
   return {
     crown: () => sketchbook.hold('crown'),
     branch: () => sketchbook.hold('branch'),
+    scale: () => sketchbook.hold('scale'),
     select: () => sketchbook.hold('select'),
     undo: () => sketchbook.undo(),
     redo: () => sketchbook.redo(),

@@ -1,6 +1,7 @@
 import { isOver } from '../api/follow'
 import type { Model, State } from '../state'
 import { text } from '../text'
+import { isOfFile, sameValue } from './settingGroups'
 
 /** Where growing stands, as the page says it. */
 export type Standing =
@@ -16,6 +17,7 @@ export type Standing =
   | 'grown'
   | 'strokesChanged'
   | 'settingsChanged'
+  | 'filesChanged'
   | 'failed'
   | 'canceled'
 
@@ -63,8 +65,10 @@ function standingOfEnded({ modelOf, history, tree, faults, ...state }: State, mo
   if (!tree && !faults.grow) return 'bringing'
   if (!sameStrokes) return 'strokesChanged'
   const wished: Readonly<Record<string, unknown>> = state.settings
-  const sameSettings = Object.keys(wished).every(name => wished[name] === (model.settings[name] ?? wished[name]))
-  return sameSettings && state.seed === model.seed ? 'grown' : 'settingsChanged'
+  const changed = Object.keys(wished).filter(name => !sameValue(wished[name], model.settings[name] ?? wished[name]))
+  if (state.seed !== model.seed || state.leaf !== state.modelLeaf) return 'settingsChanged'
+  if (!changed.length) return 'grown'
+  return changed.every(name => isOfFile(state.limits, name)) ? 'filesChanged' : 'settingsChanged'
 }
 
 function placeOf(place: number | null): string {

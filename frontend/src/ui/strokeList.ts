@@ -36,8 +36,10 @@ export function strokeList(studio: Studio): HTMLElement[] {
   return [opener, panel]
 }
 
-function row(ref: StrokeRef, { selection }: State, { sketchbook }: Studio): HTMLElement {
+function row(ref: StrokeRef, { selection, history }: State, { sketchbook }: Studio): HTMLElement {
   const name = strokeName(ref)
+  const { scale } = history.present
+  const shown = ref.kind === 'scale' && scale ? text.strokes.scaleOf(text.metres(scale.metres)) : name
   const chosen = selection?.kind === ref.kind && 'index' in selection && selection.index === ref.index
   const remove = () => {
     sketchbook.select(ref)
@@ -49,7 +51,7 @@ function row(ref: StrokeRef, { selection }: State, { sketchbook }: Studio): HTML
     button(
       { class: 'button stroke-name', 'aria-pressed': String(chosen) },
       () => sketchbook.select(chosen ? null : ref),
-      name,
+      shown,
     ),
     button({ class: 'button square', 'aria-label': text.strokes.delete(name) }, remove, icon(ICONS.remove)),
   )

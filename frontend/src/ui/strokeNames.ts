@@ -5,6 +5,7 @@ import { text } from '../text'
 export function strokeName(selection: Selection): string {
   const { kind } = selection
   if (kind === 'crown') return text.strokes.crown
+  if (kind === 'scale') return text.strokes.scale
   if (kind === 'traced') return text.strokes.traced
   if (kind === 'erase') return text.strokes.erase(selection.index + 1)
   return selection.index === 0 ? text.strokes.trunk : text.strokes.branch(selection.index + 1)

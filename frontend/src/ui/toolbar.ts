@@ -8,12 +8,12 @@ import { withCtrl } from './shortcutKeys'
 import { strokeList } from './strokeList'
 import './toolbar.css'
 
-const KEYS: Readonly<Record<Tool, string>> = { crown: 'C', branch: 'B', select: 'V' }
+const KEYS: Readonly<Record<Tool, string>> = { crown: 'C', branch: 'B', scale: 'M', select: 'V' }
 
 /** Make the bar of the drawing tools, and of what can be done with strokes. */
 export function toolbar(studio: Studio): HTMLElement {
   const { store, sketchbook } = studio
-  const tools = (['crown', 'branch', 'select'] as const).map(tool => toolButton(tool, studio))
+  const tools = (['crown', 'branch', 'scale', 'select'] as const).map(tool => toolButton(tool, studio))
   const bar = el(
     'div',
     { class: 'toolbar', role: 'group', 'aria-label': text.tools.group },

@@ -1,10 +1,12 @@
 import { Sketch } from '../sketch/sketch'
+import type { View } from '../sketch/viewport'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { announceDrawing, announcePen } from './announcer'
 import { divider } from './divider'
 import { button, el } from './dom'
 import { mountHintLine } from './hintLine'
+import { lengthField } from './lengthField'
 import { mountPreviewPane } from './previewpane'
 import { toolbar } from './toolbar'
 import { type Zoomed, zoombar } from './zoombar'
@@ -44,6 +46,7 @@ function mountDrawing(studio: Studio, pane: HTMLElement): Zoomed {
   const hints = el('div', { class: 'hint-row' })
   const canvas = el('div', { class: 'canvas' })
   const zoom = zoombar(() => sketch)
+  const length = lengthField(studio, () => canvas.querySelector<HTMLElement>('[data-view]'))
   pane.append(toolbar(studio), hints, canvas, zoom.bar)
   mountHintLine(studio, hints)
   const { store, sketchbook } = studio
@@ -51,12 +54,16 @@ function mountDrawing(studio: Studio, pane: HTMLElement): Zoomed {
     drew: sketchbook.draw.bind(sketchbook),
     selected: sketchbook.select.bind(sketchbook),
     remove: () => sketchbook.remove(),
-    zoomed: zoom.show,
+    looked: (view: View) => {
+      zoom.show(view.scale)
+      length.look(view)
+    },
     said: ({ pen, at }: { pen: 'down' | 'up' | 'move'; at: readonly [number, number] }) =>
       store.state.photo && announcePen(pen, at, store.state.photo),
   }
   const labels = { canvas: text.workspace.canvas, keys: text.workspace.canvasKeys }
   const sketch = new Sketch(canvas, store, events, labels)
+  canvas.append(length.element)
   return sketch
 }
 

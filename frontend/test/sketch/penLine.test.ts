@@ -100,3 +100,23 @@ test('an endless stroke is thinned, from its start to its end, and never has mor
   expect(line[0]).toEqual([1000, 0])
   expect(line.at(-1)![1]).toBeGreaterThan(1390)
 })
+
+test('a measured line is straight, from where it began to where the pen is', () => {
+  const pen = new PenLine('scale', PHOTO)
+  const places: Point[] = [
+    [10, 10],
+    [20, 12],
+    [30, 90],
+  ]
+  for (const place of places) pen.add(place, 0)
+  expect(pen.finished()).toEqual([places[0], places[2]])
+})
+
+test('a measured line of which one end is moved keeps its other end as it is', () => {
+  const other: Point = [5, 5]
+  const pen = new PenLine('scale', PHOTO, other)
+  pen.add([50, 60], 0)
+  pen.add([70, 80], 0)
+  expect(pen.finished()).toEqual([other, [70, 80]])
+  expect(pen.finished()![0]).toBe(other)
+})

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { distanceToLine } from '../../src/plane'
-import { pick } from '../../src/sketch/pick'
+import { otherEnd, pick } from '../../src/sketch/pick'
 import type { Strokes } from '../../src/strokes'
 import { TREE } from './tree'
 
@@ -25,8 +25,9 @@ const STROKES: Strokes = {
       [70, 60],
     ],
   ],
+  scale: null,
 }
-const NONE: Strokes = { crown: null, branches: [], erase: [] }
+const NONE: Strokes = { crown: null, branches: [], erase: [], scale: null }
 
 test('the nearest stroke within reach is taken', () => {
   expect(pick(STROKES, null, [103, 190], 10)).toEqual({ kind: 'branch', index: 0 })
@@ -57,4 +58,19 @@ test('wood under a stroke takes the stroke, also beside its line', () => {
 test('where nothing was drawn or traced nothing is taken', () => {
   expect(pick(NONE, null, [5, 5], 1000)).toBeNull()
   expect(distanceToLine([], [0, 0])).toBe(Number.POSITIVE_INFINITY)
+})
+
+test('a measured line is taken, and each end gives the one that stays', () => {
+  const scale = {
+    points: [
+      [10, 10],
+      [10, 60],
+    ] as const,
+    metres: 2,
+  }
+  expect(pick({ ...NONE, scale }, null, [12, 30], 5)).toEqual({ kind: 'scale', index: 0 })
+  expect(otherEnd({ ...NONE, scale }, [11, 58], 5)).toBe(scale.points[0])
+  expect(otherEnd({ ...NONE, scale }, [11, 12], 5)).toBe(scale.points[1])
+  expect(otherEnd({ ...NONE, scale }, [11, 30], 5)).toBeNull()
+  expect(otherEnd(NONE, [11, 30], 5)).toBeNull()
 })

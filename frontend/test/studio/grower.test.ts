@@ -146,7 +146,7 @@ test('another model takes the followed one’s place, and its tree is not mistak
   await grower.grow()
   const first = Events.last
   first.tell('succeeded', finished())
-  grower.show(model({ id: 'mdl_2' }), store.strokes)
+  grower.show(model({ id: 'mdl_2' }), store.strokes, null)
   await settle()
   expect(first.readyState).toBe(Events.CLOSED)
   expect([store.state.model?.id, store.state.tree]).toEqual(['mdl_2', null])
@@ -158,4 +158,35 @@ test('another tree of the same strokes has another seed', async () => {
   await grower.reroll()
   expect(calls[0]!.body.seed).toBe(store.state.seed)
   expect(store.state.seed).not.toBe(3)
+})
+
+test('a leaf of one’s own is sent with the wish, whole', async () => {
+  const calls = service(serve)
+  const { store, grower } = begin()
+  const bytes = Uint8Array.from({ length: 100_000 }, (_, at) => at % 251)
+  const leaf = new Blob([bytes])
+  store.set({ leaf })
+  await grower.grow()
+  expect(Buffer.from(calls[0]!.body.leaf, 'base64').equals(Buffer.from(bytes))).toBe(true)
+  expect(store.state.modelLeaf).toBe(leaf)
+  Events.last.tell('canceled', model({ status: 'canceled' }))
+  store.set({ leaf: null })
+  await grower.grow()
+  expect(calls.at(-1)!.body).not.toHaveProperty('leaf')
+})
+
+test('another of the model’s trees is brought once, and the last choice stands', async () => {
+  const calls = service(({ path }) => new Response(path))
+  const { store, grower } = begin()
+  const files = { 'tree.glb': '/tree.glb', 'tree.v2.glb': '/tree.v2.glb' }
+  grower.show(model({ status: 'succeeded', files }), store.strokes, null)
+  const shown = () => new TextDecoder().decode(store.state.tree!)
+  await Promise.all([grower.choose(2), grower.choose(1), grower.choose(2)])
+  expect([store.state.variant, shown()]).toEqual([2, '/tree.v2.glb'])
+  const asked = calls.length
+  await grower.choose(1)
+  await grower.choose(3)
+  expect([store.state.variant, shown(), calls.length]).toEqual([1, '/tree.glb', asked])
+  grower.show(model({ id: 'mdl_2' }), store.strokes, null)
+  expect([store.state.variant, store.state.tree]).toEqual([1, null])
 })

@@ -79,3 +79,16 @@ test('a browser that keeps nothing is noticed', async () => {
   new Keeper(store, Promise.reject(new DOMException('private', 'InvalidStateError')))
   await vi.waitFor(() => expect(store.state.kept).toBe(false))
 })
+
+test('a leaf of one’s own is kept with the drawing, goes with it, and comes back with it', async () => {
+  const { store, keeper } = await kept()
+  const id = keeper.id!
+  store.set({ leaf: new Blob(['leaf']) })
+  await vi.waitFor(async () => expect(await (await keeper.find(id))!.leaf?.text()).toBe('leaf'))
+  const found = (await keeper.find(id))!
+  await keeper.remove(id)
+  await keeper.restore(found)
+  expect(await (await keeper.find(id))!.leaf?.text()).toBe('leaf')
+  store.set({ leaf: null })
+  await vi.waitFor(async () => expect((await keeper.find(id))!.leaf).toBeNull())
+})

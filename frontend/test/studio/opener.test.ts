@@ -9,7 +9,7 @@ import { Studio } from '../../src/studio/studio'
 import { answer, CROWN, model, TRUNK } from '../builders'
 import { type Call, Events, problem, service } from '../service'
 
-const STROKES = { crown: CROWN, branches: [{ points: TRUNK }], erase: [] }
+const STROKES = { crown: CROWN, branches: [{ points: TRUNK }], erase: [], scale: null }
 const PHOTO = { id: 'pho_1', width: 100, height: 100, image: '/v1/photos/pho_1/image' }
 const jpeg = (name = 'Old oak.jpg', content = 'a photo') => new File([content], name, { type: 'image/jpeg' })
 
@@ -20,14 +20,18 @@ beforeEach(() => {
 })
 afterEach(() => vi.unstubAllGlobals())
 
-function serve({ method, path }: Call): Response {
+const made = (leaf: Blob | null = null, photo = jpeg()) =>
+  writeProject({ photo, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf })
+
+async function serve({ method, path }: Call): Promise<Response> {
   if (path === '/v1/photos') return Response.json(PHOTO, { status: 201 })
   if (path.endsWith('/trace')) return Response.json(answer())
-  if (path.endsWith('strokes.json')) return Response.json(toWire(STROKES))
+  if (path === '/project') return new Response(await made())
   if (path.endsWith('.jpg') || path.endsWith('/image')) return new Response(jpeg())
   if (path.startsWith('/v1/photos/')) return Response.json(PHOTO)
   const status = method === 'POST' ? 'queued' : 'succeeded'
-  return Response.json(model({ status, seed: 5, settings: { ...DEFAULT_SETTINGS, height: 14 } }))
+  const files = { project: '/project' }
+  return Response.json(model({ status, files, seed: 5, settings: { ...DEFAULT_SETTINGS, height: 14 } }))
 }
 
 test('a photo is opened under its name, upright as the browser shows it', async () => {
@@ -72,7 +76,7 @@ test('a project brings its strokes, settings and seed', async () => {
   service(serve)
   const { store, opener } = new Studio()
   const settings = { ...DEFAULT_SETTINGS, leaf_size: 2 }
-  const file = await writeProject({ photo: jpeg(), strokes: STROKES, settings, seed: 9 })
+  const file = await writeProject({ photo: jpeg(), strokes: STROKES, settings, seed: 9, leaf: null })
   await opener.openFile(new File([file], 'Maple.treestroke'))
   expect(store.state).toMatchObject({ name: 'Maple', settings, seed: 9, tool: 'branch' })
   expect(store.strokes).toEqual(STROKES)
@@ -96,11 +100,8 @@ test('a model is opened with the strokes, settings and seed that it was made of'
 })
 
 test('a model whose photo was deleted brings its own copy', async () => {
-  const project = await writeProject({ photo: jpeg(), strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0 })
   const calls = service(call => {
-    if (call.path === '/v1/photos/pho_1') return problem(404, 'not_found', 'no such photo')
-    if (call.path === '/v1/models/mdl_1') return Response.json(model({ files: { project: '/project' } }))
-    return call.path === '/project' ? new Response(project) : serve(call)
+    return call.path === '/v1/photos/pho_1' ? problem(404, 'not_found', 'no such photo') : serve(call)
   })
   const { store, opener } = new Studio()
   await opener.openModel('mdl_1')
@@ -141,4 +142,18 @@ test('closing leaves nothing open and keeps the drawing', async () => {
   opener.close()
   expect([store.state.photo, store.state.model]).toEqual([null, null])
   expect((await keeper.list()).map(draft => draft.id)).toEqual([id])
+})
+
+test('a leaf of one’s own comes with a project, with a model and with a kept drawing', async () => {
+  service(async call => (call.path === '/project' ? new Response(await made(new Blob(['a leaf']))) : serve(call)))
+  const { store, opener, keeper } = new Studio()
+  await opener.openFile(new File([await made(new Blob(['mine']))], 'Maple.treestroke'))
+  expect(await store.state.leaf?.text()).toBe('mine')
+  const id = keeper.id!
+  await vi.waitFor(async () => expect(await (await keeper.find(id))?.leaf?.text()).toBe('mine'))
+  await opener.openModel('mdl_1')
+  expect(await store.state.leaf?.text()).toBe('a leaf')
+  expect(store.state.modelLeaf).toBe(store.state.leaf)
+  await opener.openDraft(id)
+  expect(await store.state.leaf?.text()).toBe('mine')
 })

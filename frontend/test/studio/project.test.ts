@@ -5,7 +5,12 @@ import { DEFAULT_SETTINGS } from '../../src/state'
 import { isProject, projectName, readProject, writeProject } from '../../src/studio/project'
 import { CROWN, LIMB, TRUNK } from '../builders'
 
-const STROKES = { crown: CROWN, branches: [{ points: TRUNK, width: 7 }, { points: LIMB }], erase: [LIMB] }
+const STROKES = {
+  crown: CROWN,
+  branches: [{ points: TRUNK, width: 7 }, { points: LIMB }],
+  erase: [LIMB],
+  scale: { points: TRUNK, metres: 1.8 },
+}
 const jpeg = new Blob([readFileSync(new URL('../../../examples/osage_orange_autumn.jpg', import.meta.url))], {
   type: 'image/jpeg',
 })
@@ -15,7 +20,7 @@ function zip(members: Record<string, string>): Blob {
 }
 
 test('a project is read as it was written', async () => {
-  const project = { photo: jpeg, strokes: STROKES, settings: { ...DEFAULT_SETTINGS, height: 14 }, seed: 8 }
+  const project = { photo: jpeg, strokes: STROKES, settings: { ...DEFAULT_SETTINGS, height: 14 }, seed: 8, leaf: null }
   const read = await readProject(await writeProject(project))
   expect({ ...read, photo: null }).toEqual({ ...project, photo: null })
   expect(read.photo.type).toBe('image/jpeg')
@@ -23,8 +28,10 @@ test('a project is read as it was written', async () => {
 })
 
 test('a project without a crown is kept and read, too', async () => {
-  const strokes = { crown: null, branches: [{ points: TRUNK }], erase: [] }
-  const read = await readProject(await writeProject({ photo: jpeg, strokes, settings: DEFAULT_SETTINGS, seed: 0 }))
+  const strokes = { crown: null, branches: [{ points: TRUNK }], erase: [], scale: null }
+  const read = await readProject(
+    await writeProject({ photo: jpeg, strokes, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }),
+  )
   expect(read.strokes).toEqual(strokes)
 })
 
@@ -52,4 +59,11 @@ test('a project is known by its ending or its type', () => {
 test('a name makes a file name that every system takes', () => {
   expect(projectName('Oak: 3/4 "view"')).toBe('Oak_ 3_4 _view_.treestroke')
   expect(projectName('')).toBe('tree.treestroke')
+})
+
+test('a leaf of one’s own goes with the project', async () => {
+  const leaf = new Blob(['a leaf'], { type: 'image/png' })
+  const project = { photo: jpeg, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf }
+  const read = await readProject(await writeProject(project))
+  expect([await read.leaf?.text(), read.leaf?.type]).toEqual(['a leaf', 'image/png'])
 })

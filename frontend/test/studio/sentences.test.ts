@@ -7,6 +7,7 @@ test.each([
   ['/branches/2', { kind: 'branch', index: 2 }],
   ['/branches/2/points/7', { kind: 'branch', index: 2 }],
   ['/strokes/erase/1', { kind: 'erase', index: 1 }],
+  ['/strokes/scale/metres', { kind: 'scale', index: 0 }],
   ['/settings/height', null],
   [null, null],
 ])('the pointer %s leads to %o', (pointer, stroke) => {

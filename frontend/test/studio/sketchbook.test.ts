@@ -71,3 +71,24 @@ test('with nothing selected nothing is deleted', () => {
   sketchbook.remove()
   expect(store.state.history).toBe(before)
 })
+
+test('a measured line is selected for its length, which is an edit of its own', () => {
+  sketchbook.draw('scale', TRUNK)
+  expect(store.state.selection).toEqual({ kind: 'scale', index: 0 })
+  sketchbook.measure(1.8)
+  sketchbook.measure(1.8)
+  expect(store.strokes.scale).toEqual({ points: TRUNK, metres: 1.8 })
+  sketchbook.undo()
+  expect([store.strokes.scale?.points, store.strokes.scale?.metres === 1.8]).toEqual([TRUNK, false])
+  sketchbook.redo()
+  sketchbook.select({ kind: 'scale', index: 0 })
+  sketchbook.remove()
+  expect(store.strokes.scale).toBeNull()
+})
+
+test('an end that is moved leaves the length as it was said', () => {
+  sketchbook.draw('scale', TRUNK)
+  sketchbook.measure(1.8)
+  sketchbook.draw('scale', [TRUNK[0]!, [60, 30]])
+  expect(store.strokes.scale).toEqual({ points: [TRUNK[0], [60, 30]], metres: 1.8 })
+})

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { advance, begin, redo, undo } from '../../src/history'
-import { type Line, NO_STROKES, withoutStroke, withStroke } from '../../src/strokes'
+import { type Line, NO_STROKES, withoutStroke, withScale, withStroke } from '../../src/strokes'
 import { editSaid } from '../../src/ui/edits'
 
 const LOOP: Line = [
@@ -41,4 +41,13 @@ test('clearing, undoing and redoing are told apart', () => {
 
 test('nothing is said of another drawing', () => {
   expect(editSaid(branched, begin(withStroke(NO_STROKES, 'crown', LOOP)))).toBeNull()
+})
+
+test('a measured line is named, and its length when that is said', () => {
+  const lined = advance(trunked, withScale(trunked.present, [...TRUNK], 1))
+  const measured = advance(lined, withScale(lined.present, lined.present.scale!.points, 1.8))
+  expect([editSaid(trunked, lined), editSaid(lined, measured)]).toEqual([
+    'Measured line drawn.',
+    'The measured line is 1.8 m long.',
+  ])
 })

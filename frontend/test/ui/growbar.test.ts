@@ -7,11 +7,17 @@ import { CROWN, model, photo, TRUNK } from '../builders'
 
 let studio: Studio
 let bar: HTMLElement
+let opened: string[]
 
 beforeEach(() => {
   studio = new Studio()
+  opened = []
   vi.spyOn(studio.client, 'trace').mockReturnValue(new Promise(() => {}))
-  bar = growBar(studio, async () => new Blob())
+  bar = growBar(
+    studio,
+    { panel: document.createElement('div'), open: group => opened.push(group) },
+    async () => new Blob(),
+  )
   document.body.replaceChildren(bar)
 })
 
@@ -33,6 +39,7 @@ const files = {
   'preview.png': '/m/p.png',
   'tree.usdz': '/m/tree.usdz',
   project: '/m/project',
+  'later.xyz': '/m/later',
 }
 
 test('Grow asks for nothing and says why until there is a trunk', () => {
@@ -85,7 +92,8 @@ test('every file of a tree can be taken away, those of a later service too, unde
   const links = [...bar.querySelectorAll<HTMLAnchorElement>('.panel a')]
   expect(links.map(link => [link.getAttribute('href'), link.download])).toEqual([
     ['/m/tree.glb', 'Old oak.glb'],
-    ['/m/tree.usdz', 'Old oak.tree.usdz'],
+    ['/m/tree.usdz', 'Old oak.usdz'],
+    ['/m/later', 'Old oak.later.xyz'],
   ])
 })
 
@@ -94,4 +102,21 @@ test('without anything drawn there is nothing to take away', () => {
   expect(opener.hidden).toBe(true)
   draw()
   expect(opener.hidden).toBe(false)
+})
+
+test('downloads follow the tree that was chosen, and say which it is', () => {
+  draw()
+  const two = { ...files, 'tree.v2.glb': '/m/tree.v2.glb', 'tree.v2.usdz': '/m/tree.v2.usdz' }
+  studio.store.set({ model: model({ status: 'succeeded', name: 'Old oak', files: two }), variant: 2 })
+  const links = [...bar.querySelectorAll<HTMLAnchorElement>('.takings a')]
+  expect(links.map(link => link.download)).toEqual(['Old oak.v2.glb', 'Old oak.v2.usdz', 'Old oak.later.xyz'])
+  expect(bar.querySelector('.takings h3')!.textContent).toBe('Tree 2 of 2')
+  expect(bar.querySelector<HTMLAnchorElement>('.tree-link')!.getAttribute('href')).toBe('/m/tree.v2.glb')
+})
+
+test('the way to more formats leads to the settings of files', () => {
+  draw()
+  studio.store.set({ model: model({ status: 'succeeded', files }) })
+  bar.querySelector<HTMLElement>('.more-formats')!.click()
+  expect(opened).toEqual(['file'])
 })

@@ -82,3 +82,12 @@ test('what is selected can be deleted from the line', () => {
     deletes: true,
   })
 })
+
+test('the measuring tool says what to measure, and the line asks for its length', () => {
+  expect(said({ tool: 'scale' })).toBe(text.hints.measure)
+  const selection = { kind: 'scale', index: 0 } as const
+  expect(hintOf(state({ tool: 'scale', selection }), 'mouse')).toEqual({
+    tone: 'step',
+    text: text.hints.measured,
+  })
+})

@@ -1,22 +1,28 @@
 // @vitest-environment jsdom
 import 'fake-indexeddb/auto'
-import { beforeEach, expect, test } from 'vitest'
+import { beforeEach, expect, test, vi } from 'vitest'
 import type { Limits } from '../../src/state'
 import { Studio } from '../../src/studio/studio'
 import { settingsPanel } from '../../src/ui/settings'
+import { CROWN, model, photo, TRUNK } from '../builders'
 
+const FILES = ['obj', 'usdz', 'moss']
 const settings: Limits['settings'] = {
   height: { default: 12, meaning: 'metres', min: 0.1, max: 150, whole: false },
   iterations: { default: 300, meaning: 'rounds of growth', min: 0, max: 2000, whole: true },
   foliage: { default: 'auto', meaning: 'what the twigs bear', names: ['auto', 'leaves', 'moss'] },
   wind_speed: { default: 0, meaning: 'how hard it blows', min: 0, max: 1, whole: false },
+  species: { default: 'auto', meaning: 'shape of leaves', names: ['auto', 'oak'], group: 'leaves' },
+  season: { default: 'photo', meaning: 'colour of leaves', names: ['photo', 'autumn'], group: 'leaves' },
+  compress: { default: false, meaning: 'smaller', toggle: true, group: 'file' },
+  files: { default: [], meaning: 'further files', names: FILES, several: true, group: 'file' },
 }
 let studio: Studio
 let panel: HTMLElement
 
 beforeEach(() => {
   studio = new Studio()
-  panel = settingsPanel(studio)
+  panel = settingsPanel(studio).panel
   document.body.replaceChildren(panel)
   studio.store.set({ limits: { settings } as Limits })
 })
@@ -35,7 +41,9 @@ const said = (name: string) => panel.querySelector(`#setting-${name}-wrong`)!.te
 const labelOf = (name: string) => field(name).labels?.[0]?.textContent
 
 test('every setting that the service takes has a labelled field, and so has the seed', () => {
-  expect([...Object.keys(settings), 'seed'].map(labelOf)).toEqual(['Height', 'Growth', 'Foliage', 'Wind speed', 'Seed'])
+  const labels = ['height', 'iterations', 'foliage', 'wind_speed', 'season', 'compress', 'seed'].map(labelOf)
+  expect(labels).toEqual(['Height', 'Growth', 'Foliage', 'Wind speed', 'Season', 'Compress the GLB', 'Seed'])
+  expect(panel.querySelector('#setting-files legend')!.textContent).toBe('More formats')
 })
 
 test('a setting that the page does not know is explained in the words of the service, and can be chosen', () => {
@@ -45,7 +53,7 @@ test('a setting that the page does not know is explained in the words of the ser
   expect([...field<HTMLSelectElement>('foliage').options].map(({ text }) => text)).toEqual([
     'As in the photo',
     'Leaves',
-    'moss',
+    'Moss',
   ])
 })
 
@@ -88,4 +96,71 @@ test('the seed is a whole number from 0', () => {
   ])
   write('seed', '42')
   expect([studio.store.state.seed, said('seed')]).toEqual([42, ''])
+})
+
+test('settings lie in groups, of which one is shown', () => {
+  const tabs = [...panel.querySelectorAll<HTMLElement>('[role=tab]')]
+  expect(tabs.map(tab => tab.textContent)).toEqual(['Tree', 'Leaves', 'File'])
+  const shown = () => [...panel.querySelectorAll<HTMLElement>('[role=tabpanel]')].filter(part => !part.hidden)
+  expect(shown().map(part => part.contains(field('height')))).toEqual([true])
+  tabs[0]!.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }))
+  expect(shown().map(part => part.contains(field('season')))).toEqual([true])
+  expect(document.activeElement).toBe(tabs[1])
+})
+
+test('a yes or no, and several names at once, can be chosen', () => {
+  field<HTMLInputElement>('compress').click()
+  const boxes = [...panel.querySelectorAll<HTMLInputElement>('#setting-files input')]
+  expect(boxes.map(box => box.labels![0]!.textContent)).toEqual(['Wavefront OBJ', 'USDZ (Apple)', 'Moss'])
+  boxes[1]!.click()
+  boxes[0]!.click()
+  expect(studio.store.state.settings).toMatchObject({ compress: true, files: ['obj', 'usdz'] })
+  boxes[1]!.click()
+  expect(studio.store.state.settings.files).toEqual(['obj'])
+})
+
+test('the height says that the measured line has taken its place', () => {
+  studio.sketchbook.draw('scale', TRUNK)
+  studio.sketchbook.measure(1.8)
+  expect(panel.querySelector('#setting-height-note')!.textContent).toContain('1.8 m')
+  expect(field<HTMLInputElement>('height').disabled).toBe(true)
+  studio.sketchbook.undo()
+  studio.sketchbook.undo()
+  expect(panel.querySelector('#setting-height-note')!.textContent).toBe('')
+  expect(field<HTMLInputElement>('height').disabled).toBe(false)
+})
+
+test('what only makes files of a grown tree says so', () => {
+  const said = () => panel.querySelector('.settings-again')!.textContent
+  studio.store.set({ photo: photo() })
+  studio.sketchbook.draw('crown', CROWN)
+  studio.sketchbook.draw('branch', TRUNK)
+  const made = model({ status: 'succeeded', settings: { ...studio.store.state.settings } })
+  studio.store.set({ model: made, modelOf: studio.store.strokes, tree: new ArrayBuffer(4) })
+  expect(said()).toBe('')
+  field<HTMLInputElement>('compress').click()
+  expect(said()).toContain('the tree stays the same')
+  write('height', '25')
+  expect(said()).toBe('')
+})
+
+test('a leaf of one’s own is chosen, seen, refused with a reason, and removed', async () => {
+  vi.stubGlobal('URL', Object.assign(URL, { createObjectURL: () => 'blob:leaf', revokeObjectURL: () => {} }))
+  const leaf = new Blob(['leaf'])
+  const buttons = () => [...panel.querySelectorAll<HTMLElement>('[aria-labelledby=setting-leaf] button')]
+  const shown = () =>
+    buttons()
+      .filter(one => !one.hidden)
+      .map(one => one.textContent)
+  expect(shown()).toEqual(['Choose a picture'])
+  studio.store.set({ leaf })
+  expect([shown(), panel.querySelector<HTMLImageElement>('.leaf-picture')!.hidden]).toEqual([
+    ['Replace', 'Remove'],
+    false,
+  ])
+  await studio.herbarium.take(new File(['no'], 'leaf.png'))
+  expect(panel.querySelector('[aria-labelledby=setting-leaf] .setting-wrong')!.textContent).toContain('no PNG')
+  expect(studio.store.state.leaf).toBe(leaf)
+  buttons()[1]!.click()
+  expect([studio.store.state.leaf, shown()]).toEqual([null, ['Choose a picture']])
 })

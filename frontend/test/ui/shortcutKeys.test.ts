@@ -5,7 +5,7 @@ const key = (key: string, held: Partial<Record<'ctrlKey' | 'metaKey' | 'altKey' 
   commandOf({ key, ctrlKey: false, metaKey: false, altKey: false, shiftKey: false, ...held })
 
 test('letters take the tools, in either case', () => {
-  expect(['c', 'C', 'b', 'v'].map(letter => key(letter))).toEqual(['crown', 'crown', 'branch', 'select'])
+  expect(['c', 'C', 'b', 'm', 'v'].map(letter => key(letter))).toEqual(['crown', 'crown', 'branch', 'scale', 'select'])
 })
 
 test('control or command undoes, and with shift redoes', () => {

@@ -45,6 +45,16 @@ test('a finished model is brought, and then it stands until strokes, settings or
   expect(standingOf(finished({ seed: 5 }))).toBe('settingsChanged')
 })
 
+test('another leaf changes the tree, and settings of files change only its files', () => {
+  const limits = { settings: { compress: { group: 'file' }, files: { group: 'file' } } } as unknown as State['limits']
+  const set = (changes: Partial<State['settings']>) =>
+    standingOf(finished({ limits, settings: { ...settings, ...changes } }))
+  expect(standingOf(finished({ leaf: new Blob() }))).toBe('settingsChanged')
+  expect(set({ files: [] })).toBe('grown')
+  expect(set({ files: ['obj'], compress: true })).toBe('filesChanged')
+  expect(set({ files: ['obj'], height: 12 })).toBe('settingsChanged')
+})
+
 test('a setting that an older model does not know counts as unchanged', () => {
   expect(standingOf(finished({ model: { ...grown, settings: { height: 10 } } }))).toBe('grown')
 })

@@ -1,0 +1,40 @@
+import type { Line, Point, Scale } from '../strokes'
+import { text } from '../text'
+import { INK } from './ink'
+import type { Sheet } from './overlay'
+import { type Size, toScreen, type View } from './viewport'
+
+const FONT = '600 13px system-ui, sans-serif'
+/** CSS px. */
+const HEIGHT = 22
+const PADDING = 8
+/** Between the line and what is said of it: its ticks, and some air. */
+const AWAY = 14
+
+/** The middle of a box, CSS px, beside a measured line's middle, clear of the line, to the right or below. */
+export function labelPlace([from, to]: Line, view: View, { width, height }: Size): Point {
+  const [x, y] = toScreen(view, from!)
+  const [toX, toY] = toScreen(view, to!)
+  const length = Math.hypot(toX - x, toY - y) || 1
+  const [across, down] = [(y - toY) / length, (toX - x) / length]
+  const reach = AWAY + (Math.abs(across) * width + Math.abs(down) * height) / 2
+  const side = across + down < 0 ? -reach : reach
+  return [(x + toX) / 2 + side * across, (y + toY) / 2 + side * down]
+}
+
+/** Write a measured line's length beside it. */
+export function drawLength({ ctx, density, view }: Sheet, { points, metres }: Scale): void {
+  const words = text.metres(metres)
+  ctx.setTransform(density, 0, 0, density, 0, 0)
+  ctx.font = FONT
+  const width = ctx.measureText(words).width + 2 * PADDING
+  const [x, y] = labelPlace(points, view, { width, height: HEIGHT })
+  ctx.fillStyle = INK.label
+  ctx.beginPath()
+  ctx.roundRect(x - width / 2, y - HEIGHT / 2, width, HEIGHT, HEIGHT / 2)
+  ctx.fill()
+  ctx.fillStyle = INK.scale
+  ctx.textAlign = 'center'
+  ctx.textBaseline = 'middle'
+  ctx.fillText(words, x, y + 1)
+}

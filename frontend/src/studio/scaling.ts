@@ -1,0 +1,20 @@
+import { distance } from '../plane'
+import type { State } from '../state'
+import type { Line } from '../strokes'
+
+/** How long a line over the photo is, metres, as far as it is known before anybody says so; never nothing. */
+export function metresOf([from, to]: Line, state: State): number {
+  if (!from || !to) return 1
+  const metres = distance(from, to) * metresPerPixel(state)
+  return Math.max(Number(metres.toPrecision(2)), 0.01)
+}
+
+/** By the measured line before this one, else by the height and how high the strokes reach. */
+function metresPerPixel({ history, settings }: State): number {
+  const { scale, crown, branches } = history.present
+  if (scale) return scale.metres / Math.max(distance(scale.points[0]!, scale.points[1]!), 1)
+  const trunk = branches[0]?.points ?? []
+  const heights = [...(crown ?? []), ...trunk].map(([, y]) => y)
+  const pixels = Math.max(...heights) - Math.min(...heights)
+  return pixels > 0 && Number.isFinite(pixels) ? settings.height / pixels : 0
+}

@@ -1,0 +1,25 @@
+import { expect, test } from 'vitest'
+import { readLeaf } from '../../src/studio/leafPicture'
+
+const HEAD = new Uint8Array([137, 80, 78, 71, 13, 10, 26, 10])
+const png = (bytes = 0) => new Blob([HEAD, new Uint8Array(bytes)])
+const alpha =
+  (...pixels: number[]) =>
+  async () =>
+    Uint8Array.from(pixels)
+
+test('a PNG of which some is transparent is taken as it is', async () => {
+  const leaf = await readLeaf(png(20), 4e6, alpha(255, 0, 255))
+  expect([leaf.type, leaf.size]).toEqual(['image/png', 28])
+})
+
+test.each([
+  ['another file', new Blob(['a photo of a leaf']), alpha(255, 0), 'no PNG'],
+  ['an empty file', new Blob([]), alpha(255, 0), 'no PNG'],
+  ['a picture that is too large', png(4_000_000), alpha(255, 0), 'at most 4 MB'],
+  ['a picture without a transparent pixel', png(), alpha(255, 255), 'Nothing of this picture is transparent'],
+  ['a picture of nothing', png(), alpha(0, 0), 'nothing to be seen'],
+  ['a damaged picture', png(), () => Promise.reject(new Error('broken')), 'damaged'],
+])('%s is refused with a reason', async (_, file, alphaOf, reason) => {
+  await expect(readLeaf(file, 4e6, alphaOf)).rejects.toThrow(reason)
+})

@@ -1,0 +1,44 @@
+import { expect, test } from 'vitest'
+import { aloneOf, treeFiles, treeOf, variantsOf } from '../../src/studio/variants'
+import { model } from '../builders'
+
+const files = {
+  'tree.glb': '/1',
+  'tree.v12.glb': '/12',
+  'tree.v12.lod1.glb': '/12l',
+  project: '/p',
+  'preview.png': '/i',
+}
+const trees = [
+  { seed: 4, score: { silhouette_iou: 0.9 }, counts: { leaves: 10 } },
+  { seed: 5, score: { silhouette_iou: 0.8 }, counts: { leaves: 20 } },
+]
+
+test('files of trees are told from others, and by tree', () => {
+  const grown = model({ files })
+  expect(treeFiles(grown).map(({ variant, what }) => [variant, what])).toEqual([
+    [1, 'glb'],
+    [12, 'glb'],
+    [12, 'lod1.glb'],
+  ])
+  expect([variantsOf(grown), treeOf(grown, 1), treeOf(grown, 12), treeOf(grown, 3)]).toEqual([
+    2,
+    '/1',
+    '/12',
+    undefined,
+  ])
+})
+
+test('one of several trees has its own score and counts, and what they have in common', () => {
+  const grown = model({
+    score: { silhouette_iou: 0.9 },
+    report: { seconds: { grow: 1 }, variants: trees, files: { 'tree.v2.glb': 7 } },
+  })
+  const second = aloneOf(grown, 2)
+  expect([second.score, second.report?.counts, second.report?.seconds]).toEqual([
+    { silhouette_iou: 0.8 },
+    { leaves: 20, bytes: 7 },
+    { grow: 1 },
+  ])
+  expect(aloneOf(grown, 3)).toBe(grown)
+})
