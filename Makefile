@@ -18,7 +18,7 @@ PORT ?= 8000
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/bytecode
 
-.PHONY: run page test redis chromium check types bench golden chaos setup
+.PHONY: run page test redis chromium check types bench golden readers usd chaos setup
 .DEFAULT_GOAL := run
 
 # Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
@@ -34,7 +34,7 @@ page: $(PAGE_STAMP)
 
 test: $(STAMP) page redis chromium
 	@cd frontend && node_modules/.bin/vitest run
-	@$(PYTEST) -m "not golden and not alone and not browser" -n 3 --dist loadfile
+	@$(PYTEST) -m "not golden and not alone and not browser and not readers" -n 3 --dist loadfile
 	@$(PYTEST) -m browser -n 2 --dist loadfile
 	@$(PYTEST) -m alone
 
@@ -73,6 +73,21 @@ bench: $(STAMP) page
 
 golden: $(STAMP)
 	$(BIN)/python -m pytest -q -m golden
+
+# Every format in readers that are not ours: three.js in Chromium, Blender and OpenUSD, each in an environment of its own.
+readers: $(STAMP) page chromium .venv-bpy/ready .venv-usd/ready
+	@$(PYTEST) -m readers
+
+.venv-bpy/ready: tests/readers/requirements-blender.txt
+.venv-usd/ready: requirements-usd.txt
+.venv-bpy/ready .venv-usd/ready:
+	@$(PYTHON) -m venv $(@D)
+	@$(@D)/bin/pip install --quiet --disable-pip-version-check --require-hashes -r $<
+	@touch $@
+
+# What USDZ needs, which is large and optional.
+usd: $(STAMP)
+	@$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements-usd.txt
 
 # Three minutes a broker: workers are killed at random while 200 jobs come in. No job may be lost or made twice.
 chaos: $(STAMP)

@@ -72,7 +72,8 @@ def _bark_colours(bark: Surface) -> Floats:
 
 
 def _shaded(colours: Floats, shades: NDArray[np.floating]) -> Floats:
-    return colours * np.clip(shades, 0, 1)[:, None] ** (1 / _GAMMA)
+    factors: Floats = np.clip(shades, 0, 1).astype(np.float64) ** (1 / _GAMMA)
+    return colours * factors[:, None]
 
 
 def _rhombi(leaves: Leaves, atlas: Atlas, first: int) -> tuple[NDArray[np.void], NDArray[np.void]]:

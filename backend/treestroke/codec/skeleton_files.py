@@ -26,7 +26,7 @@ _SWC_HEAD = """# treestroke.skeleton 1
 
 
 def encode_skeleton_json(skeleton: Skeleton, born: NDArray[np.int64] | None, camera: Camera) -> bytes:
-    """Write a skeleton (metres) as JSON: schema, version, unit, frame, the photo's camera, and a list for each column."""
+    """Write a skeleton (metres) as JSON: schema, version, unit, frame, the photo's camera, a list for each column."""
     value = {
         "schema": SCHEMA,
         "version": VERSION,

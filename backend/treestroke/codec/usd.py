@@ -3,6 +3,7 @@
 import json
 import re
 from collections.abc import Mapping
+from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -23,6 +24,18 @@ _PADDING_ID = b"\x86\x19"  # of the extra field that pads
 _MISSING = "usdz needs the package usd-core; install it by `pip install treestroke[usd]` or `make usd`"
 
 
+def require_usd() -> None:
+    """Refuse where USDZ cannot be written.
+
+    Raises
+    ------
+    SettingsError
+        The optional package usd-core is not installed.
+    """
+    if find_spec("pxr") is None:
+        raise SettingsError.at(("files",), _MISSING, "usd_missing")
+
+
 def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) -> bytes:
     """Write a tree as a USDZ package: metres, Y up, UsdPreviewSurface, one mesh each for bark and leaf.
 
@@ -34,6 +47,7 @@ def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) 
     SettingsError
         The optional package usd-core is not installed.
     """
+    require_usd()
     name = re.sub(r"^(?=\d)|\W", "_", stem, flags=re.ASCII)
     worn = {"bark": bark} if leaf is None else {"bark": bark, "leaf": leaf}
     pictures: dict[str, bytes] = {}
@@ -54,10 +68,8 @@ def _relief(part: str) -> str:
 
 def _layer(name: str, worn: Mapping[str, Surface], camera: Camera) -> bytes:
     """Write the scene as binary USD."""
-    try:
-        from pxr import Kind, Usd, UsdGeom
-    except ImportError:
-        raise SettingsError.at(("files",), _MISSING, "usd_missing") from None
+    from pxr import Kind, Usd, UsdGeom
+
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, 1.0)

@@ -1,18 +1,154 @@
 """The files of one tree, as its settings ask for them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import partial
 
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.instances import encode_instanced
+from treestroke.codec.gltf.loose import encode_gltf
+from treestroke.codec.gltf.tree import Part, Stuff, encode_glb
+from treestroke.codec.obj import encode_obj
+from treestroke.codec.ply import encode_ply
+from treestroke.codec.skeleton_files import encode_csv, encode_skeleton_json, encode_swc
+from treestroke.codec.usd import encode_usdz, require_usd
+from treestroke.core.geometry.mesh import Surface
+from treestroke.core.mesh.collision import collision
+from treestroke.core.pipeline.levels import Level, Levels, levels
 from treestroke.core.pipeline.photo import TreeModel
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import Report
+from treestroke.core.sway.clips import wind_of
+from treestroke.core.sway.skinning import skin
+from treestroke.core.sway.wind import Wind
 
 Bundle = Mapping[str, bytes]
+"""Files that belong together, by name: the first names the others."""
+CLIPS = {"none": (), "breeze": ("breeze",), "all": ("breeze", "gust")}
 
 
-def tree_files(tree: TreeModel, settings: ModelSettings, name: str, generator: str, report: Report) -> dict[str, Bundle]:
-    report("write", 0.0)
-    parts = [Part("bark", tree.bark)] + ([] if tree.leaf is None else [Part("leaf", tree.leaf)])
-    glb = encode_glb(parts, tree.camera, generator=generator)
+def tree_files(
+    tree: TreeModel, settings: ModelSettings, name: str, generator: str, report: Report
+) -> dict[str, Bundle]:
+    """Write a tree: its GLB, its levels of detail and what else the settings name, each under its bundle's name.
+
+    ``name`` begins all names. ``report`` is called with the stages levels (where there are any) and write.
+    """
+    writer = _Writer(tree, settings, name, generator, _wind(tree, settings))
+    coarse = None if settings.lod == "none" else levels(tree, report)
+    recipes = writer.glbs(coarse) | {f"{name}.{ENDINGS[one]}": partial(writer.other, one) for one in settings.files}
+    bundles = {}
+    for done, (bundle, make) in enumerate(recipes.items()):
+        report("write", done / len(recipes))
+        bundles[bundle] = make()
     report("write", 1.0)
-    return {f"{name}.glb": {f"{name}.glb": glb}}
+    return bundles
+
+
+def check_files(settings: ModelSettings) -> None:
+    """Refuse, before any work, a file that needs a package which is not installed.
+
+    Raises
+    ------
+    SettingsError
+        There is such a file.
+    """
+    if "usdz" in settings.files:
+        require_usd()
+
+
+ENDINGS = {
+    "gltf": "gltf",
+    "obj": "obj",
+    "usdz": "usdz",
+    "ply": "ply",
+    "instanced": "instanced.glb",
+    "collision": "collision.glb",
+    "json": "skeleton.json",
+    "swc": "swc",
+    "csv": "skeleton.csv",
+}
+"""How the names of further files end."""
+
+
+def _wind(tree: TreeModel, settings: ModelSettings) -> Wind | None:
+    clips = CLIPS[settings.wind]
+    return wind_of(tree.grown.skeleton, clips, None if tree.cards is None else tree.cards.joints) if clips else None
+
+
+def _chained(own: list[Part], coarser: list[list[Part]], impostor: Part) -> list[Part]:
+    """Let each part know those that take its place further off; the last part ends as the impostor."""
+    found = []
+    for part in own:
+        later = tuple(one for level in coarser for one in level if one.stuff == part.stuff)
+        found.append(replace(part, coarser=(*later, impostor) if part is own[-1] else later))
+    return found
+
+
+class _Writer:
+    """Writes one tree under one name."""
+
+    def __init__(self, tree: TreeModel, settings: ModelSettings, name: str, generator: str, wind: Wind | None) -> None:
+        self._tree, self._settings, self._name = tree, settings, name
+        self._generator, self._wind = generator, wind
+
+    def glbs(self, coarse: Levels | None) -> dict[str, Callable[[], Bundle]]:
+        """Give the makers of the GLB and of its levels, which are files of their own or lie in the one."""
+        own = self._parts(Level(self._tree.bark, self._tree.leaf))
+        if coarse is None:
+            return self._glb("", own)
+        coarser = [self._parts(level, f"_lod{at}") for at, level in enumerate((coarse.lod1, coarse.lod2), start=1)]
+        impostor = Part("impostor", coarse.impostor)
+        if self._settings.lod == "one":
+            return self._glb("", _chained(own, coarser, impostor))
+        files = {"": own, ".lod1": coarser[0], ".lod2": coarser[1], ".impostor": [impostor]}
+        return {bundle: make for infix, parts in files.items() for bundle, make in self._glb(infix, parts).items()}
+
+    def other(self, kind: str) -> Bundle:
+        """Write the tree in another form."""
+        tree, name = self._tree, self._name
+        file = f"{name}.{ENDINGS[kind]}"
+        match kind:
+            case "gltf":
+                parts = self._parts(Level(tree.bark, tree.leaf))
+                return encode_gltf(parts, tree.camera, generator=self._generator, stem=name, wind=self._wind)
+            case "obj":
+                return encode_obj(tree.bark, tree.leaf, name)
+            case "usdz":
+                return {file: encode_usdz(tree.bark, tree.leaf, tree.camera, name)}
+            case "ply":
+                return {file: encode_ply(tree.bark, tree.cards, tree.atlas)}
+            case "instanced":
+                return {file: self._instanced()}
+            case "collision":
+                solid = Part("collision", Surface(collision(tree.grown.skeleton), tree.bark.texture))
+                return {file: encode_glb([solid], tree.camera, generator=self._generator)}
+            case "json":
+                return {file: encode_skeleton_json(tree.grown.skeleton, tree.grown.born, tree.camera)}
+            case "swc":
+                return {file: encode_swc(tree.grown.skeleton)}
+            case _:
+                return {file: encode_csv(tree.grown.skeleton, tree.grown.born)}
+
+    def _instanced(self) -> bytes:
+        """Write leaves as instances; a tree without any is bark alone."""
+        tree, bark = self._tree, Part("bark", self._tree.bark)
+        if tree.cards is None or tree.atlas is None:
+            return encode_glb([bark], tree.camera, generator=self._generator)
+        return encode_instanced(bark, tree.cards, tree.atlas, tree.camera, generator=self._generator)
+
+    def _glb(self, infix: str, parts: list[Part]) -> dict[str, Callable[[], Bundle]]:
+        file = f"{self._name}{infix}.glb"
+        return {file: lambda: {file: self._encoded(parts)}}
+
+    def _encoded(self, parts: list[Part]) -> bytes:
+        moving = self._wind if any(part.skin is not None for part in parts) else None
+        compress = self._settings.compress
+        return encode_glb(parts, self._tree.camera, generator=self._generator, wind=moving, compress=compress)
+
+    def _parts(self, level: Level, suffix: str = "") -> list[Part]:
+        worn: list[tuple[Stuff, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]
+        return [self._part(stuff, surface, suffix) for stuff, surface in worn if surface is not None]
+
+    def _part(self, stuff: Stuff, surface: Surface, suffix: str) -> Part:
+        moved = None if self._wind is None else skin(self._wind.rig, surface.mesh, leaves=stuff == "leaf")
+        return Part(stuff, surface, moved, suffix)

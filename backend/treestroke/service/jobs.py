@@ -151,11 +151,12 @@ def _make(
     given = photo, blobs.get(job.strokes_blob), job.settings, job.seed
     made: MadeModel = model(*given, pulse.report, show, leaf=leaf)
     pulse.report("preview", 0.0)
-    contents = {**_packed(made.bundles), PREVIEW: encode_png(made.preview())}
+    trees = _packed(made.bundles)
+    contents = {**trees, PREVIEW: encode_png(made.preview())}
     pulse.report("preview", 1.0)
     files = {name: (blobs.put(content), len(content)) for name, content in contents.items()}
     pulse.report("preview", 1.0)
-    return made.report, files
+    return {**made.report, "files": {name: len(content) for name, content in trees.items()}}, files
 
 
 def _packed(bundles: Mapping[str, Bundle]) -> dict[str, bytes]:

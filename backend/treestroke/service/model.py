@@ -18,7 +18,7 @@ from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.survey.measures import Measures
 from treestroke.service.clock import Stopwatch
-from treestroke.service.files import Bundle, tree_files
+from treestroke.service.files import Bundle, check_files, tree_files
 from treestroke.service.inputs import (
     LeafLike,
     PhotoLike,
@@ -96,6 +96,7 @@ def model(
     """
     chosen, seed, given, cut_out = load_settings(settings), check_seed(seed), load_strokes(strokes), load_leaf(leaf)
     require_trunk(given)
+    check_files(chosen)
     watch = Stopwatch(report)
     trees: list[TreeModel] = []
     bundles: dict[str, Bundle] = {}
@@ -105,7 +106,7 @@ def model(
         seen = see(picture, given, None, watch)
         for at, one in enumerate(_seeds(seed, chosen.variants)):
             show = unseen if trees else on_grown
-            trees.append(model_seen(seen, chosen, np.random.default_rng(one), watch, show))
+            trees.append(model_seen(seen, chosen, np.random.default_rng(one), watch, show, leaf_picture=cut_out))
             bundles |= tree_files(trees[-1], chosen, name if at == 0 else f"{name}.v{at + 1}", ENGINE, watch)
     return Model(bundles, _report(trees, bundles, chosen, seed, watch), trees[0])
 

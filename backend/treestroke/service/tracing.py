@@ -19,6 +19,7 @@ from treestroke.core.errors import LeafError, StrokesError, TreestrokeError, sho
 from treestroke.core.pipeline.settings import check_seed, plain_settings, settings_from
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES, mend_strokes, require_trunk
 from treestroke.schemas import MAX_LEAF_TEXT, NAME_PATTERN
+from treestroke.service.files import check_files
 from treestroke.service.trace import Trace, trace
 from treestroke.store.blobs import Blobs
 
@@ -201,7 +202,9 @@ def _settings(given: object) -> dict[str, Any]:
     if not isinstance(given, dict):
         raise TreestrokeError.at(("settings",), "it must be an object; leave it out for defaults", "wrong_type")
     try:
-        return plain_settings(settings_from(given))
+        chosen = settings_from(given)
+        check_files(chosen)
+        return plain_settings(chosen)
     except TreestrokeError as error:
         raise _inside("settings", error) from error
 

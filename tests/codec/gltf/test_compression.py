@@ -128,7 +128,7 @@ def skinned() -> Book:
         np.array([[0, 1, 2]], np.uint32),
     )
     worn = book.material("bark", Surface(triangle, np.zeros((4, 4, 3), np.uint8)), {"pbrMetallicRoughness": {}}, 10497)
-    shape = book.shape("bark", triangle, worn)
+    shape = book.row("meshes", {"name": "bark", "primitives": [book.primitive(triangle, worn)]})
     book.row("nodes", {"mesh": shape, "skin": 0})
     book.row("nodes", {"name": "root"})
     rest = np.eye(4, dtype=np.float32)

@@ -85,9 +85,11 @@ def test_fixed_point_rounds_to_its_steps() -> None:
     assert np.array_equal(read, np.rint(values * 4096) / 4096)
 
 
-def test_fixed_point_refuses_what_is_too_far() -> None:
-    with pytest.raises(ValueError, match="below 2048"):
-        fixed_point(np.array([[2048.0]]), 12)
+@pytest.mark.parametrize("largest", [1023.9, 5000.0, 1e9])
+def test_large_values_are_rounded_to_larger_steps(largest: float) -> None:
+    encoded = encode_attributes(fixed_point(np.array([[largest], [-largest / 3]]), 12))
+    read = unfold_one(encoded, 2, 4, filter_="EXPONENTIAL").view("<f4")
+    assert np.allclose(read.ravel(), [largest, -largest / 3], rtol=1e-6)
 
 
 def test_several_streams_lie_in_one_buffer() -> None:

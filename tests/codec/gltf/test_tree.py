@@ -6,7 +6,7 @@ import pygltflib
 import pytest
 import trimesh
 from PIL import Image
-from tests.builders import oak, stick
+from tests.builders import fork, oak, stick
 
 from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.core.geometry.camera import Camera
@@ -162,3 +162,17 @@ def test_relief_is_a_normal_texture() -> None:
 def test_a_texture_s_sides_must_be_powers_of_two() -> None:
     with pytest.raises(ValueError, match="powers of two"):
         encode_glb([Part("bark", bark(7))], CAMERA, generator="treestroke 1")
+
+
+def test_twigs_wear_the_same_picture_without_relief_and_without_tangents() -> None:
+    relief = np.full((8, 4, 3), (128, 128, 255), np.uint8)
+    surface = Surface(tubes(fork(child_radius=0.004), TubeParams()), bark().texture, relief)
+    book = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
+    assert [one["name"] for one in book["materials"]] == ["bark", "bark_twigs"]
+    wood, twigs = (book["materials"][one["material"]] for one in book["meshes"][0]["primitives"])
+    assert wood["pbrMetallicRoughness"] == twigs["pbrMetallicRoughness"]
+    assert [("normalTexture" in one) for one in (wood, twigs)] == [True, False]
+    assert [("TANGENT" in one["attributes"]) for one in book["meshes"][0]["primitives"]] == [True, False]
+    counts = [book["accessors"][one["indices"]]["count"] for one in book["meshes"][0]["primitives"]]
+    assert sum(counts) == surface.mesh.triangles.size
+    assert min(counts) > 0

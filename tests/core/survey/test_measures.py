@@ -29,7 +29,9 @@ def test_a_trunk_is_measured_at_breast_height() -> None:
 def test_of_several_stems_the_thickest_counts() -> None:
     one, two = stick(5, radius=0.1, tip_radius=0.1), stick(5, radius=0.2, tip_radius=0.2)
     parents = np.concatenate([one.parents, np.where(two.parents < 0, -1, two.parents + len(one))])
-    both = Skeleton(np.vstack([one.points, two.points + [1, 0, 0]]), np.concatenate([one.radii, two.radii]), parents)
+    both = Skeleton(
+        np.vstack([one.points, two.points + np.array([1, 0, 0])]), np.concatenate([one.radii, two.radii]), parents
+    )
     assert measured(both).figures["trunk_diameter"].value == pytest.approx(0.4)
 
 

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from io import BytesIO
 from typing import Any
 
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from treestroke.core.geometry.mesh import Mesh, Surface
+from treestroke.core.geometry.parts import part_of, shows_relief
 from treestroke.core.geometry.tangents import tangents
 from treestroke.core.sway.wind import Skin
 
@@ -36,6 +37,8 @@ class Book:
     """Those of them without which it cannot be read."""
     worn: dict[tuple[int, int, int], int] = field(default_factory=dict)
     """Materials by the identities of texture, relief and kind, whose owners outlive the book's filling."""
+    pictures: dict[int, int] = field(default_factory=dict)
+    """Textures by the identity of their pixels."""
 
     def document(self, head: Mapping[str, Any]) -> dict[str, Any]:
         """Join what stands before the tables, the extensions and the tables; the buffer is the first one."""
@@ -58,30 +61,47 @@ class Book:
     ) -> int:
         """Enter a surface with all that it needs and give its node; with a skin it follows the document's only one.
 
-        A material is entered once for all surfaces that wear the same arrays.
+        A material is entered once for all surfaces that wear the same arrays. Where relief is too small to be seen,
+        a material without it (its name ends in ``_twigs``) is worn, which saves what relief needs of vertices.
         """
-        key = (id(surface.texture), id(surface.relief), id(material))
-        if key not in self.worn:
-            self.worn[key] = self.material(worn_name or name, surface, material, wrap)
-        shape = self.shape(name, surface.mesh, self.worn[key], skin, surface.relief is not None)
+        worn, kept = worn_name or name, shows_relief(surface.mesh)
+        if surface.relief is None or kept.all():
+            primitives = [self.primitive(surface.mesh, self._worn(worn, surface, material, wrap), skin)]
+        else:
+            plain = replace(surface, relief=None)
+            primitives = [
+                self._part(surface.mesh, marked, self._worn(called, one, material, wrap), skin)
+                for called, one, marked in ((worn, surface, kept), (f"{worn}_twigs", plain, ~kept))
+                if marked.any()
+            ]
+        shape = self.row("meshes", {"name": name, "primitives": primitives})
         return self.row("nodes", {"name": name, "mesh": shape, **({} if skin is None else {"skin": 0})})
 
-    def shape(self, name: str, mesh: Mesh, worn: int, skin: Skin | None = None, relief: bool = False) -> int:
-        """Enter a mesh that wears a material; with relief it says how the texture of normals lies on it."""
+    def _part(self, mesh: Mesh, kept: NDArray[np.bool_], worn: int, skin: Skin | None) -> dict[str, Any]:
+        part, vertices = part_of(mesh, kept)
+        return self.primitive(part, worn, None if skin is None else skin.at(vertices))
+
+    def _worn(self, name: str, surface: Surface, material: Mapping[str, Any], wrap: int) -> int:
+        key = (id(surface.texture), id(surface.relief), id(material))
+        if key not in self.worn:
+            self.worn[key] = self.material(name, surface, material, wrap)
+        return self.worn[key]
+
+    def primitive(self, mesh: Mesh, worn: int, skin: Skin | None = None) -> dict[str, Any]:
+        """Enter triangles that wear a material; where that has relief, they say how it lies on them."""
         attributes = {
             "POSITION": self.accessor(mesh.positions.astype(np.float32), VERTICES, bounded=True),
             "NORMAL": self.accessor(mesh.normals.astype(np.float32), VERTICES),
             "TEXCOORD_0": self._coordinates(mesh.uvs),
         }
-        if relief:
+        if "normalTexture" in self.tables["materials"][worn]:
             attributes["TANGENT"] = self.accessor(tangents(mesh).astype(np.float32), VERTICES)
         if mesh.shades is not None:
             attributes["COLOR_0"] = self.accessor(_greys(mesh.shades), VERTICES, normalized=True)
         if skin is not None:
             attributes |= self._skinned(skin)
         indices = self.accessor(_indices(mesh), _INDICES)
-        primitive = {"attributes": attributes, "indices": indices, "material": worn}
-        return self.row("meshes", {"name": name, "primitives": [primitive]})
+        return {"attributes": attributes, "indices": indices, "material": worn}
 
     def _coordinates(self, uvs: NDArray[np.float32]) -> int:
         """Enter texture coordinates, of 16 bit where they lie within 0 to 1."""
@@ -113,13 +133,16 @@ class Book:
 
     def texture(self, name: str, pixels: NDArray[np.uint8], wrap: int, quality: int = _JPEG_QUALITY) -> int:
         """Enter a picture, whose sides are powers of two, and how it is sampled."""
+        if id(pixels) in self.pictures:
+            return self.pictures[id(pixels)]
         if any(side & (side - 1) for side in pixels.shape[:2]):
             raise ValueError(f"the sides of a texture must be powers of two, got {pixels.shape[:2]}")
         mime, encoded = encode_picture(pixels, quality)
         image = self.row("images", {"name": name, "mimeType": mime, "bufferView": self.view(encoded)})
         filters = {"magFilter": _LINEAR, "minFilter": _MIPMAPPED, "wrapS": wrap, "wrapT": wrap}
         sampler = self.row("samplers", filters)
-        return self.row("textures", {"sampler": sampler, "source": image})
+        self.pictures[id(pixels)] = self.row("textures", {"sampler": sampler, "source": image})
+        return self.pictures[id(pixels)]
 
     def accessor(
         self, values: NDArray[Any], target: int | None = None, bounded: bool = False, normalized: bool = False

@@ -25,7 +25,7 @@ _STEPS = 65535
 """Of a position along the tree's longest side: 0.15 mm on a tree of 10 m."""
 _UV_BITS, _SHARE_BITS = 12, 8
 """Behind the point: of a texture coordinate, an eighth of a texel of 512; of an attribute of our own, 0 to 1."""
-_QUALITY, _RELIEF_QUALITY = 90, 94
+_QUALITY, _RELIEF_QUALITY = 86, 94
 Row = dict[str, Any]
 Tables = dict[str, list[Row]]
 Values = list[NDArray[Any]]
@@ -41,7 +41,7 @@ class _Grid:
 
 @dataclass(frozen=True, eq=False)
 class _Stored:
-    """How an accessor's values are stored: its changed entries, its elements as bytes (n, s), the filter that undoes it."""
+    """How values are stored: the accessor's changed entries, elements as bytes (n, s), the filter that unfolds them."""
 
     changes: Row
     elements: Bytes
@@ -158,7 +158,8 @@ def _store(small: Book, row: Row, values: NDArray[Any], role: str, grid: _Grid, 
         view |= {"target": 34963} if triangles else {"target": 34962, "byteStride": stride}
     index = small.row("bufferViews", {**view, "extensions": {MESHOPT: packed}})
     small.row("accessors", {**changed, "bufferView": index})
-    return room + count * stride + (-count * stride % 4)
+    size: int = count * stride
+    return room + size + -size % 4
 
 
 def _stored(row: Row, values: NDArray[Any], role: str, grid: _Grid) -> _Stored:
@@ -170,9 +171,8 @@ def _stored(row: Row, values: NDArray[Any], role: str, grid: _Grid) -> _Stored:
     if role in ("NORMAL", "TANGENT"):
         return _Stored({"componentType": _BYTE, "normalized": True}, octahedral(values), "OCTAHEDRAL")
     if role.startswith("TEXCOORD"):
-        full = np.iinfo(values.dtype).max if row["componentType"] != _FLOAT else 1
-        plain = {"componentType": _FLOAT, "normalized": False}
-        return _Stored(plain, fixed_point(values / full, _UV_BITS), "EXPONENTIAL")
+        places = values / np.iinfo(values.dtype).max if row.get("normalized") else values
+        return _Stored({"componentType": _FLOAT, "normalized": False}, fixed_point(places, _UV_BITS), "EXPONENTIAL")
     if role.startswith("_") and row["componentType"] == _FLOAT:
         return _Stored({}, fixed_point(values, _SHARE_BITS), "EXPONENTIAL")
     if role == "TURNS" and row["componentType"] == _FLOAT:

@@ -42,7 +42,8 @@ def _leaf_nodes(book: Book, cards: Leaves, atlas: Atlas) -> list[int]:
             chosen = cards.select((cards.tiles == tile) & (cards.flips == flip))
             if len(chosen):
                 name = f"leaf_{tile:02d}{'_mirrored' if flip else ''}"
-                shape = book.shape(name, _card(atlas, tile, flip, size), worn)
+                card = book.primitive(_card(atlas, tile, flip, size), worn)
+                shape = book.row("meshes", {"name": name, "primitives": [card]})
                 placed = {INSTANCING: {"attributes": _placed(book, chosen, size)}}
                 nodes.append(book.row("nodes", {"name": name, "mesh": shape, "extensions": placed}))
     return nodes

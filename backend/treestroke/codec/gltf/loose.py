@@ -15,7 +15,7 @@ _ENDINGS = {"image/jpeg": "jpg", "image/png": "png"}
 def encode_gltf(
     parts: Sequence[Part], camera: Camera, *, generator: str, stem: str, wind: Wind | None = None
 ) -> dict[str, bytes]:
-    """Write a tree as ``stem.gltf``, ``stem.bin`` and its pictures, ``stem_bark.jpg``, ``stem_leaf.png``: bytes by name.
+    """Write a tree as ``stem.gltf``, ``stem.bin``, ``stem_bark.jpg``, ``stem_leaf.png`` ...: bytes by name.
 
     The document says the same as `encode_glb`'s. Equal input gives equal bytes.
     """

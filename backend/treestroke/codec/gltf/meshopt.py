@@ -1,4 +1,4 @@
-"""The bit streams of glTF's EXT_meshopt_compression, written from its published description (Khronos, Appendix A and B).
+"""Bit streams of glTF's EXT_meshopt_compression, from its published description (Khronos, Appendix A and B).
 
 ======  ====================================================================
 letter  meaning
@@ -48,7 +48,8 @@ def encode_attributes(elements: Bytes) -> bytes:
     block = min((_BLOCK_BYTES // stride) & ~(_GROUP - 1), _BLOCK_ELEMENTS) // _GROUP
     whole = groups - groups % block
     streams = [_blocks(rows[:whole], block), _blocks(rows[whole:], groups - whole)]
-    return bytes([_ATTRIBUTES]) + b"".join(streams) + bytes(max(_TAIL - stride, 0)) + elements[0].tobytes()
+    baseline: bytes = elements[0].tobytes()
+    return bytes([_ATTRIBUTES]) + b"".join(streams) + baseline.rjust(_TAIL, b"\0")
 
 
 def encode_triangles(triangles: NDArray[np.integer]) -> bytes:
@@ -74,20 +75,17 @@ def octahedral(directions: NDArray[np.floating]) -> Bytes:
     fold = np.maximum(-z, 0.0)
     across, down = x + np.copysign(fold, x), y + np.copysign(fold, y)
     sign = directions[:, 3] if directions.shape[1] == 4 else np.zeros_like(x)
-    return np.rint(np.stack([across, down, np.ones_like(x), sign], axis=1) * 127).astype(np.int8).view(np.uint8)
+    whole: NDArray[np.int8] = np.rint(np.stack([across, down, np.ones_like(x), sign], axis=1) * 127).astype(np.int8)
+    return whole.view(np.uint8)
 
 
 def fixed_point(values: NDArray[np.floating], bits: int) -> Bytes:
     """Round values (n, c) to multiples of 2 to the power of -``bits``: the filter EXPONENTIAL's elements (n, 4 c).
 
-    Raises
-    ------
-    ValueError
-        A value does not fit 24 bits.
+    Where a value is too large for 24 bits, all are rounded to larger multiples.
     """
+    bits = min(bits, 22 - int(np.frexp(np.abs(values).max(initial=0))[1]))
     multiples = np.rint(values.astype(np.float64) * 2.0**bits).astype(np.int64)
-    if np.abs(multiples).max(initial=0) >= 2**23:
-        raise ValueError(f"values must be below {2.0 ** (23 - bits):g} to be multiples of 2^-{bits}")
     return ((multiples & 0xFFFFFF) | ((-bits & 0xFF) << 24)).astype("<u4").view(np.uint8)
 
 
@@ -95,14 +93,13 @@ def _blocks(rows: Bytes, block: int) -> bytes:
     """Write groups (g, s, 16) in blocks of so many groups: for each byte of the elements the modes, then the bodies."""
     if not len(rows):
         return b""
-    bodies, sizes, modes = _packed(rows)
-    stride = rows.shape[1]
-    bodies, sizes, modes = (each.reshape(-1, block, *each.shape[1:]).swapaxes(1, 2) for each in (bodies, sizes, modes))
-    heads = -(-block // _GROUPS_A_BYTE)
-    padded = np.zeros((len(modes), stride, heads * _GROUPS_A_BYTE), dtype=np.uint8)
+    packed = (each.reshape(-1, block, *each.shape[1:]).swapaxes(1, 2) for each in _packed(rows))
+    bodies, sizes, modes = packed
+    blocks, stride, heads = len(modes), rows.shape[1], -(-block // _GROUPS_A_BYTE)
+    padded = np.zeros((blocks, stride, heads * _GROUPS_A_BYTE), dtype=np.uint8)
     padded[..., :block] = modes
-    shifted = padded.reshape(len(modes), stride, heads, _GROUPS_A_BYTE) << np.array([0, 2, 4, 6], dtype=np.uint8)
-    pieces = np.zeros((len(modes), stride, heads + block, _GROUP), dtype=np.uint8)
+    shifted = padded.reshape(blocks, stride, heads, _GROUPS_A_BYTE) << np.array([0, 2, 4, 6], dtype=np.uint8)
+    pieces = np.zeros((blocks, stride, heads + block, _GROUP), dtype=np.uint8)
     lengths = np.ones(pieces.shape[:3], dtype=np.int64)
     pieces[:, :, :heads, 0], pieces[:, :, heads:], lengths[:, :, heads:] = shifted.sum(3), bodies, sizes
     return pieces[np.arange(_GROUP) < lengths[..., None]].tobytes()

@@ -101,3 +101,7 @@ class Skin:
     weights: NDArray[np.uint8]
     sway: NDArray[np.float32]
     phase: NDArray[np.float32]
+
+    def at(self, vertices: Indices) -> "Skin":
+        """Pick some of the vertices."""
+        return Skin(self.bones[vertices], self.weights[vertices], self.sway[vertices], self.phase[vertices])
