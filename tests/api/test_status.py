@@ -1,3 +1,4 @@
+import importlib.util
 import re
 import time
 from typing import Any
@@ -6,7 +7,7 @@ import httpx
 import pytest
 
 from treestroke import __version__
-from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.settings import FILES, ModelSettings
 
 METHODS = {"get", "put", "post", "delete", "patch"}
 
@@ -35,6 +36,9 @@ def test_the_limits_are_told(client: httpx.Client) -> None:
     assert (limits["strokes"], limits["points"]) == (200, 10_000)
     assert set(limits["settings"]) == set(ModelSettings.__dataclass_fields__)
     assert limits["settings"]["height"]["default"] == 10
+    assert limits["settings"]["compress"] == {**limits["settings"]["compress"], "toggle": True, "default": False}
+    assert {"obj", "swc"} <= set(limits["settings"]["files"]["names"]) <= set(FILES)
+    assert ("usdz" in limits["settings"]["files"]["names"]) == (importlib.util.find_spec("pxr") is not None)
     assert (limits["settings"]["height"]["min"], limits["settings"]["height"]["max"]) == (0.1, 150)
 
 

@@ -24,6 +24,11 @@ _PADDING_ID = b"\x86\x19"  # of the extra field that pads
 _MISSING = "usdz needs the package usd-core; install it by `pip install treestroke[usd]` or `make usd`"
 
 
+def has_usd() -> bool:
+    """Tell whether USDZ can be written here."""
+    return find_spec("pxr") is not None
+
+
 def require_usd() -> None:
     """Refuse where USDZ cannot be written.
 
@@ -32,7 +37,7 @@ def require_usd() -> None:
     SettingsError
         The optional package usd-core is not installed.
     """
-    if find_spec("pxr") is None:
+    if not has_usd():
         raise SettingsError.at(("files",), _MISSING, "usd_missing")
 
 

@@ -10,12 +10,12 @@ from treestroke.codec.gltf.tree import Part, Stuff, encode_glb
 from treestroke.codec.obj import encode_obj
 from treestroke.codec.ply import encode_ply
 from treestroke.codec.skeleton_files import encode_csv, encode_skeleton_json, encode_swc
-from treestroke.codec.usd import encode_usdz, require_usd
+from treestroke.codec.usd import encode_usdz, has_usd, require_usd
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.collision import collision
 from treestroke.core.pipeline.levels import Level, Levels, levels
 from treestroke.core.pipeline.photo import TreeModel
-from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.settings import FILES, ModelSettings
 from treestroke.core.progress import Report
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
@@ -23,6 +23,18 @@ from treestroke.core.sway.wind import Wind
 
 Bundle = Mapping[str, bytes]
 """Files that belong together, by name: the first names the others."""
+ENDINGS = {
+    "gltf": "gltf",
+    "obj": "obj",
+    "usdz": "usdz",
+    "ply": "ply",
+    "instanced": "instanced.glb",
+    "collision": "collision.glb",
+    "json": "skeleton.json",
+    "swc": "swc",
+    "csv": "skeleton.csv",
+}
+"""How the names of further files end."""
 CLIPS = {"none": (), "breeze": ("breeze",), "all": ("breeze", "gust")}
 
 
@@ -56,18 +68,9 @@ def check_files(settings: ModelSettings) -> None:
         require_usd()
 
 
-ENDINGS = {
-    "gltf": "gltf",
-    "obj": "obj",
-    "usdz": "usdz",
-    "ply": "ply",
-    "instanced": "instanced.glb",
-    "collision": "collision.glb",
-    "json": "skeleton.json",
-    "swc": "swc",
-    "csv": "skeleton.csv",
-}
-"""How the names of further files end."""
+def files_on_offer() -> tuple[str, ...]:
+    """Name the further files that can be written here."""
+    return tuple(file for file in FILES if file != "usdz" or has_usd())
 
 
 def _wind(tree: TreeModel, settings: ModelSettings) -> Wind | None:

@@ -14,6 +14,7 @@ from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Se
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
+from treestroke.service.files import files_on_offer
 from treestroke.service.model import ENGINE
 from treestroke.service.tracing import MAX_NAME
 
@@ -78,6 +79,6 @@ def _allowed(allowed: Allowed) -> dict[str, object]:
         case Toggle():
             return {"toggle": True}
         case Several():
-            return {"names": list(allowed.names), "several": True}
+            return {"names": [name for name in allowed.names if name in files_on_offer()], "several": True}
         case Choice():
             return {"names": list(allowed.names)}
