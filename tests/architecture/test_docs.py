@@ -14,12 +14,16 @@ ROOT = Path(__file__).parents[2]
 
 def test_the_readme_s_settings_are_the_table() -> None:
     rows = re.findall(
-        r"^\| `([a-z_]+)` \| (\S+) \| (from .*?|a whole .*?|any of .*?|true or false|\w+, .*?) \| (.*?) \|$", (ROOT / "README.md").read_text(), re.M
+        r"^\| `([a-z_]+)` \| (\S+) \| (from .*?|a whole .*?|any of .*?|true or false|\w+, .*?) \| (.*?) \|$",
+        (ROOT / "README.md").read_text(),
+        re.M,
     )
     table = [
         (
             f.name,
-            f"{f.default:g}" if isinstance(f.default, float) else {False: "false", (): "none"}.get(f.default, str(f.default)),
+            f"{f.default:g}"
+            if isinstance(f.default, float)
+            else {False: "false", (): "none"}.get(f.default, str(f.default)),
             str(f.metadata["allowed"]),
             f.metadata["meaning"],
         )

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
+
 from treestroke.codec.gltf.instances import encode_instanced
 from treestroke.codec.gltf.loose import encode_gltf
 from treestroke.codec.gltf.tree import Part, Stuff, encode_glb
@@ -36,6 +38,10 @@ ENDINGS = {
 }
 """How the names of further files end."""
 CLIPS = {"none": (), "breeze": ("breeze",), "all": ("breeze", "gust")}
+
+
+PLAIN = np.full((1, 1, 3), 128, dtype=np.uint8)
+"""What the collision solid wears, which nobody sees."""
 
 
 def tree_files(
@@ -123,7 +129,7 @@ class _Writer:
             case "instanced":
                 return {file: self._instanced()}
             case "collision":
-                solid = Part("collision", Surface(collision(tree.grown.skeleton), tree.bark.texture))
+                solid = Part("collision", Surface(collision(tree.grown.skeleton), PLAIN))
                 return {file: encode_glb([solid], tree.camera, generator=self._generator)}
             case "json":
                 return {file: encode_skeleton_json(tree.grown.skeleton, tree.grown.born, tree.camera)}

@@ -1,6 +1,6 @@
 import numpy as np
 
-from treestroke.core.geometry.raster import Indices, planes, visible_triangles
+from treestroke.core.geometry.raster import Indices, covered_pixels, planes, visible_triangles
 
 RIGHT_HALF = [[20.0, 0.0], [40.0, 0.0], [20.0, 20.0]]
 
@@ -47,3 +47,14 @@ def test_planes_give_the_corners_back_and_the_mean_between() -> None:
     x, y = corners[0].T
     assert np.allclose(found.at(np.zeros(3, dtype=int), x, y)[0], [1, 3, 8])
     assert np.allclose(found.at(np.zeros(1, dtype=int), x.mean(keepdims=True), y.mean(keepdims=True)), 4)
+
+
+def test_what_triangles_cover_does_not_depend_on_which_is_shown() -> None:
+    rng = np.random.default_rng(1)
+    corners_px = rng.random((5_000, 1, 2)) * (60, 40) + rng.normal(0.0, 4.0, (5_000, 3, 2))
+    seen = np.zeros((40, 60), dtype=bool)
+    covered_pixels(corners_px[:300], lambda t, x, y: x > 20, seen)
+    shown = visible_triangles(corners_px[:300], np.zeros(300), lambda t, x, y: x > 20, 40, 60)
+    assert np.array_equal(seen, shown >= 0)
+    covered_pixels(corners_px, whole, seen)
+    assert np.array_equal(seen, visible_triangles(corners_px, np.zeros(5_000), whole, 40, 60) >= 0)

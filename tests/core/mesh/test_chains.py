@@ -1,7 +1,7 @@
 import numpy as np
 from tests.builders import fork, oak, stick
 
-from treestroke.core.mesh.chains import chains_of, thinned
+from treestroke.core.mesh.chains import chains_of, missed_without, thinned
 
 
 def test_limbs_hold_every_edge_once() -> None:
@@ -36,3 +36,19 @@ def test_thinned_limbs_stay_within_the_tolerance() -> None:
     middles = (left.points[1:] + left.points[:-1]) / 2
     assert len(left.points) < 15
     assert np.abs(np.hypot(middles[:, 0], middles[:, 1]) - 1).max() < 0.02
+
+
+def test_what_is_missed_without_a_joint_tells_which_to_keep() -> None:
+    points = np.array(
+        [[0, 0, 0], [0, 1, 0.1], [1, 2, 0], [0, 3, 0.1], [0, 4, 0], [9, 0, 0], [9, 1, 0], [9, 4, 0]], float
+    )
+    missed = missed_without(points, np.full(8, 0.1), np.array([0, 0, 0, 0, 0, 1, 1, 1]))
+    assert np.isinf(missed).tolist() == [True, False, False, False, True, True, False, True]
+    assert missed[2] == 1.0
+    assert 0.4 < missed[1] < 0.5
+    assert missed[6] == 0.0
+
+
+def test_a_change_of_radius_is_missed_too() -> None:
+    points = np.array([[0, 0, 0], [0, 1, 0], [0, 2, 0]], float)
+    assert missed_without(points, np.array([0.3, 0.3, 0.1]), np.zeros(3, np.int64))[1].round(6) == 0.1

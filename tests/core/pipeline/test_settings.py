@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.errors import SettingsError
-from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, check_seed, settings_from
+from treestroke.core.pipeline.settings import MAX_SEED, check_seed, settings_from
 
 
 def test_nothing_given_means_the_defaults() -> None:

@@ -39,8 +39,8 @@ class ThinningParams:
         Rounds of choosing; each takes those that are worth most after the rounds before.
     """
 
-    most_enlarged: float = 2.2
-    area_kept: float = 0.8
+    most_enlarged: float = 2.4
+    area_kept: float = 0.9
     most_outside: float = 0.1
     rounds: int = 12
 

@@ -100,7 +100,10 @@ def thinned(chains: Chains, tolerance: Floats) -> Chains:
         limb = chains.limb[keep]
         middle = np.flatnonzero((limb[1:-1] == limb[:-2]) & (limb[1:-1] == limb[2:])) + 1
         middle = middle[middle % 2 == turn % 2]
-        missed = _off_cone(chains, keep[middle - 1], keep[middle], keep[middle + 1]) + charged[keep[middle]]
+        missed = (
+            _off_cone(chains.points, chains.radii, keep[middle - 1], keep[middle], keep[middle + 1])
+            + charged[keep[middle]]
+        )
         out = middle[missed * weight[keep[middle]] < tolerance[keep[middle]]]
         np.maximum.at(charged, keep[out - 1], missed[np.isin(middle, out)])
         np.maximum.at(charged, keep[out + 1], missed[np.isin(middle, out)])
@@ -108,39 +111,41 @@ def thinned(chains: Chains, tolerance: Floats) -> Chains:
     return subset(chains, keep)
 
 
-def missed_without(chains: Chains) -> Floats:
-    """Tell for each joint (m,) how far a limb misses it without it and all less important ones; infinite at ends.
+def missed_without(points: Floats, radii: Floats, limb: Indices) -> Floats:
+    """Tell for each place (m,) of limbs how far they miss it without it and all less important ones, metres.
 
-    The miss is that of the axis or that of the radius.
+    Points (m, 3), radii (m,) and ``limb`` (m,), ascending, as in `Chains`. The miss is that of the axis or that of the
+    radius, and infinite at a limb's ends.
 
     Notes
     -----
     After Douglas and Peucker 1973, all limbs at once.
     """
-    missed = np.full(len(chains.limb), np.inf)
-    start, end, most = chains.first, chains.last, np.full(len(chains.first), np.inf)
-    while len(start):
-        inner = end - start > 1
+    missed = np.full(len(limb), np.inf)
+    start = np.flatnonzero(np.diff(limb, prepend=-1))
+    end = np.append(start[1:], len(limb)) - 1
+    most = np.full(len(start), np.inf)
+    while (inner := end - start > 1).any():
         start, end, most = start[inner], end[inner], most[inner]
-        piece = np.repeat(np.arange(len(start)), end - start - 1)
-        begins = np.cumsum(end - start - 1) - (end - start - 1)
-        joint = np.arange(len(piece)) - begins[piece] + start[piece] + 1
-        off = _off_cone(chains, start[piece], joint, end[piece])
-        worst = np.lexsort((off, piece))[np.append(begins[1:], len(piece)) - 1] if len(start) else begins
-        split = joint[worst]
+        between = end - start - 1
+        piece = np.repeat(np.arange(len(start)), between)
+        place = np.arange(len(piece)) - (np.cumsum(between) - between - start - 1)[piece]
+        off = _off_cone(points, radii, start[piece], place, end[piece])
+        worst = np.lexsort((off, piece))[np.cumsum(between) - 1]
+        split = place[worst]
         missed[split] = most = np.minimum(most, off[worst])
         start, end, most = np.append(start, split), np.append(split, end), np.append(most, most)
     return missed
 
 
-def _off_cone(chains: Chains, before: Indices, at: Indices, after: Indices) -> Floats:
-    """Give how far joints ``at`` lie from the cone between their neighbours, in position or in radius."""
-    chord = chains.points[after] - chains.points[before]
-    way = chains.points[at] - chains.points[before]
+def _off_cone(points: Floats, radii: Floats, before: Indices, at: Indices, after: Indices) -> Floats:
+    """Give how far places ``at`` lie from the cone between their neighbours, in position or in radius."""
+    chord = points[after] - points[before]
+    way = points[at] - points[before]
     t = np.clip(np.einsum("ij,ij->i", way, chord) / np.maximum(np.einsum("ij,ij->i", chord, chord), 1e-30), 0.0, 1.0)
-    thickness = chains.radii[before] + t * (chains.radii[after] - chains.radii[before])
+    thickness = radii[before] + t * (radii[after] - radii[before])
     aside = np.linalg.norm(way - t[:, None] * chord, axis=1)
-    return np.asarray(np.maximum(aside, np.abs(thickness - chains.radii[at])))
+    return np.asarray(np.maximum(aside, np.abs(thickness - radii[at])))
 
 
 def _directions(skeleton: Skeleton, successors: Indices) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Hold, Mesh
-from treestroke.core.mesh.chains import Chains, chains_of, missed_without, subset
+from treestroke.core.mesh.chains import Chains, chains_of, missed_without, thinned
 from treestroke.core.mesh.sheath import Grid
 from treestroke.core.mesh.stations import stations_of
 from treestroke.core.mesh.tubes import THINNEST, TubeParams, wrapping
@@ -22,6 +22,14 @@ _FINE_SIDES = 5
 """Sides of a tube whose mean breadth those of fewer sides are given."""
 _LEAST_RADIUS = 1e-9
 """Metres: wood without a radius hides something yet."""
+_FINEST_PX, _BLUNT_PX = 0.05, 1.0
+"""How far axes may miss their joints before rings are chosen, and from which radius on tips are round."""
+_ENOUGH_PX = 0.05
+"""Miss, by the same weight, of rings without which sides do not matter."""
+_ROUNDNESS, _MOST_SIDES = (6.0, 4.0, 2.5, 1.2), 12
+"""Sides beyond 2 of a tube of 1 px radius, from fine to coarse, growing with the radius' root."""
+_FLARE = 0.5
+"""How much a root flare widens a stem, about: what its rings are worth."""
 _FAINT = 0.05
 """Least weight of a miss of the axis, in px of the wood's radius, up to half a px."""
 
@@ -44,8 +52,8 @@ class CoarseParams:
 
     max_triangles: int
     height_px: int
-    limb_triangles: float = 12.0
-    most_thickened: float = 1.5
+    limb_triangles: float = 14.0
+    most_thickened: float = 1.3
 
     def __post_init__(self) -> None:
         if self.max_triangles < LEAST_TRIANGLES or self.height_px < 1:
@@ -89,25 +97,26 @@ def _fitted(skeleton: Skeleton, params: CoarseParams, whatever: bool) -> Mesh | 
     height = max(float(np.ptp(skeleton.points, axis=0).max()), 1e-6)
     pixel = height / params.height_px
     chains = chains_of(skeleton, THINNEST * height)
-    sides = _sides(chains, pixel)
-    missed = missed_without(chains) * np.clip(chains.radii / pixel, _FAINT, 0.5)
-    broad = replace(
-        chains, radii=chains.radii * (_breadth(np.maximum(sides, _FINE_SIDES)) / _breadth(sides))[chains.limb]
-    )
-    inner = np.flatnonzero(np.isfinite(missed))
+    rings = stations_of(thinned(chains, np.full(len(chains.limb), _FINEST_PX * pixel)), 1.0, _BLUNT_PX * pixel, np.inf)
+    shape = rings.radii * (1.0 + _FLARE * rings.swell)
+    missed = missed_without(rings.points, shape, rings.limb) * np.clip(rings.radii / pixel, _FAINT, 0.5)
+    # A stem's first ring closes it: the second is its foot.
+    missed[rings.first + (rings.radii[rings.first] == 0)] = np.inf
+    sides = _sides(chains, pixel, rings.limb[missed > _ENOUGH_PX * pixel], params.max_triangles)
+    rings = replace(rings, radii=rings.radii * (_breadth(np.maximum(sides, _FINE_SIDES)) / _breadth(sides))[rings.limb])
+    ends, inner = np.flatnonzero(np.isinf(missed)), np.flatnonzero(np.isfinite(missed))
     order = inner[np.argsort(-missed[inner], kind="stable")]
-    cost = np.cumsum(2 * sides[chains.limb[order]])
-    ends, allowed, best = np.flatnonzero(np.isinf(missed)), params.max_triangles, None
+    cost = np.cumsum(2 * sides[rings.limb[order]])
+    allowed, best = params.max_triangles, None
     for _ in range(_TRIES):
-        kept = np.union1d(order[: int(np.searchsorted(cost, allowed, side="right"))], ends)
-        rings = stations_of(subset(broad, kept), 0.0, np.inf, np.inf)
-        grid = Grid.of(rings, sides)
+        left = rings.select(np.union1d(order[: int(np.searchsorted(cost, allowed, side="right"))], ends))
+        grid = Grid.of(left, sides)
         spare = params.max_triangles - len(grid.triangles)
         if spare >= 0 and (best is None or len(grid.triangles) > len(best[1].triangles)):
-            best = rings, grid
+            best = left, grid
         allowed += spare
     if best is None and whatever:
-        best = rings, grid
+        best = left, grid
     return None if best is None else wrapping(best[1], best[0], chains, TubeParams())
 
 
@@ -116,10 +125,14 @@ def _breadth(sides: Indices) -> Floats:
     return np.asarray(sides * np.sin(np.pi / sides) / np.pi)
 
 
-def _sides(chains: Chains, pixel: float) -> Indices:
-    """Choose the number of sides (k,) of each limb's tube: 3 up to 3 px thick."""
+def _sides(chains: Chains, pixel: float, rings: Indices, most: int) -> Indices:
+    """Choose the number of sides (k,) of each limb's tube: as round as the triangles allow for rings on limbs (r,)."""
     thick = np.maximum.reduceat(chains.radii, chains.first) / pixel
-    return np.clip(np.floor(2.0 + 1.2 * np.sqrt(thick)), 3, 10).astype(np.int64)
+    for roundness in _ROUNDNESS:
+        sides = np.clip(np.floor(2.0 + roundness * np.sqrt(thick)), 3, _MOST_SIDES).astype(np.int64)
+        if 2 * int(sides[rings].sum()) <= most:
+            break
+    return sides
 
 
 def _left(

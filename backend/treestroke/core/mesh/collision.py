@@ -17,6 +17,8 @@ _MOST_GENERATIONS = 2
 """Limbs on limbs of stems still count."""
 _LEAST_RADIUS = 0.12
 """Of the thickest wood: thinner wood gives way."""
+_STRAIGHT = 0.1
+"""Of the thickest wood's radius: how far limbs may miss their joints."""
 _BACK = np.array([0.0, 0.0, -1.0])
 
 
@@ -84,11 +86,11 @@ def _few(chains: Chains) -> Chains:
     most = MAX_TRIANGLES // (4 * SIDES)
     kept = np.isin(chains.limb, np.argsort(-size, kind="stable")[:most])
     chains = subset(chains, np.flatnonzero(kept))
-    missed = missed_without(chains)
-    ends = np.isinf(missed)
+    missed = missed_without(chains.points, chains.radii, chains.limb)
+    ends, bent = np.isinf(missed), missed > _STRAIGHT * chains.radii.max()
     spare = (MAX_TRIANGLES - 4 * SIDES * len(chains.bearer)) // (2 * SIDES)
-    bent = np.argsort(np.where(ends, -np.inf, missed), kind="stable")[::-1][: min(spare, int((~ends).sum()))]
-    return subset(chains, np.union1d(bent, np.flatnonzero(ends)))
+    order = np.argsort(np.where(ends, -np.inf, missed), kind="stable")[::-1][: min(spare, int((bent & ~ends).sum()))]
+    return subset(chains, np.union1d(order, np.flatnonzero(ends)))
 
 
 def _tangents(chains: Chains) -> Floats:

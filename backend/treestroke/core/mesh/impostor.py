@@ -27,6 +27,9 @@ _TRIM_ROWS = 64
 """Rows of the view in which a tree's outline is told when its pictures are trimmed: about as it is seen."""
 _ASKEW = float(np.sqrt(0.5))
 """Breadth of a plane seen from its neighbour's azimuth, over its own."""
+_CUT, _BARE_CUT = 0.5, 0.8
+"""Covered share from which on a texel is drawn. Bare twigs are seen on three planes at once: they are drawn thinner,
+and not trimmed, which would leave them in pieces."""
 _GAMMA = 2.2
 _FLATTEST = 0.15
 """Least part of a normal that points to the viewer."""
@@ -39,16 +42,17 @@ _Place = tuple[Floats, Floats]
 class _Picture:
     """What one azimuth shows: linear colours and normals (h, w, 3), x right, y up, z to the viewer; 0 where nothing is.
 
-    ``there`` (h, w) is 1 where something is.
+    ``there`` (h, w) is 1 where something is, ``wood`` where it is a surface without holes.
     """
 
     colours: Colours
     normals: Colours
     there: Colours
+    wood: NDArray[np.bool_]
 
     def box(self, part: slice) -> "_Picture":
         """Cut columns out."""
-        return _Picture(self.colours[:, part], self.normals[:, part], self.there[:, part])
+        return _Picture(self.colours[:, part], self.normals[:, part], self.there[:, part], self.wood[:, part])
 
 
 def impostor(surfaces: Sequence[Surface]) -> Surface:
@@ -60,20 +64,23 @@ def impostor(surfaces: Sequence[Surface]) -> Surface:
 
     Returns
     -------
-    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where half of a texel is covered, and
-    colours beneath its clear part too; its relief is a tangent-space normal map.
+    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where half of a texel is covered (more
+    of it on a tree without leaves), and colours beneath its clear part too; its relief is a tangent-space normal map.
     """
     view = framing(surfaces, _FINER * _INNER)
     texels = [_premultiplied(surface.texture) for surface in surfaces]
     pictures = [_drawn(surfaces, texels, view, azimuth) for azimuth in AZIMUTHS_RAD.tolist()]
     boxes = [_columns(picture.there) for picture in pictures]
     middles = np.stack([_middles(picture.there, view) for picture in pictures])
-    if any(surface.texture.shape[2] == 4 for surface in surfaces):
+    leafy = any(surface.texture.shape[2] == 4 for surface in surfaces)
+    if leafy:
         trimmed = _trimmed(np.stack([picture.there for picture in pictures]), middles, view)
         pictures = [
-            replace(picture, there=picture.there * kept) for picture, kept in zip(pictures, trimmed, strict=True)
+            replace(picture, there=picture.there * (kept | picture.wood))
+            for picture, kept in zip(pictures, trimmed, strict=True)
         ]
-    tiles = [_tile(picture.box(slice(*box))) for picture, box in zip(pictures, boxes, strict=True)]
+    cut = _CUT if leafy else _BARE_CUT
+    tiles = [_tile(picture.box(slice(*box)), cut) for picture, box in zip(pictures, boxes, strict=True)]
     strips = [_strip(k, box, middles[(k + 2) % len(boxes)], view) for k, box in enumerate(boxes)]
     texture, relief = (
         np.concatenate([np.concatenate(row, axis=1) for row in _rows(side)]) for side in zip(*tiles, strict=True)
@@ -105,7 +112,9 @@ def _drawn(surfaces: Sequence[Surface], texels: Sequence[Colours], view: Framing
         normals[pixel] = _normals(surface.mesh, at, triangle, place, turn)
     size = (view.height, view.width)
     there = (shown >= 0).astype(np.float32).reshape(size)
-    return _Picture(colours.reshape(*size, 3), normals.reshape(*size, 3), there)
+    solid = np.repeat([surface.texture.shape[2] == 3 for surface in surfaces], [len(each) for each in corners])
+    wood = (shown >= 0) & solid[shown]
+    return _Picture(colours.reshape(*size, 3), normals.reshape(*size, 3), there, wood.reshape(size))
 
 
 class _Cuts:
@@ -159,10 +168,13 @@ def _columns(there: Colours) -> tuple[int, int]:
     return (int(shown[0]), int(shown[-1]) + 1) if shown.size else (0, there.shape[1])
 
 
-def _tile(picture: _Picture) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    """Shrink a picture to a tile: colours with alpha (side, side, 4), and normals (side, side, 3)."""
+def _tile(picture: _Picture, cut: float) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Shrink a picture to a tile: colours with alpha (side, side, 4), and normals (side, side, 3).
+
+    Texels of which a share ``cut`` is covered have just the alpha that is drawn.
+    """
     colours, normals = (_bled(_small(layer, picture.there)) for layer in (picture.colours, picture.normals))
-    alpha = 255.0 * np.interp(colours[:, :, 3], [0.0, 0.5, 1.0], [0.0, ALPHA_CUT, 1.0])
+    alpha = 255.0 * np.interp(colours[:, :, 3], [0.0, cut, 1.0], [0.0, ALPHA_CUT, 1.0])
     coded = 255.0 * np.clip(colours[:, :, :3], 0.0, 1.0) ** (1.0 / _GAMMA)
     directions = normals[:, :, :3] / np.maximum(np.linalg.norm(normals[:, :, :3], axis=2, keepdims=True), 1e-6)
     texture = np.concatenate([coded, alpha[:, :, None]], axis=2)
@@ -171,7 +183,7 @@ def _tile(picture: _Picture) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
 
 def _small(layer: Colours, there: Colours) -> Colours:
     """Shrink a layer (h, w, 3) and its cover to a tile (side, side, 4) with a clear edge."""
-    small = cv2.resize(np.dstack([layer, there]), (_INNER, _INNER), interpolation=cv2.INTER_AREA)
+    small = cv2.resize(np.dstack([layer * there[:, :, None], there]), (_INNER, _INNER), interpolation=cv2.INTER_AREA)
     return np.asarray(np.pad(small, ((_MARGIN, _MARGIN), (_MARGIN, _MARGIN), (0, 0))))
 
 
@@ -196,7 +208,9 @@ def _middles(there: Colours, view: Framing) -> Floats:
     reach = 0.5 * view.height / BANDS
     found = []
     for edge in edges.tolist():
-        band = rows[int(max(edge - reach, 0)) : int(np.ceil(edge + reach))].sum(axis=0)
+        # At the foot the trunk alone, not what hangs beside it.
+        above = 0.2 * reach if edge == view.height else reach
+        band = rows[int(max(edge - above, 0)) : int(np.ceil(edge + reach))].sum(axis=0)
         found.append(float(columns @ band) / max(float(band.sum()), 1e-9) / view.px_per_m)
     return np.array(found)
 
@@ -214,12 +228,15 @@ def _trimmed(there: Colours, middles: Floats, view: Framing) -> NDArray[np.bool_
     out = np.stack([-np.interp(rows + 0.5, edges, m[::-1]) for m in np.roll(middles, -2, axis=0)]) * view.px_per_m
     column = np.arange(view.width) + 0.5 - 0.5 * view.width
     kept = shown.copy()
-    for k in range(len(there)):
+    # Twice, for what a neighbour covered it may have lost since.
+    for k in 2 * list(range(len(there) // 2)):
         lost, covered = np.zeros(shown[k].shape), np.zeros(shown[k].shape, dtype=bool)
         for j, sign in (((k + 1) % len(there), -1.0), ((k - 1) % len(there), 1.0)):
             lost += _ASKEW * ~_read(shown[j], rows, _ASKEW * (column + sign * out[k][:, None]))
             covered |= _read(kept[j], rows, column / _ASKEW + sign * out[j][:, None])
         kept[k] = lost <= np.where(covered | ~shown[k], 0.0, 1.0)
+        # The same from behind, so that the two sides of a plane are of one outline.
+        kept[k + len(there) // 2] = kept[k][:, ::-1]
     return kept
 
 

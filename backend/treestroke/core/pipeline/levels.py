@@ -6,7 +6,7 @@ import numpy as np
 
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.polyline import Floats
-from treestroke.core.geometry.silhouette import Framing, Mask, framing, silhouette_ious, silhouettes
+from treestroke.core.geometry.silhouette import Framing, Mask, framing, silhouettes
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.thinning import thin_leaves
 from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
@@ -21,7 +21,7 @@ _SHARES = (0.30, 0.08)
 _BARE_MORE = 1.04
 """A leafless tree's bark may have so much more, for no leaves fill the rest."""
 _LEAST_WOOD, _MOST_WOOD = 0.12, 0.9
-"""Share of a level's triangles that is bark: where foliage hides all wood, and where wood stands nearly alone (5 photos)."""
+"""Share of a level's triangles that is bark: where foliage hides all wood, and where wood stands alone (5 photos)."""
 _HIDDEN_BY_WOOD = 0.1
 """Worth of covering by leaves what wood covers already."""
 
@@ -73,14 +73,6 @@ def levels(tree: TreeModel, report: Report = silent) -> Levels:
     baked = impostor(lod1.surfaces)
     report("levels", 1.0)
     return Levels(lod1, lod2, baked)
-
-
-def level_ious(tree: TreeModel, made: Levels) -> dict[str, float]:
-    """Compare the levels' silhouettes with the whole tree's, each at its own height, px: the least IoU of 8 azimuths."""
-    whole = Level(tree.bark, tree.leaf).surfaces
-    coarse = {"lod1": made.lod1.surfaces, "lod2": made.lod2.surfaces, "impostor": (made.impostor,)}
-    sizes = zip(coarse.items(), HEIGHTS_PX, strict=True)
-    return {name: float(silhouette_ious(whole, surfaces, height).min()) for (name, surfaces), height in sizes}
 
 
 def _wood_share(tree: TreeModel, view: Framing, wanted: Mask) -> float:
