@@ -6,7 +6,7 @@ from treestroke.core.pipeline.photo import TreeModel
 
 
 def level_ious(tree: TreeModel, made: Levels) -> dict[str, float]:
-    """Compare the levels' silhouettes with the whole tree's, each at its own height, px: the least IoU of 8 azimuths."""
+    """Compare silhouettes with the whole tree's, each level at its own height: the least IoU of 8 azimuths."""
     whole = Level(tree.bark, tree.leaf).surfaces
     coarse = {"lod1": made.lod1.surfaces, "lod2": made.lod2.surfaces, "impostor": (made.impostor,)}
     sizes = zip(coarse.items(), HEIGHTS_PX, strict=True)

@@ -1,4 +1,4 @@
-"""What each file of a tree costs, and how alike the levels of detail are: a table for each example (part of make bench)."""
+"""What each file of a tree costs, and how alike its levels of detail are (part of make bench)."""
 
 import time
 from pathlib import Path
@@ -7,7 +7,7 @@ import numpy as np
 from tests.levels import level_ious
 
 import treestroke
-from treestroke.core.pipeline.levels import Levels, levels
+from treestroke.core.pipeline.levels import levels
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import silent
 from treestroke.service.files import files_on_offer, tree_files
@@ -25,17 +25,13 @@ WISHES = {
 def rows(name: str) -> list[tuple[str, int, float, str]]:
     """Write a tree in every way: what, bytes, seconds, and the least IoU with the whole tree from 8 sides."""
     model = treestroke.model(EXAMPLES / f"{name}.jpg", EXAMPLES / f"{name}.strokes.json")
-    ious = level_ious(model.tree, _levels(model))
+    ious = level_ious(model.tree, levels(model.tree))
     found = [_row(what, model, wish) for what, wish in WISHES.items()]
     found += [_row(file, model, ModelSettings(files=(file,)), of=file) for file in files_on_offer()]
     coarse = tree_files(model.tree, ModelSettings(lod="files"), "tree", "treestroke", silent)
     for level, iou in ious.items():
         found.append((level, len(coarse[f"tree.{level}.glb"][f"tree.{level}.glb"]), np.nan, f"{iou:.3f}"))
     return found
-
-
-def _levels(model: treestroke.Model) -> Levels:
-    return levels(model.tree)
 
 
 def _row(what: str, model: treestroke.Model, wish: ModelSettings, of: str = "") -> tuple[str, int, float, str]:
@@ -53,6 +49,6 @@ def _row(what: str, model: treestroke.Model, wish: ModelSettings, of: str = "") 
 
 if __name__ == "__main__":
     for example in ("sugar_maple_autumn", "burr_oak_dusk"):
-        print(f"{example}: file, bytes, seconds, least IoU of 8 sides")
+        print(f"{example}: file, bytes, seconds, least IoU of 8 sides")  # noqa: T201
         for what, size, seconds, iou in rows(example):
-            print(f"  {what:<18} {size:>11,} {seconds:>6.2f} {iou}")
+            print(f"  {what:<18} {size:>11,} {seconds:>6.2f} {iou}")  # noqa: T201

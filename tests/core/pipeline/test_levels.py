@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.levels import level_ious
 from tests.builders import stick
 from tests.core.pipeline.test_photo import MAPLE, modelled
+from tests.levels import level_ious
 
 from treestroke.core.geometry.silhouette import AZIMUTHS_RAD, framing, likeness, silhouette_from
 from treestroke.core.leaf.cards import cards
