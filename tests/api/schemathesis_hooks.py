@@ -1,6 +1,7 @@
 """What schemathesis cannot make up: bytes of a photo, a photo that is stored, strokes that describe its tree."""
 
 import os
+from itertools import count
 from typing import Any
 
 import cv2
@@ -16,6 +17,7 @@ from treestroke.schemas import STROKES_EXAMPLE
 PICTURE = Image.fromarray(cv2.resize(drawn.pixels(), (800, 960)))
 """The tree that the document's example of strokes is drawn over."""
 PHOTO = saved(PICTURE, "JPEG")
+_numbers = count()
 STORED = os.environ.get("STORED_PHOTO", "")
 for kind, content in (
     ("image/jpeg", PHOTO),
@@ -31,9 +33,14 @@ schemathesis.openapi.format("binary", strategies.just(Binary(PHOTO)))
 
 @schemathesis.hook
 def before_call(context: schemathesis.HookContext, case: schemathesis.Case, kwargs: dict[str, Any]) -> None:
-    """Put these into JSON that is meant to be right; the strokes into every second one."""
+    """Put these into JSON that is meant to be right; the strokes into every second one.
+
+    Each request has a key of its own: the same key gives the first one's model, which may have been deleted since.
+    """
     generation = case.meta.generation if case.meta else None
     positive = generation is not None and generation.mode.is_positive
+    for name in [name for name in case.headers or {} if positive and name.lower() == "idempotency-key"]:
+        case.headers[name] = f"{case.headers[name]}{next(_numbers)}"[-255:]
     if positive and case.operation.label == "POST /v1/models" and case.media_type == "application/json":
         case.body = {**case.body, "photo": STORED}
         if len(str(case.body)) % 2:

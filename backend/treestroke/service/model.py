@@ -12,7 +12,7 @@ from treestroke import __version__
 from treestroke.codec.preview import draw_preview
 from treestroke.core.geometry.silhouette import likeness, silhouette
 from treestroke.core.pipeline.growing import see
-from treestroke.core.pipeline.photo import OnGrown, TreeModel, model_seen, unseen
+from treestroke.core.pipeline.photo import OnGrown, TreeModel, model_photo, unseen
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, check_seed, plain_settings
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
@@ -106,7 +106,7 @@ def model(
         seen = see(picture, given, None, watch)
         for at, one in enumerate(_seeds(seed, chosen.variants)):
             show = unseen if trees else on_grown
-            trees.append(model_seen(seen, chosen, np.random.default_rng(one), watch, show, leaf_picture=cut_out))
+            trees.append(model_photo(seen, chosen, np.random.default_rng(one), watch, show, leaf_picture=cut_out))
             bundles |= tree_files(trees[-1], chosen, name if at == 0 else f"{name}.v{at + 1}", ENGINE, watch)
     return Model(bundles, _report(trees, bundles, chosen, seed, watch), trees[0])
 

@@ -283,7 +283,7 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/v1/models/{id}/{file}": {
+    "/v1/models/{id}/tree.{ending}": {
         parameters: {
             query?: never;
             header?: never;
@@ -2129,7 +2129,7 @@ export interface operations {
             header?: never;
             path: {
                 id: string;
-                file: string;
+                ending: string;
             };
             cookie?: never;
         };

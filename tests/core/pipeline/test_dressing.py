@@ -8,6 +8,7 @@ from tests.conftest import DATA, EXAMPLES
 
 import treestroke
 from treestroke.core.leaf.atlas import tile_labs
+from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.service.inputs import load_photo, load_strokes
@@ -115,7 +116,7 @@ def test_a_leaf_s_picture_colours_the_tree() -> None:
     picture = np.zeros((120, 90, 4), np.uint8)
     cv2.ellipse(picture, (45, 50), (30, 45), 0, 0, 360, (60, 90, 200, 255), -1)
     given = load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json"))
-    tree = model_photo(*given, ModelSettings(iterations=30), np.random.default_rng(0), leaf_picture=picture)
+    tree = model_photo(see(*given), ModelSettings(iterations=30), np.random.default_rng(0), leaf_picture=picture)
     assert tree.atlas is not None
     assert (tile_labs(tree.atlas)[:, 2] < -30).all()
 

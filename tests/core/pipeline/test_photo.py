@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from tests.conftest import DATA, EXAMPLES
 
+from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import TreeModel, model_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes
@@ -19,7 +20,7 @@ def given(tree: Path) -> tuple[np.ndarray, Strokes]:
 
 
 def modelled(tree: Path, settings: ModelSettings = QUICK, seed: int = 0) -> TreeModel:
-    return model_photo(*given(tree), settings, np.random.default_rng(seed))
+    return model_photo(see(*given(tree)), settings, np.random.default_rng(seed))
 
 
 def enlarged(strokes: Strokes, factor: float) -> Strokes:
@@ -70,7 +71,7 @@ def huge() -> TreeModel:
     factor = 6000 / max(photo.shape[:2])
     size = (6000, round(photo.shape[0] * factor))
     large = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_CUBIC), dtype=np.uint8)
-    return model_photo(large, enlarged(strokes, factor), QUICK, np.random.default_rng(0))
+    return model_photo(see(large, enlarged(strokes, factor)), QUICK, np.random.default_rng(0))
 
 
 def test_a_large_photo_gives_its_camera_in_its_own_pixels(maple: TreeModel, huge: TreeModel) -> None:
@@ -124,9 +125,12 @@ def test_the_kind_can_be_overruled(maple: TreeModel) -> None:
 
 def test_progress_names_the_stages_in_order() -> None:
     seen: list[str] = []
-    model_photo(
-        *given(MAPLE), ModelSettings(iterations=5), np.random.default_rng(0), lambda stage, _: seen.append(stage)
-    )
+
+    def report(stage: str, _: float) -> None:
+        seen.append(stage)
+
+    found = see(*given(MAPLE), None, report)
+    model_photo(found, ModelSettings(iterations=5), np.random.default_rng(0), report)
     assert list(dict.fromkeys(seen)) == STAGES
 
 

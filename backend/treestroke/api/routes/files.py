@@ -1,6 +1,5 @@
 """A model's files."""
 
-import re
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
@@ -26,7 +25,7 @@ _KINDS = {
     ".csv": "text/csv; charset=utf-8",
 }
 """Media types by ending."""
-_TREE_FILE = r"^tree(\.[a-z0-9]{2,10}){1,3}$"
+_ENDING = r"^[a-z0-9]{2,10}(\.[a-z0-9]{2,10}){0,2}$"
 _MANY: dict[int | str, dict[str, Any]] = {
     status: {
         **answer,
@@ -36,7 +35,7 @@ _MANY: dict[int | str, dict[str, Any]] = {
     else answer
     for status, answer in file_answers(_GLB).items()
 }
-TreeFile = Annotated[str, Path(json_schema_extra={"pattern": _TREE_FILE, "example": GLB})]
+Ending = Annotated[str, Path(json_schema_extra={"pattern": _ENDING, "example": "glb"})]
 
 
 @router.get("/tree.glb", response_class=FileResponse, responses=file_answers(_GLB))
@@ -64,12 +63,10 @@ def get_project(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     return send_blob(request, shelf, blob, _ZIP, f"{row.name or row.id}.treestroke")
 
 
-@router.get("/{file}", response_class=FileResponse, responses=_MANY)
-def get_tree_file(request: Request, shelf: ShelfOf, id: ModelId, file: TreeFile) -> Response:
+@router.get("/tree.{ending}", response_class=FileResponse, responses=_MANY)
+def get_tree_file(request: Request, shelf: ShelfOf, id: ModelId, ending: Ending) -> Response:
     """Download one of the further files that the settings asked for; ``files`` of the model names them."""
-    if not re.fullmatch(_TREE_FILE, file):
-        raise NotFound("file")
-    return _file(request, shelf, id, file)
+    return _file(request, shelf, id, f"tree.{ending}")
 
 
 def _file(request: Request, shelf: Shelf, id: str, name: str) -> Response:

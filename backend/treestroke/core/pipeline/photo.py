@@ -116,25 +116,6 @@ def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Gener
 
 
 def model_photo(
-    photo: Photo,
-    strokes: Strokes,
-    settings: ModelSettings,
-    rng: np.random.Generator,
-    report: Report = silent,
-    on_grown: OnGrown = unseen,
-    leaf_picture: NDArray[np.uint8] | None = None,
-) -> TreeModel:
-    """Turn a photo (h, w, 3), sRGB, and its strokes (one branch at least) into a tree: see, then `model_seen`.
-
-    Raises
-    ------
-    StrokesError
-        The strokes do not describe a tree.
-    """
-    return model_seen(see(photo, strokes, None, report), settings, rng, report, on_grown, leaf_picture)
-
-
-def model_seen(
     seen: Seen,
     settings: ModelSettings,
     rng: np.random.Generator,
