@@ -16,6 +16,7 @@ import { restingVertices, takeIn } from './resting'
 import { barkMaterial, leafMaterial, type Shades } from './shading'
 import { SUN } from './sun'
 import { Sway } from './sway'
+import { joinTwigs } from './twigs'
 
 /** A photo taken at dusk gives dark leaves; their mean brightness (linear, 0..1) is brought halfway to this. */
 const DAYLIGHT = 0.2
@@ -24,7 +25,7 @@ const DAYLIGHT = 0.2
 export async function modelContent(glb: ArrayBuffer, shades: Shades, edges: boolean): Promise<Content> {
   const { scene, animations } = await readGlb(glb)
   scene.updateMatrixWorld(true)
-  const meshes = meshesOf(scene)
+  const meshes = joinTwigs(meshesOf(scene))
   const resting = new Map(meshes.map(mesh => [mesh, restingVertices(mesh)]))
   const leaves = meshes.find(mesh => standard(mesh).name === 'leaf') ?? null
   const crown = canopyOf(resting.get(leaves ?? meshes[0]!)!, SUN)
