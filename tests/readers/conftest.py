@@ -16,8 +16,11 @@ from treestroke.codec.obj import encode_obj
 from treestroke.codec.ply import encode_ply
 from treestroke.codec.usd import encode_usdz
 from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.progress import silent
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
+from treestroke.service.files import tree_files
 
 ROOT = Path(__file__).parents[2]
 BLENDER = ROOT / ".venv-bpy" / "bin" / "python"
@@ -88,4 +91,11 @@ def _files(tree: TreeModel) -> dict[str, bytes]:
         **encode_gltf(still, tree.camera, generator="test", stem="loose"),
         **encode_obj(tree.bark, tree.leaf, "tree"),
         "tree.ply": encode_ply(tree.bark, tree.cards, tree.atlas),
+        **_written(tree, "one", ModelSettings(lod="one", wind="all")),
+        **_written(tree, "levels", ModelSettings(lod="files", wind="all", files=("collision",))),
     }
+
+
+def _written(tree: TreeModel, name: str, settings: ModelSettings) -> dict[str, bytes]:
+    bundles = tree_files(tree, settings, name, "test", silent)
+    return {file: content for bundle in bundles.values() for file, content in bundle.items()}

@@ -57,12 +57,13 @@ def pixels(found: dict[str, Any]) -> np.ndarray:
 def by_material(found: dict[str, Any]) -> dict[str, int]:
     counts: Counter[str] = Counter()
     for mesh in found["meshes"]:
-        counts[mesh["material"]] += round(mesh["triangles"])
+        counts[mesh["material"].removesuffix("_twigs")] += round(mesh["triangles"])
     return dict(counts)
 
 
 @pytest.mark.parametrize(
-    "name", ["plain.glb", "wind.glb", "compressed.glb", "compressed_wind.glb", "instanced.glb", "loose.gltf"]
+    "name",
+    ["plain.glb", "wind.glb", "compressed.glb", "compressed_wind.glb", "instanced.glb", "loose.gltf", "one.glb"],
 )
 def test_every_form_has_all_triangles_in_their_place(read: Read, shelf: Shelf, name: str) -> None:
     found = read(name)
@@ -73,12 +74,40 @@ def test_every_form_has_all_triangles_in_their_place(read: Read, shelf: Shelf, n
 
 @pytest.mark.parametrize("name", ["plain.glb", "wind.glb", "compressed.glb", "compressed_wind.glb", "loose.gltf"])
 def test_materials_are_whole(read: Read, shelf: Shelf, name: str) -> None:
-    bark, leaf = read(name)["meshes"]
+    bark, twigs, leaf = read(name)["meshes"]
     assert shelf.tree.leaf is not None
     assert bark["picture"] == list(shelf.tree.bark.texture.shape[1::-1])
     assert leaf["picture"] == list(shelf.tree.leaf.texture.shape[1::-1])
-    assert bark["relief"] == (shelf.tree.bark.relief is not None)
+    assert (bark["relief"], twigs["relief"]) == (shelf.tree.bark.relief is not None, False)
+    assert twigs["picture"] == bark["picture"]
     assert (leaf["cut"], leaf["sides"], leaf["shaded"]) == (0.3, 2, True)
+
+
+@pytest.mark.parametrize(("name", "share"), [("levels.lod1.glb", 0.3), ("levels.lod2.glb", 0.08)])
+def test_levels_are_the_same_tree_of_fewer_triangles(read: Read, shelf: Shelf, name: str, share: float) -> None:
+    found = read(name)
+    assert sum(by_material(found).values()) == pytest.approx(share * sum(shelf.triangles().values()), rel=0.15)
+    assert np.allclose(found["box"], shelf.box(), atol=0.6)
+    assert found["clips"] == ["breeze", "gust"]
+
+
+def test_the_impostor_is_pictures_seen_from_the_front_only(read: Read, shelf: Shelf) -> None:
+    found = read("levels.impostor.glb")
+    (pictures,) = found["meshes"]
+    assert round(pictures["triangles"]) < 100
+    assert (pictures["relief"], pictures["cut"], pictures["sides"]) == (True, 0.3, 1)
+    assert np.allclose(found["box"], shelf.box(), atol=0.8)
+    plain = pixels(read("plain.glb"))
+    assert np.abs((plain == 255).all(axis=2) ^ (pixels(found) == 255).all(axis=2)).mean() < 0.05
+
+
+def test_the_collision_solid_is_small_and_stands_in_the_tree(read: Read, shelf: Shelf) -> None:
+    found = read("levels.collision.glb")
+    assert by_material(found).keys() == {"collision"}
+    assert round(found["meshes"][0]["triangles"]) <= 1000
+    low, high = np.array(found["box"])
+    assert (low >= shelf.box()[0] - 0.15).all()
+    assert (high <= shelf.box()[1] + 0.1).all()
 
 
 @pytest.mark.parametrize(("name", "near"), [("compressed.glb", 1.0), ("loose.gltf", 0.01), ("wind.glb", 0.1)])

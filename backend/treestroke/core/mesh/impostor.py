@@ -27,8 +27,9 @@ _TRIM_ROWS = 64
 """Rows of the view in which a tree's outline is told when its pictures are trimmed: about as it is seen."""
 _ASKEW = float(np.sqrt(0.5))
 """Breadth of a plane seen from its neighbour's azimuth, over its own."""
-_CUT, _BARE_CUT = 0.5, 0.8
-"""Covered share from which on a texel is drawn. Bare twigs are seen on three planes at once: they are drawn thinner,
+_CUT, _BARE_CUT = 0.42, 0.8
+"""Covered share from which on a texel is drawn (less than a half: smaller copies mix it with what is clear; judged by
+silhouettes of 3 leafy trees). Bare twigs are seen on three planes at once: they are drawn thinner,
 and not trimmed, which would leave them in pieces."""
 _GAMMA = 2.2
 _FLATTEST = 0.15
@@ -64,8 +65,8 @@ def impostor(surfaces: Sequence[Surface]) -> Surface:
 
     Returns
     -------
-    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where half of a texel is covered (more
-    of it on a tree without leaves), and colours beneath its clear part too; its relief is a tangent-space normal map.
+    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where 42 % of a texel is
+    covered (more on a tree without leaves), and colours beneath its clear part too; its relief is a tangent-space normal map.
     """
     view = framing(surfaces, _FINER * _INNER)
     texels = [_premultiplied(surface.texture) for surface in surfaces]
