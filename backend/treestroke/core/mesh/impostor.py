@@ -65,8 +65,8 @@ def impostor(surfaces: Sequence[Surface]) -> Surface:
 
     Returns
     -------
-    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where 42 % of a texel is
-    covered (more on a tree without leaves), and colours beneath its clear part too; its relief is a tangent-space normal map.
+    A surface whose texture (512, 1024, 4) has straight alpha, cut at `ALPHA_CUT` where 42 % of a texel is covered
+    (more on a tree without leaves), and colours beneath its clear part too; its relief is a tangent-space normal map.
     """
     view = framing(surfaces, _FINER * _INNER)
     texels = [_premultiplied(surface.texture) for surface in surfaces]
