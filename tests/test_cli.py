@@ -15,6 +15,7 @@ from PIL import Image
 import treestroke
 from treestroke.cli import main
 from treestroke.codec.image import decode_photo
+from treestroke.codec.usd import has_usd
 
 QUICK = ["--iterations", "5"]
 
@@ -86,6 +87,12 @@ def test_wrong_usage_is_one_line_and_exit_2(argv: list[str], capsys: pytest.Capt
         (["--foliage", "moss"], "foliage"),
         (["--leaf-size", "0.1"], "leaf_size"),
         (["--leaf_density", "4"], "leaf_density"),
+        (["--variants", "0"], "variants"),
+        (["--species", "palm"], "species"),
+        (["--season", "winter"], "season"),
+        (["--wind", "storm"], "wind"),
+        (["--lod", "yes"], "lod"),
+        (["--files", "obj,fbx"], "files"),
         (["--seed", "-1"], "seed"),
         (["--seed", "9223372036854775808"], "seed"),
         (["--seed", "1.5"], "seed"),
@@ -275,3 +282,53 @@ def test_an_interrupt_is_exit_130_and_leaves_nothing(run) -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
     assert (code, len(lines), left) == (130, 1, [])
+
+
+def test_further_files_lie_beside_out_and_begin_with_its_name(run) -> None:
+    code, lines, left = run("--files", "swc, csv", "--variants", "2", out="oak.glb")
+    assert (code, lines) == (0, [])
+    each = ["glb", "skeleton.csv", "swc"]
+    assert left == sorted([f"oak.{end}" for end in each] + [f"oak.v2.{end}" for end in each])
+
+
+def test_files_of_one_format_name_each_other_by_their_own_names(run, tmp_path: Path) -> None:
+    assert run("--files", "gltf,obj", out="oak.glb")[0] == 0
+    loose = json.loads((tmp_path / "oak.gltf").read_text())
+    named = [loose["buffers"][0]["uri"], *(image["uri"] for image in loose["images"])]
+    assert named[0] == "oak.bin"
+    assert all((tmp_path / name).is_file() for name in named)
+    assert (tmp_path / "oak.obj").read_text().startswith("mtllib oak.mtl\n")
+
+
+def test_a_file_is_compressed_where_that_is_asked_for(run, tmp_path: Path) -> None:
+    sizes = []
+    for flags in ([], ["--no-compress"], ["--compress"]):
+        assert run(*flags)[0] == 0
+        sizes.append((tmp_path / "tree.glb").stat().st_size)
+    assert sizes[0] == sizes[1]
+    assert sizes[2] < 0.4 * sizes[0]
+
+
+def test_no_further_file_is_written_over_what_was_read(run, tmp_path: Path, maple_strokes: Path) -> None:
+    strokes = tmp_path / "tree.skeleton.json"
+    strokes.write_bytes(maple_strokes.read_bytes())
+    code, lines, left = run("--files", "json", strokes=strokes)
+    assert (code, left) == (2, ["tree.skeleton.json"])
+    assert "choose another --out" in lines[0]
+    assert strokes.read_bytes() == maple_strokes.read_bytes()
+
+
+def test_a_leaf_that_cannot_be_used_is_refused_in_one_line(run, tmp_path: Path) -> None:
+    opaque = picture_file(tmp_path, Image.new("RGB", (64, 64), "green"))
+    for leaf, said in ((opaque, "cut the leaf out"), (tmp_path / "none.png", "no such file")):
+        code, lines, left = run("--leaf", str(leaf))
+        assert (code, left) == (2, [])
+        assert len(lines) == 1
+        assert said in lines[0]
+
+
+@pytest.mark.skipif(has_usd(), reason="usd-core is installed")
+def test_usdz_says_at_once_what_it_needs(run) -> None:
+    code, lines, left = run("--files", "usdz")
+    assert (code, left) == (2, [])
+    assert "make usd" in lines[0]
