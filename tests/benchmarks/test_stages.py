@@ -24,9 +24,12 @@ from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.lift.spread import lift
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.pipeline.levels import levels
 from treestroke.core.pipeline.photo import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes
+from treestroke.core.sway.clips import wind_of
+from treestroke.core.sway.skinning import skin
 from treestroke.service.inputs import load_strokes
 from treestroke.service.model import Model
 from treestroke.service.trace import Trace
@@ -136,6 +139,31 @@ def test_encoding_the_glb(benchmark: BenchmarkFixture, subject: Subject) -> None
     arguments = parts, subject.tree.camera
     generator = {"generator": "treestroke"}
     assert benchmark.pedantic(encode_glb, arguments, generator, rounds=5)[:4] == b"glTF"
+
+
+def test_encoding_the_compressed_glb(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    parts = [Part("bark", subject.tree.bark), Part("leaf", subject.tree.leaf)]
+    how = {"generator": "treestroke", "compress": True}
+    assert len(benchmark.pedantic(encode_glb, (parts, subject.tree.camera), how, rounds=3)) < 2_500_000
+
+
+def test_letting_the_wind_move_it(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    tree = subject.tree
+
+    def run() -> int:
+        wind = wind_of(tree.grown.skeleton, ("breeze", "gust"), tree.cards.joints)
+        return len(skin(wind.rig, tree.bark.mesh, leaves=False).bones) + len(
+            skin(wind.rig, tree.leaf.mesh, leaves=True).bones
+        )
+
+    assert benchmark.pedantic(run, rounds=3) == len(tree.bark.mesh.positions) + len(tree.leaf.mesh.positions)
+
+
+def test_making_the_levels_of_detail(benchmark: BenchmarkFixture, subject: Subject) -> None:
+    made = benchmark.pedantic(levels, (subject.tree,), rounds=2)
+    whole, coarse = ((subject.tree.bark, subject.tree.leaf), made.lod2.surfaces)
+    counts = [sum(len(surface.mesh.triangles) for surface in surfaces) for surfaces in (whole, coarse)]
+    assert counts[1] < 0.1 * counts[0]
 
 
 def test_drawing_the_preview(benchmark: BenchmarkFixture, subject: Subject) -> None:
