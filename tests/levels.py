@@ -1,8 +1,24 @@
 """How alike a tree's levels of detail are to the whole tree."""
 
-from treestroke.core.geometry.silhouette import silhouette_ious
+from collections.abc import Sequence
+
+import numpy as np
+
+from treestroke.core.geometry.mesh import Surface
+from treestroke.core.geometry.silhouette import framing, likeness, silhouettes
 from treestroke.core.pipeline.levels import HEIGHTS_PX, Level, Levels
 from treestroke.core.pipeline.photo import TreeModel
+
+
+def silhouette_ious(fine: Sequence[Surface], coarse: Sequence[Surface], height_px: int) -> np.ndarray:
+    """Compare silhouettes (8,) from `AZIMUTHS_RAD`, the finer tree ``height_px`` tall: intersection over union.
+
+    Those from behind equal those from the front, being of the mirror images.
+    """
+    view = framing(fine, height_px)
+    pairs = zip(silhouettes(coarse, view), silhouettes(fine, view), strict=True)
+    found = [likeness(seen, wanted) for seen, wanted in pairs]
+    return np.array(found + found)
 
 
 def level_ious(tree: TreeModel, made: Levels) -> dict[str, float]:

@@ -179,10 +179,10 @@ class ModelSettings(_Wire):
     height: float = Field(default=10, ge=0.1, le=150, description="metres, from the root to the foliage's top")
     library: Literal["auto", "visible", "type1", "type2", "both"] = "auto"
     iterations: int = Field(default=300, ge=0, le=2000)
-    foliage: Literal["auto", "leaves", "needles", "bare"] = "auto"
     variants: int = Field(default=1, ge=1, le=16, description="trees grown of the photo, each by the next seed")
     species: Species = "auto"
     season: Literal["photo", "spring", "summer", "autumn", "bare"] = "photo"
+    foliage: Literal["auto", "leaves", "needles", "bare"] = "auto"
     leaf_size: float = Field(default=1, ge=0.3, le=3)
     leaf_density: float = Field(default=1, ge=0, le=3)
     wind: Literal["none", "breeze", "all"] = "none"

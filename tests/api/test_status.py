@@ -1,13 +1,14 @@
 import importlib.util
 import re
 import time
+from dataclasses import fields
 from typing import Any
 
 import httpx
 import pytest
 
 from treestroke import __version__
-from treestroke.core.pipeline.settings import FILES, ModelSettings
+from treestroke.core.pipeline.settings import FILES, Choice, ModelSettings, Several, Span
 
 METHODS = {"get", "put", "post", "delete", "patch"}
 
@@ -90,6 +91,23 @@ def test_another_method_is_told_which_ones_there_are(client: httpx.Client, path:
         answer = client.request(method, path)
         assert (answer.status_code, answer.headers["allow"]) == (405, methods)
         assert methods in answer.json()["detail"]
+
+
+def test_the_document_s_settings_are_the_table(document: dict[str, Any]) -> None:
+    told = document["components"]["schemas"]["ModelSettings"]["properties"]
+    assert list(told) == [entry.name for entry in fields(ModelSettings)]
+    for entry in fields(ModelSettings):
+        one, allowed = told[entry.name], entry.metadata["allowed"]
+        assert one.get("default", []) == (list(entry.default) if isinstance(entry.default, tuple) else entry.default)
+        match allowed:
+            case Span():
+                assert (one["minimum"], one["maximum"]) == (allowed.low, allowed.high)
+            case Choice():
+                assert one["enum"] == list(allowed.names)
+            case Several():
+                assert one["items"]["enum"] == list(allowed.names)
+            case _:
+                assert one["type"] == "boolean"
 
 
 def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, Any]) -> None:

@@ -741,10 +741,10 @@ export interface components {
              *       "height": 10,
              *       "library": "auto",
              *       "iterations": 300,
-             *       "foliage": "auto",
              *       "variants": 1,
              *       "species": "auto",
              *       "season": "photo",
+             *       "foliage": "auto",
              *       "leaf_size": 1,
              *       "leaf_density": 1,
              *       "wind": "none",
@@ -794,12 +794,6 @@ export interface components {
              */
             iterations: number;
             /**
-             * Foliage
-             * @default auto
-             * @enum {string}
-             */
-            foliage: "auto" | "leaves" | "needles" | "bare";
-            /**
              * Variants
              * @description trees grown of the photo, each by the next seed
              * @default 1
@@ -817,6 +811,12 @@ export interface components {
              * @enum {string}
              */
             season: "photo" | "spring" | "summer" | "autumn" | "bare";
+            /**
+             * Foliage
+             * @default auto
+             * @enum {string}
+             */
+            foliage: "auto" | "leaves" | "needles" | "bare";
             /**
              * Leaf Size
              * @default 1

@@ -1,20 +1,13 @@
 import type { Client } from '../api/client'
 import { isOver } from '../api/follow'
-import type { Model, State, Store } from '../state'
+import { EMPTY, type Model, type State, type Store } from '../state'
 import type { Grower } from './grower'
 import { faultOf } from './sentences'
 
 type Looked = Pick<State, 'model' | 'modelOf' | 'modelLeaf' | 'variant' | 'growth' | 'tree' | 'shows'>
 
-const NONE: Looked = {
-  model: null,
-  modelOf: null,
-  modelLeaf: null,
-  variant: 1,
-  growth: null,
-  tree: null,
-  shows: 'live',
-}
+const { model, modelOf, modelLeaf, variant, growth, tree, shows } = EMPTY
+const NONE: Looked = { model, modelOf, modelLeaf, variant, growth, tree, shows }
 
 /** One's models, newest first, page by page. What goes wrong stands in the gallery's place of the state. */
 export class Gallery {

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from tests.builders import oak, stick
+from tests.levels import silhouette_ious
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import Mesh, Surface
@@ -10,7 +11,6 @@ from treestroke.core.geometry.silhouette import (
     likeness,
     silhouette,
     silhouette_from,
-    silhouette_ious,
 )
 from treestroke.core.mesh.tubes import tubes
 

@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.builders import oak, stick
+from tests.levels import silhouette_ious
 
 from treestroke.core.geometry.mesh import Mesh, Surface
-from treestroke.core.geometry.silhouette import silhouette_ious
 from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.skeleton.skeleton import Skeleton

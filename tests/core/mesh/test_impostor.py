@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
+from tests.levels import silhouette_ious
 
 from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
-from treestroke.core.geometry.silhouette import AZIMUTHS_RAD, framing, likeness, silhouette_from, silhouette_ious
+from treestroke.core.geometry.silhouette import AZIMUTHS_RAD, framing, likeness, silhouette_from
 from treestroke.core.mesh.impostor import BANDS, COLUMNS, TILE_SIDE, impostor
 
 RED, GREEN = (200, 30, 20), (20, 160, 40)

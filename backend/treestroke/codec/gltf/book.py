@@ -64,8 +64,9 @@ class Book:
         A material is entered once for all surfaces that wear the same arrays. Where relief is too small to be seen,
         a material without it (its name ends in ``_twigs``) is worn, which saves what relief needs of vertices.
         """
-        worn, kept = worn_name or name, shows_relief(surface.mesh)
-        if surface.relief is None or kept.all():
+        worn = worn_name or name
+        kept = None if surface.relief is None else shows_relief(surface.mesh)
+        if kept is None or kept.all():
             primitives = [self.primitive(surface.mesh, self._worn(worn, surface, material, wrap), skin)]
         else:
             plain = replace(surface, relief=None)

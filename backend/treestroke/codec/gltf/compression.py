@@ -20,7 +20,6 @@ MESHOPT, QUANTIZED, WEBP = "EXT_meshopt_compression", "KHR_mesh_quantization", "
 _TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 _WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}
 _BYTE, _SHORT, _UNSIGNED_SHORT, _FLOAT = 5120, 5122, 5123, 5126
-_TRIANGLE_LIST = 4
 _STEPS = 65535
 """Of a position along the tree's longest side: 0.15 mm on a tree of 10 m."""
 _UV_BITS, _SHARE_BITS = 12, 8

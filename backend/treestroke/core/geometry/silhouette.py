@@ -99,17 +99,6 @@ def silhouettes(surfaces: Sequence[Surface], view: Framing) -> Mask:
     return np.stack([silhouette_from(surfaces, view, azimuth) for azimuth in HALF_AZIMUTHS_RAD.tolist()])
 
 
-def silhouette_ious(fine: Sequence[Surface], coarse: Sequence[Surface], height_px: int) -> Floats:
-    """Compare silhouettes (8,) from `AZIMUTHS_RAD`, the finer tree ``height_px`` tall: intersection over union.
-
-    Those from behind equal those from the front, being of the mirror images.
-    """
-    view = framing(fine, height_px)
-    pairs = zip(silhouettes(coarse, view), silhouettes(fine, view), strict=True)
-    found = [likeness(seen, wanted) for seen, wanted in pairs]
-    return np.array(found + found)
-
-
 def likeness(seen: Mask, wanted: Mask) -> float:
     """Intersection over union of two masks of one shape; 1 where both are empty."""
     union = int((seen | wanted).sum())
