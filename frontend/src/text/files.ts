@@ -25,8 +25,8 @@ export const filesText = {
   moreFormats: ['More formats', 'Choose them under Settings, File, and grow again'],
   /** By the ends of their names. */
   known: {
-    'lod1.glb': ['Middle distance', 'GLB with about a fourth of the triangles'],
-    'lod2.glb': ['Far away', 'GLB with few triangles'],
+    'lod1.glb': ['Middle distance', 'GLB with a third of the triangles'],
+    'lod2.glb': ['Far away', 'GLB with a twelfth of the triangles'],
     'impostor.glb': ['At the horizon', 'GLB: pictures of the tree on crossed cards'],
     'gltf.zip': ['glTF', 'ZIP: the scene as text, its buffer and its pictures as files of their own'],
     'obj.zip': ['Wavefront OBJ', 'ZIP with materials and pictures; opens in nearly everything, old programs too'],
