@@ -1,8 +1,9 @@
-"""The strokes a person draws over a photo, as values."""
+"""The strokes a person draws over a photo or on white, as values."""
 
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Floats
 
@@ -43,6 +44,28 @@ class Strokes:
     branches: tuple[Stroke, ...] = ()
     erase: tuple[Stroke, ...] = ()
     scale: Length | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Sketch:
+    """One side of a tree, drawn over a photo or on white: as lines, or as a picture of them.
+
+    Attributes
+    ----------
+    canvas
+        Its width and height, px.
+    crown
+        Closed outline around the foliage; None where none was drawn.
+    branches
+        The first is the trunk's; none where there is ``ink``. A width is a brush's.
+    ink
+        (h, w), true on the strokes of a picture, whose size is the canvas's; None where lines are given.
+    """
+
+    canvas: tuple[int, int]
+    crown: Stroke | None = None
+    branches: tuple[Stroke, ...] = ()
+    ink: NDArray[np.bool_] | None = None
 
 
 def same_stroke(one: Stroke, other: Stroke) -> bool:

@@ -1,6 +1,6 @@
 """The crown turned about its own middle: how far a tree may reach in depth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,21 @@ from treestroke.core.geometry.polyline import smoothed
 
 
 @dataclass(frozen=True, eq=False)
+class Depth:
+    """The crown as the left side shows it, for each row (height,) of the front: middle and radius, px of the front.
+
+    The middle counts from the root's plane, Z = 0, towards the viewer.
+    """
+
+    middle_px: Floats
+    radius_px: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class Envelope:
-    """A solid of circular sections, one a photo row, each spanning its row of the crown.
+    """A solid of level sections, one a photo row, each spanning its row of the crown.
+
+    Sections are circles, or ellipses where a second side is known.
 
     Attributes
     ----------
@@ -21,27 +34,55 @@ class Envelope:
         (height,) column of each section's centre, px.
     radius_px
         (height,) radius of each section, px; 0 where the row holds no crown.
+    depth
+        What a second side shows; None: as deep as wide.
     """
 
     camera: Camera
     middle_px: Floats
     radius_px: Floats
+    depth: Depth | None = None
 
     def reach(self, points_world: Floats) -> Floats:
         """Distance of points (n, 3), metres, from their section's centre over its radius; 1 is the surface."""
         points_px = self.camera.pixels_from_world(points_world)
-        row = np.clip(np.floor(points_px[:, 1]).astype(np.int64), 0, self.camera.height - 1)
+        row = self._rows(points_px)
         x = points_px[:, 0] - self.middle_px[row]
         z = points_world[:, 2] / self.camera.metres_per_pixel
-        return np.hypot(x, z) / np.maximum(self.radius_px[row], 1e-9)
+        if self.depth is None:
+            return np.hypot(x, z) / np.maximum(self.radius_px[row], 1e-9)
+        z = (z - self.depth.middle_px[row]) / np.maximum(self.depth.radius_px[row], 1e-9)
+        return np.hypot(x / np.maximum(self.radius_px[row], 1e-9), z)
 
     def half_depth(self, points_world: Floats) -> Floats:
-        """Greatest |Z| (n,), metres, inside the envelope at the points' X and Y (0 outside it)."""
+        """Half the envelope's depth (n,), metres, at the points' X and Y (0 outside it)."""
         points_px = self.camera.pixels_from_world(points_world)
-        row = np.clip(np.floor(points_px[:, 1]).astype(np.int64), 0, self.camera.height - 1)
+        row = self._rows(points_px)
         x = points_px[:, 0] - self.middle_px[row]
         half_px = np.sqrt(np.maximum(self.radius_px[row] ** 2 - x**2, 0.0))
+        if self.depth is not None:
+            half_px = half_px * self.depth.radius_px[row] / np.maximum(self.radius_px[row], 1e-9)
         return half_px * self.camera.metres_per_pixel
+
+    def widened(self, factor: float) -> "Envelope":
+        """Give the solid whose sections have so many times the radius."""
+        depth = None if self.depth is None else replace(self.depth, radius_px=factor * self.depth.radius_px)
+        return replace(self, radius_px=factor * self.radius_px, depth=depth)
+
+    def with_side(self, mask: NDArray[np.bool_], side: Camera) -> "Envelope":
+        """Take the depth from the crown's mask (h, w) on the left side, seen by a camera of that side.
+
+        Rows above and below that crown are as deep as its top and bottom rows.
+        """
+        seen, scale = envelope_of_mask(mask, side), side.metres_per_pixel / self.camera.metres_per_pixel
+        rows = np.flatnonzero(seen.radius_px > 0)
+        y_m = (self.camera.root_px[1] - np.arange(self.camera.height) - 0.5) * self.camera.metres_per_pixel
+        row = np.clip(side.root_px[1] - y_m / side.metres_per_pixel - 0.5, rows[0], rows[-1])
+        middle, radius = (np.interp(row, rows, column[rows]) for column in (seen.middle_px, seen.radius_px))
+        return replace(self, depth=Depth((middle - side.root_px[0]) * scale, radius * scale))
+
+    def _rows(self, points_px: Floats) -> NDArray[np.int64]:
+        return np.clip(np.floor(points_px[:, 1]).astype(np.int64), 0, self.camera.height - 1)
 
 
 def envelope_of_mask(mask: NDArray[np.bool_], camera: Camera) -> Envelope:

@@ -1,6 +1,6 @@
 """The recipe's first half, which the live tree and the model share: from a photo and its strokes to a grown tree."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -153,8 +153,7 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
     shows_leaves = shown != "bare" or kind == "bare"
     crown = _closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
     camera = sight.camera(foliage.mask, settings.height)
-    envelope = envelope_of_mask(crown, camera)
-    envelope = replace(envelope, radius_px=BULGE * envelope.radius_px)
+    envelope = envelope_of_mask(crown, camera).widened(BULGE)
     visible, owner = densified(traced.skeleton, JOINT_SHARE * sight.height_px(foliage.mask))
     lifted = lift(visible, traced.stroke[owner], envelope, rng)
     report("grow", 0.0)

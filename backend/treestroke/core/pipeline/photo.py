@@ -1,7 +1,7 @@
 """System A: a 3D tree from one photo and a few strokes (Tan et al. 2008). The recipe reads top to bottom."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -181,7 +181,7 @@ def _measures(seen: Seen, tree: GrownTree, leaves: Leaves | None, atlas: Atlas |
     scale = Scale(metres * sight.scale, known is not None, error)
     crown = None if leaves is None else leaves.centres
     area = 0.0 if leaves is None or atlas is None else leaf_area(leaves, atlas)
-    unbulged = replace(tree.envelope, radius_px=tree.envelope.radius_px / BULGE)
+    unbulged = tree.envelope.widened(1 / BULGE)
     height = sight.height_px(seen.foliage.mask) * metres
     return measure_tree(tree.grown.skeleton, height, _trunk_seen(tree, metres), crown, area, unbulged, scale)
 

@@ -1,0 +1,73 @@
+"""A skeleton whose joints know their branch."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+
+
+@dataclass(frozen=True, eq=False)
+class Branched:
+    """A skeleton of one stem, split into branches.
+
+    ========  ================================================================================
+    word      meaning
+    ========  ================================================================================
+    branch    a chain of joints, each the parent of the next; branch 0 begins at the root
+    bud       the joint of another branch from which a branch goes out
+    tip       its last joint
+    level     0 for the stem, one more than that of the branch that bears the bud
+    ========  ================================================================================
+
+    Attributes
+    ----------
+    skeleton
+        (n joints) of two or three dimensions, of one root; a radius is 0 where it is not known.
+    branch
+        (n,) branch that each joint belongs to, 0 to k - 1; a bud belongs to the branch that bears it.
+
+    Raises
+    ------
+    ValueError
+        There are several roots, or a branch is no chain.
+    """
+
+    skeleton: Skeleton
+    branch: Indices
+
+    def __post_init__(self) -> None:
+        branch = np.array(self.branch, dtype=np.int64)
+        parents = self.skeleton.parents
+        if branch.shape != parents.shape or branch[0] != 0 or (parents[1:] < 0).any():
+            raise ValueError("a branched skeleton has one root, of branch 0, and a branch for each joint")
+        follows = np.append(False, branch[1:] == branch[parents[1:]])
+        if len(np.unique(parents[follows])) != follows.sum() or (~follows).sum() != branch.max() + 1:
+            raise ValueError("each branch must be one chain of joints")
+        branch.flags.writeable = False
+        object.__setattr__(self, "branch", branch)
+
+    def __len__(self) -> int:
+        return len(self.skeleton)
+
+    def chains(self) -> list[Indices]:
+        """List the joints of each branch, bud first (the stem has none), then its own up to its tip."""
+        order = np.argsort(self.branch, kind="stable")
+        own = np.split(order, np.flatnonzero(np.diff(self.branch[order])) + 1)
+        buds = [self.skeleton.parents[joints[:1]] for joints in own]
+        return [np.concatenate([bud[bud >= 0], joints]) for bud, joints in zip(buds, own, strict=True)]
+
+    def levels(self) -> Indices:
+        """Count the branches between each branch (k,) and the stem's root: 0 for the stem."""
+        level = np.zeros(int(self.branch.max()) + 1, dtype=np.int64)
+        for joint, parent in enumerate(self.skeleton.parents.tolist()):
+            if parent >= 0 and self.branch[joint] != self.branch[parent]:
+                level[self.branch[joint]] = level[self.branch[parent]] + 1
+        return level
+
+    def path(self, joint: int) -> Indices:
+        """List the joints from the root to a joint: its descending path, turned upward."""
+        way = [joint]
+        while self.skeleton.parents[way[-1]] >= 0:
+            way.append(int(self.skeleton.parents[way[-1]]))
+        return np.array(way[::-1], dtype=np.int64)
