@@ -6,8 +6,8 @@ import numpy as np
 
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.silhouette import framing, likeness, silhouettes
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import HEIGHTS_PX, Level, Levels
-from treestroke.core.pipeline.photo import TreeModel
 
 
 def silhouette_ious(fine: Sequence[Surface], coarse: Sequence[Surface], height_px: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from treestroke.core.errors import PhotoError, SettingsError, StrokesError, TreestrokeError
-    from treestroke.core.pipeline.growing import LiveTree
+    from treestroke.core.pipeline.grown_tree import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
     from treestroke.core.strokes import Stroke, Strokes
     from treestroke.service.model import Model, model

@@ -24,8 +24,8 @@ from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.lift.spread import lift
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import levels
-from treestroke.core.pipeline.photo import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes
 from treestroke.core.sway.clips import wind_of

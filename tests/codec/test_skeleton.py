@@ -6,7 +6,7 @@ from tests.builders import oak, stick
 
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.pipeline.growing import LiveTree
+from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
 CAMERA = Camera(1200, 1500, 10 / 1500, (600.0, 1450.5))

@@ -15,7 +15,7 @@ from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.codec.obj import encode_obj
 from treestroke.codec.ply import encode_ply
 from treestroke.codec.usd import encode_usdz
-from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import silent
 from treestroke.core.sway.clips import wind_of

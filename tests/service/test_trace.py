@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import treestroke
-from treestroke.core.pipeline.growing import LiveTree
+from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.trace import Trace
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.pipeline.growing import LiveTree
+from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
 _DIGITS = 2

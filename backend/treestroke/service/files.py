@@ -15,8 +15,8 @@ from treestroke.codec.skeleton_files import encode_csv, encode_skeleton_json, en
 from treestroke.codec.usd import encode_usdz, has_usd, require_usd
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.collision import collision
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import Level, Levels, levels
-from treestroke.core.pipeline.photo import TreeModel
 from treestroke.core.pipeline.settings import FILES, ModelSettings
 from treestroke.core.progress import Report
 from treestroke.core.sway.clips import wind_of

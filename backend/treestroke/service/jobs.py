@@ -15,7 +15,7 @@ from treestroke.codec.archive import zipped
 from treestroke.codec.image import StoredPhoto, encode_png
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.errors import TreestrokeError
-from treestroke.core.pipeline.growing import LiveTree
+from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.course import Course
 from treestroke.service.failures import problem_of, problem_of_input, ran_out_of_memory
 from treestroke.service.files import Bundle

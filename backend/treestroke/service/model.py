@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from treestroke import __version__
 from treestroke.codec.preview import draw_preview
 from treestroke.core.geometry.silhouette import likeness, silhouette
+from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
 from treestroke.core.pipeline.growing import see
-from treestroke.core.pipeline.photo import OnGrown, TreeModel, model_photo, unseen
+from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, check_seed, plain_settings
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk

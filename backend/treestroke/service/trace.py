@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from treestroke.codec.overlay import draw_overlay
 from treestroke.codec.skeleton import plain_grown, plain_skeleton
 from treestroke.core.imaging.outline import rings_of_mask
-from treestroke.core.pipeline.growing import LiveTree
+from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.photo import PhotoTrace, grow_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.skeleton.skeleton import Skeleton

@@ -9,8 +9,8 @@ from tests.levels import level_ious
 from treestroke.core.geometry.silhouette import AZIMUTHS_RAD, framing, likeness, silhouette_from
 from treestroke.core.leaf.cards import cards
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import Level, Levels, levels
-from treestroke.core.pipeline.photo import TreeModel
 from treestroke.core.pipeline.settings import ModelSettings
 
 

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from tests.conftest import DATA, EXAMPLES
 
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.growing import see
-from treestroke.core.pipeline.photo import TreeModel, model_photo, trace_photo
+from treestroke.core.pipeline.photo import model_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.service.inputs import load_photo, load_strokes

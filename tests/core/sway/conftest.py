@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import treestroke
-from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.wind import Wind
 

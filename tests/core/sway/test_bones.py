@@ -6,7 +6,7 @@ from tests.builders import fork, oak, stick
 from tests.core.sway.posing import branches
 from tests.strategies import skeletons
 
-from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts
 from treestroke.core.sway.bones import MOST_BRANCHES, MOST_FLUTTERS, rig_of

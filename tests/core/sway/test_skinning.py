@@ -9,7 +9,7 @@ from tests.strategies import skeletons
 
 from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.mesh.tubes import tubes
-from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.sway.bones import rig_of
 from treestroke.core.sway.clips import wind_of

@@ -1,4 +1,4 @@
-"""The recipe's first half, which the live tree and the model share: from a photo and its strokes to a grown tree."""
+"""The photo's first half of the recipe, which the live tree and the model share: to a grown tree."""
 
 from dataclasses import dataclass
 
@@ -11,18 +11,20 @@ from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
-from treestroke.core.grow.replacement import Grown, grow
+from treestroke.core.grow.replacement import grow
 from treestroke.core.leaf.seasons import LEAFY
 from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
+from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Stature
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sight import Mask, Photo, Sight, look
+from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo, Sight, look
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.kind import Kind, foliage_kind
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes
+from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale
 from treestroke.core.trace.tracing import Traced, trace_branches
 
 JOINT_SHARE = 0.015
@@ -38,26 +40,9 @@ CLUMP, FRAY = 0.045, 0.05
 """Size of its clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
 GAP = 1.9
 """Deviations of clumps' density below their mean at which sky is seen through."""
+BARE_BREADTH = 0.5
+"""Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
 _KINDS: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
-
-
-@dataclass(frozen=True, eq=False)
-class LiveTree:
-    """A grown tree before it has leaves and bark.
-
-    Attributes
-    ----------
-    skeleton
-        The whole tree, metres, world frame.
-    born
-        (n,) iteration at which each joint appeared, from 1; 0 for those of the visible tree.
-    camera
-        That of the photo at its own size.
-    """
-
-    skeleton: Skeleton
-    born: Indices
-    camera: Camera
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,52 +52,6 @@ class Seen:
     sight: Sight
     foliage: Foliage
     traced: Traced | None
-
-
-@dataclass(frozen=True, eq=False)
-class GrownTree:
-    """A tree that has grown, at the working size.
-
-    Attributes
-    ----------
-    kind
-        What the twigs bear.
-    shows_leaves
-        Whether the photo shows leaves, or the bare tree that is to have some.
-    leafy
-        (h, w) where the tree is to have leaves, as it is seen: the foliage, or the closed crown of a bare tree.
-    traced
-        The visible branches.
-    wood
-        (h, w) the same, drawn.
-    visible, owner
-        The traced skeleton, px, with more joints, and the traced joint (n,) at whose edge each lies.
-    depth_m
-        (n,) world Z of the visible joints.
-    envelope
-        The crown's solid.
-    grown
-        The whole tree.
-    camera
-        That of the photo at its own size.
-    """
-
-    kind: Kind
-    shows_leaves: bool
-    leafy: Mask
-    traced: Traced
-    wood: Mask
-    visible: Skeleton
-    owner: Indices
-    depth_m: Floats
-    envelope: Envelope
-    grown: Grown
-    camera: Camera
-
-    @property
-    def live(self) -> LiveTree:
-        """The tree as it may be shown before it is finished."""
-        return LiveTree(self.grown.skeleton, self.grown.born, self.camera)
 
 
 def see(photo: Photo, strokes: Strokes, known: Foliage | None = None, report: Report = silent) -> Seen:
@@ -151,17 +90,63 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
     kind = _borne_kind(shown, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
     shows_leaves = shown != "bare" or kind == "bare"
-    crown = _closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
+    crown = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
     camera = sight.camera(foliage.mask, settings.height)
-    envelope = envelope_of_mask(crown, camera).widened(BULGE)
+    envelope = envelope_of_mask(crown, camera)
+    bulged = envelope.widened(BULGE)
     visible, owner = densified(traced.skeleton, JOINT_SHARE * sight.height_px(foliage.mask))
-    lifted = lift(visible, traced.stroke[owner], envelope, rng)
+    lifted = lift(visible, traced.stroke[owner], bulged, rng)
     report("grow", 0.0)
     library = choose_library(settings.library, kind, lifted)
-    grown = grow(lifted, crown, envelope, library, growth_for(kind, settings.iterations), rng, report)
-    depth_m, own = lifted.points[:, 2], sight.unreduced(camera)
-    leafy = foliage.mask if shows_leaves else _frayed(crown, rng)
-    return GrownTree(kind, shows_leaves, leafy, traced, wood, visible, owner, depth_m, envelope, grown, own)
+    grown = grow(lifted, crown, bulged, library, growth_for(kind, settings.iterations), rng, report)
+    leafy = foliage.mask if shows_leaves else frayed(crown, rng)
+    front = _front(foliage, traced, visible, owner, lifted.points[:, 2], leafy, shows_leaves)
+    stem = np.flatnonzero(traced.stroke == 0)
+    radii = np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)
+    return GrownTree(
+        kind=kind,
+        grown=grown,
+        envelope=bulged,
+        camera=sight.unreduced(camera),
+        portrait=Portrait(sight.photo, shows_leaves, foliage.pure, front, traced.skeleton.points[stem], radii),
+        stature=_stature(sight, foliage, camera, traced, stem, envelope),
+        likeness=leafy | wood,
+        score={"attractors_reached": grown.attractors_reached},
+        warnings=sight.warnings,
+    )
+
+
+def _stature(sight: Sight, foliage: Foliage, camera: Camera, traced: Traced, stem: Indices, crown: Envelope) -> Stature:
+    """Tell the tree's height by the scale that the strokes or the settings set, and whether its trunk is seen."""
+    known, error, metres = sight.strokes.scale, 0.0, camera.metres_per_pixel
+    if known is not None:
+        ends_px = ENDS_PX * max(sight.photo.shape) / WORKING_SIDE
+        error = min(0.9, ends_px / float(np.hypot(*(known.points[1] - known.points[0]))))
+    heights = (traced.skeleton.points[stem[0], 1] - traced.skeleton.points[stem, 1]) * metres
+    seen = bool(traced.measured[stem[np.abs(heights - BREAST_HEIGHT).argmin()]])
+    scale = Scale(metres * sight.scale, known is not None, error)
+    return Stature(sight.height_px(foliage.mask) * metres, scale, seen, crown)
+
+
+def _front(
+    foliage: Foliage,
+    traced: Traced,
+    visible: Skeleton,
+    owner: Indices,
+    depth_m: Floats,
+    leafy: Mask,
+    shows_leaves: bool,
+) -> NDArray[np.float32]:
+    """World Z (h, w), metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
+
+    What is a leaf by its colour hangs before the wood.
+    """
+    what = visible, traced.measured[owner], depth_m, foliage.mask.shape
+    wood, middle = drawn_depth(*what, 1.0), drawn_depth(*what, BARE_BREADTH)
+    front = np.where(np.isnan(wood) | ~foliage.region, -np.inf, wood)
+    leaves = foliage.pure & ~traced.wood & shows_leaves
+    front[leafy & (np.isnan(middle) | leaves)] = np.inf
+    return front.astype(np.float32)
 
 
 def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
@@ -206,7 +191,7 @@ def _borne_kind(shown: Kind, settings: ModelSettings) -> Kind:
     return "leaves" if species.needles is None else "needles"
 
 
-def _closed(mask: Mask, share: float) -> Mask:
+def closed(mask: Mask, share: float) -> Mask:
     """Close small holes and bays of a foliage mask."""
     size = max(3, int(2 * share * np.sqrt(mask.sum())) | 1)
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
@@ -214,7 +199,7 @@ def _closed(mask: Mask, share: float) -> Mask:
     return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)
 
 
-def _frayed(crown: Mask, rng: np.random.Generator) -> Mask:
+def frayed(crown: Mask, rng: np.random.Generator) -> Mask:
     """Fray the outline of a crown whose leaves nobody has seen into clumps, and open some gaps."""
     size = float(np.sqrt(crown.sum()))
     height, width = crown.shape

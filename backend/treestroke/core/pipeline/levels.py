@@ -11,7 +11,7 @@ from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.thinning import thin_leaves
 from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
 from treestroke.core.mesh.impostor import impostor
-from treestroke.core.pipeline.photo import TreeModel
+from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.progress import Report, silent
 
 HEIGHTS_PX = (400, 150, 64)

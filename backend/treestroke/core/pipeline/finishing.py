@@ -1,0 +1,131 @@
+"""The recipe's second half, which all sources share: from a grown tree to a finished one."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.mesh import Surface
+from treestroke.core.geometry.polyline import Floats
+from treestroke.core.grow.replacement import Grown
+from treestroke.core.leaf.area import leaf_area
+from treestroke.core.leaf.atlas import Atlas
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.pipeline.dressing import bark_surface, leaf_surface
+from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
+from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.sight import Mask
+from treestroke.core.progress import Report, silent
+from treestroke.core.segment.kind import Kind
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.strokes import StrokeWarning
+from treestroke.core.survey.measures import Measures, measure_tree
+
+
+@dataclass(frozen=True, eq=False)
+class TreeModel:
+    """A finished tree: its surfaces in the world's frame, and what it was made from.
+
+    Attributes
+    ----------
+    camera
+        That of the picture at its own size.
+    grown
+        The skeleton, and how it grew.
+    envelope
+        The crown's solid.
+    bark, leaf
+        What is seen of it; no leaf where it bears none.
+    cards, atlas
+        What the leaf surface was made from; both None where there is none.
+    likeness
+        (h, w), at the working size, what the front view should cover: foliage and branches that were seen.
+    """
+
+    camera: Camera
+    grown: Grown
+    envelope: Envelope
+    bark: Surface
+    leaf: Surface | None
+    cards: Leaves | None
+    atlas: Atlas | None
+    likeness: Mask
+    foliage_kind: Kind
+    iterations: int
+    branches: int
+    measures: Measures
+    score: dict[str, float]
+    warnings: tuple[StrokeWarning, ...]
+
+
+OnGrown = Callable[[LiveTree], None]
+"""Called once, with the tree as it stands when growth ends."""
+
+
+def unseen(tree: LiveTree) -> None:
+    """Show a grown tree to nobody."""
+
+
+def finish(
+    tree: GrownTree,
+    settings: ModelSettings,
+    rng: np.random.Generator,
+    report: Report = silent,
+    leaf_picture: NDArray[np.uint8] | None = None,
+) -> TreeModel:
+    """Dress a grown tree in leaves and bark, and measure it.
+
+    ``report(stage, fraction)`` is called with the stages leaf and mesh. ``leaf_picture`` (h, w, 4), sRGB with straight
+    alpha, stalk down, is drawn instead of the species' leaf.
+
+    Raises
+    ------
+    ValueError
+        The picture of a leaf is none or transparent.
+    """
+    report("leaf", 0.0)
+    leaf, sprays, atlas = leaf_surface(tree, settings, leaf_picture, rng, report)
+    report("mesh", 0.0)
+    bark = bark_surface(tree, settings, rng, report)
+    report("mesh", 1.0)
+    return TreeModel(
+        camera=tree.camera,
+        grown=tree.grown,
+        envelope=tree.envelope,
+        bark=bark,
+        leaf=leaf,
+        cards=sprays,
+        atlas=atlas,
+        likeness=tree.likeness,
+        foliage_kind=tree.kind,
+        iterations=settings.iterations,
+        branches=_branch_count(tree.grown.skeleton),
+        measures=_measures(tree, sprays, atlas),
+        score={**tree.score, "depth_over_width": _depth_over_width(bark, leaf)},
+        warnings=tree.warnings,
+    )
+
+
+def _measures(tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Measures:
+    """Measure the tree as it was grown."""
+    crown = None if leaves is None else leaves.centres
+    area = 0.0 if leaves is None or atlas is None else leaf_area(leaves, atlas)
+    stature = tree.stature
+    what = tree.grown.skeleton, stature.height, stature.trunk_seen, crown, area, stature.crown, stature.scale
+    return measure_tree(*what)
+
+
+def _branch_count(tree: Skeleton) -> int:
+    """Count a tree's branches: its stems and whatever leaves a fork."""
+    counts = np.bincount(tree.parents[tree.parents >= 0], minlength=len(tree))
+    return int((tree.parents < 0).sum() + np.maximum(counts - 1, 0).sum())
+
+
+def _depth_over_width(bark: Surface, leaf: Surface | None) -> float:
+    """Compare the tree's depth with its width, 2nd to 98th percentile of its (leaf) vertices."""
+    points: Floats = (bark if leaf is None else leaf).mesh.positions.astype(np.float64)
+    low, high = np.percentile(points[:, [0, 2]], [2, 98], axis=0)
+    return float((high[1] - low[1]) / max(float(high[0] - low[0]), 1e-9))
