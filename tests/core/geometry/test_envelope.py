@@ -66,3 +66,35 @@ def test_one_stray_twig_gives_no_disc() -> None:
 def test_a_mask_that_is_no_crown_of_the_photo_is_refused(mask: np.ndarray) -> None:
     with pytest.raises(ValueError, match="crown|fit"):
         envelope_of_mask(mask, CAMERA)
+
+
+@pytest.fixture
+def flattened(sphere: Envelope) -> Envelope:
+    """The ball, a third as deep as wide, two metres nearer to the viewer than the root."""
+    y, x = np.mgrid[:200, :200] + 0.5
+    side = np.hypot((x - 120) * 3, y - 100) < 60
+    return sphere.with_side(side, CAMERA)
+
+
+def test_a_side_gives_sections_their_own_depth_and_middle(flattened: Envelope) -> None:
+    points = np.vstack([world(100, 100, z) for z in (0.0, 2.0, 4.0)])
+    assert flattened.reach(points) == pytest.approx([1.0, 0.0, 1.0], abs=0.05)
+    assert flattened.half_depth(points) == pytest.approx(np.full(3, 2.0), abs=0.1)
+    assert flattened.widened(2.0).reach(points) == pytest.approx([0.5, 0.0, 0.5], abs=0.05)
+
+
+def test_a_side_at_another_scale_gives_the_same_depth(sphere: Envelope, flattened: Envelope) -> None:
+    y, x = np.mgrid[:400, :400] + 0.5
+    side = np.hypot((x - 240) * 3, y - 200) < 120
+    finer = sphere.with_side(side, Camera(400, 400, 0.05, (200.0, 380.0)))
+    points = np.vstack([world(x, y, 1.0) for x in (70.0, 110.0) for y in (60.0, 100.0, 140.0)])
+    assert finer.reach(points) == pytest.approx(flattened.reach(points), abs=0.03)
+
+
+def test_rounding_makes_the_sections_circles_and_can_be_taken_back(sphere: Envelope, flattened: Envelope) -> None:
+    points = np.vstack([world(x, y, z) for x in (70.0, 110.0) for y in (70.0, 120.0, 180.0) for z in (0.5, 2.5)])
+    inside = points[:, 1] > 3.1
+    rounded = flattened.rounded(points)
+    assert sphere.reach(rounded[inside]) == pytest.approx(flattened.reach(points[inside]))
+    assert flattened.unrounded(rounded) == pytest.approx(points)
+    assert sphere.rounded(points) == pytest.approx(points)

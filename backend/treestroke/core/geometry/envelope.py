@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.camera import Camera, Floats
 from treestroke.core.geometry.polyline import smoothed
 
+MOST_STRETCH = 4.0
+"""Width over depth, or depth over width, beyond which a section is not made round."""
+
 
 @dataclass(frozen=True, eq=False)
 class Depth:
@@ -80,6 +83,25 @@ class Envelope:
         row = np.clip(side.root_px[1] - y_m / side.metres_per_pixel - 0.5, rows[0], rows[-1])
         middle, radius = (np.interp(row, rows, column[rows]) for column in (seen.middle_px, seen.radius_px))
         return replace(self, depth=Depth((middle - side.root_px[0]) * scale, radius * scale))
+
+    def rounded(self, points_world: Floats) -> Floats:
+        """Carry points (n, 3), metres, to where all sections are circles about Z = 0, as without a depth."""
+        middle_m, ratio = self._stretch(points_world)
+        return np.column_stack([points_world[:, :2], (points_world[:, 2] - middle_m) * ratio])
+
+    def unrounded(self, points_world: Floats) -> Floats:
+        """Carry points (n, 3), metres, back from where `rounded` puts them."""
+        middle_m, ratio = self._stretch(points_world)
+        return np.column_stack([points_world[:, :2], points_world[:, 2] / ratio + middle_m])
+
+    def _stretch(self, points_world: Floats) -> tuple[Floats, Floats]:
+        """Give the middle (n,), metres, and the width over the depth (n,) at the points' rows, within bounds."""
+        if self.depth is None:
+            return np.zeros(len(points_world)), np.ones(len(points_world))
+        rows = np.flatnonzero(self.radius_px > 0)
+        row = np.clip(self._rows(self.camera.pixels_from_world(points_world)), rows[0], rows[-1])
+        ratio = self.radius_px[row] / np.maximum(self.depth.radius_px[row], 1e-9)
+        return self.depth.middle_px[row] * self.camera.metres_per_pixel, np.clip(ratio, 1 / MOST_STRETCH, MOST_STRETCH)
 
     def _rows(self, points_px: Floats) -> NDArray[np.int64]:
         return np.clip(np.floor(points_px[:, 1]).astype(np.int64), 0, self.camera.height - 1)

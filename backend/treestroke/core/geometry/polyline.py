@@ -67,3 +67,21 @@ def distances_to_segment(points: Floats, start: Floats, end: Floats) -> Floats:
     way = end - start
     along = np.clip((points - start) @ way / max(float(way @ way), 1e-12), 0.0, 1.0)
     return np.asarray(np.linalg.norm(points - start - along[:, None] * way, axis=1))
+
+
+def places_along(line: Floats, points: Floats) -> tuple[Floats, Floats]:
+    """Find how far along a chain (n, d), n >= 2, the place nearest to each point (m, d) lies, and their gap (m,)."""
+    start, along = line[:-1], np.diff(line, axis=0)
+    square = np.maximum((along**2).sum(axis=1), 1e-12)
+    share = (points @ along.T - (start * along).sum(axis=1)) / square
+    share = np.clip(share, 0.0, 1.0)
+    away = points[:, None] - start - share[..., None] * along
+    gaps = np.sqrt((away**2).sum(axis=2))
+    rows, best = np.arange(len(points)), gaps.argmin(axis=1)
+    return arc_lengths(line)[best] + share[rows, best] * np.sqrt(square[best]), gaps[rows, best]
+
+
+def place_at(line: Floats, arcs: Floats | float) -> Floats:
+    """Give the points (..., d) of a chain (n, d) at lengths along it (...)."""
+    known = arc_lengths(line)
+    return np.stack([np.interp(arcs, known, column) for column in line.T], axis=-1)

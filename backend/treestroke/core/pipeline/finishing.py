@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
@@ -13,8 +12,9 @@ from treestroke.core.geometry.polyline import Floats
 from treestroke.core.grow.replacement import Grown
 from treestroke.core.leaf.area import leaf_area
 from treestroke.core.leaf.atlas import Atlas
+from treestroke.core.leaf.fruit import fruit_among
 from treestroke.core.leaf.leaves import Leaves
-from treestroke.core.pipeline.dressing import bark_surface, leaf_surface
+from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sight import Mask
@@ -74,20 +74,19 @@ def finish(
     settings: ModelSettings,
     rng: np.random.Generator,
     report: Report = silent,
-    leaf_picture: NDArray[np.uint8] | None = None,
+    pictures: OwnPictures = NO_PICTURES,
 ) -> TreeModel:
-    """Dress a grown tree in leaves and bark, and measure it.
+    """Dress a grown tree in leaves, fruit and bark, and measure it.
 
-    ``report(stage, fraction)`` is called with the stages leaf and mesh. ``leaf_picture`` (h, w, 4), sRGB with straight
-    alpha, stalk down, is drawn instead of the species' leaf.
+    ``report(stage, fraction)`` is called with the stages leaf and mesh.
 
     Raises
     ------
     ValueError
-        The picture of a leaf is none or transparent.
+        A picture of a leaf or fruit is none or transparent.
     """
     report("leaf", 0.0)
-    leaf, sprays, atlas = leaf_surface(tree, settings, leaf_picture, rng, report)
+    leaf, sprays, atlas = leaf_surface(tree, settings, pictures, rng, report)
     report("mesh", 0.0)
     bark = bark_surface(tree, settings, rng, report)
     report("mesh", 1.0)
@@ -110,8 +109,10 @@ def finish(
 
 
 def _measures(tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Measures:
-    """Measure the tree as it was grown."""
-    crown = None if leaves is None else leaves.centres
+    """Measure the tree as it was grown; fruit alone makes no crown."""
+    if leaves is not None and atlas is not None:
+        leaves = leaves.select(~fruit_among(leaves, atlas))
+    crown = leaves.centres if leaves is not None and len(leaves) else None
     area = 0.0 if leaves is None or atlas is None else leaf_area(leaves, atlas)
     stature = tree.stature
     what = tree.grown.skeleton, stature.height, stature.trunk_seen, crown, area, stature.crown, stature.scale

@@ -1,30 +1,35 @@
 """The photo's first half of the recipe, which the live tree and the model share: to a grown tree."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.geometry.polyline import Floats, Indices
-from treestroke.core.grow.library import choose_library
-from treestroke.core.grow.params import growth_for
-from treestroke.core.grow.replacement import grow
+from treestroke.core.geometry.polyline import Indices
+from treestroke.core.grow.library import Subtree, choose_library
+from treestroke.core.grow.params import GrowthParams, growth_for
+from treestroke.core.grow.replacement import Grown, grow
 from treestroke.core.leaf.seasons import LEAFY
 from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
+from treestroke.core.pipeline.crowns import CLOSED_SHARE, LEAFED_SHARE, closed, drawn, drawn_depth, frayed
 from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Stature
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.sides import Side, crown_height, deepened, draw_side, in_units, side_of, with_depth
 from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo, Sight, look
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.kind import Kind, foliage_kind
+from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
+from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.strokes import Strokes
+from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children
+from treestroke.core.strokes import Sketch, Strokes
 from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale
+from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
 
 JOINT_SHARE = 0.015
@@ -32,14 +37,6 @@ JOINT_SHARE = 0.015
 BULGE = 1.08
 """Radius of the crown's sections over half their width in the photo. A crown is no turned solid: away from the outline
 that the photo shows some limbs reach further (4 trees known in 3D; 1.15 is too deep again for a slim one)."""
-CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
-"""Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
-LEAFED_SHARE = 0.14
-"""The same for a bare tree that is to have leaves: between its twigs."""
-CLUMP, FRAY = 0.045, 0.05
-"""Size of its clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
-GAP = 1.9
-"""Deviations of clumps' density below their mean at which sky is seen through."""
 BARE_BREADTH = 0.5
 """Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
 _KINDS: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
@@ -47,31 +44,64 @@ _KINDS: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "ba
 
 @dataclass(frozen=True, eq=False)
 class Seen:
-    """What photo and strokes show, at the working size; nothing is traced without a branch stroke."""
+    """What photo and strokes show, at the working size, and a sketch of the tree's left side where there is one.
+
+    Nothing is traced without a branch stroke.
+    """
 
     sight: Sight
     foliage: Foliage
     traced: Traced | None
+    side: Drawing | None = None
 
 
-def see(photo: Photo, strokes: Strokes, known: Foliage | None = None, report: Report = silent) -> Seen:
+@dataclass(frozen=True, eq=False)
+class _Lifted:
+    """What was traced, turned into the world.
+
+    Attributes
+    ----------
+    tree
+        (n joints) metres.
+    visible
+        The same in the picture, px.
+    owner
+        (n,) traced joint at whose edge each lies.
+    score
+        How true it is to what was drawn of its other side.
+    """
+
+    tree: Skeleton
+    visible: Skeleton
+    owner: Indices
+    score: dict[str, float]
+
+
+def see(
+    photo: Photo,
+    strokes: Strokes,
+    known: Foliage | None = None,
+    report: Report = silent,
+    side: Sketch | None = None,
+) -> Seen:
     """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3), sRGB.
 
     Raises
     ------
     StrokesError
-        The strokes do not describe a tree.
+        The strokes, or the sketch of the left side, do not describe a tree.
     """
+    beside = None if side is None else draw_side(side, "side")
     report("foliage", 0.0)
     sight = look(photo, strokes)
     report("foliage", 0.05)
     foliage = known or segment_foliage(sight.photo, sight.strokes.crown.points, report=report)
     if not strokes.branches:
-        return Seen(sight, foliage, None)
+        return Seen(sight, foliage, None, beside)
     report("trace", 0.0)
     height_px = sight.height_px(foliage.mask)
     traced = trace_branches(sight.photo, sight.strokes, foliage.leaf, foliage.ground, foliage.region, height_px)
-    return Seen(sight, foliage, traced)
+    return Seen(sight, foliage, traced, beside)
 
 
 def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, report: Report = silent) -> GrownTree:
@@ -87,20 +117,24 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
         raise ValueError("nothing grows without a branch stroke")
     report("lift", 0.0)
     shown = _shown_kind(sight, foliage, settings)
-    kind = _borne_kind(shown, settings)
+    kind = borne_kind(shown, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
     shows_leaves = shown != "bare" or kind == "bare"
     crown = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
     camera = sight.camera(foliage.mask, settings.height)
     envelope = envelope_of_mask(crown, camera)
     bulged = envelope.widened(BULGE)
-    visible, owner = densified(traced.skeleton, JOINT_SHARE * sight.height_px(foliage.mask))
-    lifted = lift(visible, traced.stroke[owner], bulged, rng)
+    if seen.side is not None:
+        side = side_of(seen.side, crown_height, sight.height_px(foliage.mask), camera.metres_per_pixel)
+        envelope, bulged = deepened(envelope, side), deepened(bulged, side)
+        lifted = _turned(traced, side, sight.height_px(foliage.mask), camera)
+    else:
+        lifted = _spread(traced, bulged, JOINT_SHARE * sight.height_px(foliage.mask), rng)
     report("grow", 0.0)
-    library = choose_library(settings.library, kind, lifted)
-    grown = grow(lifted, crown, bulged, library, growth_for(kind, settings.iterations), rng, report)
+    library = choose_library(settings.library, kind, lifted.tree)
+    grown = _filled(lifted.tree, crown, bulged, library, growth_for(kind, settings.iterations), rng, report)
     leafy = foliage.mask if shows_leaves else frayed(crown, rng)
-    front = _front(foliage, traced, visible, owner, lifted.points[:, 2], leafy, shows_leaves)
+    front = _front(foliage, traced, lifted, leafy, shows_leaves)
     stem = np.flatnonzero(traced.stroke == 0)
     radii = np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)
     return GrownTree(
@@ -111,8 +145,8 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
         portrait=Portrait(sight.photo, shows_leaves, foliage.pure, front, traced.skeleton.points[stem], radii),
         stature=_stature(sight, foliage, camera, traced, stem, envelope),
         likeness=leafy | wood,
-        score={"attractors_reached": grown.attractors_reached},
-        warnings=sight.warnings,
+        score={"attractors_reached": grown.attractors_reached, **lifted.score},
+        warnings=sight.warnings + (() if seen.side is None else seen.side.warnings),
     )
 
 
@@ -128,46 +162,55 @@ def _stature(sight: Sight, foliage: Foliage, camera: Camera, traced: Traced, ste
     return Stature(sight.height_px(foliage.mask) * metres, scale, seen, crown)
 
 
-def _front(
-    foliage: Foliage,
-    traced: Traced,
-    visible: Skeleton,
-    owner: Indices,
-    depth_m: Floats,
-    leafy: Mask,
-    shows_leaves: bool,
-) -> NDArray[np.float32]:
+def _spread(traced: Traced, envelope: Envelope, step: float, rng: np.random.Generator) -> _Lifted:
+    """Guess the depth of what was traced."""
+    visible, owner = densified(traced.skeleton, step)
+    return _Lifted(lift(visible, traced.stroke[owner], envelope, rng), visible, owner, {})
+
+
+def _turned(traced: Traced, side: Side, height_px: float, camera: Camera) -> _Lifted:
+    """Take the depth of what was traced from the left side."""
+    visible, owner = densified(traced.skeleton, JOINT_SHARE * height_px)
+    stroke, weights = traced.stroke[owner], accumulate_to_root(visible, edge_lengths(visible))
+    same = stroke == stroke[np.maximum(visible.parents, 0)]
+    front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
+    from treestroke.core.survey.fidelity import fidelity
+
+    main, retrieved = with_depth(front, side, height_px, camera)
+    tree = main.skeleton
+    seen = Skeleton(camera.pixels_from_world(tree.points), tree.radii / camera.metres_per_pixel, tree.parents)
+    return _Lifted(tree, seen, owner[retrieved.front], fidelity(in_units(front, height_px), side.tree, retrieved))
+
+
+def _filled(
+    lifted: Skeleton,
+    crown: Mask,
+    envelope: Envelope,
+    library: tuple[Subtree, ...],
+    params: GrowthParams,
+    rng: np.random.Generator,
+    report: Report,
+) -> Grown:
+    """Let a lifted tree fill its crown; one that is not as deep as wide is filled as if it were."""
+    if envelope.depth is None:
+        return grow(lifted, crown, envelope, library, params, rng, report)
+    rounded = Skeleton(envelope.rounded(lifted.points), lifted.radii, lifted.parents)
+    grown = grow(rounded, crown, replace(envelope, depth=None), library, params, rng, report)
+    tree = grown.skeleton
+    return replace(grown, skeleton=Skeleton(envelope.unrounded(tree.points), tree.radii, tree.parents))
+
+
+def _front(foliage: Foliage, traced: Traced, lifted: _Lifted, leafy: Mask, shows_leaves: bool) -> NDArray[np.float32]:
     """World Z (h, w), metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
 
     What is a leaf by its colour hangs before the wood.
     """
-    what = visible, traced.measured[owner], depth_m, foliage.mask.shape
+    what = lifted.visible, traced.measured[lifted.owner], lifted.tree.points[:, 2], foliage.mask.shape
     wood, middle = drawn_depth(*what, 1.0), drawn_depth(*what, BARE_BREADTH)
     front = np.where(np.isnan(wood) | ~foliage.region, -np.inf, wood)
     leaves = foliage.pure & ~traced.wood & shows_leaves
     front[leafy & (np.isnan(middle) | leaves)] = np.inf
     return front.astype(np.float32)
-
-
-def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
-    """Draw a traced skeleton as wide as its wood."""
-    return ~np.isnan(drawn_depth(tree, np.ones(len(tree), dtype=bool), np.zeros(len(tree)), shape, 1.0))
-
-
-def drawn_depth(
-    tree: Skeleton, shown: Mask, depth_m: Floats, shape: tuple[int, ...], breadth: float
-) -> NDArray[np.float32]:
-    """Draw the depth of a skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood.
-
-    NaN where nothing is drawn.
-    """
-    drawn = np.full(shape, np.nan, np.float32)
-    for joint, parent in enumerate(tree.parents.tolist()):
-        if parent >= 0 and shown[joint] and shown[parent]:
-            ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
-            width = max(1, int(breadth * (tree.radii[joint] + tree.radii[parent])))
-            cv2.line(drawn, ends[0], ends[1], float(depth_m[joint]), width, cv2.LINE_8, 4)
-    return drawn
 
 
 def _shown_kind(sight: Sight, foliage: Foliage, settings: ModelSettings) -> Kind:
@@ -177,7 +220,7 @@ def _shown_kind(sight: Sight, foliage: Foliage, settings: ModelSettings) -> Kind
     return _KINDS[settings.foliage]
 
 
-def _borne_kind(shown: Kind, settings: ModelSettings) -> Kind:
+def borne_kind(shown: Kind, settings: ModelSettings) -> Kind:
     """Tell what the twigs bear: what was asked for, else what season, species and photo say, in this order."""
     species = KINDS[settings.species]
     if settings.season == "bare" or settings.foliage == "bare":
@@ -189,22 +232,3 @@ def _borne_kind(shown: Kind, settings: ModelSettings) -> Kind:
     if species == AUTO:
         return "leaves" if shown == "bare" else shown
     return "leaves" if species.needles is None else "needles"
-
-
-def closed(mask: Mask, share: float) -> Mask:
-    """Close small holes and bays of a foliage mask."""
-    size = max(3, int(2 * share * np.sqrt(mask.sum())) | 1)
-    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
-    edge = cv2.copyMakeBorder(mask.astype(np.uint8), size, size, size, size, cv2.BORDER_CONSTANT, value=0)
-    return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)
-
-
-def frayed(crown: Mask, rng: np.random.Generator) -> Mask:
-    """Fray the outline of a crown whose leaves nobody has seen into clumps, and open some gaps."""
-    size = float(np.sqrt(crown.sum()))
-    height, width = crown.shape
-    coarse = (max(2, round(width / (CLUMP * size))), max(2, round(height / (CLUMP * size))))
-    clumps = cv2.resize(rng.standard_normal(coarse[::-1]), (width, height), interpolation=cv2.INTER_CUBIC)
-    inward = cv2.distanceTransform(np.pad(crown.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
-    bays = FRAY * size * np.clip(0.3 - 0.5 * clumps, 0.0, 1.0)
-    return np.asarray(crown & (inward > bays) & (clumps > -GAP))

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import Indices
+from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
 from treestroke.core.pipeline.growing import Seen, grow_tree, see
 from treestroke.core.pipeline.grown_tree import LiveTree
@@ -68,22 +68,21 @@ def model_photo(
     rng: np.random.Generator,
     report: Report = silent,
     on_grown: OnGrown = unseen,
-    leaf_picture: NDArray[np.uint8] | None = None,
+    pictures: OwnPictures = NO_PICTURES,
 ) -> TreeModel:
     """Turn what was seen in a photo into a tree; other seeds give other trees of the same photo.
 
     ``report(stage, fraction)`` is called with the stages lift, grow, leaf and mesh; ``on_grown`` with the grown tree,
-    before it has leaves and bark. ``leaf_picture`` (h, w, 4), sRGB with straight alpha, stalk down, is drawn instead of
-    the species' leaf.
+    before it has leaves and bark.
 
     Raises
     ------
     ValueError
-        Nothing was traced, or the picture of a leaf is none or transparent.
+        Nothing was traced, or a picture of a leaf or fruit is none or transparent.
     """
     tree = grow_tree(seen, settings, rng, report)
     on_grown(tree.live)
-    return finish(tree, settings, rng, report, leaf_picture)
+    return finish(tree, settings, rng, report, pictures)
 
 
 def _in_photo(seen: Seen) -> PhotoTrace:

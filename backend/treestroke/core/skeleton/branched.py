@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.traverse import limbs
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,8 @@ class Branched:
         if branch.shape != parents.shape or branch[0] != 0 or (parents[1:] < 0).any():
             raise ValueError("a branched skeleton has one root, of branch 0, and a branch for each joint")
         follows = np.append(False, branch[1:] == branch[parents[1:]])
-        if len(np.unique(parents[follows])) != follows.sum() or (~follows).sum() != branch.max() + 1:
+        starts = np.sort(branch[~follows])
+        if len(np.unique(parents[follows])) != follows.sum() or not np.array_equal(starts, np.arange(len(starts))):
             raise ValueError("each branch must be one chain of joints")
         branch.flags.writeable = False
         object.__setattr__(self, "branch", branch)
@@ -71,3 +73,12 @@ class Branched:
         while self.skeleton.parents[way[-1]] >= 0:
             way.append(int(self.skeleton.parents[way[-1]]))
         return np.array(way[::-1], dtype=np.int64)
+
+
+def branched(skeleton: Skeleton, successors: Indices) -> Branched:
+    """Split a skeleton into the limbs that follow ``successors``; further stems become branches of the root."""
+    parents = np.where((skeleton.parents < 0) & (np.arange(len(skeleton)) > 0), 0, skeleton.parents)
+    branch = np.zeros(len(skeleton), dtype=np.int64)
+    for number, limb in enumerate(limbs(skeleton, successors)):
+        branch[limb if skeleton.parents[limb[0]] < 0 else limb[1:]] = number
+    return Branched(Skeleton(skeleton.points, skeleton.radii, parents), branch)

@@ -1,0 +1,58 @@
+"""Crowns and wood as masks: closed, frayed, drawn."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.polyline import Floats
+from treestroke.core.pipeline.sight import Mask
+from treestroke.core.skeleton.skeleton import Skeleton
+
+CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
+"""Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
+LEAFED_SHARE = 0.14
+"""The same for a bare tree that is to have leaves: between its twigs."""
+CLUMP, FRAY = 0.045, 0.05
+"""Size of its clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
+GAP = 1.9
+"""Deviations of clumps' density below their mean at which sky is seen through."""
+
+
+def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
+    """Draw a traced skeleton as wide as its wood."""
+    return ~np.isnan(drawn_depth(tree, np.ones(len(tree), dtype=bool), np.zeros(len(tree)), shape, 1.0))
+
+
+def drawn_depth(
+    tree: Skeleton, shown: Mask, depth_m: Floats, shape: tuple[int, ...], breadth: float
+) -> NDArray[np.float32]:
+    """Draw the depth of a skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood.
+
+    NaN where nothing is drawn.
+    """
+    drawn = np.full(shape, np.nan, np.float32)
+    for joint, parent in enumerate(tree.parents.tolist()):
+        if parent >= 0 and shown[joint] and shown[parent]:
+            ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
+            width = max(1, int(breadth * (tree.radii[joint] + tree.radii[parent])))
+            cv2.line(drawn, ends[0], ends[1], float(depth_m[joint]), width, cv2.LINE_8, 4)
+    return drawn
+
+
+def closed(mask: Mask, share: float) -> Mask:
+    """Close small holes and bays of a foliage mask."""
+    size = max(3, int(2 * share * np.sqrt(mask.sum())) | 1)
+    kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
+    edge = cv2.copyMakeBorder(mask.astype(np.uint8), size, size, size, size, cv2.BORDER_CONSTANT, value=0)
+    return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)
+
+
+def frayed(crown: Mask, rng: np.random.Generator) -> Mask:
+    """Fray the outline of a crown whose leaves nobody has seen into clumps, and open some gaps."""
+    size = float(np.sqrt(crown.sum()))
+    height, width = crown.shape
+    coarse = (max(2, round(width / (CLUMP * size))), max(2, round(height / (CLUMP * size))))
+    clumps = cv2.resize(rng.standard_normal(coarse[::-1]), (width, height), interpolation=cv2.INTER_CUBIC)
+    inward = cv2.distanceTransform(np.pad(crown.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
+    bays = FRAY * size * np.clip(0.3 - 0.5 * clumps, 0.0, 1.0)
+    return np.asarray(crown & (inward > bays) & (clumps > -GAP))

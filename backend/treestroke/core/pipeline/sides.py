@@ -1,0 +1,104 @@
+"""The left side of a tree beside its front: heights made to agree, depth taken from it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from treestroke.core.errors import StrokesError
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.polyline import Floats
+from treestroke.core.geometry.views import View
+from treestroke.core.imaging.outline import fill_outline
+from treestroke.core.lift.retrieval import Retrieved
+from treestroke.core.skeleton.branched import Branched
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.strokes import Sketch
+from treestroke.core.trace.drawing import Drawing, draw_up
+
+UNITS = 1000.0
+"""Height of a tree, root to top, in which sketches are compared."""
+MARGIN = 0.02
+"""Of the tree's height: empty border around a crown's mask."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """The left side, scaled so that its heights are those of the front.
+
+    Attributes
+    ----------
+    tree
+        Its 2D skeleton, in `UNITS` of the tree's height: Z to the right, y up, root at the origin.
+    crown
+        Its crown as a camera sees it that looks along +X.
+    """
+
+    tree: Branched
+    crown: View
+
+
+def draw_side(sketch: Sketch, place: str) -> Drawing:
+    """Draw up one of several sketches; errors and warnings name its ``place``.
+
+    Raises
+    ------
+    StrokesError
+        It does not describe a tree.
+    """
+    try:
+        drawing = draw_up(sketch)
+    except StrokesError as error:
+        raise StrokesError(f"{place}: {error}", code=error.code, pointer=f"/{place}{error.pointer}") from error
+    warnings = tuple(replace(one, stroke=f"{place}/{one.stroke}") for one in drawing.warnings)
+    return replace(drawing, warnings=warnings)
+
+
+def stroke_height(drawing: Drawing) -> float:
+    """Measure from the root to the topmost stroke, px."""
+    rows = drawing.tree.skeleton.points[:, 1]
+    return max(float(rows[0] - rows.min()), 1.0)
+
+
+def crown_height(drawing: Drawing) -> float:
+    """Measure from the root to the crown's top, or to the topmost stroke where that is higher, px."""
+    root = float(drawing.tree.skeleton.points[0, 1])
+    return max(root - float(drawing.crown[:, 1].min()), stroke_height(drawing))
+
+
+def in_units(tree: Branched, height_px: float) -> Branched:
+    """Bring a 2D skeleton, px, to `UNITS`: from the root, y up."""
+    scale, skeleton = UNITS / height_px, tree.skeleton
+    points = (skeleton.points - skeleton.points[0]) * np.array([scale, -scale])
+    return Branched(Skeleton(points, skeleton.radii * scale, skeleton.parents), tree.branch)
+
+
+def side_of(
+    drawing: Drawing, height_of: Callable[[Drawing], float], front_height_px: float, metres_per_pixel: float
+) -> Side:
+    """Scale the left side so that its height, as ``height_of`` takes it, is the front's, whose px the scale is for."""
+    height_px = height_of(drawing)
+    scale = front_height_px / height_px
+    margin = MARGIN * front_height_px
+    root, crown = drawing.tree.skeleton.points[0] * scale, drawing.crown * scale
+    corner = np.floor(np.minimum(crown.min(axis=0), root) - margin)
+    width, height = (np.ceil(np.maximum(crown.max(axis=0), root) + margin) - corner).astype(int).tolist()
+    camera = Camera(width, height, metres_per_pixel, (float(root[0] - corner[0]), float(root[1] - corner[1])))
+    return Side(in_units(drawing.tree, height_px), View(fill_outline(crown - corner, height, width), camera))
+
+
+def with_depth(front: Branched, side: Side, height_px: float, camera: Camera) -> tuple[Branched, Retrieved]:
+    """Turn a front (px of a camera) into a 3D tree, metres, by the depth of its left side; tell how."""
+    from treestroke.core.lift.retrieval import retrieve_depth
+
+    retrieved = retrieve_depth(in_units(front, height_px), side.tree)
+    skeleton, metres = retrieved.tree.skeleton, height_px / UNITS * camera.metres_per_pixel
+    points: Floats = skeleton.points * metres
+    tree = Skeleton(points, skeleton.radii * metres, skeleton.parents)
+    return Branched(tree, retrieved.tree.branch), retrieved
+
+
+def deepened(envelope: Envelope, side: Side) -> Envelope:
+    """Give a crown the depth of its left side."""
+    return envelope.with_side(side.crown.mask, side.crown.camera)
