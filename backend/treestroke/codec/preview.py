@@ -128,16 +128,21 @@ def _scene(bark: Surface, leaf: Surface | None) -> _Scene:
 
 
 def _views(scene: _Scene, camera: Camera) -> tuple[_View, _View]:
-    return _front(camera), _three_quarter(scene)
+    return _front(scene, camera), _three_quarter(scene)
 
 
-def _front(camera: Camera) -> _View:
-    """Frame as the photo does; a very wide or tall photo is cut or set into a wider picture about its root."""
+def _front(scene: _Scene, camera: Camera) -> _View:
+    """Frame as the photo does; a very wide or tall photo is cut or set into a wider picture about its root.
+
+    One that shows a tree too wide for that is set into a taller picture.
+    """
     height = _VIEW_HEIGHT * _FINER
-    scale = height / camera.height
+    span_px = float(np.ptp(scene.corners[..., 0])) / camera.metres_per_pixel
+    scale = min(height / camera.height, (1 - 2 * _MARGIN) * height * _MAX_ASPECT / span_px)
     width = int(np.clip(camera.width * scale, height / 2, height * _MAX_ASPECT))
     left = (camera.width * scale - width) * camera.root_px[0] / camera.width
-    origin = (camera.root_px[0] * scale - left, camera.root_px[1] * scale)
+    top = (camera.height * scale - height) * camera.root_px[1] / camera.height
+    origin = (camera.root_px[0] * scale - left, camera.root_px[1] * scale - top)
     return _View(np.eye(3), float(_PITCH), scale / camera.metres_per_pixel, origin, height, width - width % _FINER)
 
 

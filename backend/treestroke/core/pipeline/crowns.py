@@ -47,12 +47,12 @@ def closed(mask: Mask, share: float) -> Mask:
     return cv2.morphologyEx(edge, cv2.MORPH_CLOSE, kernel)[size:-size, size:-size].astype(bool)
 
 
-def frayed(crown: Mask, rng: np.random.Generator) -> Mask:
-    """Fray the outline of a crown whose leaves nobody has seen into clumps, and open some gaps."""
+def frayed(crown: Mask, rng: np.random.Generator, gap: float = GAP) -> Mask:
+    """Fray the outline of a crown whose leaves nobody has seen into clumps, and open gaps where ``gap`` says so."""
     size = float(np.sqrt(crown.sum()))
     height, width = crown.shape
     coarse = (max(2, round(width / (CLUMP * size))), max(2, round(height / (CLUMP * size))))
     clumps = cv2.resize(rng.standard_normal(coarse[::-1]), (width, height), interpolation=cv2.INTER_CUBIC)
     inward = cv2.distanceTransform(np.pad(crown.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     bays = FRAY * size * np.clip(0.3 - 0.5 * clumps, 0.0, 1.0)
-    return np.asarray(crown & (inward > bays) & (clumps > -GAP))
+    return np.asarray(crown & (inward > bays) & (clumps > -gap))

@@ -9,7 +9,7 @@ from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.polyline import Floats
-from treestroke.core.grow.replacement import Grown
+from treestroke.core.grow.grown import Grown
 from treestroke.core.leaf.area import leaf_area
 from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.fruit import fruit_among

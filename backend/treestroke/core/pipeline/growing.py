@@ -8,16 +8,17 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 from treestroke.core.geometry.polyline import Indices
+from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import Subtree, choose_library
 from treestroke.core.grow.params import GrowthParams, growth_for
-from treestroke.core.grow.replacement import Grown, grow
+from treestroke.core.grow.replacement import grow
 from treestroke.core.leaf.seasons import LEAFY
 from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, LEAFED_SHARE, closed, drawn, drawn_depth, frayed
 from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Stature
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sides import Side, crown_height, deepened, draw_side, in_units, side_of, with_depth
+from treestroke.core.pipeline.sides import Side, crown_height, deepened, draw_side, side_of, with_depth
 from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo, Sight, look
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
@@ -174,12 +175,10 @@ def _turned(traced: Traced, side: Side, height_px: float, camera: Camera) -> _Li
     stroke, weights = traced.stroke[owner], accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
-    from treestroke.core.survey.fidelity import fidelity
-
-    main, retrieved = with_depth(front, side, height_px, camera)
-    tree = main.skeleton
+    deep = with_depth(front, side, height_px, camera)
+    tree = deep.tree.skeleton
     seen = Skeleton(camera.pixels_from_world(tree.points), tree.radii / camera.metres_per_pixel, tree.parents)
-    return _Lifted(tree, seen, owner[retrieved.front], fidelity(in_units(front, height_px), side.tree, retrieved))
+    return _Lifted(tree, seen, owner[deep.front], deep.score)
 
 
 def _filled(

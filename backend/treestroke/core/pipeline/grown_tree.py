@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.polyline import Floats, Indices
-from treestroke.core.grow.replacement import Grown
+from treestroke.core.grow.grown import Grown
 from treestroke.core.pipeline.sight import Mask, Photo
 from treestroke.core.segment.kind import Kind
 from treestroke.core.skeleton.skeleton import Skeleton

@@ -1,20 +1,21 @@
 """The left side of a tree beside its front: heights made to agree, depth taken from it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.geometry.polyline import Floats
+from treestroke.core.geometry.polyline import Indices
 from treestroke.core.geometry.views import View
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.lift.retrieval import Retrieved
+from treestroke.core.lift.retrieval import PAIRED, retrieve_depth
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch
+from treestroke.core.survey.fidelity import fidelity
 from treestroke.core.trace.drawing import Drawing, draw_up
 
 UNITS = 1000.0
@@ -88,15 +89,33 @@ def side_of(
     return Side(in_units(drawing.tree, height_px), View(fill_outline(crown - corner, height, width), camera))
 
 
-def with_depth(front: Branched, side: Side, height_px: float, camera: Camera) -> tuple[Branched, Retrieved]:
-    """Turn a front (px of a camera) into a 3D tree, metres, by the depth of its left side; tell how."""
-    from treestroke.core.lift.retrieval import retrieve_depth
+@dataclass(frozen=True, eq=False)
+class Deep:
+    """A front turned into a 3D tree by its left side.
 
-    retrieved = retrieve_depth(in_units(front, height_px), side.tree)
+    Attributes
+    ----------
+    tree
+        (n joints) metres.
+    front
+        (n,) the front's joint that each stands for.
+    score
+        How true it is to both, by name.
+    """
+
+    tree: Branched
+    front: Indices
+    score: dict[str, float]
+
+
+def with_depth(front: Branched, side: Side, height_px: float, camera: Camera) -> Deep:
+    """Turn a front (px of a camera) into a 3D tree by the depth of its left side."""
+    flat = in_units(front, height_px)
+    retrieved = retrieve_depth(flat, side.tree)
     skeleton, metres = retrieved.tree.skeleton, height_px / UNITS * camera.metres_per_pixel
-    points: Floats = skeleton.points * metres
-    tree = Skeleton(points, skeleton.radii * metres, skeleton.parents)
-    return Branched(tree, retrieved.tree.branch), retrieved
+    tree = Skeleton(skeleton.points * metres, skeleton.radii * metres, skeleton.parents)
+    score = asdict(fidelity(flat, side.tree, retrieved.tree, retrieved.origin == PAIRED))
+    return Deep(Branched(tree, retrieved.tree.branch), retrieved.front, score)
 
 
 def deepened(envelope: Envelope, side: Side) -> Envelope:

@@ -10,7 +10,7 @@ from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 from treestroke.core.geometry.polyline import Floats
 from treestroke.core.geometry.views import CrownViews, View
-from treestroke.core.grow.replacement import Grown
+from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.lift.spread import lift
@@ -25,7 +25,6 @@ from treestroke.core.pipeline.sides import (
     crown_height,
     deepened,
     draw_side,
-    in_units,
     side_of,
     stroke_height,
     with_depth,
@@ -37,7 +36,6 @@ from treestroke.core.segment.kind import Kind, foliage_kind
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, StrokeWarning
-from treestroke.core.survey.fidelity import fidelity
 from treestroke.core.survey.measures import BREAST_HEIGHT, Scale
 from treestroke.core.trace.drawing import Drawing
 
@@ -173,9 +171,8 @@ def _main_branches(
     """Give the drawn branches depth: from the side, or by spreading them; tell how true they are to the sketches."""
     if side is None:
         return Branched(lift(frame.tree.skeleton, frame.tree.branch, envelope, rng), frame.tree.branch), {}
-    height_px = _height_px(seen, frame)
-    main, retrieved = with_depth(frame.tree, side, height_px, frame.camera)
-    return main, fidelity(in_units(frame.tree, height_px), side.tree, retrieved)
+    deep = with_depth(frame.tree, side, _height_px(seen, frame), frame.camera)
+    return deep.tree, deep.score
 
 
 def _grown_tree(
@@ -216,7 +213,7 @@ def _leafy(frame: _Frame, grown: Grown, rng: np.random.Generator) -> Mask:
     """Tell where the tree is to have leaves: near its branches, in a crown whose outline is frayed."""
     wood = drawn(_in_picture(grown.skeleton, frame.camera), frame.crown.shape)
     away = cv2.distanceTransform((~wood).astype(np.uint8), cv2.DIST_L2, 5)
-    return np.asarray(frayed(frame.crown, rng) & (away <= LEAFED_SHARE * WORKING_HEIGHT))
+    return np.asarray(frayed(frame.crown, rng, np.inf) & (away <= LEAFED_SHARE * WORKING_HEIGHT))
 
 
 def _portrait(
