@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from PIL import Image
+from tests.api import drawn, sketched
 
 import treestroke
 from treestroke.cli import main
@@ -29,6 +30,22 @@ def run(tmp_path: Path, maple_photo: Path, maple_strokes: Path, capsys: pytest.C
         return code, capsys.readouterr().err.splitlines(), sorted(p.name for p in tmp_path.iterdir())
 
     return run
+
+
+@pytest.fixture
+def draw(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """Run ``sketch`` on drawn sides of a small tree; give the exit code, the lines on stderr and the files left."""
+    places = {}
+    for view, given in (("front", sketched.FRONT), ("side", sketched.SIDE)):
+        places[view] = tmp_path.parent / f"{tmp_path.name}.{view}.json"
+        places[view].write_text(json.dumps(given))
+
+    def draw(*more: str, views: tuple[str, ...] = ("front", "side")):
+        given = [str(places.get(view, view)) for view in views]
+        code = main(["sketch", *given, "--out", str(tmp_path / "tree.glb"), "--leaf-density", "0.2", *QUICK, *more])
+        return code, capsys.readouterr().err.splitlines(), sorted(p.name for p in tmp_path.iterdir())
+
+    return draw
 
 
 def strokes_file(tmp_path: Path, maple_strokes: Path, **changes: object) -> Path:
@@ -63,6 +80,17 @@ def test_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
         ["model", "photo.jpg", "other.jpg", "--strokes", "s.json", "--out", "x.glb"],
         ["model", "photo.jpg", "--strokes", "s.json", "--out"],
         ["model", "a.treestroke", "--strokes", "s.json", "--out", "x.glb"],
+        ["model", "a.treestroke", "--side", "side.json", "--out", "x.glb"],
+        ["model", "photo.jpg", "--strokes", "s.json", "--photo", "b.jpg", "--out", "x.glb"],
+        ["sketch"],
+        ["sketch", "front.json"],
+        ["sketch", "--out", "x.glb"],
+        ["sketch", "front.json", "side.json", "back.json", "--out", "x.glb"],
+        ["sketch", "front.json", "--strokes", "s.json", "--out", "x.glb"],
+        ["sketch", "a.treestroke", "side.json", "--out", "x.glb"],
+        ["sketch", "a.treestroke", "--photo", "b.jpg", "--out", "x.glb"],
+        ["sketch", "missing.json", "--out", "x.glb"],
+        ["sketch", "missing.treestroke", "--out", "x.glb"],
         ["trace", "photo.jpg"],
         ["trace", "photo.jpg", "--strokes", "s.json", "--seed", "1"],
     ],
@@ -325,6 +353,73 @@ def test_a_leaf_that_cannot_be_used_is_refused_in_one_line(run, tmp_path: Path) 
         assert (code, left) == (2, [])
         assert len(lines) == 1
         assert said in lines[0]
+
+
+def test_two_sketches_become_a_tree_with_all_its_files(draw, tmp_path: Path) -> None:
+    report, preview = tmp_path / "report.json", tmp_path / "front.png"
+    code, lines, left = draw("--report", str(report), "--preview", str(preview), "--seed", "3", "--height", "4")
+    assert (code, lines, left) == (0, [], ["front.png", "report.json", "tree.glb"])
+    told = json.loads(report.read_text())
+    assert (told["seed"], told["settings"]["height"], told["warnings"]) == (3, 4.0, [])
+    assert told["score"]["side_covered"] > 0.9
+    assert {"decode", "trace", "lift", "grow", "leaf", "mesh", "write"} == set(told["seconds"])
+    settings = {"height": 4, "iterations": 5, "leaf_density": 0.2}
+    assert (tmp_path / "tree.glb").read_bytes() == treestroke.sketch(sketched.FRONT, sketched.SIDE, settings, 3).glb
+
+
+def test_one_sketch_alone_says_aloud_what_was_assumed(draw, tmp_path: Path) -> None:
+    report = tmp_path / "report.json"
+    code, lines, _ = draw("--report", str(report), views=("front",))
+    assert code == 0
+    assert len(lines) == 1
+    assert lines[0].startswith("treestroke: there is no sketch of the left side")
+    assert [warning["code"] for warning in json.loads(report.read_text())["warnings"]] == ["side_assumed"]
+
+
+def test_sketches_may_be_pictures_over_a_photo(draw, tmp_path: Path) -> None:
+    base = tmp_path.parent / tmp_path.name
+    for name, content in (("a.png", sketched.png(sketched.FRONT)), ("b.png", drawn.encoded())):
+        Path(f"{base}.{name}").write_bytes(content)
+    code, lines, left = draw("--photo", f"{base}.b.png", views=(f"{base}.a.png", "side"))
+    assert (code, lines, left) == (0, [], ["tree.glb"])
+
+
+def test_a_fruit_is_borne_and_one_that_cannot_be_used_is_refused(draw, tmp_path: Path) -> None:
+    berry = tmp_path.parent / f"{tmp_path.name}.berry.png"
+    berry.write_bytes(sketched.berry())
+    draw()
+    plain = (tmp_path / "tree.glb").read_bytes()
+    assert draw("--fruit", str(berry))[0] == 0
+    assert (tmp_path / "tree.glb").read_bytes() != plain
+    code, lines, _ = draw("--fruit", str(tmp_path / "none.png"))
+    assert (code, len(lines), "no such file" in lines[0]) == (2, 1, True)
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"\x89PNG\r\n\x1a\n", b'{"branches": [{"points": [[1, 1], [1, 1]]}]}'])
+def test_a_sketch_that_shows_no_tree_is_refused_in_one_line(draw, tmp_path: Path, content: bytes) -> None:
+    other = tmp_path.parent / f"{tmp_path.name}.other.json"
+    other.write_bytes(content)
+    for views in ((str(other),), ("front", str(other))):
+        code, lines, left = draw(views=views)
+        assert (code, len(lines), left) == (2, 1, [])
+
+
+def test_no_sketch_is_written_over(draw, tmp_path: Path) -> None:
+    side = tmp_path.parent / f"{tmp_path.name}.side.json"
+    code, lines, _ = draw("--report", str(side))
+    assert (code, len(lines)) == (2, 1)
+    assert json.loads(side.read_text()) == sketched.SIDE
+
+
+def test_a_side_gives_a_photo_its_depth(run, tmp_path: Path) -> None:
+    side, report = tmp_path.parent / f"{tmp_path.name}.side.json", tmp_path / "report.json"
+    side.write_text(json.dumps(sketched.SIDE))
+    assert run()[0] == 0
+    plain = (tmp_path / "tree.glb").read_bytes()
+    code, lines, _ = run("--side", str(side), "--report", str(report))
+    assert (code, lines) == (0, [])
+    assert (tmp_path / "tree.glb").read_bytes() != plain
+    assert json.loads(report.read_text())["score"]["depth_over_width"] > 0
 
 
 @pytest.mark.skipif(has_usd(), reason="usd-core is installed")

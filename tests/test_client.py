@@ -14,11 +14,13 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from tests.api import sketched
 from tests.running import BACKEND, serving
 
 from treestroke import client as client_module
 from treestroke.client import Client, ServiceError
-from treestroke.schemas import Model, Photo, Strokes
+from treestroke.schemas import Model, Photo
+from treestroke.shapes import Sketch, Strokes
 
 DATA = Path(__file__).parent / "data"
 PHOTO, STROKES = DATA / "elm_house.jpg", DATA / "elm_house.strokes.json"
@@ -228,6 +230,38 @@ def test_a_download_that_breaks_is_made_again(address: str, tree: Model, tmp_pat
     with through(address, breaking(1, 50_000, b"/tree.glb")) as place, Client(place) as client:
         whole = client.download(tree, tmp_path / "elm.glb").read_bytes()
     assert len(whole) == int.from_bytes(whole[8:12], "little")
+
+
+def test_a_tree_is_made_of_sketches_in_any_form(client: Client, tmp_path: Path) -> None:
+    picture, text = tmp_path / "front.png", tmp_path / "side.json"
+    picture.write_bytes(sketched.png(sketched.FRONT))
+    text.write_text(json.dumps(sketched.SIDE))
+    model = client.wait(client.grow_sketches(picture, text, QUICK, fruit=sketched.berry(), name="Pear"), timeout=120)
+    assert (model.status, model.photo, model.name) == ("succeeded", None, "Pear")
+    assert {"front.png", "side.json"} <= set(model.files)
+    assert json.loads(client.download(model, tmp_path / "again.json", "side.json").read_text()) == sketched.SIDE
+    values = Sketch.model_validate(sketched.FRONT), Sketch.model_validate(sketched.SIDE)
+    again = [client.grow_sketches(*both, QUICK, seed=1) for both in (values, (sketched.FRONT, sketched.SIDE))]
+    ends = [client.download(client.wait(one), tmp_path / one.id).read_bytes() for one in again]
+    assert ends[0] == ends[1]
+
+
+def test_sketches_are_traced(client: Client) -> None:
+    told = client.trace_sketches(sketched.FRONT, sketched.SIDE, rev=4, grow=True)
+    assert (told.rev, told.front.size) == (4, (200, 240))
+    assert told.side is not None
+    assert told.grown is not None
+    assert told.score is not None
+    with pytest.raises(ServiceError) as caught:
+        client.trace_sketches({"branches": []})
+    assert caught.value.errors[0].pointer == "/front/branches"
+
+
+def test_a_photo_is_given_a_side_or_lends_its_colours(client: Client, photo: Photo) -> None:
+    mixed = client.wait(client.grow(photo, STROKES, QUICK, side=sketched.SIDE), timeout=120)
+    assert {"strokes.json", "side.json"} <= set(mixed.files)
+    over = client.wait(client.grow_sketches(sketched.FRONT, settings=QUICK, photo=photo), timeout=120)
+    assert (over.status, over.photo) == ("succeeded", photo.id)
 
 
 def test_waiting_ends_in_time(client: Client, photo: Photo) -> None:

@@ -1,6 +1,7 @@
-"""One photo of a real tree and a few loose strokes become a 3D tree.
+"""One photo of a real tree and a few loose strokes, or two sketches of a tree, become a 3D tree.
 
-The two calls are ``treestroke.trace(photo, strokes)`` and ``treestroke.model(photo, strokes, settings, seed, report)``.
+The calls are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)`` and
+``treestroke.sketch(front, side, settings, seed, report)``.
 They are imported at first use, so that ``treestroke --version`` and a wrong command answer at once.
 """
 
@@ -8,36 +9,51 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from treestroke.core.errors import PhotoError, SettingsError, StrokesError, TreestrokeError
+    from treestroke.core.errors import FruitError, LeafError, PhotoError, SettingsError, StrokesError, TreestrokeError
     from treestroke.core.pipeline.grown_tree import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
-    from treestroke.core.strokes import Stroke, Strokes
-    from treestroke.service.model import Model, model
+    from treestroke.core.strokes import Sketch, Stroke, Strokes
+    from treestroke.service.making import Model
+    from treestroke.service.model import model
+    from treestroke.service.sketch import sketch
     from treestroke.service.trace import Trace, trace
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "FruitError",
+    "LeafError",
     "LiveTree",
     "Model",
     "ModelSettings",
     "PhotoError",
     "SettingsError",
+    "Sketch",
     "Stroke",
     "Strokes",
     "StrokesError",
     "Trace",
     "TreestrokeError",
     "model",
+    "sketch",
     "trace",
 ]
 
 _HOMES = {
-    "treestroke.core.errors": ("PhotoError", "SettingsError", "StrokesError", "TreestrokeError"),
-    "treestroke.core.pipeline.growing": ("LiveTree",),
+    "treestroke.core.errors": (
+        "FruitError",
+        "LeafError",
+        "PhotoError",
+        "SettingsError",
+        "StrokesError",
+        "TreestrokeError",
+    ),
+    "treestroke.core.pipeline.grown_tree": ("LiveTree",),
     "treestroke.core.pipeline.settings": ("ModelSettings",),
-    "treestroke.core.strokes": ("Stroke", "Strokes"),
-    "treestroke.service.model": ("Model", "model"),
+    "treestroke.core.strokes": ("Sketch", "Stroke", "Strokes"),
+    "treestroke.service.making": ("Model",),
+    "treestroke.service.model": ("model",),
+    "treestroke.service.sketch": ("sketch",),
     "treestroke.service.trace": ("Trace", "trace"),
 }
 

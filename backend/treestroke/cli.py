@@ -7,18 +7,23 @@ import sys
 import traceback
 import warnings
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from treestroke import __version__
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
 
+if TYPE_CHECKING:
+    from treestroke.service.evidence import Evidence
+
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
+_ASSUMED = "side_assumed"
+"""Code of the one warning that is said aloud: nobody drew what it speaks of."""
 
 
 class UsageError(TreestrokeError):
@@ -84,29 +89,22 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> Parser:
-    parser = Parser(prog="treestroke", description="One photo of a tree and a few strokes become a 3D tree.")
+    parser = Parser(
+        prog="treestroke", description="One photo of a tree and a few strokes, or two sketches of it, become a 3D tree."
+    )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    model = commands.add_parser("model", help="make a GLB", allow_abbrev=False)
+    model = commands.add_parser("model", help="make a GLB of a photo", allow_abbrev=False)
     model.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP; or a NAME.treestroke project")
     model.add_argument("--strokes", metavar="STROKES.json", help="needed with a photo")
-    model.add_argument("--out", metavar="TREE.glb", type=Path, required=True)
-    model.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
-    model.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
-    model.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
-    model.add_argument("--leaf", metavar="LEAF.png", help="a leaf cut out, stalk down, that the tree is to bear")
-    for entry in fields(ModelSettings):
-        names = dict.fromkeys(f"--{entry.name.replace('_', mark)}" for mark in "-_")
-        allowed, meaning = entry.metadata["allowed"], entry.metadata["meaning"]
-        if isinstance(allowed, Toggle):
-            model.add_argument(*names, dest=entry.name, action=argparse.BooleanOptionalAction, help=meaning)
-        else:
-            default = "none" if isinstance(allowed, Several) else entry.default
-            about, form = (
-                f"{meaning}: {allowed} (default {default})",
-                "A,B" if isinstance(allowed, Several) else "VALUE",
-            )
-            model.add_argument(*names, dest=entry.name, metavar=form, help=about)
+    model.add_argument("--side", metavar="SIDE", help="sketch of the tree's left side: stroke JSON or PNG")
+    sketch = commands.add_parser("sketch", help="make a GLB of sketches", allow_abbrev=False)
+    sketch.add_argument("front", metavar="FRONT", help="stroke JSON or PNG; or a NAME.treestroke project")
+    sketch.add_argument("side", metavar="SIDE", nargs="?", help="the same tree from its left")
+    sketch.add_argument("--photo", metavar="PHOTO", help="what FRONT was drawn over; it lends its colours")
+    for maker, first in ((model, "photo"), (sketch, "front")):
+        maker.set_defaults(first=first)
+        _add_making(maker)
     trace = commands.add_parser("trace", help="find foliage and branches", allow_abbrev=False)
     trace.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP")
     trace.add_argument("--strokes", metavar="STROKES.json", required=True)
@@ -122,7 +120,8 @@ def _parser() -> Parser:
     for command in (serve, worker, doctor):
         command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
     for command, action in (
-        (model, _model),
+        (model, _make),
+        (sketch, _make),
         (trace, _trace),
         (serve, _serve),
         (worker, _worker),
@@ -133,18 +132,38 @@ def _parser() -> Parser:
     return parser
 
 
-def _model(options: argparse.Namespace) -> None:
+def _add_making(maker: argparse.ArgumentParser) -> None:
+    """Add what is common to all commands that make a tree."""
+    maker.add_argument("--out", metavar="TREE.glb", type=Path, required=True)
+    maker.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
+    maker.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
+    maker.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
+    maker.add_argument("--leaf", metavar="LEAF.png", help="a leaf cut out, stalk down, that the tree is to bear")
+    maker.add_argument("--fruit", metavar="FRUIT.png", help="a fruit cut out, stalk up, that the tree is to bear")
+    for entry in fields(ModelSettings):
+        names = dict.fromkeys(f"--{entry.name.replace('_', mark)}" for mark in "-_")
+        allowed, meaning = entry.metadata["allowed"], entry.metadata["meaning"]
+        if isinstance(allowed, Toggle):
+            maker.add_argument(*names, dest=entry.name, action=argparse.BooleanOptionalAction, help=meaning)
+            continue
+        several = isinstance(allowed, Several)
+        about = f"{meaning}: {allowed} (default {'none' if several else entry.default})"
+        maker.add_argument(*names, dest=entry.name, metavar="A,B" if several else "VALUE", help=about)
+
+
+def _make(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "report", "preview"))
-    photo, strokes, settings, seed, leaf = _model_inputs(options)
+    given, settings = _evidence(options)
+    settings |= _chosen(options)
     from treestroke.codec.image import encode_png
+    from treestroke.service.evidence import make_of
     from treestroke.service.inputs import load_settings
-    from treestroke.service.model import model
     from treestroke.store.files import write_whole
 
-    chosen = load_settings(settings)
+    seed, chosen = settings.pop("seed", 0), load_settings(settings)
     line = ProgressLine(sys.stderr, chosen.iterations) if sys.stderr.isatty() else None
     try:
-        result = model(photo, strokes, chosen, seed, line or silent, leaf=leaf, name=_stem(options.out))
+        result = make_of(given, chosen, seed, line or silent, name=_stem(options.out))
     finally:
         if line:
             line.clear()
@@ -156,6 +175,9 @@ def _model(options: argparse.Namespace) -> None:
     further = {options.out.with_name(name): content for name, content in list(result.files.items())[1:]}
     _check_further(options, further)
     write_whole({path: makers[name]() for name, path in outputs.items()} | further)
+    for warning in result.report["warnings"]:
+        if warning["code"] == _ASSUMED:
+            print(f"treestroke: {warning['detail']}", file=sys.stderr)
 
 
 def _stem(out: Path) -> str:
@@ -165,7 +187,7 @@ def _stem(out: Path) -> str:
 
 def _check_further(options: argparse.Namespace, further: Collection[Path]) -> None:
     """Refuse to write over what was read."""
-    read = {os.path.realpath(given) for given in (options.photo, options.strokes, options.leaf) if given is not None}
+    read = _read(options)
     for path in further:
         if os.path.realpath(path) in read or path.is_dir():
             problem = "the command reads it" if path.is_file() else "it is a folder"
@@ -224,24 +246,40 @@ def _service_settings(options: argparse.Namespace) -> Any:
     return read_settings(**{name: value for name, value in given.items() if value is not None})
 
 
-def _model_inputs(options: argparse.Namespace) -> tuple[Any, Any, dict[str, Any], Any, Any]:
-    """Collect photo, strokes, settings, seed and leaf from the flags and, where one is given, the project file."""
-    flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
-    settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
-    if options.seed is not None:
-        settings["seed"] = _whole(options.seed)
-    if not options.photo.endswith(".treestroke"):
-        if options.strokes is None:
-            raise UsageError("--strokes is missing; name the strokes' JSON file")
-        return options.photo, options.strokes, settings, settings.pop("seed", 0), options.leaf
-    if options.strokes is not None:
-        raise UsageError("--strokes: a project has its own strokes; leave the flag out")
+def _evidence(options: argparse.Namespace) -> tuple["Evidence", dict[str, Any]]:
+    """Collect what the tree is made of, and a project's settings, the seed among them."""
+    from treestroke.service.evidence import Evidence
     from treestroke.service.inputs import load_project
 
-    project = load_project(options.photo)
-    settings = {**project.settings, **settings}
-    leaf = project.leaf if options.leaf is None else options.leaf
-    return project.photo, project.strokes, settings, settings.pop("seed", 0), leaf
+    parts = _parts(options)
+    if not parts[options.first].endswith(".treestroke"):
+        if options.first == "photo" and "strokes" not in parts:
+            raise UsageError("--strokes is missing; name the strokes' JSON file")
+        return Evidence(**parts), {}
+    pictures = {part: parts.pop(part) for part in ("leaf", "fruit") if part in parts}
+    path = parts.pop(options.first)
+    for part in parts:
+        raise UsageError(f"--{part}: a project has its own {part}; leave the flag out")
+    project = load_project(path)
+    return replace(Evidence.of(project), **pictures), project.settings
+
+
+def _parts(options: argparse.Namespace) -> dict[str, str]:
+    """Give the files that the tree is made of, by part."""
+    parts = {part: getattr(options, part, None) for part in ("photo", "strokes", "front", "side", "leaf", "fruit")}
+    return {part: path for part, path in parts.items() if path is not None}
+
+
+def _read(options: argparse.Namespace) -> set[str]:
+    """Give the places of all files that the command reads."""
+    return {os.path.realpath(path) for path in _parts(options).values()}
+
+
+def _chosen(options: argparse.Namespace) -> dict[str, Any]:
+    """Collect the settings that flags name, and the seed."""
+    flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
+    settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
+    return settings if options.seed is None else {**settings, "seed": _whole(options.seed)}
 
 
 def _value(name: str, text: str | bool) -> object:
@@ -269,7 +307,7 @@ def _whole(text: str) -> object:
 def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Path]:
     """Collect the files to write; refuse, before any work, places that no file can have."""
     outputs = {name: path for name in names if (path := getattr(options, name)) is not None}
-    taken = {os.path.realpath(given) for given in (options.photo, options.strokes) if given is not None}
+    taken = _read(options)
     for name, path in outputs.items():
         if path.is_dir() or not path.parent.is_dir():
             problem = "it is a folder" if path.is_dir() else f"there is no folder {path.parent}"

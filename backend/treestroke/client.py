@@ -1,4 +1,4 @@
-"""A client of the service: photos up, traces and trees down. It needs none of the modelling packages."""
+"""A client of the service: photos and sketches up, traces and trees down. It needs none of the modelling packages."""
 
 import base64
 import hashlib
@@ -9,66 +9,33 @@ import secrets
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import closing, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeVar
 from urllib.parse import quote
 
 import httpx
-from pydantic import BaseModel, ValidationError
 
-from treestroke.schemas import Fault, GrownSkeleton, Model, ModelPage, Photo, Problem, Strokes, TraceAnswer
+from treestroke.answers import Again, Event, ServiceError, checked, events_of, read, unreachable
+from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, SketchTraceAnswer, TraceAnswer
+from treestroke.shapes import Sketch, Strokes
+
+__all__ = ["Client", "PictureLike", "ServiceError", "SketchLike", "StrokesLike"]
 
 StrokesLike = Strokes | Mapping[str, Any] | str | os.PathLike[str]
 """Strokes, the same as a plain mapping, or the path of their JSON file."""
-Answer = TypeVar("Answer", bound=BaseModel)
+PictureLike = str | os.PathLike[str] | bytes
+SketchLike = Sketch | Mapping[str, Any] | str | os.PathLike[str]
+"""A sketch, the same as a plain mapping, or the path of its JSON file or of a PNG."""
 Done = TypeVar("Done")
 
 _PAUSES_S = (0.2, 0.4, 0.8, 1.6, 3.2)
 """Between tries; a service that restarts is back within them."""
-_LONGEST_PAUSE_S = 10.0
 _SILENCE_S = 20.0
 """An event stream that does not even ping for so long is broken."""
 _POLL_S = 0.5
+_PNG = b"\x89PNG"
 _ENDS = ("succeeded", "failed", "canceled")
-
-
-class ServiceError(Exception):
-    """The service refuses a request, or does not answer.
-
-    Attributes
-    ----------
-    status
-        HTTP status; 0 where no answer came.
-    code, detail
-        What is wrong, for programs (``unreachable`` where no answer came) and for people.
-    errors
-        The fields that are at fault.
-    """
-
-    def __init__(self, status: int, code: str, detail: str, errors: tuple[Fault, ...] = ()) -> None:
-        super().__init__(f"{detail} ({code})")
-        self.status, self.code, self.detail, self.errors = status, code, detail, errors
-
-
-class _Again(ServiceError):
-    """What may come right by itself."""
-
-    def __init__(
-        self, status: int, code: str, detail: str, errors: tuple[Fault, ...] = (), pause_s: float = 0.0
-    ) -> None:
-        super().__init__(status, code, detail, errors)
-        self.pause_s = pause_s
-
-
-@dataclass(frozen=True)
-class _Event:
-    """One event of a stream; most have no id."""
-
-    kind: str
-    id: str
-    text: str
 
 
 class Client:
@@ -112,20 +79,27 @@ class Client:
         """
         content = _content(photo)
         headers = {"Content-Type": "application/octet-stream"}
-        return _read(Photo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
+        return read(Photo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
 
     def photo(self, photo: Photo | str) -> Photo:
         """Look a photo up."""
-        return _read(Photo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
+        return read(Photo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
 
     def delete_photo(self, photo: Photo | str) -> None:
         """Delete a photo; models that were made of it keep their own copy."""
         self._ask("DELETE", f"/v1/photos/{_id(photo)}")
 
     def trace(
-        self, photo: Photo | str, strokes: StrokesLike, rev: int | None = None, grow: bool = False
+        self,
+        photo: Photo | str,
+        strokes: StrokesLike,
+        rev: int | None = None,
+        grow: bool = False,
+        side: SketchLike | None = None,
     ) -> TraceAnswer:
         """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too. ``rev`` comes back.
+
+        A sketch of the tree's left ``side`` gives that skeleton its depth.
 
         Raises
         ------
@@ -133,7 +107,21 @@ class Client:
             There is no such photo, or a stroke cannot be used.
         """
         body = {**_plain(strokes), "grow": grow} | ({} if rev is None else {"rev": rev})
-        return _read(TraceAnswer, self._ask("POST", f"/v1/photos/{_id(photo)}/trace", json=body).content)
+        body |= {} if side is None else {"side": _plain_sketch(side)}
+        return read(TraceAnswer, self._ask("POST", f"/v1/photos/{_id(photo)}/trace", json=body).content)
+
+    def trace_sketches(
+        self, front: SketchLike, side: SketchLike | None = None, rev: int | None = None, grow: bool = False
+    ) -> SketchTraceAnswer:
+        """Find the branches that sketches of a tree's front and left side show; else as `trace`.
+
+        Raises
+        ------
+        ServiceError
+            A sketch cannot be used.
+        """
+        body = {**_plain_sketches(front, side), "grow": grow} | ({} if rev is None else {"rev": rev})
+        return read(SketchTraceAnswer, self._ask("POST", "/v1/sketches/trace", json=body).content)
 
     def grow(
         self,
@@ -143,14 +131,18 @@ class Client:
         seed: int = 0,
         name: str = "",
         idempotency_key: str | None = None,
-        leaf: str | os.PathLike[str] | bytes | None = None,
+        leaf: PictureLike | None = None,
+        fruit: PictureLike | None = None,
+        side: SketchLike | None = None,
     ) -> Model:
         """Ask for a tree; `wait` for it. The request may be cut off and sent again: it makes one model.
 
         Parameters
         ----------
-        leaf
-            A path or the bytes of a PNG of a leaf cut out, that the tree is to bear.
+        leaf, fruit
+            A path or the bytes of a PNG of a leaf, or of a fruit, cut out, that the tree is to bear.
+        side
+            A sketch of the tree's left side, by which its branches have their depth.
         idempotency_key
             The same key with the same request gives the same model, for a day, from another process too; a new key by
             default.
@@ -160,27 +152,50 @@ class Client:
         ServiceError
             There is no such photo, or a stroke or a setting cannot be used.
         """
-        body = {
-            "photo": _id(photo),
-            "strokes": _plain(strokes),
-            "settings": dict(settings or {}),
-            "seed": seed,
-            "name": name,
-        }
-        if leaf is not None:
-            body["leaf"] = base64.b64encode(_content(leaf)).decode()
-        headers = {"Idempotency-Key": idempotency_key or secrets.token_hex(16)}
-        return _read(Model, self._ask("POST", "/v1/models", json=body, headers=headers).content)
+        body = {"photo": _id(photo), "strokes": _plain(strokes)}
+        if side is not None:
+            body["sketches"] = {"side": _plain_sketch(side)}
+        wish = {"settings": dict(settings or {}), "seed": seed, "name": name, **_pictures(leaf, fruit)}
+        return self._wish({**body, **wish}, idempotency_key)
+
+    def grow_sketches(
+        self,
+        front: SketchLike,
+        side: SketchLike | None = None,
+        settings: Mapping[str, Any] | None = None,
+        seed: int = 0,
+        name: str = "",
+        idempotency_key: str | None = None,
+        leaf: PictureLike | None = None,
+        fruit: PictureLike | None = None,
+        photo: Photo | str | None = None,
+    ) -> Model:
+        """Ask for a tree of sketches of its front and, where there is one, of its left side; else as `grow`.
+
+        Parameters
+        ----------
+        photo
+            What the front was drawn over, which lends the tree its colours.
+
+        Raises
+        ------
+        ServiceError
+            A sketch or a setting cannot be used, or there is no such photo.
+        """
+        body: dict[str, Any] = {} if photo is None else {"photo": _id(photo)}
+        body["sketches"] = _plain_sketches(front, side)
+        wish = {"settings": dict(settings or {}), "seed": seed, "name": name, **_pictures(leaf, fruit)}
+        return self._wish({**body, **wish}, idempotency_key)
 
     def model(self, model: Model | str) -> Model:
         """Look a model up."""
-        return _read(Model, self._ask("GET", f"/v1/models/{_id(model)}").content)
+        return read(Model, self._ask("GET", f"/v1/models/{_id(model)}").content)
 
     def models(self) -> Iterator[Model]:
         """Give all models, newest first, page by page as they are taken."""
         cursor: dict[str, str] = {}
         while True:
-            page = _read(ModelPage, self._ask("GET", "/v1/models", params=cursor).content)
+            page = read(ModelPage, self._ask("GET", "/v1/models", params=cursor).content)
             yield from page.models
             if page.next is None:
                 return
@@ -221,9 +236,9 @@ class Client:
                 for event in events:
                     last = event.id or last
                     if event.kind != "preview":
-                        shown = _tell(_read(Model, event.text), shown, on_progress)
+                        shown = _tell(read(Model, event.text), shown, on_progress)
                     elif on_preview is not None:
-                        on_preview(_read(GrownSkeleton, event.text))
+                        on_preview(read(GrownSkeleton, event.text))
                     if shown is not None and event.kind in _ENDS:
                         return shown
                     _left(deadline)
@@ -253,11 +268,11 @@ class Client:
 
     def rename(self, model: Model | str, name: str) -> Model:
         """Name a model."""
-        return _read(Model, self._ask("PATCH", f"/v1/models/{_id(model)}", json={"name": name}).content)
+        return read(Model, self._ask("PATCH", f"/v1/models/{_id(model)}", json={"name": name}).content)
 
     def cancel(self, model: Model | str) -> Model:
         """Stop a model that is not finished; a finished one stays as it is."""
-        return _read(Model, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
+        return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
 
     def delete(self, model: Model | str) -> None:
         """Delete a model; for 24 hours `restore` takes it back."""
@@ -265,25 +280,29 @@ class Client:
 
     def restore(self, model: Model | str) -> Model:
         """Take a model's deletion back."""
-        return _read(Model, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
+        return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
+
+    def _wish(self, body: Mapping[str, Any], key: str | None) -> Model:
+        headers = {"Idempotency-Key": key or secrets.token_hex(16)}
+        return read(Model, self._ask("POST", "/v1/models", json=body, headers=headers).content)
 
     def _ask(self, method: str, path: str, **request: Any) -> httpx.Response:
         # A deletion that was cut off may have happened; sent again it would find nothing.
-        return self._repeat(lambda: _checked(self._http.request(method, path, **request)), harmless=method != "DELETE")
+        return self._repeat(lambda: checked(self._http.request(method, path, **request)), harmless=method != "DELETE")
 
     def _repeat(self, attempt: Callable[[], Done], harmless: bool = True) -> Done:
         """Make an attempt, and again after a pause where the service is busy or a ``harmless`` one was cut off."""
         for pause in (*_PAUSES_S, None):
             try:
                 return attempt()
-            except _Again as again:
+            except Again as again:
                 if pause is None:
                     raise
                 pause = max(pause, again.pause_s)
             except httpx.TransportError as error:
                 cut_off = harmless and isinstance(error, httpx.NetworkError | httpx.RemoteProtocolError)
                 if pause is None or not (cut_off or isinstance(error, httpx.ConnectError)):
-                    raise _unreachable(self._http.base_url, error) from error
+                    raise unreachable(self._http.base_url, error) from error
             time.sleep(pause)
         raise AssertionError("the last attempt returns or raises")
 
@@ -292,73 +311,22 @@ class Client:
         with self._http.stream("GET", path) as response, place.open("wb") as file:
             if not response.is_success:
                 response.read()
-            for chunk in _checked(response).iter_bytes():
+            for chunk in checked(response).iter_bytes():
                 digest.update(chunk)
                 file.write(chunk)
             file.flush()
             os.fsync(file.fileno())
         if response.headers.get("ETag") != f'"{digest.hexdigest()}"':
-            raise _Again(response.status_code, "damaged", "the file arrived damaged; download it again")
+            raise Again(response.status_code, "damaged", "the file arrived damaged; download it again")
 
-    def _events(self, id: str, last: str, seconds: float) -> Generator[_Event]:
+    def _events(self, id: str, last: str, seconds: float) -> Generator[Event]:
         """Give a model's events until the stream ends, however it ends; silence for ``seconds`` ends it too."""
         headers = {"Last-Event-ID": last} if last else {}
         timeout = httpx.Timeout(self._timeout, read=seconds)
         path = f"/v1/models/{id}/events"
         with suppress(httpx.TransportError), self._http.stream("GET", path, headers=headers, timeout=timeout) as answer:
             if answer.is_success:
-                yield from _events_of(answer.iter_bytes())
-
-
-def _events_of(chunks: Iterator[bytes]) -> Iterator[_Event]:
-    """Read the text/event-stream format, of which a comment is a ping."""
-    fields: dict[str, str] = {}
-    for line in _lines(chunks):
-        name, _, value = line.partition(":")
-        if name:
-            fields[name] = value.removeprefix(" ")
-        elif not line:
-            if "data" in fields:
-                yield _Event(fields.get("event", ""), fields.get("id", ""), fields["data"])
-            fields = {}
-
-
-def _lines(chunks: Iterator[bytes]) -> Iterator[str]:
-    rest = b""
-    for chunk in chunks:
-        *whole, rest = (rest + chunk).split(b"\n")
-        for line in whole:
-            yield line.removesuffix(b"\r").decode()
-
-
-def _checked(response: httpx.Response) -> httpx.Response:
-    """Give an answer that is none of an error."""
-    if response.is_success:
-        return response
-    try:
-        problem = Problem.model_validate_json(response.content, extra="ignore")
-    except ValidationError:
-        raise ServiceError(response.status_code, "unknown_answer", response.reason_phrase) from None
-    said = (response.status_code, problem.code, problem.detail, tuple(problem.errors))
-    if response.status_code != 503:
-        raise ServiceError(*said)
-    pause = response.headers.get("Retry-After", "")
-    raise _Again(*said, pause_s=min(float(pause), _LONGEST_PAUSE_S) if pause.isdecimal() else 0.0)
-
-
-def _read(kind: type[Answer], content: bytes | str) -> Answer:
-    """Read an answer; what a newer service adds is left out."""
-    try:
-        return kind.model_validate_json(content, extra="ignore")
-    except ValidationError as error:
-        raise ServiceError(
-            200, "unknown_answer", f"this is no {kind.__name__} of treestroke's; is it there?"
-        ) from error
-
-
-def _unreachable(address: object, error: httpx.TransportError) -> ServiceError:
-    why = str(error) or type(error).__name__
-    return ServiceError(0, "unreachable", f"{address} does not answer ({why}); start it by `treestroke serve`")
+                yield from events_of(answer.iter_bytes())
 
 
 def _plain(strokes: StrokesLike) -> dict[str, Any]:
@@ -368,6 +336,26 @@ def _plain(strokes: StrokesLike) -> dict[str, Any]:
         return dict(strokes)
     plain: dict[str, Any] = json.loads(Path(strokes).read_bytes())
     return plain
+
+
+def _plain_sketch(sketch: SketchLike) -> dict[str, Any]:
+    if isinstance(sketch, Sketch):
+        return dict(sketch.model_dump(mode="json", exclude_none=True))
+    if isinstance(sketch, Mapping):
+        return dict(sketch)
+    content = Path(sketch).read_bytes()
+    if content.startswith(_PNG):
+        return {"picture": base64.b64encode(content).decode()}
+    return dict(json.loads(content))
+
+
+def _plain_sketches(front: SketchLike, side: SketchLike | None) -> dict[str, Any]:
+    return {"front": _plain_sketch(front)} | ({} if side is None else {"side": _plain_sketch(side)})
+
+
+def _pictures(leaf: PictureLike | None, fruit: PictureLike | None) -> dict[str, str]:
+    given = {"leaf": leaf, "fruit": fruit}
+    return {name: base64.b64encode(_content(one)).decode() for name, one in given.items() if one is not None}
 
 
 def _content(file: str | os.PathLike[str] | bytes) -> bytes:

@@ -5,7 +5,18 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from pydantic.json_schema import SkipJsonSchema
 
-Point = tuple[float, float]
+from treestroke.shapes import (
+    STROKES_EXAMPLE,
+    PhotoFrame,
+    Point,
+    Sketch,
+    Sketches,
+    Strokes,
+    StrokeWarning,
+    Wire,
+    no_default,
+)
+
 Species = Literal[
     "auto",
     "ash",
@@ -33,10 +44,9 @@ MAX_LEAF_TEXT = 5_400_000
 """Characters of base64 that the largest picture of a leaf needs."""
 NAME_PATTERN = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]*$"
 """A line of text: no controls, no line ends, nothing that turns the direction of what follows it."""
-_CROWN: list[JsonValue] = [[210, 300], [390, 120], [610, 140], [760, 330], [700, 560], [480, 640], [270, 560]]
-STROKES_EXAMPLE: dict[str, JsonValue] = {
-    "crown": {"points": _CROWN},
-    "branches": [{"points": [[490, 900], [488, 760], [484, 600], [480, 420]], "width": 34.0}],
+SKETCHES_EXAMPLE: dict[str, JsonValue] = {
+    "front": {"branches": [{"points": [[200, 390], [198, 250], [203, 60]]}, {"points": [[199, 260], [290, 140]]}]},
+    "side": {"branches": [{"points": [[200, 390], [202, 240], [200, 60]]}, {"points": [[201, 270], [120, 150]]}]},
 }
 MODEL_EXAMPLE: dict[str, JsonValue] = {
     "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
@@ -46,51 +56,17 @@ MODEL_EXAMPLE: dict[str, JsonValue] = {
     "name": "The old oak",
 }
 
-
-def _no_default(schema: dict[str, Any]) -> None:
-    """Leave a default of None out of a schema that does not allow null."""
-    schema.pop("default")
-
-
-class _Wire(BaseModel):
-    model_config = ConfigDict(extra="forbid")
+_ENCODED_PNG: dict[str, JsonValue] = {
+    "contentEncoding": "base64",
+    "contentMediaType": "image/png",
+    "default": None,
+}
 
 
-class CrownStroke(_Wire):
-    """A stroke around the foliage; its last point is joined to its first."""
-
-    points: list[Point] = Field(min_length=3, max_length=10_000, description="pixels of the upright photo, x and y")
-
-
-class BranchStroke(_Wire):
-    """A stroke along a branch, from its parent outward; the first runs from the root up the trunk."""
-
-    points: list[Point] = Field(min_length=2, max_length=10_000)
-    width: float | SkipJsonSchema[None] = Field(default=None, gt=0, description="pixels", json_schema_extra=_no_default)
-
-
-class EraseStroke(_Wire):
-    """A stroke across traced branches that are to go."""
-
-    points: list[Point] = Field(min_length=2, max_length=10_000)
-
-
-class KnownLength(_Wire):
-    """A straight line over something of known length, as far from the camera as the tree; it sets the tree's height."""
-
-    points: list[Point] = Field(min_length=2, max_length=2)
-    metres: float = Field(gt=0, description="the line's length")
-
-
-class Strokes(_Wire):
-    """What was drawn over a photo."""
-
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": STROKES_EXAMPLE})
-
-    crown: CrownStroke
-    branches: list[BranchStroke] = Field(default_factory=list, max_length=199)
-    erase: list[EraseStroke] = Field(default_factory=list, max_length=199)
-    scale: KnownLength | SkipJsonSchema[None] = Field(default=None, json_schema_extra=_no_default)
+def _photo_id(schema: dict[str, Any]) -> None:
+    """Document a photo's id where it may be absent."""
+    no_default(schema)
+    schema["pattern"] = "^pho_[0-9a-f]{24}$"
 
 
 class TraceRequest(Strokes):
@@ -100,26 +76,12 @@ class TraceRequest(Strokes):
 
     rev: int | None = Field(default=None, ge=-(2**53) + 1, le=2**53 - 1, description="comes back with the answer")
     grow: bool = Field(default=False, description="grow the whole skeleton too, without leaves")
+    side: Sketch | SkipJsonSchema[None] = Field(
+        default=None, description="the tree's left side, for the grown skeleton's depth", json_schema_extra=no_default
+    )
 
 
-class StrokeWarning(_Wire):
-    """Something in the strokes that was mended."""
-
-    code: str
-    stroke: str
-    detail: str
-
-
-class PhotoFrame(_Wire):
-    """Where the photo stands in the tree's world: (X, Y, Z) is pixel (root_x + X / s, root_y - Y / s)."""
-
-    width: int
-    height: int
-    metres_per_pixel: float
-    root: Point
-
-
-class TracedSkeleton(_Wire):
+class TracedSkeleton(Wire):
     """The visible branches, in photo pixels; ``stroke`` is the stroke that a joint lies under, or -1."""
 
     points: list[Point]
@@ -128,7 +90,18 @@ class TracedSkeleton(_Wire):
     stroke: list[int]
 
 
-class GrownSkeleton(_Wire):
+class SketchTraceRequest(Wire):
+    """Sketches to trace."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {**SKETCHES_EXAMPLE, "rev": 7, "grow": False}})
+
+    front: Sketch
+    side: Sketch | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    rev: int | None = Field(default=None, ge=-(2**53) + 1, le=2**53 - 1, description="comes back with the answer")
+    grow: bool = Field(default=False, description="grow the whole skeleton too, without leaves")
+
+
+class GrownSkeleton(Wire):
     """The whole tree's skeleton, in metres; ``born`` is the iteration in which a joint appeared, 0 for the visible."""
 
     points: list[tuple[float, float, float]]
@@ -138,7 +111,7 @@ class GrownSkeleton(_Wire):
     photo: PhotoFrame
 
 
-class TraceAnswer(_Wire):
+class TraceAnswer(Wire):
     """What was found; ``foliage`` is closed rings by the even-odd rule."""
 
     rev: int | None
@@ -149,7 +122,27 @@ class TraceAnswer(_Wire):
     photo: PhotoFrame | None = Field(default=None, description="with ``grown``")
 
 
-class Photo(_Wire):
+class TracedSketch(Wire):
+    """What a sketch shows, in pixels of its canvas; a skeleton's ``stroke`` is the index of a joint's branch."""
+
+    skeleton: TracedSkeleton
+    crown: list[Point] = Field(description="closed outline: as drawn, or around the strokes")
+    size: tuple[int, int] = Field(description="width and height of the canvas")
+
+
+class SketchTraceAnswer(Wire):
+    """What sketches show."""
+
+    rev: int | None
+    front: TracedSketch
+    side: TracedSketch | None
+    warnings: list[StrokeWarning]
+    grown: GrownSkeleton | None = Field(default=None, description="with ``grow``")
+    photo: PhotoFrame | None = Field(default=None, description="of the front's canvas, with ``grown``")
+    score: dict[str, float] | None = Field(default=None, description="how the tree resembles them, with ``grown``")
+
+
+class Photo(Wire):
     """A stored photo."""
 
     model_config = ConfigDict(
@@ -173,7 +166,7 @@ class Photo(_Wire):
     image: str = Field(description="the stored picture: PNG, upright, sRGB, without metadata")
 
 
-class ModelSettings(_Wire):
+class ModelSettings(Wire):
     """Settings of a model; what is absent takes its default."""
 
     height: float = Field(default=10, ge=0.1, le=150, description="metres, from the root to the foliage's top")
@@ -191,16 +184,21 @@ class ModelSettings(_Wire):
     files: list[FurtherFile] = Field(default_factory=list, description="further files")
 
 
-class ModelRequest(_Wire):
-    """A tree that is wished for."""
+class ModelRequest(Wire):
+    """A tree that is wished for.
+
+    It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
+    of its left side, perhaps with the photo that they were drawn over.
+    """
 
     model_config = ConfigDict(
         extra="forbid",
         json_schema_extra={"example": MODEL_EXAMPLE},
     )
 
-    photo: str = Field(max_length=40, json_schema_extra={"pattern": "^pho_[0-9a-f]{24}$"})
-    strokes: Strokes
+    photo: str | SkipJsonSchema[None] = Field(default=None, max_length=40, json_schema_extra=_photo_id)
+    strokes: Strokes | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    sketches: Sketches | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
     settings: ModelSettings = ModelSettings()
     seed: int = Field(default=0, ge=0, le=2**63 - 1)
     name: str = Field(default="", max_length=200, json_schema_extra={"pattern": NAME_PATTERN})
@@ -208,17 +206,23 @@ class ModelRequest(_Wire):
         default=None,
         max_length=MAX_LEAF_TEXT,
         description="PNG of a leaf cut out, base64",
-        json_schema_extra={"contentEncoding": "base64", "contentMediaType": "image/png", "default": None},
+        json_schema_extra=_ENCODED_PNG,
+    )
+    fruit: str | SkipJsonSchema[None] = Field(
+        default=None,
+        max_length=MAX_LEAF_TEXT,
+        description="PNG of a fruit cut out, base64",
+        json_schema_extra=_ENCODED_PNG,
     )
 
 
-class Rename(_Wire):
+class Rename(Wire):
     """A model's new name."""
 
     name: str = Field(max_length=200, json_schema_extra={"example": "The old oak", "pattern": NAME_PATTERN})
 
 
-class Failure(_Wire):
+class Failure(Wire):
     """Why a model failed."""
 
     code: str
@@ -226,7 +230,7 @@ class Failure(_Wire):
     retryable: bool
 
 
-class Model(_Wire):
+class Model(Wire):
     """A tree that is made, or waits to be."""
 
     model_config = ConfigDict(
@@ -258,7 +262,7 @@ class Model(_Wire):
 
     id: str
     name: str
-    photo: str
+    photo: str | None = Field(description="null where it is made of sketches alone")
     status: Status
     phase: str | None = Field(description="the step under way")
     phase_fraction: float = Field(ge=0, le=1)
@@ -278,14 +282,14 @@ class Model(_Wire):
     finished: str | None
 
 
-class ModelPage(_Wire):
+class ModelPage(Wire):
     """Models, newest first; ``next`` is the cursor of the next page."""
 
     models: list[Model]
     next: str | None
 
 
-class Fault(_Wire):
+class Fault(Wire):
     """One field that is at fault: a JSON pointer into the request, a code, and what is wrong."""
 
     pointer: str
@@ -319,14 +323,14 @@ class Problem(BaseModel):
     errors: list[Fault] = Field(default_factory=list)
 
 
-class Health(_Wire):
+class Health(Wire):
     """Whether the service works, part by part."""
 
     status: Literal["ok", "degraded", "down"]
     checks: dict[str, str] = Field(default_factory=dict)
 
 
-class Limits(_Wire):
+class Limits(Wire):
     """What the service takes."""
 
     photo_bytes: int
@@ -338,7 +342,8 @@ class Limits(_Wire):
     points: int
     json_bytes: int
     name_length: int
-    leaf_bytes: int = Field(description="of the picture of a leaf")
+    leaf_bytes: int = Field(description="of the picture of a leaf or a fruit")
+    sketch_bytes: int = Field(description="of the picture of a sketch")
     trace_seconds: float
     model_seconds: float
     wait_seconds: float
@@ -346,7 +351,7 @@ class Limits(_Wire):
     keep_days: float
 
 
-class Version(_Wire):
+class Version(Wire):
     """Which treestroke this is."""
 
     version: str

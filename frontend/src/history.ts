@@ -14,6 +14,11 @@ export function advance<T>(history: History<T>, next: T): History<T> {
   return next === history.present ? history : { past: [...history.past, history.present], present: next, future: [] }
 }
 
+/** Put what `change` gives in the place of every value that was, is or was undone. */
+export function throughout<T>({ past, present, future }: History<T>, change: (value: T) => T): History<T> {
+  return { past: past.map(change), present: change(present), future: future.map(change) }
+}
+
 export function undo<T>({ past, present, future }: History<T>): History<T> {
   return past.length
     ? { past: past.slice(0, -1), present: past.at(-1)!, future: [present, ...future] }

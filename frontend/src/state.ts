@@ -1,9 +1,10 @@
 import type { components } from './api/schema'
 import { begin, type History } from './history'
-import { NO_STROKES, type StrokeRef, type Strokes } from './strokes'
+import { type Line, NO_STROKES, type SheetName, type StrokeRef, type Strokes } from './strokes'
 
 type Schemas = components['schemas']
 export type TraceAnswer = Schemas['TraceAnswer']
+export type SketchTraceAnswer = Schemas['SketchTraceAnswer']
 export type TracedSkeleton = Schemas['TracedSkeleton']
 export type StrokeWarning = Schemas['StrokeWarning']
 export type Grown = Schemas['GrownSkeleton']
@@ -12,17 +13,30 @@ export type Model = Schemas['Model']
 export type Limits = Schemas['Limits']
 export type Settings = Required<Schemas['ModelSettings']>
 
-/** A photo that the service has. */
-export interface Photo {
-  readonly id: string
+/** What is drawn on: white paper, perhaps with a picture under the strokes. */
+export interface Ground {
+  /** Of the photo that the service has; null where it has none. */
+  readonly id: string | null
   /** Pixels, upright. */
   readonly width: number
   readonly height: number
-  /** What was chosen: kept so that a drawing outlives the service's copy. */
-  readonly file: Blob
+  /** The picture as it was chosen: kept so that a drawing outlives the service's copy. */
+  readonly file: Blob | null
   /** Where the upright picture can be shown from. */
+  readonly url: string | null
+  /** The picture is out of sight for now. */
+  readonly hidden?: true
+}
+
+/** A photo that the service has. */
+export interface Photo extends Ground {
+  readonly id: string
+  readonly file: Blob
   readonly url: string
 }
+
+/** What the tree is made of: strokes over a photo, or sketches of its sides. */
+export type Source = 'photo' | 'sketch'
 
 /** What the pointer does on the photo. */
 export type Tool = 'crown' | 'branch' | 'scale' | 'select'
@@ -31,7 +45,7 @@ export type Tool = 'crown' | 'branch' | 'scale' | 'select'
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
 /** Where an error stands on the page. */
-export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf'
+export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
 
 /** A sentence that says what is wrong and what to do. */
 export interface Fault {
@@ -44,17 +58,29 @@ export interface Fault {
 export interface Traced {
   readonly of: Strokes
   readonly answer: TraceAnswer
+  /** The crowns that were taken on each sheet, where sketches were traced. */
+  readonly crowns?: Readonly<Partial<Record<SheetName, Line>>>
 }
 
 export interface State {
-  readonly photo: Photo | null
+  readonly source: Source
+  /** The photo, or the front's sheet; null while nothing is open. */
+  readonly photo: Ground | null
+  /** The sheet of the tree's left side, while it is open. */
+  readonly side: Ground | null
+  /** The sheet that was touched last. */
+  readonly sheet: SheetName
   readonly name: string
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
   /** The person's own picture of a leaf, a PNG. */
   readonly leaf: Blob | null
+  /** And of a fruit. */
+  readonly fruit: Blob | null
   readonly tool: Tool
+  /** How wide branches are drawn on paper, as a share of its height; null for a pencil, which says nothing of it. */
+  readonly brush: number | null
   readonly selection: Selection | null
   /** A photo or project is being read. */
   readonly opening: boolean
@@ -68,8 +94,9 @@ export interface State {
   readonly model: Model | null
   /** The strokes that the model was made of. */
   readonly modelOf: Strokes | null
-  /** The leaf that the model was made with. */
+  /** The leaf and the fruit that the model was made with. */
   readonly modelLeaf: Blob | null
+  readonly modelFruit: Blob | null
   /** Which of the model's trees is looked at, from 1. */
   readonly variant: number
   /** The model's skeleton, when it has just been grown. */
@@ -104,13 +131,18 @@ export const DEFAULT_SETTINGS: Settings = {
 }
 
 export const EMPTY: State = {
+  source: 'photo',
   photo: null,
+  side: null,
+  sheet: 'front',
   name: '',
   history: begin(NO_STROKES),
   settings: DEFAULT_SETTINGS,
   seed: 0,
   leaf: null,
+  fruit: null,
   tool: 'crown',
+  brush: null,
   selection: null,
   opening: false,
   tracing: false,
@@ -120,6 +152,7 @@ export const EMPTY: State = {
   model: null,
   modelOf: null,
   modelLeaf: null,
+  modelFruit: null,
   variant: 1,
   growth: null,
   tree: null,

@@ -1,6 +1,6 @@
 import type { components } from './api/schema'
 
-/** A place in the upright photo, pixels from the outer corner of its top-left pixel: x right, y down. */
+/** A place on a sheet, the upright photo or paper, pixels from the outer corner of its top-left one: x right, y down. */
 export type Point = readonly [x: number, y: number]
 export type Line = readonly Point[]
 
@@ -17,32 +17,61 @@ export interface Scale {
   readonly metres: number
 }
 
-/** What is drawn over a photo. Never changed in place: every edit gives a new value. */
-export interface Strokes {
+/** What any side of a tree is drawn of. */
+export interface Side {
   readonly crown: Line | null
   readonly branches: readonly Branch[]
+}
+
+/** What is drawn of a tree, seen from the front. Never changed in place: every edit gives a new value. */
+export interface Strokes extends Side {
   /** Each crosses one traced branch that is to go. */
   readonly erase: readonly Line[]
   /** What sets the tree's scale in place of its height. */
   readonly scale: Scale | null
+  /** What is drawn of it seen from its left, where anything is. */
+  readonly side?: Side
 }
 
+/** A sheet to draw on: the tree from the front, or from its left. */
+export type SheetName = 'front' | 'side'
 export type StrokeKind = 'crown' | 'branch' | 'erase' | 'scale'
 
 /** One stroke: the crown or the measured line, or a branch or an erase stroke by its place. */
 export interface StrokeRef {
   readonly kind: StrokeKind
   readonly index: number
+  /** Absent: it is on the front's sheet. */
+  readonly sheet?: 'side'
 }
 
 type WireStrokes = components['schemas']['Strokes']
 
 export const NO_STROKES: Strokes = { crown: null, branches: [], erase: [], scale: null }
 
-/** Add a stroke; a second crown takes the first one's place. */
-export function withStroke(strokes: Strokes, kind: Exclude<StrokeKind, 'scale'>, points: Line): Strokes {
+/** The strokes of one sheet, as if there were no other. */
+export function onSheet(strokes: Strokes, sheet: SheetName): Strokes {
+  const { side, ...front } = strokes
+  if (sheet === 'side') return { ...NO_STROKES, ...side }
+  return side ? front : strokes
+}
+
+/** Put strokes in the place of those of one sheet. */
+export function withSheet(strokes: Strokes, sheet: SheetName, { crown, branches, ...others }: Strokes): Strokes {
+  if (sheet === 'side') return { ...strokes, side: { crown, branches } }
+  return { ...others, crown, branches, ...(strokes.side && { side: strokes.side }) }
+}
+
+/** Add a stroke, a branch perhaps of a brush's width (px); a second crown takes the first one's place. */
+export function withStroke(
+  strokes: Strokes,
+  kind: Exclude<StrokeKind, 'scale'>,
+  points: Line,
+  width: number | null = null,
+): Strokes {
   if (kind === 'crown') return { ...strokes, crown: points }
-  if (kind === 'branch') return { ...strokes, branches: [...strokes.branches, { points }] }
+  const branch = { points, ...(width !== null && { width }) }
+  if (kind === 'branch') return { ...strokes, branches: [...strokes.branches, branch] }
   return { ...strokes, erase: [...strokes.erase, points] }
 }
 
@@ -52,14 +81,15 @@ export function withScale(strokes: Strokes, points: Line, metres: number): Strok
 }
 
 /** Leave a stroke out. */
-export function withoutStroke(strokes: Strokes, { kind, index }: StrokeRef): Strokes {
+export function withoutStroke(strokes: Strokes, { kind, index, sheet }: StrokeRef): Strokes {
+  if (sheet) return withSheet(strokes, sheet, withoutStroke(onSheet(strokes, sheet), { kind, index }))
   if (kind === 'crown') return { ...strokes, crown: null }
   if (kind === 'branch') return { ...strokes, branches: strokes.branches.toSpliced(index, 1) }
   if (kind === 'scale') return { ...strokes, scale: null }
   return { ...strokes, erase: strokes.erase.toSpliced(index, 1) }
 }
 
-/** Name every stroke, in the order of drawing within its kind. */
+/** Name every stroke, in the order of drawing within its kind; the front's come first. */
 export function strokeRefs(strokes: Strokes): StrokeRef[] {
   const of = (kind: StrokeKind, count: number) => Array.from({ length: count }, (_, index) => ({ kind, index }))
   return [
@@ -67,11 +97,17 @@ export function strokeRefs(strokes: Strokes): StrokeRef[] {
     ...of('branch', strokes.branches.length),
     ...of('erase', strokes.erase.length),
     ...of('scale', strokes.scale ? 1 : 0),
+    ...(strokes.side ? strokeRefs(onSheet(strokes, 'side')).map(ref => onSide(ref)) : []),
   ]
 }
 
+function onSide(ref: StrokeRef): StrokeRef {
+  return { ...ref, sheet: 'side' }
+}
+
 /** Give a stroke's points; none where there is no such stroke. */
-export function lineOf(strokes: Strokes, { kind, index }: StrokeRef): Line {
+export function lineOf(strokes: Strokes, { kind, index, sheet }: StrokeRef): Line {
+  if (sheet) return lineOf(onSheet(strokes, sheet), { kind, index })
   if (kind === 'crown') return strokes.crown ?? []
   if (kind === 'branch') return strokes.branches[index]?.points ?? []
   if (kind === 'scale') return strokes.scale?.points ?? []

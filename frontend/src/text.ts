@@ -1,6 +1,7 @@
 import { filesText } from './text/files'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
+import { sheetsText } from './text/sheets'
 
 /** Every English text of the page. */
 export const text = {
@@ -61,6 +62,7 @@ export const text = {
     canvasKeys:
       'Arrow keys move the pen, with Shift by small steps. Enter sets it down and lifts it up. C takes the crown, B the branch, M the measured line. Escape drops the stroke.',
   },
+  sheets: sheetsText,
   tools: {
     group: 'Drawing tools',
     crown: 'Crown',
@@ -202,6 +204,11 @@ export const text = {
     oak_02: 'Young oak',
     osage_orange_autumn: 'Osage orange',
     sugar_maple_autumn: 'Sugar maple in autumn',
+    orange: 'Orange tree',
+    pear: 'Pear tree',
+    pine: 'Pine',
+    vine: 'Vine',
+    imagined: 'Imagined tree',
   } as Readonly<Record<string, string>>,
   /** Author and licence of the examples. */
   credits: {
@@ -215,6 +222,8 @@ export const text = {
     modelGone: 'This tree is no longer there. It was deleted; the strokes are still yours to grow again.',
     draftGone: 'This drawing is no longer kept in this browser.',
     projectIncomplete: 'This project has no photo or no strokes. Save it anew from where it came.',
+    sketchIsPicture:
+      'This tree was sketched as a picture, not by strokes: it cannot be drawn on here. Its files are whole.',
     projectUnreadable: 'This project file is damaged and cannot be read. Save it anew from where it came.',
     photoTooLarge: (megabytes: number, most: number) =>
       `This file has ${megabytes.toFixed(1)} MB; at most ${most.toFixed(0)} MB are taken. Make the picture smaller.`,
@@ -249,6 +258,7 @@ export const text = {
       noPhoto: 'Open a photo of a tree to begin.',
       noCrown: 'First draw one loose stroke around the crown.',
       noTrunk: 'Now draw a stroke up the trunk, then it can grow.',
+      noFront: sheetsText.noFront,
       noSense: 'A stroke cannot be used: mend it, then the tree can grow.',
       ready: 'Ready to grow bark, twigs and leaves.',
       asking: 'Asking for the tree',

@@ -1,4 +1,4 @@
-import type { Grown, Model, Photo, TraceAnswer } from '../src/state'
+import type { Grown, Model, Photo, SketchTraceAnswer, TraceAnswer } from '../src/state'
 import type { Line } from '../src/strokes'
 
 export const CROWN: Line = [
@@ -23,6 +23,12 @@ export function photo(changes: Partial<Photo> = {}): Photo {
 export function answer(grown: Grown | null = null): TraceAnswer {
   const skeleton = { points: [], radii: [], parents: [], stroke: [] }
   return { rev: null, foliage: [], skeleton, warnings: [], grown, photo: null }
+}
+
+/** What sketches show, the front alone where there is no other. */
+export function sketchAnswer(changes: Partial<SketchTraceAnswer> = {}): SketchTraceAnswer {
+  const { skeleton } = answer()
+  return { rev: null, front: { skeleton, crown: [[20, 10]], size: [900, 1200] }, side: null, warnings: [], ...changes }
 }
 
 export function grown(points = 2): Grown {

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { advance, begin, redo, undo } from '../src/history'
+import { advance, begin, redo, throughout, undo } from '../src/history'
 
 const steps = (count: number) => Array.from({ length: count }, (_, step) => step + 1)
 const walked = (count: number) => steps(count).reduce(advance<number>, begin(0))
@@ -30,4 +30,9 @@ test('a new value after an undo makes what was undone go away', () => {
 test('going on to the same value is no step', () => {
   const there = undo(walked(2))
   expect(advance(there, there.present)).toBe(there)
+})
+
+test('what changes throughout is changed in all that can be undone and redone', () => {
+  const doubled = throughout(undo(walked(3)), step => 2 * step)
+  expect(doubled).toEqual({ past: [0, 2], present: 4, future: [6] })
 })

@@ -10,6 +10,7 @@ const LAYERS = [
   ['ui'],
   ['sketch', 'preview', 'studio'],
   ['api', 'text', 'tracedBranch'],
+  ['sheets'],
   ['state'],
   ['plane'],
   ['history', 'strokes'],

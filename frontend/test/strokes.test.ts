@@ -1,5 +1,17 @@
 import { expect, test } from 'vitest'
-import { fromWire, isEmpty, lineOf, NO_STROKES, strokeRefs, toWire, withoutStroke, withStroke } from '../src/strokes'
+import {
+  fromWire,
+  isEmpty,
+  lineOf,
+  NO_STROKES,
+  onSheet,
+  strokeRefs,
+  toWire,
+  withoutStroke,
+  withSheet,
+  withStroke,
+} from '../src/strokes'
+import { CROWN, LIMB, TRUNK } from './builders'
 
 const RING = [
   [0, 0],
@@ -115,4 +127,16 @@ test.each(
   ].map(value => ({ value })),
 )('another form is refused: $value', ({ value }) => {
   expect(() => fromWire(value)).toThrow(TypeError)
+})
+
+test('a side’s strokes are named, found, and left out by themselves', () => {
+  const front = withStroke(NO_STROKES, 'branch', LIMB)
+  const both = withSheet(front, 'side', withStroke(withStroke(NO_STROKES, 'crown', CROWN), 'branch', TRUNK, 5))
+  const ref = { kind: 'branch', index: 0, sheet: 'side' } as const
+  expect(strokeRefs(both)).toEqual([{ kind: 'branch', index: 0 }, { kind: 'crown', index: 0, sheet: 'side' }, ref])
+  expect(lineOf(both, ref)).toBe(TRUNK)
+  expect(onSheet(both, 'front')).toEqual(front)
+  expect(withoutStroke(both, ref).side).toEqual({ crown: CROWN, branches: [] })
+  expect(withoutStroke(both, { kind: 'branch', index: 0 }).side).toBe(both.side)
+  expect(isEmpty(withSheet(NO_STROKES, 'side', front))).toBe(false)
 })

@@ -12,13 +12,21 @@ from schemathesis.transport.serialization import Binary
 from tests.api import drawn
 from tests.api.corpora import saved
 
-from treestroke.schemas import STROKES_EXAMPLE
+from treestroke.schemas import SKETCHES_EXAMPLE
+from treestroke.shapes import STROKES_EXAMPLE
 
 PICTURE = Image.fromarray(cv2.resize(drawn.pixels(), (800, 960)))
 """The tree that the document's example of strokes is drawn over."""
 PHOTO = saved(PICTURE, "JPEG")
 _numbers = count()
 STORED = os.environ.get("STORED_PHOTO", "")
+LEFT_OUT = object()
+_EVIDENCE = (
+    {"photo": STORED},
+    {"photo": STORED, "strokes": STROKES_EXAMPLE, "sketches": LEFT_OUT},
+    {"photo": LEFT_OUT, "strokes": LEFT_OUT, "sketches": SKETCHES_EXAMPLE},
+    {"photo": STORED, "strokes": STROKES_EXAMPLE, "sketches": {"side": SKETCHES_EXAMPLE["side"]}},
+)
 for kind, content in (
     ("image/jpeg", PHOTO),
     ("image/png", saved(PICTURE, "PNG")),
@@ -33,7 +41,7 @@ schemathesis.openapi.format("binary", strategies.just(Binary(PHOTO)))
 
 @schemathesis.hook
 def before_call(context: schemathesis.HookContext, case: schemathesis.Case, kwargs: dict[str, Any]) -> None:
-    """Put these into JSON that is meant to be right; the strokes into every second one.
+    """Put these into JSON that is meant to be right, together as they make a tree.
 
     Each request has a key of its own: the same key gives the first one's model, which may have been deleted since.
     """
@@ -42,6 +50,7 @@ def before_call(context: schemathesis.HookContext, case: schemathesis.Case, kwar
     for name in [name for name in case.headers or {} if positive and name.lower() == "idempotency-key"]:
         case.headers[name] = f"{case.headers[name]}{next(_numbers)}"[-255:]
     if positive and case.operation.label == "POST /v1/models" and case.media_type == "application/json":
-        case.body = {**case.body, "photo": STORED}
-        if len(str(case.body)) % 2:
-            case.body["strokes"] = STROKES_EXAMPLE
+        case.body = {**case.body, **_EVIDENCE[len(str(case.body)) % 4]}
+        for name in ("photo", "strokes", "sketches"):
+            if case.body.get(name) is LEFT_OUT:
+                del case.body[name]

@@ -35,6 +35,7 @@ def test_the_limits_are_told(client: httpx.Client) -> None:
     assert (limits["photo_bytes"], limits["photo_pixels"]) == (25_000_000, 50_000_000)
     assert (limits["photo_side_min"], limits["photo_side_max"]) == (64, 16_384)
     assert (limits["strokes"], limits["points"]) == (200, 10_000)
+    assert (limits["leaf_bytes"], limits["sketch_bytes"]) == (4_000_000, 25_000_000)
     assert set(limits["settings"]) == set(ModelSettings.__dataclass_fields__)
     assert limits["settings"]["height"]["default"] == 10
     assert limits["settings"]["compress"] == {**limits["settings"]["compress"], "toggle": True, "default": False}
@@ -117,6 +118,7 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "delete_photo",
         "get_image",
         "trace_photo",
+        "trace_sketches",
         "ask_for_model",
         "list_models",
         "get_model",
@@ -128,6 +130,7 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "get_tree",
         "get_preview",
         "get_strokes",
+        "get_sketch",
         "get_project",
         "get_tree_file",
         "live",
@@ -154,6 +157,7 @@ def test_every_body_has_an_example(document: dict[str, Any]) -> None:
     assert set(asking) == {
         "post /v1/photos",
         "post /v1/photos/{id}/trace",
+        "post /v1/sketches/trace",
         "post /v1/models",
         "patch /v1/models/{id}",
     }

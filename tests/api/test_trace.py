@@ -4,7 +4,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
-from tests.api import drawn
+from tests.api import drawn, sketched
 
 from treestroke import trace
 
@@ -69,6 +69,19 @@ def test_a_grown_tree_is_the_one_that_the_model_grows(client: httpx.Client, phot
     assert json.loads(preview) == grown["grown"]
     assert grown["photo"] == grown["grown"]["photo"]
     assert grown["photo"]["root"] == pytest.approx(drawn.ROOT, abs=3)
+
+
+def test_a_side_gives_the_grown_tree_its_depth(client: httpx.Client, photo: str) -> None:
+    plain, beside = traced(client, photo, grow=True), traced(client, photo, grow=True, side=sketched.SIDE)
+    assert beside["skeleton"] == plain["skeleton"]
+    assert beside["grown"]["points"] != plain["grown"]["points"]
+    assert traced(client, photo, grow=True)["grown"] == plain["grown"]
+
+
+def test_an_error_in_a_side_is_led_to(client: httpx.Client, photo: str) -> None:
+    body = {**drawn.STROKES, "side": {"branches": [{"points": [[1, 1], [1, 1]]}]}}
+    answer = client.post(f"/v1/photos/{photo}/trace", json=body)
+    assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/side/branches/0")
 
 
 def test_a_grown_tree_needs_a_trunk(client: httpx.Client, photo: str) -> None:

@@ -9,13 +9,14 @@ import treestroke.codec.image
 from treestroke.codec.image import (
     MAX_BYTES,
     check_size,
+    decode_fruit,
     decode_leaf,
     decode_photo,
     decode_stored,
     encode_png,
     encode_stored,
 )
-from treestroke.core.errors import LeafError, PhotoError
+from treestroke.core.errors import FruitError, LeafError, PhotoError
 
 UPRIGHT = np.zeros((80, 100, 3), dtype=np.uint8)
 UPRIGHT[:40, :50] = (250, 10, 10)
@@ -276,3 +277,10 @@ def test_what_is_no_leaf_cut_out_is_refused(data: bytes, code: str) -> None:
     with pytest.raises(LeafError, match=r"^leaf\.png: ") as refused:
         decode_leaf(data, "leaf.png")
     assert refused.value.code == code
+
+
+def test_a_fruit_is_read_as_a_leaf_and_refused_by_its_own_name() -> None:
+    assert decode_fruit(leaf_png(disc_alpha()), "fruit").shape == (64, 64, 4)
+    with pytest.raises(FruitError, match="no fruit: all is clear; cut the fruit out") as refused:
+        decode_fruit(leaf_png(np.zeros((64, 64))), "fruit")
+    assert refused.value.code == "fruit_not_cut_out"

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from tests.api import sketched
 
 import treestroke
 from treestroke.cli import main
@@ -40,6 +41,13 @@ def test_settings_may_be_absent() -> None:
         packed(strokes_json=b"S"),
         packed(photo_jpg=b"P"),
         packed(photo_jpg=b"P", photo_png=b"P", strokes_json=b"S"),
+        packed(side_json=b"S"),
+        packed(photo_jpg=b"P", side_json=b"S"),
+        packed(strokes_json=b"S", side_json=b"S"),
+        packed(strokes_json=b"S", front_json=b"F"),
+        packed(photo_jpg=b"P", strokes_json=b"S", front_json=b"F"),
+        packed(front_json=b"F", front_png=b"F"),
+        packed(front_jpg=b"F"),
         packed(photo_jpg=b"P", strokes_json=b"S", settings_json=b"[]"),
         packed(photo_jpg=b"P", strokes_json=b"S", settings_json=b"{"),
         packed(photo_jpg=b"P", strokes_json=b"S", settings_json=b'{"seed": 1, "seed": 2}'),
@@ -68,6 +76,35 @@ def test_no_stored_photo_is_larger_than_is_allowed(side: int) -> None:
 def test_what_is_written_is_read_back() -> None:
     project = Project(b"\xff\xd8P", b"S", {"height": 12.0, "seed": 3})
     assert read_project(write_project(project), "oak.treestroke") == project
+
+
+@pytest.mark.parametrize(
+    "project",
+    [
+        Project(None, None, {}, front=b"{}"),
+        Project(None, None, {"seed": 1}, front=b"\x89PNG", side=b"{}", leaf=b"L", fruit=b"F"),
+        Project(b"P", None, {}, front=b"{}", side=b"\x89PNG"),
+        Project(b"P", b"S", {}, side=b"{}", fruit=b"F"),
+    ],
+)
+def test_sketches_are_read_back_with_or_without_a_photo(project: Project) -> None:
+    assert read_project(write_project(project), "oak.treestroke") == project
+
+
+def test_a_sketch_is_named_by_its_content() -> None:
+    data = write_project(Project(None, None, {}, front=b"{}", side=b"\x89PNG"))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        assert archive.namelist() == ["front.json", "side.png", "settings.json"]
+
+
+def test_either_command_opens_a_project_of_sketches(tmp_path: Path) -> None:
+    front, side = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SIDE))
+    project, settings = tmp_path / "drawn.treestroke", {"iterations": 5, "leaf_density": 0.1}
+    project.write_bytes(write_project(Project(None, None, {**settings, "seed": 4}, front=front, side=side)))
+    for command in ("model", "sketch"):
+        assert main([command, str(project), "--out", str(tmp_path / f"{command}.glb")]) == 0
+    by_library = treestroke.sketch(front, side, settings, 4).glb
+    assert (tmp_path / "model.glb").read_bytes() == (tmp_path / "sketch.glb").read_bytes() == by_library
 
 
 def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:

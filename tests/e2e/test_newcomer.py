@@ -79,7 +79,7 @@ def test_one_click_on_an_example_shows_a_tree_drawn_in_few_calls_and_only_when_s
     assert 1 <= calls <= MOST_CALLS
     visitor.page.wait_for_timeout(1500)
     assert visitor.drawn()[0] == frames
-    visitor.page.get_by_role("button", name="Side").click()
+    visitor.page.get_by_role("button", name="Side", exact=True).click()
     visitor.wait_for_rest()
     visitor.shot("side")
     assert visitor.drawn()[0] > frames

@@ -64,6 +64,8 @@ class Visitor:
         self.complaints: list[str] = []
         self.traced: list[dict[str, Any]] = []
         """What was asked to be traced, in the order of asking."""
+        self.sheet = "front"
+        """The one that is drawn on: the front's, or the side's."""
         self._trace = ""
         self._expected: list[str] = []
         page.on("console", self._said)
@@ -108,8 +110,8 @@ class Visitor:
 
     @property
     def sketch(self) -> Locator:
-        """The sheet over the photo, which says how it lies."""
-        return self.page.locator("[data-view]")
+        """The sheet over the photo, or of paper, which says how it lies."""
+        return self.page.locator(f'.canvas > [data-sheet="{self.sheet}"]')
 
     @property
     def preview(self) -> Locator:

@@ -21,6 +21,14 @@ def test_progress_rises_from_nothing_to_all(variants: int, lod: str) -> None:
     assert (told[0], told[-1]) == (0.0, pytest.approx(1.0))
 
 
+def test_the_progress_of_sketches_rises_from_nothing_to_all() -> None:
+    course = Course(ModelSettings(), of_sketches=True)
+    phases = ["decode", "trace", *GROWING, "write", "preview"]
+    told = [course.progress(phase, fraction) for phase in phases for fraction in (0.0, 0.5, 1.0)]
+    assert told == sorted(told)
+    assert (told[0], told[-1]) == (0.0, pytest.approx(1.0))
+
+
 def test_the_second_of_two_trees_begins_after_the_first() -> None:
     course = Course(ModelSettings(variants=2))
     first = [course.progress(phase, 1.0) for phase in [*SEEING, *GROWING, "write"]][-1]

@@ -1,11 +1,14 @@
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.api import sketched
 
 from treestroke.codec.image import decode_stored, encode_stored
-from treestroke.core.errors import PhotoError, StrokesError
-from treestroke.service.inputs import load_photo, load_settings, load_strokes
+from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError
+from treestroke.core.strokes import same_stroke
+from treestroke.service.inputs import load_fruit, load_leaf, load_photo, load_settings, load_sketch, load_strokes
 
 
 def test_path_bytes_and_pixels_give_the_same_photo(maple_photo: Path) -> None:
@@ -45,12 +48,54 @@ def test_path_mapping_and_values_give_the_same_strokes(maple_strokes: Path) -> N
     assert load_strokes(by_path) is by_path
 
 
+def test_path_bytes_mapping_and_values_give_the_same_sketch(tmp_path: Path) -> None:
+    path = tmp_path / "front.json"
+    path.write_text(json.dumps(sketched.FRONT))
+    by_path = load_sketch(path, "front")
+    for given in (str(path), path.read_bytes(), sketched.FRONT):
+        again = load_sketch(given, "front")
+        assert again.canvas == by_path.canvas
+        assert all(map(same_stroke, again.branches, by_path.branches))
+    assert load_sketch(by_path, "front") is by_path
+
+
+def test_a_sketch_may_be_a_picture(tmp_path: Path) -> None:
+    path = tmp_path / "front.png"
+    path.write_bytes(sketched.png(sketched.FRONT))
+    by_path, by_mapping = load_sketch(path, "front").ink, load_sketch(sketched.pictured(sketched.FRONT), "front").ink
+    assert by_path is not None
+    assert np.array_equal(by_path, by_mapping)
+
+
+@pytest.mark.parametrize("sketch", [{}, b"{}", b"[", {"picture": "x"}, {"branches": []}])
+def test_a_sketch_that_is_none_is_refused_by_its_name(sketch: dict[str, object] | bytes) -> None:
+    with pytest.raises(StrokesError, match="^side: "):
+        load_sketch(sketch, "side")
+
+
+def test_no_leaf_and_no_fruit_are_none() -> None:
+    assert load_leaf(None) is None
+    assert load_fruit(None) is None
+
+
+def test_leaf_and_fruit_are_read_alike(tmp_path: Path) -> None:
+    path = tmp_path / "berry.png"
+    path.write_bytes(sketched.berry())
+    assert np.array_equal(load_fruit(path), load_leaf(sketched.berry()))
+    for load, kind in ((load_fruit, FruitError), (load_leaf, LeafError)):
+        for given in (b"no picture", tmp_path / "missing.png"):
+            with pytest.raises(kind):
+                load(given)
+
+
 @pytest.mark.parametrize("path", ["missing.jpg", ".", "with\0zero"])
 def test_a_path_that_cannot_be_read_is_refused(path: str) -> None:
     with pytest.raises(PhotoError):
         load_photo(path)
     with pytest.raises(StrokesError):
         load_strokes(path)
+    with pytest.raises(StrokesError):
+        load_sketch(path, "front")
 
 
 def test_no_settings_are_the_defaults() -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import treestroke
-from treestroke.service.model import STAGES, Model
+from treestroke.service.making import STAGES, Model
 
 QUICK = {"iterations": 5}
 

@@ -1,14 +1,16 @@
+import base64
 import json
 from typing import Any
 
 import pytest
-from tests.api import drawn
+from tests.api import drawn, sketched
 
 from treestroke.codec.project import read_project
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
+from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
-from treestroke.service.tracing import Wish
+from treestroke.service.wishes import Wish
 from treestroke.store.leases import claim, succeed
 from treestroke.store.tables import Model, Photo
 
@@ -81,6 +83,44 @@ def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf) -> None:
     assert json.loads(project.strokes) == {**drawn.STROKES, "erase": []}
     assert project.settings == {**row.settings, "seed": 7}
     assert models.project_of(shelf, row.id)[1] == blob
+
+
+def test_a_model_of_sketches_needs_no_photo_and_is_known_again(shelf: Shelf) -> None:
+    asked = json.dumps(sketched.wish(seed=3)).encode()
+    first = models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row
+    assert (first.photo, first.photo_blob, first.strokes_blob) == (None, None, None)
+    assert list(first.drawings) == ["front.json", "side.json"]
+    assert models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row.id == first.id
+    finished(shelf, first.id, b"tree")
+    assert models.ask_for_model(shelf, models.read_wish(shelf, asked), None).row.status == "succeeded"
+    exchanged = {"front": sketched.SIDE, "side": sketched.FRONT}
+    for change in ({"seed": 4}, {"sketches": exchanged}, {"sketches": {"front": sketched.FRONT}}):
+        other = models.read_wish(shelf, json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
+        assert models.ask_for_model(shelf, other, None).row.status == "queued"
+        with pytest.raises(KeyReused):
+            models.ask_for_model(shelf, other, "key")
+
+
+def test_the_same_strokes_with_another_side_are_another_model(shelf: Shelf) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded()).id
+    rows = [
+        models.ask_for_model(shelf, wish(shelf, photo, **more), None).row
+        for more in ({}, {"sketches": {"side": sketched.SIDE}}, {"sketches": {"side": sketched.FRONT}})
+    ]
+    assert len({row.fingerprint for row in rows}) == 3
+    assert [list(row.drawings) for row in rows] == [["strokes.json"], *[["strokes.json", "side.json"]] * 2]
+
+
+def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf) -> None:
+    sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
+    fruit = base64.b64encode(sketched.berry()).decode()
+    asked = models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
+    row = models.ask_for_model(shelf, asked, None).row
+    assert list(row.drawings) == ["front.json", "side.png"]
+    project = read_project(shelf.blobs.get(models.project_of(shelf, row.id)[1]), "x")
+    assert (project.photo, project.strokes, project.leaf, project.fruit) == (None, None, None, sketched.berry())
+    assert json.loads(project.front or b"") == sketched.FRONT
+    assert (project.side or b"").startswith(b"\x89PNG")
 
 
 def test_a_model_that_there_is_not_is_not_found(shelf: Shelf) -> None:

@@ -90,6 +90,19 @@ def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
         models.restore(kept.database, row.id)
 
 
+@pytest.mark.parametrize("part", ["front", "side", "leaf", "fruit"])
+def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str) -> None:
+    row, blob = kept.model(), kept.blob(part.encode())
+    with kept.database.writing() as session:
+        session.execute(update(Model).values({f"{part}_blob": blob, "photo": None, "photo_blob": None}))
+    assert blob in referenced(kept.database)
+    assert kept.sweep().blobs == 1  # the photo's
+    with kept.database.writing() as session:
+        session.execute(update(Model).where(Model.id == row.id).values(deleted=time.time() - 1.01 * DAY))
+    assert kept.sweep() == Swept(1, 0, 3)
+    assert not kept.blobs.path(blob).exists()
+
+
 def test_a_deleted_model_is_restored_with_its_files_before(kept: Kept) -> None:
     row = kept.model(deleted_days=0.99)
     assert kept.sweep() == Swept(0, 0, 0)

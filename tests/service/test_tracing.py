@@ -1,14 +1,16 @@
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.api import drawn
+from tests.api import drawn, sketched
 
 from treestroke.core.errors import StrokesError, TreestrokeError
 from treestroke.service import tracing
 from treestroke.store.blobs import Blobs
+
+STROKES = {"strokes": json.dumps(drawn.STROKES).encode()}
+FRONT, SIDE = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SIDE))
 
 
 @pytest.fixture
@@ -35,72 +37,91 @@ def test_the_photos_that_were_used_longest_ago_are_forgotten(tmp_path: Path, mon
     monkeypatch.setattr(tracing, "_known", type(tracing._known)())
     photos = [Blobs(tmp_path).path(tracing.keep_photo(tmp_path, drawn.encoded(seed=seed))[0]) for seed in range(3)]
     for at in (0, 1, 0, 2):
-        tracing.check_wish(photos[at], json.dumps(drawn.STROKES).encode())
+        tracing.check_wish(photos[at], STROKES)
     assert list(tracing._known) == [photos[0], photos[2]]
-
-
-def test_a_wish_comes_out_the_same_from_json_and_from_a_form() -> None:
-    settings = {"height": 12, "iterations": 7}
-    whole = tracing.read_wish(body(photo="pho_1", strokes=drawn.STROKES, settings=settings, seed=3, name="Oak"))
-    form = tracing.read_fields(
-        {
-            "strokes": json.dumps(drawn.STROKES).encode(),
-            "settings": json.dumps(settings).encode(),
-            "seed": b"3",
-            "name": b"Oak",
-        }
-    )
-    assert (form.strokes, form.settings, form.seed, form.name) == (whole.strokes, whole.settings, 3, "Oak")
-    assert json.loads(whole.strokes) == {**drawn.STROKES, "erase": []}
-    assert whole.settings["height"] == 12.0
-    assert whole.settings["leaf_size"] == 1.0
-
-
-def test_empty_fields_of_a_form_are_absent_ones() -> None:
-    wish = tracing.read_fields(
-        {"strokes": json.dumps(drawn.STROKES).encode(), "settings": b" ", "seed": b"", "name": b""}
-    )
-    assert (wish.seed, wish.name, wish.settings["iterations"]) == (0, "", 300)
-
-
-@pytest.mark.parametrize(
-    ("read", "pointer"),
-    [
-        (lambda: tracing.read_wish(body(photo="p", strokes={})), "/strokes/crown"),
-        (lambda: tracing.read_wish(body(photo="p", strokes=drawn.STROKES, settings={"a~/b": 1})), "/settings/a~0~1b"),
-        (lambda: tracing.read_wish(body(photo="p", strokes=drawn.STROKES, **{"x/y": 1})), "/x~1y"),
-        (lambda: tracing.read_fields({"strokes": b"null"}), "/strokes"),
-        (lambda: tracing.read_fields({}), "/strokes"),
-        (lambda: tracing.read_name(b"{}"), "/name"),
-        (lambda: tracing.read_name(b'{"name": "a", "b": 1}'), "/b"),
-    ],
-)
-def test_a_pointer_leads_from_the_whole_request(read: Callable[[], object], pointer: str) -> None:
-    with pytest.raises(TreestrokeError) as caught:
-        read()
-    assert caught.value.pointer == pointer
 
 
 def test_strokes_are_checked_against_the_photo(photo: Path) -> None:
     beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
     with pytest.raises(StrokesError) as caught:
-        tracing.check_wish(photo, json.dumps(beside).encode())
+        tracing.check_wish(photo, {"strokes": json.dumps(beside).encode()})
     assert (caught.value.code, caught.value.pointer) == ("trunk_outside_crown", "/strokes/branches/0")
 
 
-@pytest.mark.parametrize("text", [b"[" * 3_000_000, b'{"a":[' + b"1," * 5_000_000 + b"1]}", b"{" * 300_000])
-def test_more_than_the_longest_strokes_need_is_not_even_parsed(text: bytes) -> None:
-    with pytest.raises(StrokesError) as caught:
-        tracing.read_wish(text)
-    assert caught.value.code == "too_many_points"
+def test_sketches_are_traced_apart_and_a_joint_knows_its_branch() -> None:
+    told = json.loads(tracing.sketch_answer(body(front=sketched.FRONT, side=sketched.SIDE, rev=3)))
+    assert told["rev"] == 3
+    assert told["warnings"] == []
+    assert [told[view]["size"] for view in ("front", "side")] == [[200, 240], [180, 240]]
+    for view, given in (("front", sketched.FRONT), ("side", sketched.SIDE)):
+        skeleton = told[view]["skeleton"]
+        assert set(skeleton["stroke"]) == set(range(len(given["branches"])))
+        assert skeleton["points"][0] == pytest.approx(given["branches"][0]["points"][0])
+        assert len(told[view]["crown"]) > 2
+    assert "grown" not in told
 
 
-@pytest.mark.parametrize("name", ["", "Oak", "👨‍👩‍👧", "樫の　木", "a\u00a0b", "n" * 200])
-def test_a_line_of_text_is_a_name(name: str) -> None:
-    assert tracing.check_name(name) == name
+def test_one_sketch_alone_says_what_was_assumed_and_grows() -> None:
+    told = json.loads(tracing.sketch_answer(body(front=sketched.FRONT, grow=True)))
+    assert told["side"] is None
+    assert [warning["code"] for warning in told["warnings"]] == ["side_assumed"]
+    assert len(told["grown"]["points"]) > len(told["front"]["skeleton"]["points"])
+    assert (told["photo"]["width"], told["photo"]["height"]) == (200, 240)
 
 
-@pytest.mark.parametrize("name", ["a\nb", "a\n", "\0", "\x85", "\u2028", "\u202e", "\ud800", "n" * 201, 5, None])
-def test_anything_else_is_none(name: object) -> None:
-    with pytest.raises(TreestrokeError, match="one line"):
-        tracing.check_name(name)
+def test_what_grows_of_two_sketches_is_told_with_its_score() -> None:
+    told = json.loads(tracing.sketch_answer(body(front=sketched.FRONT, side=sketched.SIDE, grow=True)))
+    assert told["grown"]["photo"] == told["photo"]
+    assert told["score"]["front_covered"] > 0.9
+    assert told["score"]["side_covered"] > 0.9
+
+
+def test_a_picture_is_traced_as_its_strokes_are() -> None:
+    told = json.loads(tracing.sketch_answer(body(front=sketched.pictured(sketched.FRONT))))
+    assert told["front"]["size"] == [200, 240]
+    assert told["front"]["skeleton"]["points"]
+
+
+@pytest.mark.parametrize(
+    ("request_", "pointer"),
+    [
+        ({}, "/front"),
+        ({"side": sketched.SIDE}, "/front"),
+        ({"front": None}, "/front"),
+        ({"front": {}}, "/front/branches"),
+        ({"front": {"branches": []}}, "/front/branches"),
+        ({"front": {**sketched.FRONT, "erase": []}}, "/front/erase"),
+        ({"front": {**sketched.FRONT, "canvas": [200]}}, "/front/canvas"),
+        ({"front": {"picture": 5}}, "/front/picture"),
+        ({"front": {"picture": "%%%"}}, "/front/picture"),
+        ({"front": {"picture": ""}}, "/front/picture"),
+        ({"front": {"picture": "aGVsbG8="}}, "/front/picture"),
+        ({"front": {"picture": "", "canvas": [9, 9]}}, "/front/canvas"),
+        ({"front": sketched.FRONT, "side": None}, "/side"),
+        ({"front": sketched.FRONT, "side": {"branches": [{"points": [[1, 1], [1, 1]]}]}}, "/side/branches/0"),
+        ({"front": sketched.FRONT, "rev": "1"}, "/rev"),
+        ({"front": sketched.FRONT, "grow": 1}, "/grow"),
+        ({"front": sketched.FRONT, "photo": "pho_1"}, "/photo"),
+    ],
+)
+def test_what_is_wrong_in_sketches_is_pointed_at(request_: dict[str, Any], pointer: str) -> None:
+    with pytest.raises(TreestrokeError) as caught:
+        tracing.sketch_answer(body(**request_))
+    assert caught.value.pointer == pointer
+
+
+def test_sketches_are_checked_before_they_are_accepted(photo: Path) -> None:
+    tracing.check_wish(None, {"front": FRONT, "side": SIDE})
+    tracing.check_wish(photo, {"front": FRONT})
+    tracing.check_wish(photo, {**STROKES, "side": SIDE})
+    flat = json.dumps({"branches": [{"points": [[5, 5], [5, 5]]}]}).encode()
+    wide = json.dumps({**sketched.FRONT, "canvas": [400, 240]}).encode()
+    for place, parts, pointer in (
+        (None, {"front": flat}, "/sketches/front/branches/0"),
+        (None, {"front": FRONT, "side": flat}, "/sketches/side/branches/0"),
+        (photo, {**STROKES, "side": flat}, "/sketches/side/branches/0"),
+        (photo, {"front": wide}, "/sketches/front"),
+    ):
+        with pytest.raises(StrokesError) as caught:
+            tracing.check_wish(place, parts, ("sketches",))
+        assert caught.value.pointer == pointer

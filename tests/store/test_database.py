@@ -8,15 +8,17 @@ from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
+from alembic import command
 from alembic.autogenerate import compare_metadata
+from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
-from sqlalchemy import create_engine, select
+from sqlalchemy import create_engine, delete, select
 from sqlalchemy.exc import OperationalError
 from tests.rows import add_model, find
 from tests.running import BACKEND
 
 from treestroke.store.database import Database
-from treestroke.store.tables import Model, Table, Worker
+from treestroke.store.tables import File, Model, Table, Worker
 
 
 def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
@@ -53,6 +55,41 @@ def test_the_migrations_make_the_tables_that_the_program_knows(database: Databas
         context = MigrationContext.configure(connection, opts={"compare_type": True, "compare_server_default": True})
         assert compare_metadata(context, Table.metadata) == []
     engine.dispose()
+
+
+def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) -> None:
+    database, settings = Database(tmp_path), Config()
+    settings.set_main_option("script_location", "treestroke.store:migrations")
+    engine = create_engine(f"sqlite:///{database.path}")
+    with engine.connect() as connection:
+        settings.attributes["connection"] = connection
+        command.upgrade(settings, "0002")
+    engine.dispose()
+    assert not database.current()
+    with closing(sqlite3.connect(database.path)) as plain:
+        columns = (
+            "id, name, photo, photo_blob, strokes_blob, settings, seed, engine, fingerprint, status,"
+            "phase_fraction, progress, seq, attempt, beat, created"
+        )
+        values = "'mdl_1', 'Oak', 'pho_1', 'a', 'b', '{}', 7, 'treestroke', 'f', 'succeeded', 0, 1, 1, 1, 0, 5.0"
+        plain.execute(f"INSERT INTO models ({columns}) VALUES ({values})")
+        plain.execute("INSERT INTO files VALUES ('mdl_1', 'tree.glb', 'c', 4)")
+        plain.commit()
+    database.migrate()
+    assert database.current()
+    row = find(database, "mdl_1")
+    assert (row.name, row.photo, row.parts, row.drawings) == (
+        "Oak",
+        "pho_1",
+        {"photo": "a", "strokes": "b"},
+        {"strokes.json": "b"},
+    )
+    with database.reading() as session:
+        assert [(file.name, file.blob) for file in session.scalars(select(File))] == [("tree.glb", "c")]
+    with database.writing() as session:  # and a file still goes with its model
+        session.execute(delete(Model))
+        assert session.scalars(select(File)).all() == []
+    database.close()
 
 
 def test_a_failure_takes_everything_back(database: Database) -> None:

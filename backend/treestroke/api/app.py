@@ -15,12 +15,12 @@ from treestroke import __version__
 from treestroke.api.errors import add_handlers
 from treestroke.api.guard import Guard, Limited
 from treestroke.api.metrics import add_metrics
-from treestroke.api.routes import events, files, models, photos, status
+from treestroke.api.routes import events, files, models, photos, sketches, status
 from treestroke.api.routes.page import add_page
 from treestroke.codec.image import MAX_BYTES
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_hint
-from treestroke.schemas import ModelRequest, Problem, Rename, TraceRequest
+from treestroke.schemas import ModelRequest, Problem, Rename, SketchTraceRequest, TraceRequest
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.pool import Tracers
@@ -40,7 +40,7 @@ def make_app(settings: Settings) -> FastAPI:
     app = FastAPI(
         title="treestroke",
         version=__version__,
-        summary="One photo of a tree and a few strokes become a 3D tree.",
+        summary="One photo of a tree and a few strokes, or two sketches of it, become a 3D tree.",
         lifespan=_lifespan,
         docs_url=None,
         redoc_url=None,
@@ -49,7 +49,7 @@ def make_app(settings: Settings) -> FastAPI:
     )
     app.state.settings = settings
     add_handlers(app)
-    for routes in (photos, models, events, files, status):
+    for routes in (photos, sketches, models, events, files, status):
         app.include_router(routes.router)
     add_metrics(app)
     add_page(app)
@@ -109,7 +109,8 @@ def _document(app: FastAPI) -> dict[str, Any]:
     if not known:
         schemas = document["components"]["schemas"]
         _, extra = models_json_schema(
-            [(one, "validation") for one in (TraceRequest, ModelRequest, Rename, Problem)], ref_template=_REF
+            [(one, "validation") for one in (TraceRequest, SketchTraceRequest, ModelRequest, Rename, Problem)],
+            ref_template=_REF,
         )
         schemas.update(extra["$defs"])
         _drop_standard_problems(document)

@@ -24,7 +24,7 @@ def photo_view(row: Photo) -> schemas.Photo:
 def model_view(seen: Seen) -> schemas.Model:
     """Show a model."""
     row, place = seen.row, f"/v1/models/{seen.row.id}"
-    names = ["strokes.json", "project", *(seen.files if row.status == "succeeded" else ())]
+    names = [*row.drawings, "project", *(seen.files if row.status == "succeeded" else ())]
     return schemas.Model(
         id=row.id,
         name=row.name,

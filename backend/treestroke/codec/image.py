@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
-from treestroke.core.errors import LeafError, PhotoError
+from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.progress import Report, silent
 
 Picture = NDArray[np.uint8]
@@ -98,26 +98,18 @@ def decode_leaf(data: bytes, name: str) -> Picture:
     LeafError
         Another format, damaged, too small or too large, or nothing is cut out of it.
     """
-    if len(data) > MAX_LEAF_BYTES:
-        what = f"the leaf's picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
-        raise LeafError(f"{name}: {what}", code="leaf_too_large")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            image = Image.open(io.BytesIO(data), formats=("PNG",))
-            if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
-                what = f"the leaf's picture is {image.width} x {image.height} px, each side must be {MIN_LEAF_SIDE} to"
-                raise LeafError(f"{name}: {what} {MAX_LEAF_SIDE} px; resize it", code="leaf_size")
-            leaf = np.asarray(image.convert("RGBA"))
-    except _DAMAGED as error:
-        what = f"this is no PNG picture that can be read ({_brief(error)}); save the leaf as PNG"
-        raise LeafError(f"{name}: {what}") from error
-    drawn = float((leaf[..., 3] > 127).mean())
-    if not 0.01 <= drawn <= 0.99:
-        lacks = "no leaf: all is clear" if drawn < 0.01 else "nothing clear around the leaf"
-        what = f"the picture has {lacks}; cut the leaf out, with an alpha channel"
-        raise LeafError(f"{name}: {what}", code="leaf_not_cut_out")
-    return np.ascontiguousarray(leaf)
+    return _decoded_cut_out(data, name, LeafError)
+
+
+def decode_fruit(data: bytes, name: str) -> Picture:
+    """Decode the PNG of a fruit cut out, as `decode_leaf` does that of a leaf.
+
+    Raises
+    ------
+    FruitError
+        As `decode_leaf`.
+    """
+    return _decoded_cut_out(data, name, FruitError)
 
 
 def check_size(width: int, height: int, name: str) -> None:
@@ -158,6 +150,33 @@ def encode_stored(picture: Picture) -> StoredPhoto:
     sub = (cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_SUB)
     _, encoded = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), (*how, *sub))
     return StoredPhoto(encoded.tobytes())
+
+
+def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[FruitError]) -> Picture:
+    """Decode the PNG of a leaf or a fruit."""
+    thing = refusal.whole
+    if len(data) > MAX_LEAF_BYTES:
+        what = f"the {thing}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
+        raise refusal(f"{name}: {what}", code=f"{thing}_too_large")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image = Image.open(io.BytesIO(data), formats=("PNG",))
+            if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
+                what = (
+                    f"the {thing}'s picture is {image.width} x {image.height} px, each side must be {MIN_LEAF_SIDE} to"
+                )
+                raise refusal(f"{name}: {what} {MAX_LEAF_SIDE} px; resize it", code=f"{thing}_size")
+            picture = np.asarray(image.convert("RGBA"))
+    except _DAMAGED as error:
+        what = f"this is no PNG picture that can be read ({_brief(error)}); save the {thing} as PNG"
+        raise refusal(f"{name}: {what}") from error
+    drawn = float((picture[..., 3] > 127).mean())
+    if not 0.01 <= drawn <= 0.99:
+        lacks = f"no {thing}: all is clear" if drawn < 0.01 else f"nothing clear around the {thing}"
+        what = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"
+        raise refusal(f"{name}: {what}", code=f"{thing}_not_cut_out")
+    return np.ascontiguousarray(picture)
 
 
 class _Watched(io.BytesIO):

@@ -38,15 +38,15 @@ def strokes_from(value: object) -> Strokes:
     StrokesError
         As `parse_strokes`.
     """
-    table = _table(value, (), ("crown", "branches", "erase", "scale"))
+    table = table_of(value, (), ("crown", "branches", "erase", "scale"))
     if "crown" not in table:
         raise StrokesError.at(("crown",), "it is missing; draw one stroke around the foliage", "crown_missing")
-    branches, erase = (_list(table.get(key, []), (key,)) for key in ("branches", "erase"))
+    branches, erase = (list_of(table.get(key, []), (key,)) for key in ("branches", "erase"))
     check_count(1 + len(branches) + len(erase))
     return Strokes(
-        crown=_stroke(table["crown"], ("crown",), ("points",)),
-        branches=tuple(_stroke(one, ("branches", i), ("points", "width")) for i, one in enumerate(branches)),
-        erase=tuple(_stroke(one, ("erase", i), ("points",)) for i, one in enumerate(erase)),
+        crown=stroke_of(table["crown"], ("crown",), ("points",)),
+        branches=tuple(stroke_of(one, ("branches", i), ("points", "width")) for i, one in enumerate(branches)),
+        erase=tuple(stroke_of(one, ("erase", i), ("points",)) for i, one in enumerate(erase)),
         scale=_length(table["scale"]) if "scale" in table else None,
     )
 
@@ -54,23 +54,31 @@ def strokes_from(value: object) -> Strokes:
 def encode_strokes(strokes: Strokes) -> str:
     """Write strokes as JSON that `parse_strokes` reads back."""
     value: dict[str, object] = {
-        "crown": _plain(strokes.crown),
-        "branches": [_plain(stroke) for stroke in strokes.branches],
-        "erase": [_plain(stroke) for stroke in strokes.erase],
+        "crown": plain_stroke(strokes.crown),
+        "branches": [plain_stroke(stroke) for stroke in strokes.branches],
+        "erase": [plain_stroke(stroke) for stroke in strokes.erase],
     }
     if strokes.scale is not None:
         value["scale"] = {"points": strokes.scale.points.tolist(), "metres": strokes.scale.metres}
     return json.dumps(value)
 
 
-def _plain(stroke: Stroke) -> dict[str, object]:
+def plain_stroke(stroke: Stroke) -> dict[str, object]:
+    """Give one stroke as plain mappings, lists and numbers."""
     width = {} if stroke.width is None else {"width": stroke.width}
     return {"points": stroke.points.tolist(), **width}
 
 
-def _table(value: object, place: Place, known: Sequence[str]) -> Mapping[str, Any]:
+def table_of(value: object, place: Place, known: Sequence[str]) -> Mapping[str, Any]:
+    """Take a value for an object that has the known keys only.
+
+    Raises
+    ------
+    StrokesError
+        It is another type, or has another key; it names the place.
+    """
     if not isinstance(value, Mapping):
-        what = f"it must be an object with {', '.join(known)}, not {_kind(value)}"
+        what = f"it must be an object with {', '.join(known)}, not {kind_of(value)}"
         raise StrokesError.at(place, what, "wrong_type")
     for key in value:
         if key not in known:
@@ -79,17 +87,31 @@ def _table(value: object, place: Place, known: Sequence[str]) -> Mapping[str, An
     return value
 
 
-def _list(value: object, place: Place) -> Sequence[Any]:
+def list_of(value: object, place: Place) -> Sequence[Any]:
+    """Take a value for a list.
+
+    Raises
+    ------
+    StrokesError
+        It is another type; it names the place.
+    """
     if not isinstance(value, list | tuple):
-        raise StrokesError.at(place, f"it must be a list, not {_kind(value)}", "wrong_type")
+        raise StrokesError.at(place, f"it must be a list, not {kind_of(value)}", "wrong_type")
     return value
 
 
-def _stroke(value: object, place: Place, known: Sequence[str]) -> Stroke:
-    table = _table(value, place, known)
+def stroke_of(value: object, place: Place, known: Sequence[str]) -> Stroke:
+    """Take a value for a stroke: ``points`` and what else is known.
+
+    Raises
+    ------
+    StrokesError
+        It is none; it names the place.
+    """
+    table = table_of(value, place, known)
     if "points" not in table:
         raise StrokesError.at(place, "it has no points; give [[x, y], ...]", "missing_key")
-    points = _list(table["points"], (*place, "points"))
+    points = list_of(table["points"], (*place, "points"))
     if len(points) > MAX_POINTS:
         what = f"it has {len(points)} points, at most {MAX_POINTS} are allowed; thin them out"
         raise StrokesError.at(place, what, "too_many_points")
@@ -100,15 +122,15 @@ def _stroke(value: object, place: Place, known: Sequence[str]) -> Stroke:
 
 def _length(value: object) -> Length:
     place: Place = ("scale",)
-    table = _table(value, place, ("points", "metres"))
+    table = table_of(value, place, ("points", "metres"))
     if "metres" not in table:
         raise StrokesError.at(place, "it has no metres; give the line's length", "missing_key")
     metres = _number(table["metres"], (*place, "metres"))
-    return Length(_stroke({"points": table.get("points", [])}, place, ("points",)).points, metres)
+    return Length(stroke_of({"points": table.get("points", [])}, place, ("points",)).points, metres)
 
 
 def _pair(value: object, place: Place) -> tuple[float, float]:
-    pair = _list(value, place)
+    pair = list_of(value, place)
     if len(pair) != 2:
         raise StrokesError.at(place, f"a point is a pair [x, y], not {len(pair)} values", "wrong_type")
     return _number(pair[0], place), _number(pair[1], place)
@@ -116,7 +138,7 @@ def _pair(value: object, place: Place) -> tuple[float, float]:
 
 def _number(value: object, place: Place) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise StrokesError.at(place, f"a number is needed, not {_kind(value)}", "wrong_type")
+        raise StrokesError.at(place, f"a number is needed, not {kind_of(value)}", "wrong_type")
     try:
         number = float(value)
     except OverflowError:
@@ -127,6 +149,7 @@ def _number(value: object, place: Place) -> float:
     return number
 
 
-def _kind(value: object) -> str:
+def kind_of(value: object) -> str:
+    """Call a value's type as a message does."""
     names = {dict: "an object", list: "a list", str: "text", bool: "true or false", type(None): "null"}
     return names.get(type(value), "a number" if isinstance(value, Real) else type(value).__name__)

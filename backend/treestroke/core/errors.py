@@ -3,6 +3,7 @@
 TreestrokeError              the user's input cannot be used; the message says what, where, how to mend it
 ├── PhotoError               the picture itself
 ├── LeafError                the picture of a leaf
+├── FruitError               the picture of a fruit
 ├── StrokesError             a stroke or the stroke file
 └── SettingsError            a setting's name or value
 
@@ -61,6 +62,13 @@ class LeafError(TreestrokeError):
 
     usual_code = "leaf_unreadable"
     whole = "leaf"
+
+
+class FruitError(TreestrokeError):
+    """The picture of a fruit cannot be read, or has no fruit cut out."""
+
+    usual_code = "fruit_unreadable"
+    whole = "fruit"
 
 
 class StrokesError(TreestrokeError):

@@ -45,15 +45,15 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     check_count(1 + len(strokes.branches) + len(strokes.erase))
     scale = None if strokes.scale is None else _known_length(strokes.scale, width, height)
     inside = Strokes(
-        crown=_clamped(strokes.crown, ("crown",), width, height, 3),
-        branches=tuple(_clamped(s, ("branches", i), width, height, 2) for i, s in enumerate(strokes.branches)),
-        erase=tuple(_clamped(s, ("erase", i), width, height, 2) for i, s in enumerate(strokes.erase)),
+        crown=clamped(strokes.crown, ("crown",), width, height, 3),
+        branches=tuple(clamped(s, ("branches", i), width, height, 2) for i, s in enumerate(strokes.branches)),
+        erase=tuple(clamped(s, ("erase", i), width, height, 2) for i, s in enumerate(strokes.erase)),
         scale=scale,
     )
     coarse = min(1.0, CHECKED_SIDE / max(width, height))
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
     crown, crossing = filled_and_crossing(inside.crown.points * coarse, *size)
-    _check_crown(crown)
+    check_crown(crown)
     warnings = (CROSSING,) if crossing else ()
     if not inside.branches:
         return MendedStrokes(inside, warnings)
@@ -89,8 +89,15 @@ def check_count(count: int) -> None:
         raise StrokesError.at((), what, "too_many_strokes")
 
 
-def _clamped(stroke: Stroke, place: Place, width: int, height: int, least: int) -> Stroke:
-    """Check one stroke by itself and move its points into the photo."""
+def clamped(stroke: Stroke, place: Place, width: int, height: int, least: int, ground: str = "photo") -> Stroke:
+    """Check one stroke by itself and move its points into the photo, or whatever else it is drawn on.
+
+    Raises
+    ------
+    StrokesError
+        A value that is not finite, too many points, fewer than ``least`` distinct ones, or no width; it names the
+        ``place``.
+    """
     points = np.asarray(stroke.points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 2:
         raise StrokesError.at(place, "points must be pairs of x and y; give [[x, y], ...]", "wrong_type")
@@ -98,7 +105,7 @@ def _clamped(stroke: Stroke, place: Place, width: int, height: int, least: int) 
         what = f"it has {len(points)} points, at most {MAX_POINTS} are allowed; draw it with fewer"
         raise StrokesError.at(place, what, "too_many_points")
     if not np.isfinite(points).all():
-        what = "a coordinate is not a finite number; give pixels of the photo"
+        what = f"a coordinate is not a finite number; give pixels of the {ground}"
         raise StrokesError.at(place, what, "non_finite_number")
     if stroke.width is not None and not (np.isfinite(stroke.width) and stroke.width > 0):
         what = f"width is {stroke.width}; give pixels above 0 or leave it out"
@@ -106,7 +113,7 @@ def _clamped(stroke: Stroke, place: Place, width: int, height: int, least: int) 
     points = np.clip(points, 0.0, (float(width), float(height)))
     distinct = len(np.unique(points, axis=0))
     if distinct < least:
-        held = f"it has {distinct} distinct point{'s' * (distinct != 1)} inside the photo"
+        held = f"it has {distinct} distinct point{'s' * (distinct != 1)} inside the {ground}"
         raise StrokesError.at(place, f"{held}, at least {least} are needed; draw it longer", "stroke_too_short")
     return Stroke(points, stroke.width)
 
@@ -116,7 +123,7 @@ def _known_length(scale: Length, width: int, height: int) -> Length:
     if len(scale.points) != 2:
         what = f"it has {len(scale.points)} points, it needs 2; draw a straight line"
         raise StrokesError.at(("scale",), what, "scale_invalid", key="points")
-    ends = _clamped(Stroke(scale.points), ("scale",), width, height, 2).points
+    ends = clamped(Stroke(scale.points), ("scale",), width, height, 2).points
     if not (np.isfinite(scale.metres) and scale.metres > 0):
         what = f"{scale.metres} metres is no length; give metres above 0"
         raise StrokesError.at(("scale",), what, "scale_invalid", key="metres")
@@ -134,10 +141,17 @@ def _check_scale(strokes: Strokes) -> None:
         raise StrokesError.at(("scale",), f"{what}; check its metres and its ends", "scale_unlikely")
 
 
-def _check_crown(crown: NDArray[np.bool_]) -> None:
+def check_crown(crown: NDArray[np.bool_], ground: str = "photo") -> None:
+    """Refuse a crown (h, w) that is too small for the photo, or whatever else it is drawn on.
+
+    Raises
+    ------
+    StrokesError
+        It is smaller than `MIN_CROWN_SHARE`.
+    """
     share = np.count_nonzero(crown) / crown.size
     if share < MIN_CROWN_SHARE:
-        held = f"it encloses {share:.2%} of the photo, at least {MIN_CROWN_SHARE:.1%} is needed"
+        held = f"it encloses {share:.2%} of the {ground}, at least {MIN_CROWN_SHARE:.1%} is needed"
         raise StrokesError.at(("crown",), f"{held}; draw it around the whole foliage", "crown_too_small")
 
 

@@ -6,6 +6,7 @@ from itertools import accumulate
 from treestroke.core.pipeline.settings import ModelSettings
 
 _SEEING: Mapping[str, float] = {"decode": 0.06, "foliage": 0.45, "trace": 0.14}
+_SEEING_SKETCHES: Mapping[str, float] = {"decode": 0.02, "trace": 0.2}
 _GROWING: Mapping[str, float] = {"lift": 0.02, "grow": 0.35, "leaf": 0.35, "mesh": 0.3}
 _PREVIEW = 0.6
 _LEVELS, _WRITE, _COMPRESS = 3.0, 0.1, 0.8
@@ -17,9 +18,10 @@ _SMALL_FILE = 0.05
 class Course:
     """The phases of one model, in order; those of growth come once a variant."""
 
-    def __init__(self, settings: ModelSettings) -> None:
+    def __init__(self, settings: ModelSettings, of_sketches: bool = False) -> None:
         each = {**_GROWING, "levels": 0.0 if settings.lod == "none" else _LEVELS, "write": _writing(settings)}
-        phases = [*_SEEING.items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
+        seeing = _SEEING_SKETCHES if of_sketches else _SEEING
+        phases = [*seeing.items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
         self._names = [name for name, _ in phases]
         self._ends = list(accumulate(seconds for _, seconds in phases))
         self._at = 0

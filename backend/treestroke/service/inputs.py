@@ -1,7 +1,7 @@
-"""What a caller may hand in as photo, strokes and settings, brought to values."""
+"""What a caller may hand in as photo, strokes, sketches and settings, brought to values."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,19 +13,23 @@ from treestroke.codec.image import (
     MAX_STORED_BYTES,
     Picture,
     check_size,
+    decode_fruit,
     decode_leaf,
     decode_photo,
 )
 from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
+from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.core.errors import LeafError, PhotoError, StrokesError, TreestrokeError
+from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
-from treestroke.core.strokes import Strokes
+from treestroke.core.strokes import Sketch, Strokes
 
 PhotoLike = str | os.PathLike[str] | bytes | Picture
 StrokesLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Strokes
+SketchLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Sketch
 LeafLike = str | os.PathLike[str] | bytes | None
+FruitLike = LeafLike
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
 
@@ -86,6 +90,26 @@ def load_strokes(strokes: StrokesLike) -> Strokes:
     return parse_strokes(read_input(strokes, MAX_TEXT_BYTES, StrokesError), os.fspath(strokes))
 
 
+def load_sketch(sketch: SketchLike, name: str) -> Sketch:
+    """Bring a sketch (path, JSON or PNG bytes, plain mapping or values) to values; ``name`` says which it is.
+
+    Raises
+    ------
+    StrokesError
+        As `parse_sketch`; or the file cannot be read.
+    """
+    if isinstance(sketch, Sketch):
+        return sketch
+    if isinstance(sketch, Mapping):
+        try:
+            return sketch_from(sketch)
+        except StrokesError as error:
+            raise error.within(name) from error
+    if isinstance(sketch, bytes):
+        return parse_sketch(sketch, name)
+    return parse_sketch(read_input(sketch, MAX_TEXT_BYTES, StrokesError), os.fspath(sketch))
+
+
 def load_leaf(leaf: LeafLike) -> Picture | None:
     """Bring the picture of a leaf (path or PNG bytes, or absent) to pixels (h, w, 4).
 
@@ -94,11 +118,18 @@ def load_leaf(leaf: LeafLike) -> Picture | None:
     LeafError
         As `decode_leaf`; or the file cannot be read.
     """
-    if leaf is None:
-        return None
-    if isinstance(leaf, bytes):
-        return decode_leaf(leaf, "leaf")
-    return decode_leaf(read_input(leaf, MAX_LEAF_BYTES, LeafError), os.fspath(leaf))
+    return _cut_out(leaf, "leaf", LeafError, decode_leaf)
+
+
+def load_fruit(fruit: FruitLike) -> Picture | None:
+    """Bring the picture of a fruit (path or PNG bytes, or absent) to pixels (h, w, 4).
+
+    Raises
+    ------
+    FruitError
+        As `decode_fruit`; or the file cannot be read.
+    """
+    return _cut_out(fruit, "fruit", FruitError, decode_fruit)
 
 
 def load_settings(settings: SettingsLike) -> ModelSettings:
@@ -122,3 +153,11 @@ def load_project(path: str | os.PathLike[str]) -> Project:
     """
     data = read_input(path, MAX_STORED_BYTES + MAX_TEXT_BYTES, TreestrokeError)
     return read_project(data, os.fspath(path))
+
+
+def _cut_out(
+    picture: LeafLike, name: str, refusal: type[TreestrokeError], decode: Callable[[bytes, str], Picture]
+) -> Picture | None:
+    if picture is None or isinstance(picture, bytes):
+        return None if picture is None else decode(picture, name)
+    return decode(read_input(picture, MAX_LEAF_BYTES, refusal), os.fspath(picture))

@@ -12,16 +12,16 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke.codec.archive import zipped
-from treestroke.codec.image import StoredPhoto, encode_png
+from treestroke.codec.image import encode_png
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.course import Course
+from treestroke.service.evidence import Evidence, make_of
 from treestroke.service.failures import problem_of, problem_of_input, ran_out_of_memory
 from treestroke.service.files import Bundle
 from treestroke.service.inputs import load_settings
-from treestroke.service.model import Model as MadeModel
-from treestroke.service.model import model
+from treestroke.service.models import project_from
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import add_file, beat, claim, end, succeed
@@ -51,7 +51,7 @@ class Pulse:
     def __init__(self, database: Database, job: Model, seconds: float) -> None:
         self._database, self._job = database, job
         self._deadline = time.monotonic() + seconds
-        self._course = Course(load_settings(job.settings))
+        self._course = Course(load_settings(job.settings), of_sketches="front" in job.parts)
         self._state: tuple[str | None, float, float] = (None, 0.0, 0.0)
         self._order: type[Exception] | None = None
         self._over = threading.Event()
@@ -139,7 +139,7 @@ def _make(
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     """Make the tree and store its files; nobody sees them before they are published."""
     pulse.report("decode", 0.0)
-    photo = StoredPhoto(blobs.get(job.photo_blob))
+    given = Evidence.of(project_from(blobs, job))
 
     def show(grown: LiveTree) -> None:
         content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
@@ -147,9 +147,7 @@ def _make(
         with database.writing() as session:
             add_file(session, job, GROWTH, blob, len(content), **first)
 
-    leaf = None if job.leaf_blob is None else blobs.get(job.leaf_blob)
-    given = photo, blobs.get(job.strokes_blob), job.settings, job.seed
-    made: MadeModel = model(*given, pulse.report, show, leaf=leaf)
+    made = make_of(given, job.settings, job.seed, pulse.report, show)
     pulse.report("preview", 0.0)
     trees = _packed(made.bundles)
     contents = {**trees, PREVIEW: encode_png(made.preview())}

@@ -1,74 +1,30 @@
-"""Model a tree: photo and strokes in, GLB out."""
+"""Model a tree: photo and strokes in, perhaps with a sketch of its left side, GLB out."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any
-
-import cv2
-import numpy as np
-from numpy.typing import NDArray
-
-from treestroke import __version__
-from treestroke.codec.preview import draw_preview
-from treestroke.core.geometry.silhouette import likeness, silhouette
-from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
+from treestroke.core.pipeline.dressing import OwnPictures
+from treestroke.core.pipeline.finishing import OnGrown, unseen
 from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo
-from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, check_seed, plain_settings
+from treestroke.core.pipeline.settings import check_seed
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
-from treestroke.core.survey.measures import Measures
 from treestroke.service.clock import Stopwatch
-from treestroke.service.files import Bundle, check_files, tree_files
+from treestroke.service.files import check_files
 from treestroke.service.inputs import (
+    FruitLike,
     LeafLike,
     PhotoLike,
     SettingsLike,
+    SketchLike,
     StrokesLike,
+    load_fruit,
     load_leaf,
     load_photo,
     load_settings,
+    load_sketch,
     load_strokes,
 )
+from treestroke.service.making import Model, make
 from treestroke.service.threads import one_thread
-
-ENGINE = f"treestroke {__version__}"
-SCORED_HEIGHT = 400
-STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "levels", "write")
-
-
-@dataclass(frozen=True, eq=False)
-class Model:
-    """A finished tree.
-
-    Attributes
-    ----------
-    bundles
-        All files by their names; those of one format are together, under the first one's name.
-    report
-        Engine, seed, settings, seconds by stage, counts, score, measures, variants, files and warnings, as plain
-        values for JSON.
-    tree
-        The parts that the files were made from; of several variants the first.
-    """
-
-    bundles: Mapping[str, Bundle]
-    report: dict[str, Any]
-    tree: TreeModel
-
-    @property
-    def glb(self) -> bytes:
-        """The glTF 2.0 binary file's bytes."""
-        return next(iter(self.files.values()))
-
-    @property
-    def files(self) -> dict[str, bytes]:
-        """Each file's bytes by its name, the GLB first."""
-        return {name: content for bundle in self.bundles.values() for name, content in bundle.items()}
-
-    def preview(self) -> NDArray[np.uint8]:
-        """Draw the front view at the photo's framing beside a 3/4 view, (h, w, 3) sRGB."""
-        return draw_preview(self.tree.bark, self.tree.leaf, self.tree.camera)
 
 
 def model(
@@ -79,107 +35,35 @@ def model(
     report: Report = silent,
     on_grown: OnGrown = unseen,
     *,
+    side: SketchLike | None = None,
     leaf: LeafLike = None,
+    fruit: FruitLike = None,
     name: str = "tree",
 ) -> Model:
     """Turn one photo and a few strokes into a 3D tree.
 
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
-    mapping or values; ``settings`` holds any of `ModelSettings`' names; ``leaf`` is a path or the bytes of a PNG of a
-    leaf cut out, its stalk down, that the tree is to bear. ``report(stage, fraction)`` is called as the work goes on,
-    ``on_grown(tree)`` once, with the (first) grown tree before it has leaves and bark. ``name`` begins the files'
-    names. The same photo, strokes, leaf, settings and seed give the same bytes.
+    mapping or values; ``settings`` holds any of `ModelSettings`' names. ``side`` is a sketch of the tree's left side,
+    as `sketch` takes it, by which its branches have their depth. ``leaf`` and ``fruit`` are paths or the bytes of PNGs
+    of what the tree is to bear, cut out: a leaf with its stalk down, a fruit with its stalk up.
+    ``report(stage, fraction)`` is called as the work goes on, ``on_grown(tree)`` once, with the (first) grown tree
+    before it has leaves and bark. ``name`` begins the files' names. The same input and seed give the same bytes.
 
     Raises
     ------
-    PhotoError, StrokesError, LeafError, SettingsError
+    PhotoError, StrokesError, LeafError, FruitError, SettingsError
         An input cannot be used; the message says what, where and how to mend it.
     """
-    chosen, seed, given, cut_out = load_settings(settings), check_seed(seed), load_strokes(strokes), load_leaf(leaf)
+    chosen, seed, given = load_settings(settings), check_seed(seed), load_strokes(strokes)
+    beside = None if side is None else load_sketch(side, "side")
+    pictures = OwnPictures(load_leaf(leaf), load_fruit(fruit))
     require_trunk(given)
     check_files(chosen)
     watch = Stopwatch(report)
-    trees: list[TreeModel] = []
-    bundles: dict[str, Bundle] = {}
     with one_thread():
         with watch.stage("decode"):
             picture = load_photo(photo, watch)
-        seen = see(picture, given, None, watch)
-        for at, one in enumerate(_seeds(seed, chosen.variants)):
-            show = unseen if trees else on_grown
-            trees.append(model_photo(seen, chosen, np.random.default_rng(one), watch, show, leaf_picture=cut_out))
-            bundles |= tree_files(trees[-1], chosen, name if at == 0 else f"{name}.v{at + 1}", ENGINE, watch)
-    return Model(bundles, _report(trees, bundles, chosen, seed, watch), trees[0])
-
-
-def _seeds(first: int, count: int) -> list[int]:
-    """Give the seeds of variants, from the first on, around the end if need be."""
-    return [(first + at) % (MAX_SEED + 1) for at in range(count)]
-
-
-def _report(
-    trees: Sequence[TreeModel], bundles: Mapping[str, Bundle], settings: ModelSettings, seed: int, watch: Stopwatch
-) -> dict[str, Any]:
-    tree, files = trees[0], {name: len(content) for bundle in bundles.values() for name, content in bundle.items()}
-    scores = [{"silhouette_iou": _silhouette_iou(one), **one.score} for one in trees]
-    counts = [_counts(one) for one in trees]
-    return {
-        "engine": ENGINE,
-        "seed": seed,
-        "settings": {**plain_settings(settings), "foliage": tree.foliage_kind},
-        "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},
-        "counts": {**counts[0], "bytes": next(iter(files.values()))},
-        "score": scores[0],
-        "measures": _plain_measures(tree.measures),
-        "variants": [
-            {"seed": one, "counts": count, "score": score}
-            for one, count, score in zip(_seeds(seed, len(trees)), counts, scores, strict=True)
-        ],
-        "files": files,
-        "warnings": [asdict(warning) for warning in tree.warnings],
-    }
-
-
-def _counts(tree: TreeModel) -> dict[str, int]:
-    surfaces = [tree.bark] if tree.leaf is None else [tree.bark, tree.leaf]
-    return {
-        "iterations": tree.iterations,
-        "branches": tree.branches,
-        "leaves": 0 if tree.cards is None else len(tree.cards),
-        "triangles": sum(len(surface.mesh.triangles) for surface in surfaces),
-    }
-
-
-def _plain_measures(measures: Measures) -> dict[str, Any]:
-    """Write measures as plain values, lengths to the millimetre and all else to as many digits as mean something."""
-
-    def plain(value: object) -> object:
-        return float(f"{value:.4g}") if isinstance(value, float) else value
-
-    figures = {
-        name: {key: plain(value) for key, value in asdict(figure).items()} for name, figure in measures.figures.items()
-    }
-    scale = measures.scale
-    return {
-        **figures,
-        "branches_by_order": {
-            "value": list(measures.branches_by_order),
-            "basis": "derived",
-            "meaning": "stems, what leaves them, what leaves those, and so on: seen and grown",
-        },
-        "scale": {
-            "value": scale.metres_per_pixel,
-            "unit": "m/px",
-            "basis": "measured" if scale.known else "given",
-            "meaning": "metres a pixel of the photo at the tree, by "
-            + ("the line of known length" if scale.known else "the height that was given"),
-        },
-    }
-
-
-def _silhouette_iou(tree: TreeModel) -> float:
-    """Compare the front view with the foliage and branches that were found, at a size that costs little."""
-    seen = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.likeness)))
-    size = (seen.shape[1], seen.shape[0])
-    wanted = cv2.resize(tree.likeness.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
-    return likeness(seen, wanted)
+        seen = see(picture, given, None, watch, beside)
+        return make(
+            lambda rng, show: model_photo(seen, chosen, rng, watch, show, pictures), chosen, seed, watch, on_grown, name
+        )

@@ -3,18 +3,20 @@
 import hashlib
 import json
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import update
 from sqlalchemy.orm import Session
 
-from treestroke.codec.project import Project, write_project
-from treestroke.service import tracing
-from treestroke.service.model import ENGINE
+from treestroke.codec.image import StoredPhoto
+from treestroke.codec.project import VIEWS, Project, sketch_ending, write_project
+from treestroke.service import tracing, wishes
+from treestroke.service.making import ENGINE
 from treestroke.service.photos import NotFound, Shelf
-from treestroke.service.tracing import Wish
+from treestroke.service.wishes import Wish, check_name
 from treestroke.store import leases, queries
+from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import File, Model, Photo, Replay
 
@@ -44,10 +46,10 @@ def read_wish(shelf: Shelf, body: bytes) -> Wish:
     TreestrokeError
         It is no such request.
     """
-    return shelf.tracers("", tracing.read_wish, body)
+    return shelf.tracers("", wishes.read_wish, body)
 
 
-def read_fields(shelf: Shelf, fields: dict[str, bytes]) -> Wish:
+def read_fields(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> Wish:
     """Read a request for a model from a form's fields but the photo, as `read_wish` does.
 
     Raises
@@ -55,7 +57,7 @@ def read_fields(shelf: Shelf, fields: dict[str, bytes]) -> Wish:
     TreestrokeError
         It is no such request.
     """
-    return shelf.tracers("", tracing.read_fields, fields)
+    return shelf.tracers("", wishes.read_fields, fields, brings_photo)
 
 
 def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | None = None) -> Seen:
@@ -71,12 +73,13 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
     OSError
         The disk is full.
     """
-    photo = brought or _photo_for(shelf, wish, key)
-    shelf.tracers(photo.blob, tracing.check_wish, shelf.blobs.path(photo.blob), wish.strokes)
-    strokes = shelf.blobs.put(wish.strokes)
-    leaf = None if wish.leaf is None else shelf.blobs.put(wish.leaf)
-    fingerprint = _digest([photo.blob, strokes, leaf, wish.settings, wish.seed, ENGINE])
-    used = _digest([fingerprint, wish.name, photo.sha256])
+    photo = brought or (None if wish.photo is None else _photo_for(shelf, wish.photo, key))
+    blob = None if photo is None else photo.blob
+    place = None if blob is None else shelf.blobs.path(blob)
+    shelf.tracers(blob or "", tracing.check_wish, place, wish.parts, wish.within)
+    parts = {part: shelf.blobs.put(content) for part, content in wish.parts.items()}
+    fingerprint = _digest([blob, parts, wish.settings, wish.seed, ENGINE])
+    used = _digest([fingerprint, wish.name, None if photo is None else photo.sha256])
     with shelf.database.writing() as session:
         first = session.get(Replay, key) if key else None
         if first is not None:
@@ -85,8 +88,8 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
             found = queries.model(session, first.model, deleted=True)
             if found is not None:
                 return _seen(session, found)
-        row = _new_row(photo, wish, strokes, leaf, fingerprint)
-        session.add_all([row, photo] if brought else [row])
+        row = _new_row(photo, wish, parts, fingerprint)
+        session.add_all([row, brought] if brought else [row])
         session.flush()
         _answer_from_twin(session, row)
         if key:
@@ -124,7 +127,7 @@ def rename(database: Database, id: str, name: str) -> Seen:
     NotFound, TreestrokeError
         There is no such model, or the name cannot be used.
     """
-    tracing.check_name(name)
+    check_name(name)
     with database.writing() as session:
         row = _found(session, id)
         session.execute(update(Model).where(Model.id == id).values(name=name, seq=Model.seq + 1))
@@ -177,7 +180,7 @@ def restore(database: Database, id: str) -> Seen:
 
 
 def project_of(shelf: Shelf, id: str) -> tuple[Model, str]:
-    """Pack a model's photo, strokes and settings as a project file; give the model and the file's blob.
+    """Pack what a model is made of as a project file; give the model and the file's blob.
 
     Raises
     ------
@@ -185,16 +188,21 @@ def project_of(shelf: Shelf, id: str) -> tuple[Model, str]:
         There is no such model.
     """
     row = see(shelf.database, id).row
-    photo, strokes = shelf.blobs.get(row.photo_blob), shelf.blobs.get(row.strokes_blob)
-    leaf = None if row.leaf_blob is None else shelf.blobs.get(row.leaf_blob)
-    return row, shelf.blobs.put(write_project(Project(photo, strokes, {**row.settings, "seed": row.seed}, leaf)))
+    return row, shelf.blobs.put(write_project(project_from(shelf.blobs, row)))
 
 
-def _photo_for(shelf: Shelf, wish: Wish, key: str | None) -> Photo:
+def project_from(blobs: Blobs, row: Model) -> Project:
+    """Read what a model is made of."""
+    contents = {part: blobs.get(blob) for part, blob in row.parts.items()}
+    photo = StoredPhoto(contents.pop("photo")) if "photo" in contents else None
+    return Project(photo, contents.pop("strokes", None), {**row.settings, "seed": row.seed}, **contents)
+
+
+def _photo_for(shelf: Shelf, id: str, key: str | None) -> Photo:
     """Find the photo that a request names; a deleted one only where the request may be a repetition."""
     with shelf.database.reading() as session:
         repeated = key is not None and session.get(Replay, key) is not None
-        photo = queries.photo(session, wish.photo, deleted=repeated)
+        photo = queries.photo(session, id, deleted=repeated)
     if photo is None:
         raise NotFound("photo")
     return photo
@@ -215,14 +223,15 @@ def _seen(session: Session, row: Model) -> Seen:
     return Seen(row, queries.files(session, row.id), position, eta_s)
 
 
-def _new_row(photo: Photo, wish: Wish, strokes: str, leaf: str | None, fingerprint: str) -> Model:
+def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str], fingerprint: str) -> Model:
+    endings = {view: sketch_ending(wish.parts[view]) for view in VIEWS if view in parts}
     return Model(
         id=queries.new_id("mdl"),
         name=wish.name,
-        photo=photo.id,
-        photo_blob=photo.blob,
-        strokes_blob=strokes,
-        leaf_blob=leaf,
+        photo=None if photo is None else photo.id,
+        photo_blob=None if photo is None else photo.blob,
+        **{f"{part}_blob": blob for part, blob in parts.items()},
+        **{f"{view}_ending": ending for view, ending in endings.items()},
         settings=wish.settings,
         seed=wish.seed,
         engine=ENGINE,

@@ -44,7 +44,7 @@ class Tracers:
 
     def __init__(self, count: int, seconds: float, memory_mb: int) -> None:
         context = multiprocessing.get_context("forkserver")
-        context.set_forkserver_preload(["treestroke.service.tracing"])
+        context.set_forkserver_preload(["treestroke.service.tracing", "treestroke.service.wishes"])
         self._children = [_Child(context, seconds, memory_mb * 2**20) for _ in range(count)]
         self._lock = threading.Lock()
         self._homes: OrderedDict[str, int] = OrderedDict()

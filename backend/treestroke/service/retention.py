@@ -10,7 +10,7 @@ from treestroke.service.models import RESTORABLE_SECONDS
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import TERMINAL
-from treestroke.store.tables import File, Model, Photo, Replay
+from treestroke.store.tables import PARTS, File, Model, Photo, Replay
 
 YOUNG_SECONDS = 3600.0
 """A blob this young may belong to a row that is about to be written."""
@@ -52,5 +52,5 @@ def referenced(database: Database) -> set[str]:
 
 
 def _referenced(session: Session) -> set[str]:
-    columns = (Photo.blob, Model.photo_blob, Model.strokes_blob, Model.leaf_blob, File.blob)
+    columns = (Photo.blob, *(getattr(Model, f"{part}_blob") for part in PARTS), File.blob)
     return {blob for column in columns for blob in session.scalars(select(column)) if blob is not None}

@@ -10,11 +10,11 @@ from treestroke.codec.overlay import draw_overlay
 from treestroke.codec.skeleton import plain_grown, plain_skeleton
 from treestroke.core.imaging.outline import rings_of_mask
 from treestroke.core.pipeline.grown_tree import LiveTree
-from treestroke.core.pipeline.photo import PhotoTrace, grow_photo, trace_photo
+from treestroke.core.pipeline.photo import PhotoTrace, beside, grow_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
-from treestroke.service.inputs import PhotoLike, StrokesLike, load_photo, load_strokes
+from treestroke.service.inputs import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
 from treestroke.service.threads import one_thread
 
 
@@ -77,13 +77,20 @@ class Trace:
         return draw_overlay(self.photo, self.foliage, self.skeleton, self.stroke)
 
 
-def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None, grow: bool = False) -> Trace:
+def trace(
+    photo: PhotoLike,
+    strokes: StrokesLike,
+    after: Trace | None = None,
+    grow: bool = False,
+    side: SketchLike | None = None,
+) -> Trace:
     """Find the foliage inside the crown stroke and the branches near the branch strokes.
 
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
     mapping or values. Without branch strokes the foliage alone is found. ``after`` is the last trace of the same photo:
     its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once, and
-    everything while all strokes do. ``grow`` asks for the tree, too, that `model` would grow of them.
+    everything while all strokes do. ``grow`` asks for the tree, too, that `model` would grow of them, and of the sketch of
+    its left ``side`` where there is one.
 
     Raises
     ------
@@ -98,6 +105,7 @@ def trace(photo: PhotoLike, strokes: StrokesLike, after: Trace | None = None, gr
             found = last.found
         else:
             found = trace_photo(picture, given, None if last is None else last.found.seen.foliage)
+        found = beside(found, None if side is None else load_sketch(side, "side"))
         grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(found.foliage) if last is None else last.rings
     what = found.foliage, rings, given, found, found.skeleton, found.stroke, found.warnings

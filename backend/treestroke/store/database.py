@@ -57,11 +57,18 @@ class Database:
             yield session
 
     def migrate(self) -> None:
-        """Bring the tables to the newest form, from nothing or from any older one."""
-        with self._engine.connect().execution_options(**{_WRITES: True}) as connection:
-            settings = _migrations()
-            settings.attributes["connection"] = connection
-            command.upgrade(settings, "head")
+        """Bring the tables to the newest form, from nothing or from any older one.
+
+        A table that is made anew is dropped for a moment: rows that refer to its rows must not go with them.
+        """
+        engine = _engine(self.path, foreign_keys=False)
+        try:
+            with engine.connect().execution_options(**{_WRITES: True}) as connection:
+                settings = _migrations()
+                settings.attributes["connection"] = connection
+                command.upgrade(settings, "head")
+        finally:
+            engine.dispose()
 
     def current(self) -> bool:
         """Tell whether the tables have the form that this program knows."""
@@ -80,13 +87,13 @@ def _migrations() -> Config:
     return settings
 
 
-def _engine(path: Path) -> Engine:
+def _engine(path: Path, foreign_keys: bool = True) -> Engine:
     engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False})
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: Any, _: object) -> None:
         connection.isolation_level = None  # transactions begin below, not by the driver's guess
-        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+        for pragma in ("journal_mode=WAL", "synchronous=FULL", f"foreign_keys={'ON' if foreign_keys else 'OFF'}"):
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")

@@ -11,6 +11,7 @@ _NAMES = {
     "ix": "ix_%(table_name)s_%(column_0_name)s",
     "fk": "fk_%(table_name)s_%(column_0_name)s",
 }
+PARTS = ("photo", "strokes", "front", "side", "leaf", "fruit")
 _NUMBER = BigInteger().with_variant(Integer, "sqlite")
 
 
@@ -49,10 +50,16 @@ class Model(Table):
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     name: Mapped[str] = mapped_column(String(200))
-    photo: Mapped[str] = mapped_column(String(40))
-    photo_blob: Mapped[str] = mapped_column(String(64))
-    strokes_blob: Mapped[str] = mapped_column(String(64))
+    photo: Mapped[str | None] = mapped_column(String(40))
+    photo_blob: Mapped[str | None] = mapped_column(String(64))
+    strokes_blob: Mapped[str | None] = mapped_column(String(64))
+    front_blob: Mapped[str | None] = mapped_column(String(64))
+    front_ending: Mapped[str | None] = mapped_column(String(4))
+    """Of the file that the blob is: json or png."""
+    side_blob: Mapped[str | None] = mapped_column(String(64))
+    side_ending: Mapped[str | None] = mapped_column(String(4))
     leaf_blob: Mapped[str | None] = mapped_column(String(64))
+    fruit_blob: Mapped[str | None] = mapped_column(String(64))
     settings: Mapped[dict[str, Any]]
     seed: Mapped[int] = mapped_column(BigInteger)
     engine: Mapped[str] = mapped_column(String(40))
@@ -74,6 +81,18 @@ class Model(Table):
     started: Mapped[float | None]
     finished: Mapped[float | None]
     deleted: Mapped[float | None]
+
+    @property
+    def parts(self) -> dict[str, str]:
+        """Give the blobs of what the tree is made of, by part: photo, strokes, front, side, leaf, fruit."""
+        blobs = {part: getattr(self, f"{part}_blob") for part in PARTS}
+        return {part: blob for part, blob in blobs.items() if blob is not None}
+
+    @property
+    def drawings(self) -> dict[str, str]:
+        """Give the blobs of what was drawn, by the name of the file that each is."""
+        names = {"strokes": "strokes.json", "front": f"front.{self.front_ending}", "side": f"side.{self.side_ending}"}
+        return {names[part]: blob for part, blob in self.parts.items() if part in names}
 
 
 class File(Table):

@@ -1,4 +1,4 @@
-import type { Limits, Model, Settings, TraceAnswer } from '../state'
+import type { Limits, Model, Settings, SketchTraceAnswer, TraceAnswer } from '../state'
 import { type Strokes, toWire } from '../strokes'
 import type { components } from './schema'
 
@@ -23,15 +23,25 @@ export class Refused extends Error {
 /** The service cannot be reached, or is not able to answer just now. */
 export class Unreachable extends Error {}
 
+type Sketches = Schemas['Sketches']
+
+/** What a tree is made of: strokes over a photo, sketches of its sides, or both. */
+export interface Evidence {
+  readonly photo?: string
+  readonly strokes?: Strokes
+  readonly sketches?: Sketches
+}
+
 /** What is wished for when a tree is grown. */
 export interface Wish {
-  readonly photo: string
-  readonly strokes: Strokes
+  readonly evidence: Evidence
   readonly settings: Settings
   readonly seed: number
   readonly name: string
   /** The person's own picture of a leaf. */
   readonly leaf: Blob | null
+  /** And of a fruit. */
+  readonly fruit: Blob | null
 }
 
 /** The service's calls that the page makes; each throws `Refused` or `Unreachable`. */
@@ -50,15 +60,21 @@ export class Client {
     return ask('GET', `/v1/photos/${id}`)
   }
 
-  /** Find foliage and visible branches; with `grow` the whole tree's skeleton too. */
-  trace(photo: string, strokes: Strokes, grow: boolean): Promise<TraceAnswer> {
-    return ask('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow }))
+  /** Find foliage and visible branches; with `grow` the whole tree's skeleton too, as deep as its left side. */
+  trace(photo: string, strokes: Strokes, grow: boolean, side?: Sketches['side']): Promise<TraceAnswer> {
+    return ask('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow, ...(side && { side }) }))
+  }
+
+  /** Find what sketches show; with `grow` the whole tree's skeleton too. */
+  traceSketches(sketches: Sketches, grow: boolean): Promise<SketchTraceAnswer> {
+    return ask('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
   }
 
   /** Ask for a model; the same `key` asks for the same one, however often it is sent. */
-  async grow({ strokes, leaf, ...wish }: Wish, key: string): Promise<Model> {
-    const body = { ...wish, strokes: toWire(strokes), ...(leaf && { leaf: await base64(leaf) }) }
-    return ask('POST', '/v1/models', json(body, { 'Idempotency-Key': key }))
+  async grow({ evidence: { strokes, ...evidence }, leaf, fruit, ...wish }: Wish, key: string): Promise<Model> {
+    const drawn = { ...evidence, ...(strokes && { strokes: toWire(strokes) }) }
+    const pictures = { ...(leaf && { leaf: await base64(leaf) }), ...(fruit && { fruit: await base64(fruit) }) }
+    return ask('POST', '/v1/models', json({ ...drawn, ...wish, ...pictures }, { 'Idempotency-Key': key }))
   }
 
   getModel(id: string): Promise<Model> {

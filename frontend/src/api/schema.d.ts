@@ -88,6 +88,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/sketches/trace": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Trace Sketches
+         * @description Find the branches that sketches show; with ``grow`` the whole tree's skeleton too. Nothing is kept.
+         */
+        post: operations["trace_sketches"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/models": {
         parameters: {
             query?: never;
@@ -272,7 +292,7 @@ export interface paths {
         };
         /**
          * Get Project
-         * @description Download NAME.treestroke: photo, strokes and settings, for the command line and the page.
+         * @description Download NAME.treestroke: all that the tree is made of, for the command line and the page.
          */
         get: operations["get_project"];
         put?: never;
@@ -295,6 +315,26 @@ export interface paths {
          * @description Download one of the further files that the settings asked for; ``files`` of the model names them.
          */
         get: operations["get_tree_file"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/models/{id}/{view}.{ending}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Sketch
+         * @description Give a sketch that the tree was made of: front.json or front.png, side.json or side.png.
+         */
+        get: operations["get_sketch"];
         put?: never;
         post?: never;
         delete?: never;
@@ -458,9 +498,14 @@ export interface components {
             name_length: number;
             /**
              * Leaf Bytes
-             * @description of the picture of a leaf
+             * @description of the picture of a leaf or a fruit
              */
             leaf_bytes: number;
+            /**
+             * Sketch Bytes
+             * @description of the picture of a sketch
+             */
+            sketch_bytes: number;
             /** Trace Seconds */
             trace_seconds: number;
             /** Model Seconds */
@@ -488,8 +533,11 @@ export interface components {
             id: string;
             /** Name */
             name: string;
-            /** Photo */
-            photo: string;
+            /**
+             * Photo
+             * @description null where it is made of sketches alone
+             */
+            photo: string | null;
             /**
              * Status
              * @enum {string}
@@ -599,6 +647,29 @@ export interface components {
             ];
         };
         /**
+         * SketchTraceAnswer
+         * @description What sketches show.
+         */
+        SketchTraceAnswer: {
+            /** Rev */
+            rev: number | null;
+            front: components["schemas"]["TracedSketch"];
+            side: components["schemas"]["TracedSketch"] | null;
+            /** Warnings */
+            warnings: components["schemas"]["StrokeWarning"][];
+            /** @description with ``grow`` */
+            grown?: components["schemas"]["GrownSkeleton"] | null;
+            /** @description of the front's canvas, with ``grown`` */
+            photo?: components["schemas"]["PhotoFrame"] | null;
+            /**
+             * Score
+             * @description how the tree resembles them, with ``grown``
+             */
+            score?: {
+                [key: string]: number;
+            } | null;
+        };
+        /**
          * StrokeWarning
          * @description Something in the strokes that was mended.
          */
@@ -646,6 +717,29 @@ export interface components {
             parents: number[];
             /** Stroke */
             stroke: number[];
+        };
+        /**
+         * TracedSketch
+         * @description What a sketch shows, in pixels of its canvas; a skeleton's ``stroke`` is the index of a joint's branch.
+         */
+        TracedSketch: {
+            skeleton: components["schemas"]["TracedSkeleton"];
+            /**
+             * Crown
+             * @description closed outline: as drawn, or around the strokes
+             */
+            crown: [
+                number,
+                number
+            ][];
+            /**
+             * Size
+             * @description width and height of the canvas
+             */
+            size: [
+                number,
+                number
+            ];
         };
         /**
          * Version
@@ -731,11 +825,15 @@ export interface components {
         /**
          * ModelRequest
          * @description A tree that is wished for.
+         *
+         *     It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
+         *     of its left side, perhaps with the photo that they were drawn over.
          */
         ModelRequest: {
             /** Photo */
-            photo: string;
-            strokes: components["schemas"]["Strokes"];
+            photo?: string;
+            strokes?: components["schemas"]["Strokes"];
+            sketches?: components["schemas"]["Sketches"];
             /**
              * @default {
              *       "height": 10,
@@ -770,6 +868,12 @@ export interface components {
              * @default null
              */
             leaf: string;
+            /**
+             * Fruit
+             * @description PNG of a fruit cut out, base64
+             * @default null
+             */
+            fruit: string;
         };
         /**
          * ModelSettings
@@ -851,6 +955,17 @@ export interface components {
             files?: ("gltf" | "obj" | "usdz" | "ply" | "instanced" | "collision" | "json" | "swc" | "csv")[];
         };
         /**
+         * PictureSketch
+         * @description One side of a tree as a picture: dark or opaque strokes, the crown as a closed line of pure red.
+         */
+        PictureSketch: {
+            /**
+             * Picture
+             * @description PNG, base64
+             */
+            picture: string;
+        };
+        /**
          * Problem
          * @description An error (RFC 9457).
          */
@@ -875,6 +990,63 @@ export interface components {
         Rename: {
             /** Name */
             name: string;
+        };
+        /**
+         * Sketch
+         * @description One side of a tree, drawn.
+         */
+        Sketch: components["schemas"]["StrokeSketch"] | components["schemas"]["PictureSketch"];
+        /**
+         * SketchTraceRequest
+         * @description Sketches to trace.
+         */
+        SketchTraceRequest: {
+            front: components["schemas"]["Sketch"];
+            /** Side */
+            side?: components["schemas"]["Sketch"];
+            /**
+             * Rev
+             * @description comes back with the answer
+             * @default null
+             */
+            rev: number | null;
+            /**
+             * Grow
+             * @description grow the whole skeleton too, without leaves
+             * @default false
+             */
+            grow: boolean;
+        };
+        /**
+         * Sketches
+         * @description A tree drawn from the front and from its left; the side alone goes with a photo and strokes.
+         */
+        Sketches: {
+            /** Front */
+            front?: components["schemas"]["Sketch"];
+            /** Side */
+            side?: components["schemas"]["Sketch"];
+        };
+        /**
+         * StrokeSketch
+         * @description One side of a tree as strokes, over a photo or on white; without a canvas it is as large as what was drawn.
+         */
+        StrokeSketch: {
+            /**
+             * Canvas
+             * @description width and height, pixels
+             */
+            canvas?: [
+                number,
+                number
+            ];
+            /** Crown */
+            crown?: components["schemas"]["CrownStroke"];
+            /**
+             * Branches
+             * @description the trunk first
+             */
+            branches: components["schemas"]["BranchStroke"][];
         };
         /**
          * Strokes
@@ -913,6 +1085,11 @@ export interface components {
              * @default false
              */
             grow: boolean;
+            /**
+             * Side
+             * @description the tree's left side, for the grown skeleton's depth
+             */
+            side?: components["schemas"]["Sketch"];
         };
     };
     responses: never;
@@ -1292,6 +1469,95 @@ export interface operations {
             };
         };
     };
+    trace_sketches: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SketchTraceRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SketchTraceAnswer"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Timeout */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_models: {
         parameters: {
             query?: {
@@ -1353,9 +1619,13 @@ export interface operations {
                      * Format: binary
                      * @description JPEG, PNG or WebP
                      */
-                    photo: string;
-                    /** @description Strokes, as JSON */
-                    strokes: string;
+                    photo?: string;
+                    /** @description Strokes, as JSON; with a photo */
+                    strokes?: string;
+                    /** @description Sketch of the front, in place of strokes: JSON or PNG */
+                    front?: string;
+                    /** @description Sketch of the left side: JSON or PNG */
+                    side?: string;
                     /** @description ModelSettings, as JSON */
                     settings?: string;
                     seed?: string;
@@ -1365,6 +1635,11 @@ export interface operations {
                      * @description PNG of a leaf cut out
                      */
                     leaf?: string;
+                    /**
+                     * Format: binary
+                     * @description PNG of a fruit cut out
+                     */
+                    fruit?: string;
                 };
             };
         };
@@ -2169,6 +2444,85 @@ export interface operations {
                     "application/octet-stream": string;
                     "text/plain; charset=utf-8": string;
                     "text/csv; charset=utf-8": string;
+                };
+            };
+            /** @description If-None-Match names this very file */
+            304: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Requested Range Not Satisfiable */
+            416: {
+                headers: {
+                    /** @description bytes FIRST-LAST/ALL */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_sketch: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+                view: string;
+                ending: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StrokeSketch"];
+                    "image/png": string;
+                };
+            };
+            /** @description The part that Range asks for */
+            206: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    /** @description bytes FIRST-LAST/ALL */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": string;
+                    "image/png": string;
                 };
             };
             /** @description If-None-Match names this very file */

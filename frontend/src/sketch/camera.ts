@@ -20,6 +20,8 @@ const NOWHERE: Size = { width: 0, height: 0 }
 export class Camera {
   #view: View = { scale: 1, x: 0, y: 0 }
   #frame: Frame = { photo: NOWHERE, window: NOWHERE }
+  /** What is to be seen whole, photo px. */
+  #extent = NOWHERE
   #fitted = true
 
   constructor(private readonly changed: (view: View) => void) {}
@@ -28,10 +30,30 @@ export class Camera {
     return this.#view
   }
 
-  /** Look at another photo, the whole of it. */
-  open(photo: Size): void {
+  /** Look at another photo, the whole of it, at a scale that shows as much as `extent`. */
+  open(photo: Size, extent = photo): void {
     this.#frame = { ...this.#frame, photo }
+    this.#extent = extent
     this.fit()
+  }
+
+  /** Show the whole photo at the scale of another extent, if the whole was in sight. */
+  reach(extent: Size): void {
+    this.#extent = extent
+    if (this.#fitted) this.fit()
+  }
+
+  /** Look as high up, and at the scale, that another camera does: `whole` if it shows the whole. */
+  follow({ scale, y }: Pick<View, 'scale' | 'y'>, whole: boolean): void {
+    if (!this.#ready || (alike(scale, this.#view.scale) && alike(y, this.#view.y))) return
+    const { photo, window } = this.#frame
+    const [across] = whole ? [photo.width / 2] : toPhoto(this.#view, [window.width / 2, 0])
+    this.#look({ scale, x: window.width / 2 - across * scale, y }, whole)
+  }
+
+  /** Whether the whole photo is in sight, and is to stay so. */
+  get isWhole(): boolean {
+    return this.#fitted
   }
 
   /** Keep the middle where it is, or the whole photo in sight if it was. */
@@ -45,7 +67,9 @@ export class Camera {
 
   fit(): void {
     if (!this.#ready) return
-    this.#look(fitted(this.#frame), true)
+    const { photo, window } = this.#frame
+    const { scale } = fitted({ photo: this.#extent, window })
+    this.#look(centred(scale, [photo.width / 2, photo.height / 2], this.#frame), true)
   }
 
   /** Show one photo px as one CSS px. */
@@ -77,8 +101,12 @@ export class Camera {
   }
 
   #look(view: View, whole = false): void {
-    this.#view = clampView(view, this.#frame)
     this.#fitted = whole
+    this.#view = clampView(view, this.#frame)
     this.changed(this.#view)
   }
+}
+
+function alike(one: number, other: number): boolean {
+  return Math.abs(one - other) <= 1e-6 * Math.max(1, Math.abs(one))
 }

@@ -1,3 +1,6 @@
+/** What strokes and marks are drawn with. */
+export type Inks = { readonly [name in keyof typeof INK]: string }
+
 /** Colours on the photo. They do not follow the page's theme: photos have none. */
 export const INK = {
   foliage: 'rgba(150, 214, 72, 0.22)',
@@ -19,7 +22,31 @@ export const INK = {
   selectedWood: 'rgba(140, 200, 255, 0.4)',
   photoEdge: 'rgba(30, 24, 12, 0.35)',
   hoverHalo: 'rgba(120, 190, 255, 0.5)',
+  level: 'rgba(255, 250, 235, 0.6)',
+  levelCasing: 'rgba(24, 20, 10, 0.35)',
+  levelWords: 'rgba(0, 0, 0, 0)',
+  stray: 'rgba(255, 205, 150, 0.9)',
 } as const
+
+/** Colours on paper: pencils, a brush of thin umber, and no casings. Paper is light by night, too. */
+export const PAPER_INK: Inks = {
+  ...INK,
+  crown: '#5f9a2a',
+  branch: '#5b4632',
+  casing: 'rgba(255, 253, 248, 0)',
+  fault: '#c8281b',
+  faultHalo: 'rgba(255, 84, 70, 0.35)',
+  selected: '#1769c4',
+  selectedHalo: 'rgba(34, 140, 255, 0.28)',
+  hoverHalo: 'rgba(70, 150, 240, 0.22)',
+  level: 'rgba(120, 104, 72, 0.6)',
+  levelCasing: 'rgba(255, 253, 248, 0)',
+  levelWords: 'rgba(110, 94, 62, 0.95)',
+  stray: 'rgba(196, 110, 30, 0.9)',
+}
+
+/** The sheet of paper, and the picture that shines through it. */
+export const PAPER = { white: '#fffdf8', edge: 'rgba(80, 66, 40, 0.28)', shade: 'rgba(60, 50, 30, 0.16)', veil: 0.5 }
 
 /** Widths on the screen, CSS px. */
 export const WIDTH = {

@@ -2,9 +2,10 @@ import { along, distance } from '../plane'
 import type { Selection, TraceAnswer, TracedSkeleton } from '../state'
 import { type Line, lineOf, type Point, type StrokeKind, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { branchAt } from '../tracedBranch'
-import { INK, WIDTH } from './ink'
+import { INK, type Inks, WIDTH } from './ink'
 import { drawLength } from './lengthLabel'
 import { curve, foliagePath, rulerPath, smoothPath, woodAt, woodPath } from './paths'
+import type { PenLine } from './penLine'
 import type { View } from './viewport'
 
 /** What a canvas of the window is drawn with: its device px per CSS px, and where the photo lies. */
@@ -26,9 +27,13 @@ export interface Marks {
 interface Look {
   readonly kind: StrokeKind
   readonly colour: string
+  readonly casing: string
+  /** A brush's width, photo px. */
+  readonly width?: number | undefined
 }
 
 const DASH = [7, 6]
+const TAKEN_DASH = [2, 7]
 const CROSS = 5
 const TICK = 7
 const AIM = { inner: 4, outer: 13 }
@@ -49,28 +54,41 @@ export function drawTraced(sheet: Sheet, answer: TraceAnswer): void {
 }
 
 /** Draw the strokes, the mark on the one at fault, and what is selected or under the pointer. */
-export function drawMarks(sheet: Sheet, marks: Marks): void {
+export function drawMarks(sheet: Sheet, marks: Marks, inks: Inks): void {
   onPhoto(sheet)
   sheet.ctx.lineCap = 'round'
   sheet.ctx.lineJoin = 'round'
-  if (!same(marks.hovered, marks.selection)) drawHalo(sheet, marks, marks.hovered, INK.hoverHalo)
-  drawHalo(sheet, marks, marks.fault, INK.faultHalo)
-  drawHalo(sheet, marks, marks.selection, INK.selectedHalo)
+  if (!same(marks.hovered, marks.selection)) drawHalo(sheet, marks, marks.hovered, inks.hoverHalo)
+  drawHalo(sheet, marks, marks.fault, inks.faultHalo)
+  drawHalo(sheet, marks, marks.selection, inks.selectedHalo)
   for (const ref of strokeRefs(marks.strokes)) {
-    const colour = same(ref, marks.fault) ? INK.fault : same(ref, marks.selection) ? INK.selected : INK[ref.kind]
-    drawStroke(sheet, lineOf(marks.strokes, ref), pathOf(sheet, marks.strokes, ref), { kind: ref.kind, colour })
+    const colour = same(ref, marks.fault) ? inks.fault : same(ref, marks.selection) ? inks.selected : inks[ref.kind]
+    const look = { kind: ref.kind, colour, casing: inks.casing, width: brushOf(marks.strokes, ref) }
+    drawStroke(sheet, lineOf(marks.strokes, ref), pathOf(sheet, marks.strokes, ref), look)
   }
   // What is selected has its length in a field beside it.
   if (marks.strokes.scale && marks.selection?.kind !== 'scale') drawLength(sheet, marks.strokes.scale)
 }
 
 /** Draw the stroke under way. */
-export function drawPenLine(sheet: Sheet, line: Line, kind: Exclude<StrokeKind, 'erase'>): void {
+export function drawPenLine(sheet: Sheet, { points: line, kind, width }: PenLine, inks: Inks): void {
   onPhoto(sheet)
   sheet.ctx.lineCap = 'round'
   sheet.ctx.lineJoin = 'round'
   const path = kind === 'scale' ? rulerPath(line, TICK / sheet.view.scale) : curve(line)
-  drawStroke(sheet, line, path, { kind, colour: INK[kind] })
+  drawStroke(sheet, line, path, { kind, colour: inks[kind], casing: inks.casing, width: width ?? undefined })
+}
+
+/** Draw the crown that was taken where none was drawn. */
+export function drawCrownTaken(sheet: Sheet, crown: Line, { crown: colour }: Inks): void {
+  const [first] = crown
+  if (!first) return
+  onPhoto(sheet)
+  sheet.ctx.lineCap = 'round'
+  sheet.ctx.setLineDash(TAKEN_DASH.map(length => length / sheet.view.scale))
+  outline(sheet, smoothPath(crown), colour, 1)
+  outline(sheet, curve([crown.at(-1)!, first]), colour, 1)
+  sheet.ctx.setLineDash([])
 }
 
 /** Draw where the keyboard's pen is. */
@@ -88,7 +106,7 @@ export function drawAim(sheet: Sheet, at: Point, penDown: boolean): void {
     path.lineTo(at[0] + (right * AIM.outer) / scale, at[1] + (down * AIM.outer) / scale)
   }
   if (penDown) path.arc(at[0], at[1], AIM.inner / scale, 0, 2 * Math.PI)
-  cased(sheet, path, { kind: 'branch', colour: INK.selected })
+  cased(sheet, path, { kind: 'branch', colour: INK.selected, casing: INK.casing })
 }
 
 /** Wood with a light rim; each part is cut out of what lies under it, so that the photo shows through. */
@@ -119,14 +137,22 @@ function drawStroke(sheet: Sheet, line: Line, path: Path2D, look: Look): void {
   sheet.ctx.setLineDash([])
 }
 
-function cased(sheet: Sheet, path: Path2D, { kind, colour }: Look): void {
-  outline(sheet, path, INK.casing, WIDTH.line[kind] + WIDTH.casing)
-  outline(sheet, path, colour, WIDTH.line[kind])
+function cased(sheet: Sheet, path: Path2D, { kind, colour, casing, width = 0 }: Look): void {
+  const wide = Math.max(WIDTH.line[kind], width * sheet.view.scale)
+  outline(sheet, path, casing, wide + WIDTH.casing)
+  outline(sheet, path, colour, wide)
+}
+
+function brushOf({ branches }: Strokes, { kind, index }: StrokeRef): number | undefined {
+  return kind === 'branch' ? branches[index]?.width : undefined
 }
 
 function drawHalo(sheet: Sheet, marks: Marks, selection: Selection | null, colour: string): void {
   if (selection?.kind === 'traced') drawBranchHalo(sheet, marks.skeleton, selection.joint, colour)
-  else if (selection) outline(sheet, pathOf(sheet, marks.strokes, selection), colour, WIDTH.halo)
+  else if (selection) {
+    const wide = (brushOf(marks.strokes, selection) ?? 0) * sheet.view.scale
+    outline(sheet, pathOf(sheet, marks.strokes, selection), colour, wide + WIDTH.halo)
+  }
 }
 
 function drawBranchHalo(sheet: Sheet, skeleton: TracedSkeleton | null, joint: number, colour: string): void {

@@ -16,6 +16,8 @@ export class PenLine {
     readonly kind: DrawnKind,
     readonly photo: Size,
     from: Point | null = null,
+    /** A brush's, photo px. */
+    readonly width: number | null = null,
   ) {
     if (from) this.#points.push(from)
   }

@@ -1,5 +1,5 @@
-import type { Photo } from '../state'
-import { INK } from './ink'
+import type { Ground } from '../state'
+import { INK, PAPER } from './ink'
 import type { Sheet } from './overlay'
 
 /** A photo that is shown much smaller than it is would be slow to draw and glitter; halves of halves are neither. */
@@ -7,41 +7,57 @@ const HALVINGS = 4
 /** From this scale on the photo's pixels are shown as such. */
 const PIXELS_SHOW = 12
 
-/** The upright picture, ready to be drawn at any scale. */
+/** The upright picture or the paper, ready to be drawn at any scale. */
 export class PhotoLayer {
-  #photo: Photo | null = null
+  #ground: Ground | null = null
   #levels: CanvasImageSource[] = []
 
   constructor(private readonly loaded: () => void) {}
 
-  /** Show another photo, or none; `loaded` is called when it can be drawn. */
-  show(photo: Photo | null): void {
-    if (photo?.url === this.#photo?.url) return
-    this.#photo = photo
+  /** Show another photo or paper, or none; `loaded` is called when its picture can be drawn. */
+  show(ground: Ground | null): void {
+    const before = this.#ground
+    this.#ground = ground
+    if (ground?.url === before?.url) return
     this.#levels = []
-    if (photo) void this.#load(photo)
+    if (ground?.url) void this.#load(ground.url)
   }
 
-  draw({ ctx, density, view: { scale, x, y } }: Sheet): void {
+  /** Draw the photo; on `paper` it shines through. */
+  draw({ ctx, density, view: { scale, x, y } }: Sheet, paper: boolean): void {
+    if (!this.#ground) return
+    const { width, height, hidden } = this.#ground
+    ctx.setTransform(density * scale, 0, 0, density * scale, density * x, density * y)
+    if (paper) drawPaper(ctx, this.#ground)
     const shrunk = Math.floor(Math.log2(1 / Math.min(1, scale * density)))
     const picture = this.#levels[Math.min(shrunk, this.#levels.length - 1)]
-    if (!picture || !this.#photo) return
-    ctx.setTransform(density * scale, 0, 0, density * scale, density * x, density * y)
     ctx.imageSmoothingEnabled = scale < PIXELS_SHOW
-    ctx.drawImage(picture, 0, 0, this.#photo.width, this.#photo.height)
-    ctx.strokeStyle = INK.photoEdge
+    ctx.globalAlpha = paper ? PAPER.veil : 1
+    if (picture && !hidden) ctx.drawImage(picture, 0, 0, width, height)
+    ctx.globalAlpha = 1
+    if (!picture && !paper) return
+    ctx.strokeStyle = paper ? PAPER.edge : INK.photoEdge
     ctx.lineWidth = 1 / scale
-    ctx.strokeRect(0, 0, this.#photo.width, this.#photo.height)
+    ctx.strokeRect(0, 0, width, height)
   }
 
-  async #load(photo: Photo): Promise<void> {
+  async #load(url: string): Promise<void> {
     const picture = new Image()
-    picture.src = photo.url
+    picture.src = url
     await picture.decode().catch(() => undefined)
-    if (this.#photo !== photo || !picture.naturalWidth) return
+    if (this.#ground?.url !== url || !picture.naturalWidth) return
     this.#levels = halvings(picture)
     this.loaded()
   }
+}
+
+function drawPaper(ctx: CanvasRenderingContext2D, { width, height }: Ground): void {
+  ctx.shadowColor = PAPER.shade
+  ctx.shadowBlur = 14
+  ctx.shadowOffsetY = 3
+  ctx.fillStyle = PAPER.white
+  ctx.fillRect(0, 0, width, height)
+  ctx.shadowColor = 'transparent'
 }
 
 function halvings(picture: HTMLImageElement): CanvasImageSource[] {

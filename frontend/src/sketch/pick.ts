@@ -18,7 +18,8 @@ export function otherEnd({ scale }: Strokes, at: Point, reach: number): Point | 
 function pickStroke(strokes: Strokes, at: Point, reach: number): StrokeRef | null {
   let [nearest, least]: [StrokeRef | null, number] = [null, reach]
   for (const ref of strokeRefs(strokes)) {
-    const away = distanceToLine(lineOf(strokes, ref), at, ref.kind === 'crown')
+    const brush = ref.kind === 'branch' ? (strokes.branches[ref.index]?.width ?? 0) : 0
+    const away = distanceToLine(lineOf(strokes, ref), at, ref.kind === 'crown') - brush / 2
     if (away <= least) [nearest, least] = [ref, away]
   }
   return nearest

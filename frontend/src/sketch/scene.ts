@@ -1,9 +1,12 @@
-import type { Selection, State, TraceAnswer } from '../state'
+import type { Selection, TraceAnswer } from '../state'
 import type { Point } from '../strokes'
+import { INK, PAPER_INK } from './ink'
 import { Layers } from './layers'
-import { drawAim, drawMarks, drawPenLine, drawTraced, type Sheet } from './overlay'
+import { drawLevels } from './levels'
+import { drawAim, drawCrownTaken, drawMarks, drawPenLine, drawTraced, type Sheet } from './overlay'
 import type { PenLine } from './penLine'
 import { PhotoLayer } from './photoLayer'
+import type { SheetSight } from './sheet'
 import type { View } from './viewport'
 
 /** What is seen beside the page's state. */
@@ -26,10 +29,10 @@ export class Scene {
   constructor(
     host: HTMLElement,
     private readonly sight: () => Sight,
-    private readonly state: () => State,
+    private readonly shown: () => SheetSight,
   ) {
     const paint = {
-      photo: (sheet: Sheet) => this.picture.draw(sheet),
+      photo: (sheet: Sheet) => this.picture.draw(sheet, this.shown().isPaper),
       traced: (sheet: Sheet) => this.#drawTraced(sheet),
       strokes: (sheet: Sheet) => this.#drawMarks(sheet),
       pen: (sheet: Sheet) => this.#drawPen(sheet),
@@ -39,20 +42,26 @@ export class Scene {
 
   #drawTraced(sheet: Sheet): void {
     const { traced } = this.sight()
-    if (traced && this.state().photo) drawTraced(sheet, traced)
+    const { ground, levels, stray, crown } = this.shown()
+    if (traced && ground) drawTraced(sheet, traced)
+    if (crown) drawCrownTaken(sheet, crown, this.#inks)
+    if (levels && ground) drawLevels(sheet, { levels, stray, width: ground.width }, this.#inks)
+  }
+
+  get #inks() {
+    return this.shown().isPaper ? PAPER_INK : INK
   }
 
   #drawMarks(sheet: Sheet): void {
-    const { photo, history, selection, faults } = this.state()
-    if (!photo) return
+    const { ground, strokes, selection, fault } = this.shown()
+    if (!ground) return
     const { traced, hovered } = this.sight()
-    const [skeleton, fault] = [traced?.skeleton ?? null, faults.strokes?.stroke ?? null]
-    drawMarks(sheet, { strokes: history.present, skeleton, selection, hovered, fault })
+    drawMarks(sheet, { strokes, skeleton: traced?.skeleton ?? null, selection, hovered, fault }, this.#inks)
   }
 
   #drawPen(sheet: Sheet): void {
     const { pen, aim } = this.sight()
-    if (pen) drawPenLine(sheet, pen.points, pen.kind)
+    if (pen) drawPenLine(sheet, pen, this.#inks)
     if (aim) drawAim(sheet, aim, pen !== null)
   }
 }

@@ -1,5 +1,6 @@
-import type { Photo, Selection, State, Store, TraceAnswer } from '../state'
-import type { Line, Point } from '../strokes'
+import type { Extent } from '../sheets'
+import type { Ground, Selection, State, Store, TraceAnswer } from '../state'
+import type { Line, Point, SheetName } from '../strokes'
 import { Camera } from './camera'
 import { AT_REST, type DrawnKind, type GestureEvent, gestured, type Intent, type PointerKind } from './gesture'
 import { type KeyCommand, keyCommand, stepped } from './keys'
@@ -7,27 +8,10 @@ import { PenLine } from './penLine'
 import { otherEnd, pick } from './pick'
 import { listenToPointers, listenToSpace } from './pointing'
 import { Scene, type Sight } from './scene'
+import { extentOf, ofSheet, type SheetSight, sightOf } from './sheet'
 import './sketch.css'
+import type { SketchEvents, SketchLabels } from './sketchEvents'
 import { toPhoto, toScreen, type View, within } from './viewport'
-
-export interface SketchLabels {
-  /** The canvas's name. */
-  readonly canvas: string
-  /** How to draw by keyboard. */
-  readonly keys: string
-}
-
-export interface SketchEvents {
-  /** One stroke is finished, in photo px. */
-  drew(kind: DrawnKind, points: Line): void
-  selected(selection: Selection | null): void
-  /** What is selected is to go. */
-  remove(): void
-  /** Where the photo lies in the window now. */
-  looked(view: View): void
-  /** What the keyboard's pen does, in photo px. */
-  said(what: { pen: 'down' | 'up' | 'move'; at: Point }): void
-}
 
 /** Points of a stroke are as far apart at least, CSS px. */
 const APART = 0.7
@@ -36,17 +20,19 @@ const REACH: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
 /** A press as near to an end of the measured line moves it, CSS px. */
 const END_REACH = 14
 
-/** The canvas over the photo that a person draws on. */
+/** The canvas over the photo, or of paper, that a person draws on. */
 export class Sketch {
   readonly #element = document.createElement('div')
   readonly #camera = new Camera(view => this.#looked(view))
   readonly #scene = new Scene(
     this.#element,
     () => this.#sight,
-    () => this.#state,
+    () => this.#shown,
   )
   readonly #resizing = new ResizeObserver(() => this.#resize())
+  readonly #sheet: SheetName
   #state: State
+  #shown: SheetSight
   #gesture = AT_REST
   #pen: PenLine | null = null
   /** The keyboard's pen, photo px. */
@@ -63,12 +49,14 @@ export class Sketch {
     private readonly events: SketchEvents,
     labels: SketchLabels,
   ) {
+    this.#sheet = labels.sheet
     this.#state = store.state
+    this.#shown = sightOf(store.state, labels.sheet)
     this.#label(labels)
     host.append(this.#element)
     this.#listen()
     this.#resizing.observe(this.#element)
-    this.#open(this.#state.photo)
+    this.#open()
     this.#resize()
     // A listener before this one may have gone on to a newer state already.
     store.watch(
@@ -91,20 +79,32 @@ export class Sketch {
     this.#camera.zoom(factor)
   }
 
-  #label({ canvas, keys }: SketchLabels): void {
-    this.#element.className = 'sketch-surface'
-    this.#element.tabIndex = 0
-    this.#element.role = 'application'
+  /** Look as high up, and at the scale, that another sheet is looked at: as if it were as high as this one. */
+  follow(view: Pick<View, 'scale' | 'y'>, whole: boolean): void {
+    this.#camera.follow(view, whole)
+  }
+
+  /** Say what is drawn on, and how to do it by keyboard. */
+  name({ canvas, keys }: Omit<SketchLabels, 'sheet'>): void {
     this.#element.ariaLabel = canvas
     this.#element.setAttribute('aria-description', keys)
   }
 
+  #label({ sheet, ...labels }: SketchLabels): void {
+    this.#element.dataset.sheet = sheet
+    this.#element.className = 'sketch-surface'
+    this.#element.tabIndex = 0
+    this.#element.role = 'application'
+    this.name(labels)
+  }
+
   #listen(): void {
     const gesture = (event: GestureEvent) => this.#gestured(event)
-    const tool = (at: Point) => (this.#state.tool === 'select' && this.#otherEnd(at) ? 'scale' : this.#state.tool)
+    const tool = (at: Point) => (this.#shown.tool === 'select' && this.#otherEnd(at) ? 'scale' : this.#shown.tool)
     const wheel = (intent: Intent) => this.#do(intent)
     listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#hover(at) })
     listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }))
+    this.#element.addEventListener('pointerdown', () => this.events.touched())
     this.#element.addEventListener('keydown', event => this.#pressed(event))
     this.#element.addEventListener('focus', () => this.#focused())
     this.#element.addEventListener('blur', () => this.#scene.layers.touch('pen'))
@@ -112,9 +112,10 @@ export class Sketch {
 
   /** Who comes by keyboard sees where the pen is. */
   #focused(): void {
-    const { photo } = this.#state
-    if (photo && this.#element.matches(':focus-visible')) this.#aim ??= this.#middle(photo)
+    const { ground } = this.#shown
+    if (ground && this.#element.matches(':focus-visible')) this.#aim ??= this.#middle(ground)
     this.#scene.layers.touch('pen')
+    this.events.touched()
   }
 
   #resize(): void {
@@ -126,17 +127,15 @@ export class Sketch {
   #looked({ scale, x, y }: View): void {
     this.#element.dataset.view = [scale, x, y].join(',')
     this.#scene.layers.touchAll()
-    this.events.looked({ scale, x, y })
+    this.events.looked({ scale, x, y }, this.#camera.isWhole)
   }
 
   #changed(now: State): void {
-    const before = this.#state
+    const [before, shown] = [this.#state, this.#shown]
     this.#state = now
-    if (now.photo?.id !== before.photo?.id) {
-      this.#foreign = now.traced === before.traced ? (now.traced?.answer ?? null) : null
-      this.#open(now.photo)
-    } else if (now.photo !== before.photo) this.#scene.picture.show(now.photo)
-    if (now.tool !== before.tool) this.#putAway()
+    this.#shown = sightOf(now, this.#sheet)
+    this.#relay(shown.ground, before)
+    if (this.#shown.tool !== shown.tool) this.#putAway()
     if (now.history !== before.history || now.traced !== before.traced) this.#hovered = null
     this.#element.classList.toggle('sketch-stale', now.traced !== null && now.traced.of !== now.history.present)
     this.#scene.layers.touch('strokes')
@@ -144,11 +143,28 @@ export class Sketch {
     this.#pointAt()
   }
 
-  #open(photo: Photo | null): void {
+  /** Bring what lies under the strokes into step. */
+  #relay(was: Ground | null, before: State): void {
+    const { ground } = this.#shown
+    const { side, traced, photo } = this.#state
+    this.#element.classList.toggle('sketch-paper', this.#shown.isPaper)
+    if (ground && was && sameSize(ground, was) && ground.id === was.id) {
+      if (ground !== was) this.#scene.picture.show(ground)
+      if (ground !== was) this.#scene.layers.touch('photo')
+      if (side !== before.side || photo !== before.photo) this.#camera.reach(extentOf(this.#state, this.#sheet)!)
+    } else if (ground !== was) {
+      this.#foreign = traced === before.traced ? (traced?.answer ?? null) : null
+      this.#open()
+    }
+    if (side !== before.side) this.#scene.layers.touch('traced')
+  }
+
+  #open(): void {
+    const { ground } = this.#shown
     this.#putAway()
     this.#aim = null
-    this.#scene.picture.show(photo)
-    if (photo) this.#camera.open(photo)
+    this.#scene.picture.show(ground)
+    if (ground) this.#camera.open(ground, extentOf(this.#state, this.#sheet)!)
     this.#scene.layers.touchAll()
   }
 
@@ -159,12 +175,12 @@ export class Sketch {
   }
 
   get #traced(): TraceAnswer | null {
-    const { traced, history } = this.#state
-    return history.present.crown && traced && traced.answer !== this.#foreign ? traced.answer : null
+    const { traced } = this.#shown
+    return traced === this.#foreign ? null : traced
   }
 
   #gestured(event: GestureEvent): void {
-    if (!this.#state.photo) return
+    if (!this.#shown.ground) return
     const { state, intents } = gestured(this.#gesture, event)
     this.#gesture = state
     for (const intent of intents) this.#do(intent)
@@ -189,7 +205,9 @@ export class Sketch {
 
   #begin(kind: DrawnKind, at: Point): void {
     this.#aim = null
-    this.#pen = new PenLine(kind, this.#state.photo!, kind === 'scale' ? this.#otherEnd(at) : null)
+    const { ground, brush } = this.#shown
+    const width = kind === 'branch' ? brush : null
+    this.#pen = new PenLine(kind, ground!, kind === 'scale' ? this.#otherEnd(at) : null, width)
     this.#extend([at])
   }
 
@@ -212,24 +230,24 @@ export class Sketch {
   }
 
   #select(at: Point, reach: number): void {
-    this.events.selected(this.#pick(at, reach))
+    this.events.selected(ofSheet(this.#pick(at, reach), this.#sheet))
   }
 
   #pick(at: Point, reach: number): Selection | null {
     const { view } = this.#camera
     const skeleton = this.#traced?.skeleton ?? null
-    return pick(this.#state.history.present, skeleton, toPhoto(view, at), reach / view.scale)
+    return pick(this.#shown.strokes, skeleton, toPhoto(view, at), reach / view.scale)
   }
 
   /** The end that stays where the one at a place in the window is moved. */
   #otherEnd(at: Point): Point | null {
     const { view } = this.#camera
-    return otherEnd(this.#state.history.present, toPhoto(view, at), END_REACH / view.scale)
+    return otherEnd(this.#shown.strokes, toPhoto(view, at), END_REACH / view.scale)
   }
 
   #hover(at: Point | null): void {
-    const { photo, tool } = this.#state
-    const free = photo && this.#gesture.mode.name === 'idle' ? at : null
+    const { ground, tool } = this.#shown
+    const free = ground && this.#gesture.mode.name === 'idle' ? at : null
     this.#overEnd = Boolean(free && (tool === 'select' || tool === 'scale') && this.#otherEnd(free))
     this.#pointAt()
     const hovered = free && tool === 'select' ? this.#pick(free, REACH.mouse) : null
@@ -242,18 +260,18 @@ export class Sketch {
   #pointAt(): void {
     const { mode, space } = this.#gesture
     const panning = mode.name === 'pinch' || (mode.name === 'pan' && (mode.far || !mode.clicks))
-    const choosing = this.#overEnd ? 'end' : this.#hovered ? 'take' : this.#state.tool === 'select' ? 'choose' : 'draw'
+    const choosing = this.#overEnd ? 'end' : this.#hovered ? 'take' : this.#shown.tool === 'select' ? 'choose' : 'draw'
     this.#element.dataset.pointer = panning ? 'panning' : space ? 'pan' : choosing
   }
 
   #pressed(event: KeyboardEvent): void {
     const command = keyCommand(event)
-    if (!command || !this.#state.photo) return
+    if (!command || !this.#shown.ground) return
     event.preventDefault()
-    this.#command(command, this.#state.photo)
+    this.#command(command, this.#shown.ground)
   }
 
-  #command(command: KeyCommand, photo: Photo): void {
+  #command(command: KeyCommand, photo: Extent): void {
     const { type } = command
     if (type === 'step') this.#step(command, photo)
     else if (type === 'pen') this.#penKey(photo)
@@ -264,7 +282,7 @@ export class Sketch {
     else this.actual()
   }
 
-  #step(step: KeyCommand & { type: 'step' }, photo: Photo): void {
+  #step(step: KeyCommand & { type: 'step' }, photo: Extent): void {
     const at = this.#aim ? stepped(this.#aim, step, photo) : this.#middle(photo)
     this.#aim = at
     this.#pen?.add(at, 0)
@@ -273,18 +291,19 @@ export class Sketch {
     this.events.said({ pen: 'move', at })
   }
 
-  #penKey(photo: Photo): void {
+  #penKey(photo: Extent): void {
     const at = this.#aim ?? this.#middle(photo)
     this.#aim = at
     this.#scene.layers.touch('pen')
-    if (this.#state.tool === 'select') this.#select(toScreen(this.#camera.view, at), REACH.mouse)
-    else this.#turnPen(this.#state.tool, photo, at)
+    const { tool } = this.#shown
+    if (tool === 'select') this.#select(toScreen(this.#camera.view, at), REACH.mouse)
+    else this.#turnPen(tool, photo, at)
   }
 
-  #turnPen(kind: DrawnKind, photo: Photo, at: Point): void {
+  #turnPen(kind: DrawnKind, photo: Extent, at: Point): void {
     if (this.#pen) this.#finish()
     else {
-      this.#pen = new PenLine(kind, photo)
+      this.#pen = new PenLine(kind, photo, null, kind === 'branch' ? this.#shown.brush : null)
       this.#pen.add(at, 0)
     }
     this.events.said({ pen: this.#pen ? 'down' : 'up', at })
@@ -292,7 +311,7 @@ export class Sketch {
 
   #escape(): void {
     if (this.#pen) this.#putAway()
-    else if (this.#state.selection) this.events.selected(null)
+    else if (this.#shown.selection) this.events.selected(null)
   }
 
   get #sight(): Sight {
@@ -302,9 +321,13 @@ export class Sketch {
   }
 
   /** The place of the photo in the middle of the window. */
-  #middle({ width, height }: Photo): Point {
+  #middle({ width, height }: Extent): Point {
     const { clientWidth, clientHeight } = this.#element
     const [x, y] = toPhoto(this.#camera.view, [clientWidth / 2, clientHeight / 2])
     return [within(x, 0, width), within(y, 0, height)]
   }
+}
+
+function sameSize(one: Extent, other: Extent): boolean {
+  return one.width === other.width && one.height === other.height
 }

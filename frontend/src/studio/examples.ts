@@ -16,3 +16,35 @@ export const EXAMPLES: readonly Example[] = Object.entries(photos).map(([path, p
   const stem = path.replace(/\.jpg$/, '')
   return { name: stem.split('/').at(-1)!, photo, strokes: strokes[`${stem}.strokes.json`]! }
 })
+
+const sketches = import.meta.glob<string>('../../../examples/sketches/*.{front,side}.json', {
+  query: '?url',
+  import: 'default',
+  eager: true,
+})
+const pictures = import.meta.glob<string>('../../../examples/sketches/*.{leaf,fruit}.png', {
+  query: '?url',
+  import: 'default',
+  eager: true,
+})
+
+/** A bundled tree as drawn from the front and from its left, perhaps with a leaf and a fruit; by its files' name. */
+export interface SketchExample {
+  readonly name: string
+  readonly front: string
+  readonly side: string | undefined
+  readonly leaf: string | undefined
+  readonly fruit: string | undefined
+}
+
+export const SKETCH_EXAMPLES: readonly SketchExample[] = Object.entries(sketches)
+  .filter(([path]) => path.endsWith('.front.json'))
+  .map(([path, front]) => {
+    const stem = path.replace(/\.front\.json$/, '')
+    const [side, leaf, fruit] = [
+      sketches[`${stem}.side.json`],
+      pictures[`${stem}.leaf.png`],
+      pictures[`${stem}.fruit.png`],
+    ]
+    return { name: stem.split('/').at(-1)!, front, side, leaf, fruit }
+  })

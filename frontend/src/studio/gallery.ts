@@ -4,10 +4,9 @@ import { EMPTY, type Model, type State, type Store } from '../state'
 import type { Grower } from './grower'
 import { faultOf } from './sentences'
 
-type Looked = Pick<State, 'model' | 'modelOf' | 'modelLeaf' | 'variant' | 'growth' | 'tree' | 'shows'>
+type Looked = Pick<State, 'model' | 'modelOf' | 'modelLeaf' | 'modelFruit' | 'variant' | 'growth' | 'tree' | 'shows'>
 
-const { model, modelOf, modelLeaf, variant, growth, tree, shows } = EMPTY
-const NONE: Looked = { model, modelOf, modelLeaf, variant, growth, tree, shows }
+const NONE = lookedAt(EMPTY)
 
 /** One's models, newest first, page by page. What goes wrong stands in the gallery's place of the state. */
 export class Gallery {
@@ -46,9 +45,8 @@ export class Gallery {
   remove(id: string): Promise<true | null> {
     return this.#trying<true>(async () => {
       await this.client.removeModel(id)
-      const { model, modelOf, modelLeaf, variant, growth, tree, shows } = this.store.state
-      if (model?.id !== id) return true
-      this.#looked = { model, modelOf, modelLeaf, variant, growth, tree, shows }
+      if (this.store.state.model?.id !== id) return true
+      this.#looked = lookedAt(this.store.state)
       this.grower.leave()
       this.store.set(NONE)
       return true
@@ -79,4 +77,8 @@ export class Gallery {
       return null
     }
   }
+}
+
+function lookedAt({ model, modelOf, modelLeaf, modelFruit, variant, growth, tree, shows }: State): Looked {
+  return { model, modelOf, modelLeaf, modelFruit, variant, growth, tree, shows }
 }

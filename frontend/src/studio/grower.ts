@@ -1,8 +1,9 @@
 import { type Client, Unreachable } from '../api/client'
 import { follow, isOver } from '../api/follow'
-import type { Model, Store } from '../state'
+import type { Model, State, Store } from '../state'
 import type { Strokes } from '../strokes'
 import { text } from '../text'
+import { evidenceOf } from './evidence'
 import { faultOf } from './sentences'
 import { treeOf } from './variants'
 
@@ -22,14 +23,15 @@ export class Grower {
 
   /** Ask for a tree of what is drawn. */
   async grow(): Promise<void> {
-    const { photo, settings, seed, name, leaf, faults } = this.store.state
+    const { settings, seed, name, leaf, fruit, faults } = this.store.state
     const strokes = this.store.strokes
-    if (!photo || !strokes.branches.length || faults.strokes?.stroke || this.isGrowing) return
+    const evidence = evidenceOf(this.store.state)
+    if (!evidence || faults.strokes?.stroke || this.isGrowing) return
     this.store.fault('grow', null)
     this.store.set({ asking: true })
     try {
-      const wish = { photo: photo.id, strokes, settings, seed, name, leaf }
-      this.show(await patiently(key => this.client.grow(wish, key)), strokes, leaf)
+      const wish = { evidence, settings, seed, name, leaf, fruit }
+      this.show(await patiently(key => this.client.grow(wish, key)), strokes, { leaf, fruit })
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     } finally {
@@ -48,11 +50,11 @@ export class Grower {
     return asking || (model !== null && !isOver(model))
   }
 
-  /** Follow a model, made of `strokes` and with a leaf of one's own or none, into the preview. */
-  show(model: Model, strokes: Strokes, leaf: Blob | null): void {
+  /** Follow a model, made of `strokes` and with pictures of one's own or none, into the preview. */
+  show(model: Model, strokes: Strokes, { leaf, fruit }: Pick<State, 'leaf' | 'fruit'>): void {
     this.leave()
     this.#trees.clear()
-    const looked = { modelOf: strokes, modelLeaf: leaf, variant: 1 }
+    const looked = { modelOf: strokes, modelLeaf: leaf, modelFruit: fruit, variant: 1 }
     this.store.set({ model, ...looked, growth: null, tree: null, shows: 'model' })
     this.#leave = follow(model.id, {
       changed: now => this.#change(now),

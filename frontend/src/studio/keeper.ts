@@ -1,6 +1,7 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb'
 import type { History } from '../history'
-import type { Settings, State, Store } from '../state'
+import type { Extent } from '../sheets'
+import type { Settings, Source, State, Store } from '../state'
 import { isEmpty, type Strokes } from '../strokes'
 import { Rounds } from './rounds'
 
@@ -10,22 +11,30 @@ export interface Draft {
   /** Milliseconds since 1970. */
   readonly saved: number
   readonly name: string
-  readonly photo: { readonly id: string; readonly width: number; readonly height: number }
+  /** Absent in drawings over a photo. */
+  readonly source?: Source
+  /** The photo or paper; without an id the service knows of no photo. */
+  readonly photo: Extent & { readonly id: string | null }
+  /** The left side's sheet, where it is open. */
+  readonly side?: Extent | null
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
   /** The model that was grown of it last, and of which strokes. */
   readonly model: string | null
   readonly modelOf: Strokes | null
-  /** Whether its leaf is another than the one that is kept here. */
+  /** Whether its leaf and its fruit are others than those that are kept here. */
   readonly modelHadOtherLeaf?: boolean
+  readonly modelHadOtherFruit?: boolean
 }
 
-/** A drawing with its photo and, where it has one, the person's own leaf. */
-export interface Kept {
+/** The pictures of a drawing: under both sheets, and the person's own leaf and fruit. */
+const PICTURES = ['photo', 'side', 'leaf', 'fruit'] as const
+type Pictures = Readonly<Record<(typeof PICTURES)[number], Blob | null>>
+
+/** A drawing with its pictures. */
+export interface Kept extends Pictures {
   readonly draft: Draft
-  readonly photo: Blob
-  readonly leaf: Blob | null
 }
 
 interface Shelf extends DBSchema {
@@ -34,14 +43,13 @@ interface Shelf extends DBSchema {
 }
 
 const KEPT = 12
-const KEYS = ['photo', 'name', 'history', 'settings', 'seed', 'leaf', 'model', 'modelOf'] as const
-const NO_LEAF = Symbol('no leaf was kept yet')
+const KEYS = ['photo', 'side', 'name', 'history', 'settings', 'seed', 'leaf', 'fruit', 'model', 'modelOf'] as const
 
 /** Keeps every drawing in the browser as it is drawn, with its undo history, so that a reload or a crash loses nothing. */
 export class Keeper {
   #id: string | null = null
-  #photo: Blob | null = null
-  #leaf: Blob | null | typeof NO_LEAF = NO_LEAF
+  /** What has been written of this drawing. */
+  #written: Pictures | null = null
   readonly #rounds = new Rounds(() => this.#write(this.store.state))
 
   constructor(
@@ -64,8 +72,7 @@ export class Keeper {
   /** Go on with a kept drawing, or with a new one. */
   begin(id: string | null): void {
     this.#id = id ?? crypto.randomUUID()
-    this.#photo = null
-    this.#leaf = NO_LEAF
+    this.#written = null
   }
 
   /** List what is kept, the latest first; drawings without a stroke are not worth coming back to. */
@@ -77,9 +84,10 @@ export class Keeper {
   /** Find a drawing and its pictures. */
   async find(id: string): Promise<Kept | null> {
     const shelf = await this.shelf
-    const pictures = [id, leafKey(id)].map(key => shelf.get('photos', key))
-    const [draft, photo, leaf] = await Promise.all([shelf.get('drafts', id), ...pictures])
-    return draft && photo ? { draft, photo, leaf: leaf ?? null } : null
+    const found = PICTURES.map(async what => [what, (await shelf.get('photos', keyOf(id, what))) ?? null] as const)
+    const [draft, ...pictures] = await Promise.all([shelf.get('drafts', id), ...found])
+    const kept = Object.fromEntries(pictures) as Pictures
+    return draft && (kept.photo || draft.source === 'sketch') ? { draft, ...kept } : null
   }
 
   async remove(id: string): Promise<void> {
@@ -87,10 +95,9 @@ export class Keeper {
   }
 
   /** Put a drawing back that was removed. */
-  async restore({ draft, photo, leaf }: Kept): Promise<void> {
+  async restore({ draft, ...pictures }: Kept): Promise<void> {
     const shelf = await this.shelf
-    await shelf.put('photos', photo, draft.id)
-    if (leaf) await shelf.put('photos', leaf, leafKey(draft.id))
+    await putPictures(shelf, draft.id, pictures, null)
     await shelf.put('drafts', draft)
   }
 
@@ -105,30 +112,47 @@ export class Keeper {
   async #write(state: State): Promise<void> {
     const id = this.#id
     if (!id || !state.photo) return
-    const { file, id: photo, width, height } = state.photo
+    const { photo, side, leaf, fruit } = state
     const shelf = await this.shelf
-    const isNew = this.#photo !== file
-    if (isNew) await shelf.put('photos', file, id)
-    const { name, history, settings, seed, leaf, modelOf, modelLeaf } = state
-    if (this.#leaf !== leaf) await putLeaf(shelf, id, leaf)
-    await shelf.put('drafts', {
-      ...{ id, saved: Date.now(), name, photo: { id: photo, width, height }, history, settings, seed, modelOf },
-      ...{ model: state.model?.id ?? null, modelHadOtherLeaf: modelLeaf !== leaf },
-    })
-    if (isNew) await prune(shelf)
-    if (this.#id === id) [this.#photo, this.#leaf] = [file, leaf]
+    const before = this.#written
+    const pictures = { photo: photo.file, side: side?.file ?? null, leaf, fruit }
+    await putPictures(shelf, id, pictures, before)
+    await shelf.put('drafts', draftOf(state, id))
+    if (!before) await prune(shelf)
+    if (this.#id === id) this.#written = pictures
     if (!state.kept) this.store.set({ kept: true })
   }
 }
 
-/** Under which key a drawing's leaf lies beside the photos. */
-function leafKey(id: string): string {
-  return `${id}/leaf`
+function draftOf(state: State, id: string): Draft {
+  const { source, photo, side, name, history, settings, seed, model, modelOf, modelLeaf, modelFruit } = state
+  return {
+    ...{ id, saved: Date.now(), source, name, history, settings, seed, modelOf, model: model?.id ?? null },
+    photo: { id: photo!.id, width: photo!.width, height: photo!.height },
+    side: side && { width: side.width, height: side.height },
+    modelHadOtherLeaf: modelLeaf !== state.leaf,
+    modelHadOtherFruit: modelFruit !== state.fruit,
+  }
 }
 
-async function putLeaf(shelf: IDBPDatabase<Shelf>, id: string, leaf: Blob | null): Promise<void> {
-  if (leaf) await shelf.put('photos', leaf, leafKey(id))
-  else await shelf.delete('photos', leafKey(id))
+/** Under which key a drawing's picture lies. */
+function keyOf(id: string, what: keyof Pictures): string {
+  return what === 'photo' ? id : `${id}/${what}`
+}
+
+/** Write the pictures that are others than before. */
+async function putPictures(
+  shelf: IDBPDatabase<Shelf>,
+  id: string,
+  pictures: Pictures,
+  before: Pictures | null,
+): Promise<void> {
+  for (const what of PICTURES) {
+    const picture = pictures[what]
+    if (before && before[what] === picture) continue
+    if (picture) await shelf.put('photos', picture, keyOf(id, what))
+    else await shelf.delete('photos', keyOf(id, what))
+  }
 }
 
 /** Asynchronous, so that a browser without a shelf rejects instead of throwing. */
@@ -151,8 +175,7 @@ async function removeAll(shelf: IDBPDatabase<Shelf>, ids: readonly string[]): Pr
   const change = shelf.transaction(['drafts', 'photos'], 'readwrite')
   for (const id of ids) {
     change.objectStore('drafts').delete(id)
-    change.objectStore('photos').delete(id)
-    change.objectStore('photos').delete(leafKey(id))
+    for (const what of PICTURES) change.objectStore('photos').delete(keyOf(id, what))
   }
   await change.done
 }

@@ -1,28 +1,28 @@
 import { type Client, Refused } from '../api/client'
 import { begin, type History } from '../history'
-import { DEFAULT_SETTINGS, EMPTY, type Model, type Photo, type Settings, type Store } from '../state'
-import { fromWire, NO_STROKES, type Strokes } from '../strokes'
+import { fittedTo, paper, sheetOfSize } from '../sheets'
+import { DEFAULT_SETTINGS, EMPTY, type Ground, type Model, type Photo, type State, type Store } from '../state'
+import { fromWire, NO_STROKES, onSheet, type Strokes, withSheet } from '../strokes'
 import { text } from '../text'
-import type { Example } from './examples'
+import type { Example, SketchExample } from './examples'
 import type { Grower } from './grower'
-import type { Keeper } from './keeper'
+import type { Keeper, Kept } from './keeper'
+import { pictureOf, uploaded } from './photos'
 import { isProject, type Project, readProject } from './project'
 import { faultOf, Unusable } from './sentences'
+import { sketchFrom } from './sketches'
 
 /** What takes the place of the present drawing. */
-interface Drawing {
-  readonly photo: Photo
+interface Drawing extends Partial<Pick<State, 'source' | 'side' | 'settings' | 'seed' | 'leaf' | 'fruit'>> {
+  readonly photo: Ground
   readonly name: string
   readonly history: History<Strokes>
-  readonly settings?: Settings
-  readonly seed?: number
-  readonly leaf?: Blob | null
 }
 
-/** In the place of a leaf that is no longer known: another than any. */
-const FORGOTTEN_LEAF = new Blob([])
+/** In the place of a picture that is no longer known: another than any. */
+const FORGOTTEN = new Blob([])
 
-/** Opens photos, projects, examples, kept drawings and models; what was open before stays until that has worked. */
+/** Opens photos, paper, projects, examples, drawings and models; what was open before stays until that has worked. */
 export class Opener {
   constructor(
     private readonly store: Store,
@@ -39,11 +39,32 @@ export class Opener {
     })
   }
 
+  /** Open two white sheets. */
+  openPaper(): Promise<void> {
+    return this.#opening(async () => {
+      this.#put({ source: 'sketch', photo: paper(), side: paper(), name: '', history: begin(NO_STROKES) })
+    })
+  }
+
+  /** Open an example that was drawn on paper, and grow it. */
+  openSketches({ name, front, side, leaf, fruit }: SketchExample): Promise<void> {
+    return this.#opening(async () => {
+      const bring = async (url: string | undefined) => (url ? await this.client.getFile(url) : null)
+      const [ahead, left, ...own] = await Promise.all([front, side, leaf, fruit].map(bring))
+      const [one, other] = await Promise.all([ahead, left].map(async file => file && sketchFrom(await jsonOf(file))))
+      const history = begin(other ? withSheet(one!.strokes, 'side', other.strokes) : one!.strokes)
+      const sheets = { photo: sheetOfSize(one!.size), side: other ? sheetOfSize(other.size) : paper(one!.size.height) }
+      const pictures = { leaf: own[0] ?? null, fruit: own[1] ?? null }
+      this.#put({ source: 'sketch', ...sheets, name: text.examples[name] ?? name, history, ...pictures })
+      void this.grower.grow()
+    })
+  }
+
   /** Open an example and grow it. */
   openExample({ name, photo, strokes }: Example): Promise<void> {
     return this.#opening(async () => {
       const [file, drawn] = await Promise.all([this.client.getFile(photo), this.client.getFile(strokes)])
-      const history = begin(fromWire(JSON.parse(await drawn.text())))
+      const history = begin(fromWire(await jsonOf(drawn)))
       this.#put({ photo: await this.#upload(file), name: text.examples[name] ?? name, history })
       void this.grower.grow()
     })
@@ -54,13 +75,15 @@ export class Opener {
     return this.#opening(async () => {
       const found = await this.keeper.find(id)
       if (!found) throw new Unusable(text.faults.draftGone)
-      const { draft, photo: file, leaf } = found
-      const url = await pictureOf(file, draft.photo, `/v1/photos/${draft.photo.id}/image`)
+      const { draft, leaf, fruit } = found
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
-      this.#put({ ...draft, photo: { ...draft.photo, file, url }, settings, leaf }, id)
+      this.#put({ ...draft, ...(await this.#sheetsOf(found)), settings, leaf, fruit }, id)
       const model = draft.model && (await this.#find(draft.model))
-      const modelLeaf = draft.modelHadOtherLeaf ? FORGOTTEN_LEAF : leaf
-      if (model && draft.modelOf) this.grower.show(model, draft.modelOf, modelLeaf)
+      const own = {
+        leaf: draft.modelHadOtherLeaf ? FORGOTTEN : leaf,
+        fruit: draft.modelHadOtherFruit ? FORGOTTEN : fruit,
+      }
+      if (model && draft.modelOf) this.grower.show(model, draft.modelOf, own)
     })
   }
 
@@ -69,11 +92,12 @@ export class Opener {
     return this.#opening(async () => {
       const model = await this.#find(id)
       if (!model) throw new Unusable(text.faults.modelGone)
-      const { strokes, leaf, photo: file } = await readProject(await this.client.getFile(model.files.project!))
+      const project = await readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
-      const photo = await this.#photoOf(model, file)
-      this.#put({ photo, name: model.name, history: begin(strokes), settings, seed: model.seed, leaf })
-      this.grower.show(model, strokes, leaf)
+      const { leaf, fruit = null } = project
+      const { strokes, ...sheets } = await laidOut(project, file => this.#photoOf(model.photo, file))
+      this.#put({ ...sheets, name: model.name, history: begin(strokes), settings, seed: model.seed, leaf, fruit })
+      this.grower.show(model, strokes, { leaf, fruit })
     })
   }
 
@@ -97,21 +121,31 @@ export class Opener {
     }
   }
 
-  async #openProject({ photo, strokes, ...project }: Project, name: string): Promise<void> {
-    this.#put({ photo: await this.#upload(photo), name: stem(name), history: begin(strokes), ...project })
+  async #openProject(project: Project, name: string): Promise<void> {
+    const { settings, seed, leaf, fruit = null } = project
+    const { strokes, ...sheets } = await laidOut(project, file => this.#upload(file))
+    this.#put({ ...sheets, name: stem(name), history: begin(strokes), settings, seed, leaf, fruit })
   }
 
-  async #upload(file: Blob): Promise<Photo> {
-    const most = this.store.state.limits?.photo_bytes ?? Number.POSITIVE_INFINITY
-    if (file.size > most) throw new Unusable(text.faults.photoTooLarge(file.size / 1e6, most / 1e6))
-    const { id, width, height, image } = await this.client.addPhoto(file)
-    return { id, width, height, file, url: await pictureOf(file, { width, height }, image) }
+  #upload(file: Blob): Promise<Photo> {
+    return uploaded(file, this.client, this.store.state.limits)
   }
 
-  /** Find a model's photo, or send the model's own copy of it again. */
-  async #photoOf(model: Model, file: Blob): Promise<Photo> {
+  /** Lay the sheets of a kept drawing out; over a photo, tracing finds out whether the service still has it. */
+  async #sheetsOf({ draft, photo: file, side: guide }: Kept): Promise<Pick<State, 'side'> & { photo: Ground }> {
+    const { photo, side } = draft
+    const left = side ? { ...sheetOfSize(side), file: guide, url: guide && URL.createObjectURL(guide) } : null
+    if (!file) return { photo: sheetOfSize(photo), side: left }
+    if (draft.source === 'sketch') return { photo: await this.#photoOf(photo.id, file), side: left }
+    const url = await pictureOf(file, photo, `/v1/photos/${photo.id}/image`)
+    return { photo: { ...photo, file, url }, side: left }
+  }
+
+  /** Find a photo that the service had, or send its copy again. */
+  async #photoOf(known: string | null, file: Blob): Promise<Photo> {
+    if (known === null) return this.#upload(file)
     try {
-      const { id, width, height, image } = await this.client.getPhoto(model.photo)
+      const { id, width, height, image } = await this.client.getPhoto(known)
       return { id, width, height, file, url: image }
     } catch (error) {
       if (!(error instanceof Refused)) throw error
@@ -129,22 +163,28 @@ export class Opener {
   }
 
   #put(drawing: Drawing, draft: string | null = null): void {
-    const { photo, name, history, settings = DEFAULT_SETTINGS, seed = 0, leaf = null } = drawing
+    const { source = 'photo', side = null, photo, name, history } = drawing
+    const { settings = DEFAULT_SETTINGS, seed = 0, leaf = null, fruit = null } = drawing
     const { limits, online } = this.store.state
     this.grower.leave()
     this.keeper.begin(draft)
-    const tool = history.present.crown ? 'branch' : 'crown'
-    this.store.set({ ...EMPTY, limits, online, opening: true, photo, name, history, settings, seed, leaf, tool })
+    const tool = history.present.crown || source === 'sketch' ? 'branch' : 'crown'
+    const opened = { source, photo, side, name, history, settings, seed, leaf, fruit, tool } as const
+    this.store.set({ ...EMPTY, limits, online, opening: true, ...opened })
   }
 }
 
-/** Give an address that shows the upright picture: the file itself where the browser sees it as the service does. */
-async function pictureOf(file: Blob, size: { width: number; height: number }, stored: string): Promise<string> {
-  if (file.type !== 'image/jpeg') return stored
-  const picture = await createImageBitmap(file).catch(() => null)
-  const alike = picture?.width === size.width && picture.height === size.height
-  picture?.close()
-  return alike ? URL.createObjectURL(file) : stored
+/** Lay a project's strokes on their sheets; those of the front go with the photo that lies under them. */
+async function laidOut({ photo: file, strokes, sheets = {} }: Project, send: (file: Blob) => Promise<Photo>) {
+  const { front, side } = sheets
+  const photo = file ? await send(file) : sheetOfSize(front!)
+  const left = side ? sheetOfSize(side) : front ? paper(photo.height) : null
+  const moved = front ? withSheet(strokes, 'front', fittedTo(onSheet(strokes, 'front'), front, photo)) : strokes
+  return { source: front ? ('sketch' as const) : ('photo' as const), photo, side: left, strokes: moved }
+}
+
+async function jsonOf(file: Blob): Promise<unknown> {
+  return JSON.parse(await file.text())
 }
 
 function stem(name: string): string {

@@ -1,21 +1,28 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate'
+import { type Extent, isDrawn } from '../sheets'
 import { DEFAULT_SETTINGS, type Settings } from '../state'
-import { fromWire, type Strokes, toWire } from '../strokes'
+import { fromWire, onSheet, type SheetName, type Strokes, toWire, withSheet } from '../strokes'
 import { text } from '../text'
 import { Unusable } from './sentences'
+import { sketchFrom, sketchToWire } from './sketches'
 
 /** What a project file holds. */
 export interface Project {
-  readonly photo: Blob
+  /** Absent where it is made of sketches on paper. */
+  readonly photo: Blob | null
   readonly strokes: Strokes
+  /** The sizes of the sheets that sketches were drawn on; the front's makes the tree one of sketches. */
+  readonly sheets?: Readonly<Partial<Record<SheetName, Extent>>>
   readonly settings: Settings
   readonly seed: number
   /** The person's own picture of a leaf. */
   readonly leaf: Blob | null
+  readonly fruit?: Blob | null
 }
 
 const ENDING = '.treestroke'
-const LEAF = 'leaf.png'
+const PICTURES = { leaf: 'leaf.png', fruit: 'fruit.png' } as const
+const SHEETS = ['front', 'side'] as const
 const TYPES: Readonly<Record<string, string>> = { jpg: 'image/jpeg', png: 'image/png', webp: 'image/webp' }
 
 export function isProject(file: File): boolean {
@@ -32,32 +39,70 @@ export function fileName(name: string, ending: string): string {
   return `${name.replace(/[\\/:*?"<>|]/g, '_') || 'tree'}${ending}`
 }
 
-/** Write a project as the command line and the service do: a ZIP of the pictures, strokes.json and settings.json. */
-export async function writeProject({ photo, strokes, settings, seed, leaf }: Project): Promise<Blob> {
-  const ending = Object.keys(TYPES).find(key => TYPES[key] === photo.type) ?? 'jpg'
+/** Write a project as the command line and the service do: a ZIP of the pictures, the strokes and settings.json. */
+export async function writeProject({ photo, strokes, sheets = {}, settings, seed, ...own }: Project): Promise<Blob> {
+  const ending = Object.keys(TYPES).find(key => TYPES[key] === photo?.type) ?? 'jpg'
   const archive = zipSync({
-    [`photo.${ending}`]: [new Uint8Array(await photo.arrayBuffer()), { level: 0 }],
-    ...(leaf && { [LEAF]: [new Uint8Array(await leaf.arrayBuffer()), { level: 0 }] }),
-    'strokes.json': strToU8(JSON.stringify(toWire(strokes))),
+    ...(await member(`photo.${ending}`, photo)),
+    ...(await member(PICTURES.leaf, own.leaf)),
+    ...(await member(PICTURES.fruit, own.fruit ?? null)),
+    ...(sheets.front ? {} : { 'strokes.json': written(toWire(onSheet(strokes, 'front'))) }),
+    ...sketches(strokes, sheets),
     'settings.json': strToU8(JSON.stringify({ ...settings, seed }, null, 2)),
   })
   return new Blob([archive], { type: 'application/zip' })
+}
+
+/** Put a picture into an archive as it is. */
+async function member(name: string, picture: Blob | null): Promise<Record<string, [Uint8Array, { level: 0 }]>> {
+  return picture ? { [name]: [new Uint8Array(await picture.arrayBuffer()), { level: 0 }] } : {}
+}
+
+function sketches(strokes: Strokes, sheets: NonNullable<Project['sheets']>): Record<string, Uint8Array> {
+  const drawn = SHEETS.flatMap(sheet => {
+    const size = sheets[sheet]
+    return size && isDrawn(strokes, sheet) ? [[`${sheet}.json`, written(sketchToWire(strokes, sheet, size))]] : []
+  })
+  return Object.fromEntries(drawn)
+}
+
+function written(value: unknown): Uint8Array {
+  return strToU8(JSON.stringify(value))
 }
 
 /** Read a project, or throw `Unusable` where it is damaged or none. */
 export async function readProject(file: Blob): Promise<Project> {
   const members = await unzip(file)
   const photo = Object.keys(members).find(name => /^photo\.\w+$/.test(name))
-  const strokes = members['strokes.json']
-  if (!photo || !strokes) throw new Unusable(text.faults.projectIncomplete)
   const { seed, ...settings } = settingsOf(members['settings.json'])
   return {
-    photo: new Blob([new Uint8Array(members[photo]!)], { type: TYPES[photo.split('.')[1]!] ?? '' }),
-    strokes: strokesOf(strokes),
+    photo: photo ? picture(members[photo], TYPES[photo.split('.')[1]!]) : null,
+    ...drawingOf(members, photo !== undefined),
     settings: { ...DEFAULT_SETTINGS, ...settings },
     seed: seed ?? 0,
-    leaf: members[LEAF] ? new Blob([new Uint8Array(members[LEAF])], { type: 'image/png' }) : null,
+    leaf: picture(members[PICTURES.leaf]),
+    fruit: picture(members[PICTURES.fruit]),
   }
+}
+
+/** Read strokes over a photo, or sketches; a picture of a sketch has no strokes to go on with. */
+function drawingOf(members: Record<string, Uint8Array>, hasPhoto: boolean): Pick<Project, 'strokes' | 'sheets'> {
+  const strokes = members['strokes.json']
+  const [front, side] = SHEETS.map(sheet => members[`${sheet}.json`])
+  if (members['front.png'] || members['side.png']) throw new Unusable(text.faults.sketchIsPicture)
+  if (!front && !(strokes && hasPhoto)) throw new Unusable(text.faults.projectIncomplete)
+  const [drawn, other] = [sketchOf(front), sketchOf(side)]
+  const sheets = { ...(drawn && { front: drawn.size }), ...(other && { side: other.size }) }
+  const ahead = drawn?.strokes ?? strokesOf(strokes!)
+  return { strokes: other ? withSheet(ahead, 'side', other.strokes) : ahead, sheets }
+}
+
+function sketchOf(json: Uint8Array | undefined): { strokes: Strokes; size: Extent } | null {
+  return json ? read(json, sketchFrom) : null
+}
+
+function picture(bytes: Uint8Array | undefined, type = 'image/png'): Blob | null {
+  return bytes ? new Blob([new Uint8Array(bytes)], { type }) : null
 }
 
 async function unzip(file: Blob): Promise<Record<string, Uint8Array>> {
@@ -70,8 +115,12 @@ async function unzip(file: Blob): Promise<Record<string, Uint8Array>> {
 }
 
 function strokesOf(json: Uint8Array): Strokes {
+  return read(json, fromWire)
+}
+
+function read<T>(json: Uint8Array, form: (value: unknown) => T): T {
   try {
-    return fromWire(JSON.parse(strFromU8(json)))
+    return form(JSON.parse(strFromU8(json)))
   } catch {
     throw new Unusable(text.faults.projectUnreadable)
   }

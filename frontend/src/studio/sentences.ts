@@ -15,12 +15,14 @@ export function faultOf(error: unknown): Fault {
   return { text: wording(error.code) ?? withoutPlace(error.message), ...(stroke && { stroke }) }
 }
 
-/** Find the stroke that a JSON pointer leads to: /crown, /branches/2/points, /strokes/erase/0, /scale/metres. */
+/** Find the stroke that a JSON pointer leads to: /crown, /strokes/erase/0, /branches/2/points, /sketches/side/crown. */
 export function strokeAt(pointer: string | null): StrokeRef | null {
-  const found = pointer?.match(/^(?:\/strokes)?\/(crown|branches|erase|scale)(?:\/(\d+))?/)
+  const found = pointer?.match(
+    /^(?:\/(?:strokes|sketches))?(?:\/(front|side))?\/(crown|branches|erase|scale)(?:\/(\d+))?/,
+  )
   if (!found) return null
-  const kind = found[1] === 'branches' ? 'branch' : (found[1] as StrokeKind)
-  return { kind, index: Number(found[2] ?? 0) }
+  const kind = found[2] === 'branches' ? 'branch' : (found[2] as StrokeKind)
+  return { kind, index: Number(found[3] ?? 0), ...(found[1] === 'side' && { sheet: 'side' }) }
 }
 
 function wording(code: string): string | undefined {

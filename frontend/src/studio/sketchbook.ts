@@ -1,13 +1,17 @@
 import { advance, type History, redo, undo } from '../history'
+import { brushWidth, groundOf, isDrawn, isPaper, paper } from '../sheets'
 import type { Selection, Store, Tool } from '../state'
 import {
   isEmpty,
   type Line,
   NO_STROKES,
+  onSheet,
+  type SheetName,
   type StrokeKind,
   type Strokes,
   withoutStroke,
   withScale,
+  withSheet,
   withStroke,
 } from '../strokes'
 import { eraseLine } from '../tracedBranch'
@@ -19,14 +23,15 @@ const SCALE: Selection = { kind: 'scale', index: 0 }
 export class Sketchbook {
   constructor(private readonly store: Store) {}
 
-  /** Take a finished stroke; after the crown the trunk is what comes next. */
-  draw(kind: StrokeKind, points: Line): void {
+  /** Take a finished stroke; over a photo the trunk is what comes after the crown. */
+  draw(kind: StrokeKind, points: Line, sheet: SheetName = 'front'): void {
     if (kind === 'scale') {
       this.#span(points)
       return
     }
-    const first = kind === 'crown' && !this.store.strokes.crown
-    this.#advance(withStroke(this.store.strokes, kind, points))
+    const own = onSheet(this.store.strokes, sheet)
+    const first = kind === 'crown' && !own.crown
+    this.#advance(withSheet(this.store.strokes, sheet, withStroke(own, kind, points, this.#brush(sheet))))
     if (first && this.store.state.tool === 'crown') this.store.set({ tool: 'branch' })
   }
 
@@ -65,6 +70,13 @@ export class Sketchbook {
     this.#set(redo(this.store.state.history))
   }
 
+  /** How wide the brush is on a sheet, px; a photo itself shows how thick branches are. */
+  #brush(sheet: SheetName): number | null {
+    const { state } = this.store
+    const ground = groundOf(state, sheet)
+    return ground && isPaper(state, sheet) ? brushWidth(state, ground) : null
+  }
+
   /** Lay the measured line; an end that was moved leaves its length as it was said, a line of its own guesses it. */
   #span(points: Line): void {
     const { scale } = this.store.strokes
@@ -78,7 +90,10 @@ export class Sketchbook {
   }
 
   #set(history: History<Strokes>, selection: Selection | null = null): void {
-    this.store.set({ history, selection })
+    const { photo, side } = this.store.state
+    // What was put away with the side's sheet comes back with it.
+    const reopened = !side && photo && isDrawn(history.present, 'side') && { side: paper(photo.height) }
+    this.store.set({ history, selection, ...reopened })
     this.store.fault('strokes', null)
   }
 }

@@ -1,5 +1,6 @@
 import { Client } from '../api/client'
 import { Store } from '../state'
+import { Desk } from './desk'
 import { Grower } from './grower'
 import { Herbarium } from './herbarium'
 import { Keeper } from './keeper'
@@ -13,6 +14,7 @@ export class Studio {
   readonly client = new Client()
   readonly keeper = new Keeper(this.store)
   readonly sketchbook = new Sketchbook(this.store)
+  readonly desk = new Desk(this.store, this.client)
   readonly herbarium = new Herbarium(this.store)
   readonly grower = new Grower(this.store, this.client)
   readonly opener = new Opener(this.store, this.client, this.keeper, this.grower)

@@ -1,6 +1,8 @@
 import { type Client, Refused, Unreachable } from '../api/client'
-import type { Photo, Store, TraceAnswer } from '../state'
+import { isPhoto } from '../sheets'
+import type { Ground, Photo, Store, Traced } from '../state'
 import type { Strokes } from '../strokes'
+import { canTrace, traced } from './evidence'
 import { Rounds } from './rounds'
 import { faultOf } from './sentences'
 
@@ -43,14 +45,15 @@ export class Tracer {
 
   /** Do the next thing that is due; false where nothing is. */
   async #step(): Promise<boolean> {
-    const { photo, traced, grown } = this.store.state
+    const { photo, traced: found, grown } = this.store.state
     const strokes = this.store.strokes
     if (!strokes.branches.length && grown) this.store.set({ grown: null })
     if (!strokes.branches.length) this.#grownOf = null
     if (strokes !== this.#refused) this.#refused = null
-    if (!strokes.crown && traced) this.store.set({ traced: null, grown: null })
-    if (!photo || !strokes.crown || strokes === this.#refused) return false
-    const isTraced = traced?.of === strokes
+    const traceable = canTrace(this.store.state)
+    if (!traceable && found) this.store.set({ traced: null, grown: null })
+    if (!photo || !traceable || strokes === this.#refused) return false
+    const isTraced = found?.of === strokes
     if (isTraced && (!strokes.branches.length || this.#grownOf === strokes)) return false
     try {
       await this.#ask(photo, strokes, isTraced)
@@ -60,33 +63,35 @@ export class Tracer {
     return true
   }
 
-  async #ask(photo: Photo, strokes: Strokes, grow: boolean): Promise<void> {
+  async #ask(photo: Ground, strokes: Strokes, grow: boolean): Promise<void> {
     if (!grow) this.store.set({ tracing: true })
-    const answer = await this.client.trace(photo.id, strokes, grow)
+    const found = await traced(this.client, this.store.state, grow)
     this.store.set({ online: true })
     if (this.#isStale(photo, strokes)) return
     this.store.fault('strokes', null)
-    if (!grow) return this.#take(strokes, answer)
+    if (!grow) return this.#take({ of: strokes, ...found })
     this.#grownOf = strokes
-    this.store.set({ grown: answer.grown ?? null, shows: strokes === this.store.state.modelOf ? 'model' : 'live' })
+    this.store.set({
+      grown: found.answer.grown ?? null,
+      shows: strokes === this.store.state.modelOf ? 'model' : 'live',
+    })
   }
 
   /** Show what was traced; a branch that was selected in the last answer may be another joint in this one. */
-  #take(strokes: Strokes, answer: TraceAnswer): void {
+  #take(traced: Traced): void {
     const { selection } = this.store.state
-    const traced = { of: strokes, answer }
     this.store.set({ traced, tracing: false, selection: selection?.kind === 'traced' ? null : selection })
   }
 
-  #isStale(photo: Photo, strokes: Strokes): boolean {
+  #isStale(photo: Ground, strokes: Strokes): boolean {
     return this.store.state.photo?.id !== photo.id || this.store.strokes !== strokes
   }
 
-  async #mend(error: unknown, photo: Photo, strokes: Strokes): Promise<void> {
+  async #mend(error: unknown, photo: Ground, strokes: Strokes): Promise<void> {
     if (error instanceof Unreachable) {
       this.store.set({ online: false })
       await this.wait(AGAIN_MS)
-    } else if (error instanceof Refused && error.status === 404) {
+    } else if (error instanceof Refused && error.status === 404 && isPhoto(photo)) {
       await this.#bringBack(photo)
     } else {
       this.#refused = strokes

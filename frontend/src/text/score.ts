@@ -1,3 +1,5 @@
+import { sheetsText } from './sheets'
+
 /** What is said of how well a tree turned out, and of what was measured on it. */
 export const scoreText = {
   details: 'Details',
@@ -11,7 +13,8 @@ export const scoreText = {
     [0, 'A loose likeness; draw the crown closer and add a few branches.'],
   ] as readonly (readonly [number, string])[],
   rows: {
-    silhouette: ['Silhouette', 'How much of its outline agrees with the photo.'],
+    ...sheetsText.score.rows,
+    silhouette: ['Silhouette', 'How much of its outline agrees with the photo, or with the crown in the sketch.'],
     reached: ['Leaves reached', 'Leafy places of the photo that a twig grew to.'],
     depth: ['Depth', 'As deep as wide is 1, which is usual for a tree that stands free.'],
     branches: ['Branches', 'All of them, down to the finest twigs.'],

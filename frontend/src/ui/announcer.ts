@@ -1,4 +1,4 @@
-import type { Photo, Store, TracedSkeleton } from '../state'
+import type { Ground, Store, TracedSkeleton } from '../state'
 import type { Point } from '../strokes'
 import { text } from '../text'
 import { editSaid } from './edits'
@@ -14,6 +14,14 @@ export function announceDrawing(store: Store): void {
       const said = editSaid(history, now)
       history = now
       if (said) announce(said)
+    },
+  )
+  let sheet = store.state.sheet
+  store.watch(
+    state => state.sheet,
+    now => {
+      if (now !== sheet && store.state.side) announce(text.sheets.turnedTo[now])
+      sheet = now
     },
   )
   let tool = store.state.tool
@@ -35,7 +43,7 @@ export function announceDrawing(store: Store): void {
 }
 
 /** Say what the keyboard's pen does, at a place of the photo in pixels. */
-export function announcePen(pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Photo): void {
+export function announcePen(pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Ground): void {
   const right = Math.round((x / width) * 100)
   const down = Math.round((y / height) * 100)
   if (pen === 'up') announce(text.strokes.penUp)

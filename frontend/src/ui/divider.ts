@@ -1,13 +1,15 @@
 import { text } from '../text'
 import { el } from './dom'
 
+/** As the stylesheet has it, per cent, until it is moved. */
+const FIRST = 55
 const FEWEST = 30
 const MOST = 75
 const STEP = 5
 
 /** Make the handle between the two panes: it sets `--split`, the share of the first one in per cent, on `host`. */
 export function divider(host: HTMLElement): HTMLElement {
-  let share = 55
+  let share = FIRST
   const handle = el('div', { class: 'divider', role: 'separator', tabindex: 0, 'aria-orientation': 'vertical' })
   handle.ariaLabel = text.workspace.divider
   const set = (wanted: number) => {
@@ -17,7 +19,7 @@ export function divider(host: HTMLElement): HTMLElement {
   }
   handle.ariaValueMin = String(FEWEST)
   handle.ariaValueMax = String(MOST)
-  set(share)
+  handle.ariaValueNow = String(FIRST)
   handle.addEventListener('pointerdown', event => handle.setPointerCapture(event.pointerId))
   handle.addEventListener('pointermove', event => {
     const { left, width } = host.getBoundingClientRect()

@@ -1,6 +1,9 @@
+import { groundOf, isDrawn, isPaper } from '../sheets'
 import type { Model, State } from '../state'
-import { toWire } from '../strokes'
+import { onSheet, toWire } from '../strokes'
+import { canTrace } from '../studio/evidence'
 import { fileName } from '../studio/project'
+import { sketchToWire } from '../studio/sketches'
 import type { Studio } from '../studio/studio'
 import { aloneOf, treeOf, variantsOf } from '../studio/variants'
 import { text } from '../text'
@@ -45,9 +48,8 @@ export function downloadsPanel(studio: Studio, ask: DownloadsAsk): HTMLElement {
   store.watch(
     state => state,
     state => {
-      const { crown } = state.history.present
       image.hidden = !state.grown && !state.tree
-      project.hidden = !state.photo || !crown
+      project.hidden = !canTrace(state)
       strokes.hidden = project.hidden
       more.hidden = chosenOf(state) === null
     },
@@ -72,7 +74,7 @@ export function treeLink({ store }: Studio): HTMLElement {
 
 /** Tell whether there is anything to take away. */
 export function hasTakings(state: State): boolean {
-  return chosenOf(state) !== null || (state.photo !== null && state.history.present.crown !== null)
+  return chosenOf(state) !== null || canTrace(state)
 }
 
 /** Where the tree is that is looked at; another address says that there are other files to take. */
@@ -105,8 +107,15 @@ async function savePicture({ store }: Studio, picture: () => Promise<Blob>): Pro
 }
 
 async function saveStrokes({ store }: Studio): Promise<void> {
-  const json = JSON.stringify(toWire(store.strokes))
-  saveFile(new Blob([json], { type: 'application/json' }), fileName(store.state.name, '.strokes.json'))
+  const { source, name } = store.state
+  const save = (what: string, value: unknown) =>
+    saveFile(new Blob([JSON.stringify(value)], { type: 'application/json' }), fileName(name, `.${what}.json`))
+  if (source === 'photo') save('strokes', toWire(onSheet(store.strokes, 'front')))
+  for (const sheet of ['front', 'side'] as const) {
+    const ground = groundOf(store.state, sheet)
+    if (ground && isPaper(store.state, sheet) && isDrawn(store.strokes, sheet))
+      save(sheet, sketchToWire(store.strokes, sheet, ground))
+  }
 }
 
 function take(drawing: string, words: Words, save: () => Promise<void>): HTMLButtonElement {

@@ -2,6 +2,7 @@ import type { Draft } from '../studio/keeper'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el, icon } from './dom'
+import { drawnPair } from './drawn'
 import { ICONS } from './icons'
 import { mayLeave } from './intake'
 import { notify } from './notices'
@@ -45,7 +46,13 @@ function card(draft: Draft, studio: Studio, changed: () => Promise<void>): HTMLE
 async function picture(id: string, frame: HTMLElement, { keeper }: Studio): Promise<void> {
   const found = await keeper.find(id).catch(() => null)
   if (!found) return
-  const url = URL.createObjectURL(found.photo)
+  const { photo: file, draft } = found
+  if (!file) {
+    frame.classList.add('on-paper')
+    frame.append(drawnPair(draft.photo, draft.history.present, draft.side ?? null))
+    return
+  }
+  const url = URL.createObjectURL(file)
   const photo = el('img', { src: url, alt: '' })
   photo.onload = () => URL.revokeObjectURL(url)
   frame.append(photo)

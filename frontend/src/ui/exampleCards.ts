@@ -1,13 +1,20 @@
-import { fromWire, type Line, type Strokes } from '../strokes'
-import { EXAMPLES, type Example } from '../studio/examples'
+import { fromWire, withSheet } from '../strokes'
+import { EXAMPLES, type Example, SKETCH_EXAMPLES, type SketchExample } from '../studio/examples'
+import { sketchFrom } from '../studio/sketches'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
-import { button, el, svg } from './dom'
+import { button, el } from './dom'
+import { drawnOn, drawnPair } from './drawn'
 import { mayLeave } from './intake'
 
 /** Make a card of every bundled example, with its two strokes over its photo. */
 export function exampleCards(studio: Studio): HTMLElement {
   return el('ul', { class: 'picks' }, ...EXAMPLES.map(example => card(example, studio)))
+}
+
+/** Make a card of every bundled pair of sketches. */
+export function sketchCards(studio: Studio): HTMLElement {
+  return el('ul', { class: 'picks' }, ...SKETCH_EXAMPLES.map(example => sketchCard(example, studio)))
 }
 
 function card(example: Example, studio: Studio): HTMLElement {
@@ -26,16 +33,29 @@ function card(example: Example, studio: Studio): HTMLElement {
 async function overlay({ strokes }: Example, photo: HTMLImageElement, { client }: Studio): Promise<void> {
   try {
     const [file] = await Promise.all([client.getFile(strokes), photo.decode()])
-    photo.after(sketched(fromWire(JSON.parse(await file.text())), photo.naturalWidth, photo.naturalHeight))
+    const size = { width: photo.naturalWidth, height: photo.naturalHeight }
+    photo.after(drawnOn(size, fromWire(JSON.parse(await file.text()))))
   } catch {
     return
   }
 }
 
-function sketched({ crown, branches }: Strokes, width: number, height: number): SVGElement {
-  const frame = { viewBox: `0 0 ${width} ${height}`, preserveAspectRatio: 'xMidYMid slice', 'aria-hidden': 'true' }
-  const drawn = (kind: string, points: Line, end = '') =>
-    svg('path', { class: `pick-${kind}`, d: `M${points.map(point => point.join(' ')).join('L')}${end}` })
-  const lines = branches.map(({ points }) => drawn('branch', points))
-  return svg('svg', frame, ...(crown ? [drawn('crown', crown, 'z')] : []), ...lines)
+function sketchCard(example: SketchExample, studio: Studio): HTMLElement {
+  const frame = el('span', { class: 'pick-photo on-paper' })
+  const open = button({ class: 'pick' }, () => mayLeave(studio) && void studio.opener.openSketches(example))
+  open.append(frame, el('span', { class: 'pick-name' }, text.examples[example.name] ?? example.name))
+  void draw(example, frame, studio)
+  return el('li', {}, open)
+}
+
+/** Draw both sides; without them the card is good as well. */
+async function draw({ front, side }: SketchExample, frame: HTMLElement, { client }: Studio): Promise<void> {
+  try {
+    const files = await Promise.all([front, ...(side ? [side] : [])].map(url => client.getFile(url)))
+    const [ahead, left] = await Promise.all(files.map(async file => sketchFrom(JSON.parse(await file.text()))))
+    const strokes = left ? withSheet(ahead!.strokes, 'side', left.strokes) : ahead!.strokes
+    frame.append(drawnPair(ahead!.size, strokes, left?.size ?? null))
+  } catch {
+    return
+  }
 }

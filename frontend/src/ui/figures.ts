@@ -15,15 +15,23 @@ interface Report {
   readonly counts?: Readonly<Record<string, number>>
 }
 
+const { score: sketched } = text.sheets
 const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 })
 const percent = new Intl.NumberFormat('en', { style: 'percent', maximumFractionDigits: 0 })
 
 /** List the figures of a finished model; those that the service does not give are left out. */
 export function figuresOfModel({ score, report }: Model): Figure[] {
   const { counts, seconds } = (report ?? {}) as Report
+  const share = (name: string) => shown(score?.[name], one => percent.format(one))
   const values: Record<Row, string | undefined> = {
-    silhouette: shown(score?.silhouette_iou, share => percent.format(share)),
-    reached: shown(score?.attractors_reached, share => percent.format(share)),
+    frontCovered: share('front_covered'),
+    sideCovered: share('side_covered'),
+    frontTrue: share('front_true'),
+    sideTrue: share('side_true'),
+    paired: share('paired'),
+    inPlanes: share('in_planes'),
+    silhouette: share('silhouette_iou'),
+    reached: share('attractors_reached'),
     depth: shown(score?.depth_over_width, factor => text.score.times(factor.toFixed(2))),
     branches: shown(counts?.branches, number => whole.format(number)),
     leaves: shown(counts?.leaves, number => whole.format(number)),
@@ -37,8 +45,13 @@ export function figuresOfModel({ score, report }: Model): Figure[] {
   })
 }
 
-/** Say in one line how well the model fits the photo. */
+/** Say in one line how well the model fits the photo, or goes where it was sketched. */
 export function matchOf({ score }: Model): string {
+  const { front_covered: front, side_covered: side } = score ?? {}
+  if (front !== undefined) {
+    const said = percent.format(front)
+    return side === undefined ? sketched.match(said) : sketched.matchBoth(said, percent.format(side))
+  }
   const fit = score?.silhouette_iou
   return fit === undefined ? text.grow.standing.grown : text.score.match(percent.format(fit))
 }
@@ -52,6 +65,8 @@ export function makingOf(model: Model): string {
 
 /** Judge the fit, for somebody who has seen no other. */
 export function judgementOf({ score }: Model): string {
+  const drawn = [score?.front_covered, score?.side_covered].filter(one => one !== undefined)
+  if (drawn.length) return sketched.words.find(([least]) => Math.min(...drawn) >= least)?.[1] ?? ''
   const fit = score?.silhouette_iou ?? 0
   return text.score.words.find(([least]) => fit >= least)?.[1] ?? ''
 }

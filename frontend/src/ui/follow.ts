@@ -1,7 +1,9 @@
 import { isOver } from '../api/follow'
 import type { Preview } from '../preview/preview'
 import type { Grown, State, Store } from '../state'
+import { onSheet, type Strokes } from '../strokes'
 import { text } from '../text'
+import { paperUrl } from './drawn'
 
 /** What the preview is to show. */
 export type Sight = { readonly kind: 'nothing' } | SkeletonSight | TreeSight
@@ -31,14 +33,28 @@ export function sightOf({ shows, grown, growth, tree }: State, awaited: boolean)
 /** Keep the preview in step with the state; a tree waits until its growth has been played. */
 export function followState(store: Store, stage: Stage): void {
   const follower = new Follower(store, stage)
-  store.watch(
-    state => state.photo?.url ?? null,
-    url => stage.showPhoto(url),
-  )
+  followPicture(store, stage)
   store.watch(
     state => state,
     state => follower.follow(state),
   )
+}
+
+/** Lay over the tree what it was made of: the photo, or the front as it was drawn. */
+function followPicture(store: Store, stage: Stage): void {
+  let drawn: string | null = null
+  store.watch(picturedIn, picture => {
+    const before = drawn
+    const isDrawing = picture !== null && typeof picture !== 'string'
+    drawn = isDrawing ? paperUrl(store.state.photo!, onSheet(picture, 'front')) : null
+    stage.showPhoto(isDrawing ? drawn : picture)
+    if (before) URL.revokeObjectURL(before)
+  })
+}
+
+/** Give where the photo is shown from; on bare paper the strokes. */
+function picturedIn({ photo, source, history }: State): string | Strokes | null {
+  return source === 'sketch' && photo && !photo.url ? history.present : (photo?.url ?? null)
 }
 
 class Follower {

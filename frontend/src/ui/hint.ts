@@ -47,18 +47,46 @@ function warningText({ code, stroke, detail }: StrokeWarning): string {
 }
 
 function step(state: State, pointer: PointerKind): Hint {
-  const { tool, selection, history, grown, model } = state
+  const { tool, selection, history } = state
   const { crown, branches } = history.present
   const how = text.hints.how[pointer]
   if (selection?.kind === 'scale') return stepTo(text.hints.measured)
   if (selection) return { tone: 'step', text: text.hints.selected(strokeName(selection)), deletes: true }
   if (tool === 'scale') return stepTo(text.hints.measure, text.hints.measureNear)
+  if (state.source === 'sketch' || state.sheet === 'side')
+    return sketchStep(state, pointer) ?? laterStep(state, pointer)
   if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.takeCrown)
   if (!branches.length) return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.takeBranch)
-  if (tool === 'select') return stepTo(text.hints.select, how.select)
+  return laterStep(state, pointer)
+}
+
+/** Say what comes next on paper; null where nothing is missing any more. */
+function sketchStep(state: State, pointer: PointerKind): Hint | null {
+  const { hints } = text.sheets
+  const { branches, side } = state.history.present
+  const onSide = state.sheet === 'side'
+  if (state.tool !== 'branch' && !(onSide ? side : state.history.present)?.branches.length)
+    return stepTo(hints.takeBranch)
+  if (onSide) return sideStep(state, hints.how[pointer])
+  if (!branches.length) return stepTo(hints.trunk, hints.how[pointer])
+  const goesOn = branches.length > 1 && !side?.branches.length && !state.model
+  return goesOn ? stepTo(hints.side, hints.sideHow) : null
+}
+
+function sideStep({ source, history }: State, how: string): Hint | null {
+  const { hints } = text.sheets
+  const count = history.present.side?.branches.length ?? 0
+  if (count === 0) return stepTo(source === 'photo' ? hints.mixed : hints.sideTrunk, how)
+  if (count === 1) return stepTo(hints.branches, how)
+  return source === 'photo' ? stepTo(hints.mixedGrow) : null
+}
+
+function laterStep({ tool, history, grown, model, ...state }: State, pointer: PointerKind): Hint {
+  if (tool === 'select') return stepTo(text.hints.select, text.hints.how[pointer].select)
   if (model && !isOver(model)) return stepTo(text.hints.growing)
   if (model?.status === 'succeeded' && state.modelOf === history.present) return stepTo(text.hints.done)
-  return stepTo(grown ? text.hints.refine : text.hints.waiting)
+  if (!grown) return stepTo(text.hints.waiting)
+  return stepTo(state.source === 'sketch' ? text.sheets.hints.refine : text.hints.refine)
 }
 
 function stepTo(sentence: string, how?: string): Hint {

@@ -1,4 +1,5 @@
-import { isEmpty } from '../strokes'
+import { isPaper } from '../sheets'
+import { isEmpty, type SheetName } from '../strokes'
 import { isProject } from '../studio/project'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
@@ -20,15 +21,24 @@ export function choose(studio: Studio, what: 'photo' | 'any' = 'any'): void {
   input.click()
 }
 
+/** Let the user choose a picture on the disk. */
+export function choosePicture(take: (file: File) => void): void {
+  const input = el('input', { type: 'file', accept: PHOTOS })
+  input.addEventListener('change', () => input.files?.[0] && take(input.files[0]))
+  input.click()
+}
+
 /** Open what is dropped on the page or pasted into it. */
 export function takeFiles(studio: Studio): void {
-  const veil = el('div', { class: 'drop-veil', hidden: true }, el('p', {}, text.welcome.drop))
+  const says = el('p', {})
+  const veil = el('div', { class: 'drop-veil', hidden: true }, says)
   document.body.append(veil)
   let leaving = 0
   addEventListener('dragover', event => {
     if (!event.dataTransfer?.types.includes('Files')) return
     event.preventDefault()
     veil.hidden = false
+    says.textContent = sheetUnder(studio, event) ? text.sheets.drop : text.welcome.drop
     clearTimeout(leaving)
     leaving = window.setTimeout(() => {
       veil.hidden = true
@@ -37,12 +47,22 @@ export function takeFiles(studio: Studio): void {
   addEventListener('drop', event => {
     event.preventDefault()
     veil.hidden = true
-    openOne(studio, [...(event.dataTransfer?.files ?? [])])
+    const files = [...(event.dataTransfer?.files ?? [])]
+    const [sheet, picture] = [sheetUnder(studio, event), files.find(isPhoto)]
+    if (sheet && picture) void studio.desk.lay(sheet, picture)
+    else openOne(studio, files)
   })
   addEventListener('paste', event => {
     const picture = [...(event.clipboardData?.files ?? [])].find(isPhoto)
     if (picture) openFile(studio, named(picture))
   })
+}
+
+/** Find the sheet of paper that something is dropped on. */
+function sheetUnder({ store }: Studio, { target }: DragEvent): SheetName | null {
+  const part = target instanceof Element ? target.closest<HTMLElement>('[data-of]') : null
+  const sheet = part?.dataset.of as SheetName | undefined
+  return sheet && isPaper(store.state, sheet) ? sheet : null
 }
 
 function openOne(studio: Studio, files: readonly File[]): void {

@@ -1,19 +1,21 @@
+import type { Specimen } from '../studio/herbarium'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el } from './dom'
 import { announce } from './live'
 
-/** Make the row in which a person's own leaf is chosen, seen, replaced and removed. */
-export function leafRow({ store, herbarium }: Studio): HTMLElement {
-  const words = text.settings.leaf
+/** Make the row in which a person's own picture of a leaf or a fruit is chosen, seen, replaced and removed. */
+export function ownRow({ store, herbarium }: Studio, what: Specimen): HTMLElement {
+  const words = { ...text.settings.leaf, ...(what === 'fruit' && text.sheets.fruit) }
+  const id = `setting-${what}`
   const picture = el('img', { class: 'leaf-picture', alt: words.shown, hidden: true })
   const wrong = el('p', { class: 'setting-wrong', role: 'alert' })
-  const pick = button({ class: 'button outlined', 'aria-describedby': 'setting-leaf-why' }, ask, words.choose)
+  const pick = button({ class: 'button outlined', 'aria-describedby': `${id}-why` }, ask, words.choose)
   const remove = button({ class: 'button outlined' }, drop, words.remove)
   const entry = el('div', { class: 'setting-entry' }, picture, pick, remove)
-  const why = el('p', { class: 'setting-why', id: 'setting-leaf-why' }, words.why)
+  const why = el('p', { class: 'setting-why', id: `${id}-why` }, words.why)
   store.watch(
-    state => state.leaf,
+    state => state[what],
     leaf => {
       show(picture, leaf)
       remove.hidden = leaf === null
@@ -21,15 +23,15 @@ export function leafRow({ store, herbarium }: Studio): HTMLElement {
     },
   )
   store.watch(
-    state => state.faults.leaf,
+    state => state.faults[what],
     fault => {
       wrong.textContent = fault?.text ?? ''
     },
   )
-  return el('div', { class: 'setting', role: 'group', 'aria-labelledby': 'setting-leaf' }, label(), entry, why, wrong)
+  return el('div', { class: 'setting', role: 'group', 'aria-labelledby': id }, label(), entry, why, wrong)
 
   function label(): HTMLElement {
-    return el('span', { class: 'setting-label', id: 'setting-leaf' }, words.label)
+    return el('span', { class: 'setting-label', id }, words.label)
   }
 
   function ask(): void {
@@ -39,13 +41,13 @@ export function leafRow({ store, herbarium }: Studio): HTMLElement {
   }
 
   async function take(file: File): Promise<void> {
-    await herbarium.take(file)
-    if (!store.state.faults.leaf) announce(words.taken)
+    await herbarium.take(file, what)
+    if (!store.state.faults[what]) announce(words.taken)
   }
 
   function drop(): void {
     pick.focus()
-    herbarium.drop()
+    herbarium.drop(what)
     announce(words.removed)
   }
 }

@@ -14,15 +14,17 @@ export interface PreviewBar {
 }
 
 /** Make the buttons that turn the tree to its views, take its leaves off and come nearer; hidden while there is none. */
-export function previewBar(preview: () => Preview): PreviewBar {
+export function previewBar(store: Store, preview: () => Preview): PreviewBar {
   const views = VIEWS.map(name =>
     button({ class: 'button', 'aria-pressed': 'false' }, () => preview().view(name), text.preview.view[name]),
   )
+  nameFirst(store, views[0]!)
   let leafy = true
   const leaves = tool(text.preview.leaves, ICONS.leaf, () => preview().setLeaves(!leafy))
   const nearer = tool(text.preview.nearer, ICONS.plus, () => preview().zoom(STEP))
   const farther = tool(text.preview.farther, ICONS.minus, () => preview().zoom(1 / STEP))
   const choice = viewChoice(name => preview().view(name))
+  nameFirst(store, choice.options[1]!)
   const turning = el('div', { class: 'afloat views', role: 'group', 'aria-label': text.preview.views }, ...views)
   const looking = el('div', { class: 'afloat looking' }, leaves, nearer, farther)
   return {
@@ -37,6 +39,16 @@ export function previewBar(preview: () => Preview): PreviewBar {
       leaves.setAttribute('aria-pressed', String(leafy))
     },
   }
+}
+
+/** Name the view that lies over the photo, or over the front as it was drawn. */
+function nameFirst(store: Store, element: HTMLElement): void {
+  store.watch(
+    ({ source, photo }) => source === 'sketch' && !photo?.url,
+    drawn => {
+      element.textContent = drawn ? text.sheets.drawing : text.preview.view.photo
+    },
+  )
 }
 
 /** Make the switch between the live skeleton and the grown tree; shown where there are both. */

@@ -1,5 +1,5 @@
 import { NOTHING_SHOWN, Preview, type PreviewStatus } from '../preview/preview'
-import type { State } from '../state'
+import type { State, Store } from '../state'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { el } from './dom'
@@ -14,18 +14,28 @@ import { variantChoice } from './variantChoice'
 import { windSwitch } from './windSwitch'
 import './previewpane.css'
 
+/** The service's code for a depth that was guessed. */
+const ASSUMED = 'side_assumed'
+
 /** Put the tree's side of the page into `host`: the preview with its buttons, and the bar that has it grown. */
 export function mountPreviewPane(studio: Studio, host: HTMLElement): Preview {
   const { store } = studio
   const scene = el('div', { class: 'scene' })
   const settings = settingsPanel(studio)
-  const bar = previewBar(() => preview)
+  const bar = previewBar(store, () => preview)
   const wind = windSwitch(
     () => preview,
     () => settings.open('file'),
   )
   const aside = beside(studio)
-  const below = el('div', { class: 'afoot' }, showsSwitch(store), variantChoice(studio), wind.element)
+  const below = el(
+    'div',
+    { class: 'afoot' },
+    assumption(store),
+    showsSwitch(store),
+    variantChoice(studio),
+    wind.element,
+  )
   const stage = el('div', { class: 'stage' }, scene, aside.element, ...bar.elements, below)
   host.append(el('div', { class: 'previewpane' }, stage, growBar(studio, settings, picture)))
   let status = NOTHING_SHOWN
@@ -47,6 +57,22 @@ export function mountPreviewPane(studio: Studio, host: HTMLElement): Preview {
     const sheet = store.state.model?.files['preview.png']
     return status.webgl === 'absent' && sheet ? studio.client.getFile(sheet) : preview.png()
   }
+}
+
+/** Make the note of what was assumed where only one side was drawn. */
+function assumption(store: Store): HTMLElement {
+  const note = el('p', { class: 'afloat assumed', role: 'status' })
+  store.watch(isAssumed, assumed => {
+    note.hidden = !assumed
+    note.textContent = assumed ? text.sheets.assumed : ''
+  })
+  return note
+}
+
+function isAssumed({ source, traced, grown }: State): boolean {
+  return (
+    source === 'sketch' && grown !== null && (traced?.answer.warnings.some(({ code }) => code === ASSUMED) ?? false)
+  )
 }
 
 /** Make what stands in the preview's place, or over it: an invitation, a picture where there is no 3D, what is wrong. */

@@ -6,10 +6,12 @@ import { saveFile } from './saving'
 
 /** Save the drawing as a project file among the browser's downloads. */
 export async function saveProject({ store }: Studio): Promise<void> {
-  const { photo, name, settings, seed, leaf } = store.state
+  const { source, photo, side, name, settings, seed, leaf, fruit } = store.state
   if (!photo) return
   const file = projectName(name)
-  saveFile(await writeProject({ photo: photo.file, strokes: store.strokes, settings, seed, leaf }), file)
+  const sheets = { ...(source === 'sketch' && { front: photo }), ...(side && { side }) }
+  const own = { photo: photo.file, strokes: store.strokes, sheets, settings, seed, leaf, fruit }
+  saveFile(await writeProject(own), file)
   notify(text.header.saved(file))
 }
 

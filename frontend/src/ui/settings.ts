@@ -4,7 +4,7 @@ import { text } from '../text'
 import { button, el } from './dom'
 import { numberField, type Row } from './fields'
 import { anotherButton } from './growButtons'
-import { leafRow } from './leafRow'
+import { ownRow } from './leafRow'
 import { makePanel } from './panel'
 import { settingField } from './settingField'
 import { defaultsOf, type Group, groupsOf } from './settingGroups'
@@ -53,7 +53,9 @@ function tabsOf(studio: Studio, limits: Limits, rows: Row[]): Tabs {
     rows.push(...fields.map(([, row]) => row))
     const height = fields.find(([name]) => name === 'height')?.[1]
     if (height) followScale(studio, height)
-    const parts = fields.flatMap(([name, row]) => (name === 'species' ? [row.element, leafRow(studio)] : [row.element]))
+    const parts = fields.flatMap(([name, row]) =>
+      name === 'species' ? [row.element, ownRow(studio, 'leaf'), ownRow(studio, 'fruit')] : [row.element],
+    )
     return { ...group, content: [lead(group), ...parts, ...(group.name === 'tree' ? [seedRow(studio)] : [])] }
   })
   return makeTabs('settings', text.settings.groupsLabel, tabs)

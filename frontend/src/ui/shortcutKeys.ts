@@ -2,13 +2,29 @@ import type { Tool } from '../state'
 
 type Key = Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'altKey' | 'shiftKey'>
 /** What a key asks of the page. */
-export type Command = Tool | 'undo' | 'redo' | 'remove' | 'save' | 'open' | 'grow' | 'fit' | 'actual' | 'help'
+export type Command =
+  | Tool
+  | 'other'
+  | 'thinner'
+  | 'thicker'
+  | 'undo'
+  | 'redo'
+  | 'remove'
+  | 'save'
+  | 'open'
+  | 'grow'
+  | 'fit'
+  | 'actual'
+  | 'help'
 
 const PLAIN: Readonly<Record<string, Command>> = {
   c: 'crown',
   b: 'branch',
   m: 'scale',
   v: 'select',
+  s: 'other',
+  '[': 'thinner',
+  ']': 'thicker',
   g: 'grow',
   f: 'fit',
   '1': 'actual',

@@ -25,6 +25,8 @@ function groups(): [string, Row[]][] {
         [said.rightDrag, said.rightButton],
         [tools.scale, 'M'],
         [tools.select, 'V'],
+        [text.sheets.keys.other, 'S'],
+        [text.sheets.keys.thinner, '[', ']'],
       ],
     ],
     [

@@ -1,4 +1,6 @@
+import { isPaper } from '../sheets'
 import type { Studio } from '../studio/studio'
+import { nextBrush } from './brushes'
 import { choose } from './intake'
 import { saveProject } from './projectFile'
 import { type Command, commandOf } from './shortcutKeys'
@@ -21,12 +23,17 @@ export function listenToShortcuts(studio: Studio, sketch: Zoomed): void {
 }
 
 function commandsOf(studio: Studio, sketch: Zoomed): Readonly<Record<Command, () => unknown>> {
-  const { sketchbook, grower } = studio
+  const { store, sketchbook, grower, desk } = studio
+  const brush = (steps: number) =>
+    isPaper(store.state, store.state.sheet) && desk.takeBrush(nextBrush(store.state.brush, steps))
   return {
     crown: () => sketchbook.hold('crown'),
     branch: () => sketchbook.hold('branch'),
     scale: () => sketchbook.hold('scale'),
     select: () => sketchbook.hold('select'),
+    other: () => turnToOther(studio),
+    thinner: () => brush(-1),
+    thicker: () => brush(1),
     undo: () => sketchbook.undo(),
     redo: () => sketchbook.redo(),
     remove: () => sketchbook.remove(),
@@ -37,6 +44,14 @@ function commandsOf(studio: Studio, sketch: Zoomed): Readonly<Record<Command, ()
     actual: () => sketch.actual(),
     help: openShortcuts,
   }
+}
+
+/** Go to the other sheet, with the focus. */
+function turnToOther({ store, desk }: Studio): void {
+  if (!store.state.side) return
+  const other = store.state.sheet === 'front' ? 'side' : 'front'
+  desk.turnTo(other)
+  document.querySelector<HTMLElement>(`.canvas > [data-sheet="${other}"]`)?.focus({ preventScroll: true })
 }
 
 function isFree(event: KeyboardEvent, command: Command): boolean {

@@ -8,6 +8,7 @@ export type Standing =
   | 'noPhoto'
   | 'noCrown'
   | 'noTrunk'
+  | 'noFront'
   | 'noSense'
   | 'ready'
   | 'asking'
@@ -30,7 +31,8 @@ export function standingOf(state: State): Standing {
   if (model && !isOver(model)) return model.status === 'queued' ? 'queued' : 'growing'
   if (!photo) return 'noPhoto'
   const { crown, branches } = state.history.present
-  if (!crown) return 'noCrown'
+  if (state.source === 'sketch' && !branches.length) return 'noFront'
+  if (state.source === 'photo' && !crown) return 'noCrown'
   if (!branches.length) return 'noTrunk'
   if (state.faults.strokes?.stroke) return 'noSense'
   return model ? standingOfEnded(state, model) : 'ready'
@@ -66,7 +68,8 @@ function standingOfEnded({ modelOf, history, tree, faults, ...state }: State, mo
   if (!sameStrokes) return 'strokesChanged'
   const wished: Readonly<Record<string, unknown>> = state.settings
   const changed = Object.keys(wished).filter(name => !sameValue(wished[name], model.settings[name] ?? wished[name]))
-  if (state.seed !== model.seed || state.leaf !== state.modelLeaf) return 'settingsChanged'
+  const ownChanged = state.leaf !== state.modelLeaf || state.fruit !== state.modelFruit
+  if (state.seed !== model.seed || ownChanged) return 'settingsChanged'
   if (!changed.length) return 'grown'
   return changed.every(name => isOfFile(state.limits, name)) ? 'filesChanged' : 'settingsChanged'
 }

@@ -3,6 +3,7 @@ import { text } from '../text'
 
 /** Name a stroke as a person would; the first branch is the trunk. */
 export function strokeName(selection: Selection): string {
+  if ('sheet' in selection) return text.sheets.on(strokeName({ kind: selection.kind, index: selection.index }))
   const { kind } = selection
   if (kind === 'crown') return text.strokes.crown
   if (kind === 'scale') return text.strokes.scale

@@ -41,6 +41,13 @@ function toolButton(tool: Tool, { store, sketchbook }: Studio): HTMLButtonElemen
   )
   made.append(icon(ICONS[tool]), label)
   made.dataset.tool = tool
+  if (tool === 'scale')
+    store.watch(
+      state => state.source === 'sketch',
+      sketched => {
+        made.hidden = sketched // paper has no measure
+      },
+    )
   store.watch(
     state => state.tool,
     held => made.setAttribute('aria-pressed', String(held === tool)),

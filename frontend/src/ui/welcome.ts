@@ -2,11 +2,11 @@ import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el, icon } from './dom'
 import { draftCards } from './drafts'
-import { exampleCards } from './exampleCards'
+import { exampleCards, sketchCards } from './exampleCards'
 import { grownTrees } from './grownTrees'
 import { ICONS } from './icons'
 import { illustration } from './illustration'
-import { choose } from './intake'
+import { choose, mayLeave } from './intake'
 import './welcome.css'
 
 /** Lay out what is seen while no photo is open: what this is, and every way to begin. */
@@ -14,7 +14,7 @@ export function mountWelcome(studio: Studio, main: HTMLElement): void {
   const { store } = studio
   const drafts = draftCards(studio)
   const trees = grownTrees(studio)
-  const welcome = el('div', { class: 'welcome' }, hero(studio), drafts.section, examples(studio), trees.section)
+  const welcome = el('div', { class: 'welcome' }, hero(studio), drafts.section, ...examples(studio), trees.section)
   main.append(welcome)
   store.watch(
     state => state.photo === null,
@@ -32,6 +32,12 @@ function hero(studio: Studio): HTMLElement {
     icon(ICONS.photo),
     text.welcome.choose,
   )
+  const draw = button(
+    { class: 'button outlined hero-draw' },
+    () => mayLeave(studio) && void studio.opener.openPaper(),
+    icon(ICONS.sheet),
+    text.sheets.welcome.draw,
+  )
   const fault = el('p', { class: 'fault', role: 'alert', hidden: true })
   studio.store.watch(
     state => state.faults.photo,
@@ -45,7 +51,8 @@ function hero(studio: Studio): HTMLElement {
     { class: 'hero-words' },
     el('h1', {}, ...phrases()),
     lead(),
-    el('div', { class: 'hero-begin' }, begin, el('span', {}, text.welcome.otherWays)),
+    el('div', { class: 'hero-begin' }, begin, el('span', { class: 'hero-other' }, text.welcome.otherWays)),
+    el('div', { class: 'hero-begin' }, draw, el('span', { class: 'soft' }, text.sheets.welcome.drawHint)),
     fault,
     el('p', { class: 'soft' }, text.welcome.takes),
   )
@@ -62,16 +69,15 @@ function lead(): HTMLElement {
   return el('p', { class: 'lead' }, before, named('leaves', leaves), between, named('trunk', trunk), after)
 }
 
-function examples(studio: Studio): HTMLElement {
-  return el(
-    'section',
-    { class: 'shelf', 'aria-labelledby': 'examples' },
-    el(
-      'div',
-      { class: 'shelf-head' },
-      el('h2', { id: 'examples' }, text.welcome.examples),
-      el('p', { class: 'soft' }, text.welcome.examplesHint),
-    ),
-    exampleCards(studio),
-  )
+function examples(studio: Studio): HTMLElement[] {
+  const { welcome, sheets } = text
+  return [
+    shelf('examples', [welcome.examples, welcome.examplesHint], exampleCards(studio)),
+    shelf('sketches', [sheets.welcome.examples, sheets.welcome.examplesHint], sketchCards(studio)),
+  ]
+}
+
+function shelf(id: string, [title, hint]: readonly [string, string], cards: HTMLElement): HTMLElement {
+  const head = el('div', { class: 'shelf-head' }, el('h2', { id }, title), el('p', { class: 'soft' }, hint))
+  return el('section', { class: 'shelf', 'aria-labelledby': id }, head, cards)
 }

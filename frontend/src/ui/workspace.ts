@@ -1,25 +1,29 @@
-import { Sketch } from '../sketch/sketch'
-import type { View } from '../sketch/viewport'
+import type { SheetName } from '../strokes'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
-import { announceDrawing, announcePen } from './announcer'
+import { announceDrawing } from './announcer'
+import { deskFoot } from './brushes'
 import { divider } from './divider'
 import { button, el } from './dom'
 import { mountHintLine } from './hintLine'
-import { lengthField } from './lengthField'
 import { mountPreviewPane } from './previewpane'
+import { mountSheets } from './sheets'
 import { toolbar } from './toolbar'
 import { type Zoomed, zoombar } from './zoombar'
 import './workspace.css'
 
 type Shown = 'drawing' | 'both' | 'tree'
+/** What the switch gives the whole height of a phone: with one sheet, and with two. */
+type Choice = Shown | SheetName
+const ONE: readonly Choice[] = ['drawing', 'both', 'tree']
+const TWO: readonly Choice[] = ['front', 'side', 'tree']
 
 /** Lay out the drawing and the tree; both stay while the page does. */
 export function mountWorkspace(studio: Studio, main: HTMLElement): Zoomed {
   const tree = el('section', { class: 'pane tree-pane', 'aria-label': text.workspace.tree })
   const drawing = el('section', { class: 'pane drawing-pane', 'aria-label': text.workspace.drawing })
   const workspace = el('div', { class: 'workspace', 'data-shows': 'both' })
-  workspace.append(drawing, divider(workspace), chooser(workspace), tree)
+  workspace.append(drawing, divider(workspace), chooser(studio, workspace), tree)
   main.append(workspace)
   const sketch = mountDrawing(studio, drawing)
   mountPreviewPane(studio, tree)
@@ -44,44 +48,53 @@ function turnWith({ store }: Studio, workspace: HTMLElement, main: HTMLElement):
 
 function mountDrawing(studio: Studio, pane: HTMLElement): Zoomed {
   const hints = el('div', { class: 'hint-row' })
-  const canvas = el('div', { class: 'canvas' })
-  const zoom = zoombar(() => sketch)
-  const length = lengthField(studio, () => canvas.querySelector<HTMLElement>('[data-view]'))
-  pane.append(toolbar(studio), hints, canvas, zoom.bar)
+  const zoom = zoombar(() => sheets)
+  const sheets = mountSheets(studio, scale => zoom.show(scale))
+  pane.append(toolbar(studio), hints, sheets.element, deskFoot(studio), zoom.bar)
   mountHintLine(studio, hints)
-  const { store, sketchbook } = studio
-  const events = {
-    drew: sketchbook.draw.bind(sketchbook),
-    selected: sketchbook.select.bind(sketchbook),
-    remove: () => sketchbook.remove(),
-    looked: (view: View) => {
-      zoom.show(view.scale)
-      length.look(view)
-    },
-    said: ({ pen, at }: { pen: 'down' | 'up' | 'move'; at: readonly [number, number] }) =>
-      store.state.photo && announcePen(pen, at, store.state.photo),
-  }
-  const labels = { canvas: text.workspace.canvas, keys: text.workspace.canvasKeys }
-  const sketch = new Sketch(canvas, store, events, labels)
-  canvas.append(length.element)
-  return sketch
+  return sheets
 }
 
-/** Make the switch that gives the drawing or the tree the whole height of a phone. */
-function chooser(workspace: HTMLElement): HTMLElement {
-  const row = el('div', { class: 'chooser', role: 'group', 'aria-label': text.workspace.show })
-  const labels: Record<Shown, string> = {
+/** Make the switch that gives a sheet or the tree the whole height of a phone. */
+function chooser({ store, desk }: Studio, workspace: HTMLElement): HTMLElement {
+  const labels: Record<Choice, string> = {
     drawing: text.workspace.drawing,
     both: text.workspace.both,
-    tree: text.workspace.treeShort,
+    ...text.sheets.tabs,
   }
-  const show = (shown: Shown) => {
+  let shown: Shown = 'both'
+  const buttons = (Object.keys(labels) as Choice[]).map(choice =>
+    button({ class: 'button', 'data-show': choice }, () => show(choice), labels[choice]),
+  )
+  const mark = () => {
+    const { side, sheet } = store.state
+    const [choices, chosen] = side ? [TWO, shown === 'tree' ? 'tree' : sheet] : [ONE, shown]
     workspace.dataset.shows = shown
-    for (const one of row.children) one.setAttribute('aria-pressed', String(one.getAttribute('data-show') === shown))
+    workspace.classList.toggle('two-sheets', side !== null)
+    for (const one of buttons) {
+      const choice = one.dataset.show as Choice
+      one.hidden = !choices.includes(choice)
+      one.setAttribute('aria-pressed', String(choice === chosen))
+    }
   }
-  for (const shown of Object.keys(labels) as Shown[]) {
-    row.append(button({ class: 'button', 'data-show': shown }, () => show(shown), labels[shown]))
+  store.watch(
+    state => state.side !== null,
+    two => {
+      shown = two ? 'drawing' : 'both'
+      mark()
+    },
+  )
+  store.watch(state => state.sheet, mark)
+  // Two sheets leave no room for the tree beside them; who has it grown wants to see it.
+  store.watch(
+    ({ asking, side }) => asking && side !== null,
+    grows => grows && show('tree'),
+  )
+  return el('div', { class: 'chooser', role: 'group', 'aria-label': text.workspace.show }, ...buttons)
+
+  function show(choice: Choice): void {
+    if (choice === 'front' || choice === 'side') desk.turnTo(choice)
+    shown = choice === 'front' || choice === 'side' ? 'drawing' : choice
+    mark()
   }
-  show('both')
-  return row
 }

@@ -146,7 +146,7 @@ test('another model takes the followed one’s place, and its tree is not mistak
   await grower.grow()
   const first = Events.last
   first.tell('succeeded', finished())
-  grower.show(model({ id: 'mdl_2' }), store.strokes, null)
+  grower.show(model({ id: 'mdl_2' }), store.strokes, { leaf: null, fruit: null })
   await settle()
   expect(first.readyState).toBe(Events.CLOSED)
   expect([store.state.model?.id, store.state.tree]).toEqual(['mdl_2', null])
@@ -179,7 +179,7 @@ test('another of the model’s trees is brought once, and the last choice stands
   const calls = service(({ path }) => new Response(path))
   const { store, grower } = begin()
   const files = { 'tree.glb': '/tree.glb', 'tree.v2.glb': '/tree.v2.glb' }
-  grower.show(model({ status: 'succeeded', files }), store.strokes, null)
+  grower.show(model({ status: 'succeeded', files }), store.strokes, { leaf: null, fruit: null })
   const shown = () => new TextDecoder().decode(store.state.tree!)
   await Promise.all([grower.choose(2), grower.choose(1), grower.choose(2)])
   expect([store.state.variant, shown()]).toEqual([2, '/tree.v2.glb'])
@@ -187,6 +187,6 @@ test('another of the model’s trees is brought once, and the last choice stands
   await grower.choose(1)
   await grower.choose(3)
   expect([store.state.variant, shown(), calls.length]).toEqual([1, '/tree.glb', asked])
-  grower.show(model({ id: 'mdl_2' }), store.strokes, null)
+  grower.show(model({ id: 'mdl_2' }), store.strokes, { leaf: null, fruit: null })
   expect([store.state.variant, store.state.tree]).toEqual([1, null])
 })

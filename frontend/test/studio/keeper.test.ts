@@ -31,7 +31,7 @@ test('a drawing is kept with its photo and its undo history', async () => {
   const { store, keeper } = await kept()
   const found = (await new Keeper(new Store()).find(keeper.id!))!
   expect(found.draft).toMatchObject({ name: 'Oak', history: store.state.history, photo: { id: 'pho_1' } })
-  expect(await found.photo.text()).toBe('a photo')
+  expect(await found.photo?.text()).toBe('a photo')
 })
 
 test('what is deleted or undone is kept, too', async () => {

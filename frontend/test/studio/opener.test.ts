@@ -3,10 +3,10 @@ import { IDBFactory } from 'fake-indexeddb'
 import { afterEach, beforeEach, expect, test, vi } from 'vitest'
 import type { Limits } from '../../src/state'
 import { DEFAULT_SETTINGS } from '../../src/state'
-import { toWire } from '../../src/strokes'
+import { NO_STROKES, toWire } from '../../src/strokes'
 import { writeProject } from '../../src/studio/project'
 import { Studio } from '../../src/studio/studio'
-import { answer, CROWN, model, TRUNK } from '../builders'
+import { answer, CROWN, model, sketchAnswer, TRUNK } from '../builders'
 import { type Call, Events, problem, service } from '../service'
 
 const STROKES = { crown: CROWN, branches: [{ points: TRUNK }], erase: [], scale: null }
@@ -25,6 +25,7 @@ const made = (leaf: Blob | null = null, photo = jpeg()) =>
 
 async function serve({ method, path }: Call): Promise<Response> {
   if (path === '/v1/photos') return Response.json(PHOTO, { status: 201 })
+  if (path === '/v1/sketches/trace') return Response.json(sketchAnswer())
   if (path.endsWith('/trace')) return Response.json(answer())
   if (path === '/project') return new Response(await made())
   if (path.endsWith('.jpg') || path.endsWith('/image')) return new Response(jpeg())
@@ -106,7 +107,7 @@ test('a model whose photo was deleted brings its own copy', async () => {
   const { store, opener } = new Studio()
   await opener.openModel('mdl_1')
   expect(calls.some(({ method, path }) => method === 'POST' && path === '/v1/photos')).toBe(true)
-  expect(await store.state.photo!.file.text()).toBe('a photo')
+  expect(await store.state.photo!.file?.text()).toBe('a photo')
 })
 
 test('a model that is gone is said', async () => {
@@ -156,4 +157,49 @@ test('a leaf of one’s own comes with a project, with a model and with a kept d
   expect(store.state.modelLeaf).toBe(store.state.leaf)
   await opener.openDraft(id)
   expect(await store.state.leaf?.text()).toBe('mine')
+})
+
+test('a drawing on paper is kept and comes back: both sheets, the side’s picture and the fruit', async () => {
+  const calls = service(serve)
+  const before = new Studio()
+  await before.opener.openPaper()
+  before.sketchbook.draw('branch', TRUNK)
+  before.sketchbook.draw('branch', TRUNK, 'side')
+  await before.desk.lay('side', jpeg('side.jpg', 'a guide'))
+  before.store.set({ fruit: new Blob(['a pear']) })
+  const id = before.keeper.id!
+  await vi.waitFor(async () => expect(await (await before.keeper.find(id))?.fruit?.text()).toBe('a pear'))
+  const { store, opener } = new Studio()
+  await opener.openDraft(id)
+  expect(store.state).toMatchObject({ source: 'sketch', photo: { id: null, width: 900, height: 1200, url: null } })
+  expect(store.state.side).toMatchObject({ width: 100, height: 100 })
+  expect(await store.state.side?.file?.text()).toBe('a guide')
+  expect(store.state.history).toEqual(before.store.state.history)
+  expect(calls.some(({ path }) => path === '/v1/photos')).toBe(false)
+})
+
+test('an example from two sides is opened on paper of its size and grown, with its fruit', async () => {
+  const sketch = { canvas: [1200, 1100], branches: [{ points: TRUNK }] }
+  const calls = service(call => {
+    if (call.path.endsWith('.json')) return Response.json(sketch)
+    return call.path.endsWith('.png') ? new Response('a pear') : serve(call)
+  })
+  const { store, opener } = new Studio()
+  const urls = { front: '/page/f.json', side: '/page/s.json', leaf: undefined, fruit: '/page/fruit.png' }
+  await opener.openSketches({ name: 'pear', ...urls })
+  await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
+  expect(store.state).toMatchObject({ name: 'Pear tree', tool: 'branch', side: { width: 1200, height: 1100 } })
+  const { body } = calls.find(call => call.path === '/v1/models')!
+  expect(body).toMatchObject({ sketches: { front: sketch, side: sketch }, fruit: btoa('a pear') })
+})
+
+test('sketches over a photo are laid on it as large as it is', async () => {
+  service(serve)
+  const strokes = { ...NO_STROKES, branches: [{ points: TRUNK }] }
+  const sheets = { front: { width: 200, height: 200 } }
+  const file = await writeProject({ photo: jpeg(), strokes, sheets, settings: DEFAULT_SETTINGS, seed: 0, leaf: null })
+  const { store, opener } = new Studio()
+  await opener.openFile(new File([file], 'Pear.treestroke'))
+  expect(store.state).toMatchObject({ source: 'sketch', photo: { id: 'pho_1', width: 100 }, side: { height: 100 } })
+  expect(store.strokes.branches[0]?.points).toEqual(TRUNK.map(([x, y]) => [x / 2, y / 2]))
 })

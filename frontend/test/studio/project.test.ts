@@ -2,6 +2,7 @@ import { readFileSync } from 'node:fs'
 import { strToU8, zipSync } from 'fflate'
 import { expect, test } from 'vitest'
 import { DEFAULT_SETTINGS } from '../../src/state'
+import { NO_STROKES, withSheet } from '../../src/strokes'
 import { isProject, projectName, readProject, writeProject } from '../../src/studio/project'
 import { CROWN, LIMB, TRUNK } from '../builders'
 
@@ -22,9 +23,9 @@ function zip(members: Record<string, string>): Blob {
 test('a project is read as it was written', async () => {
   const project = { photo: jpeg, strokes: STROKES, settings: { ...DEFAULT_SETTINGS, height: 14 }, seed: 8, leaf: null }
   const read = await readProject(await writeProject(project))
-  expect({ ...read, photo: null }).toEqual({ ...project, photo: null })
-  expect(read.photo.type).toBe('image/jpeg')
-  expect(Buffer.from(await read.photo.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
+  expect({ ...read, photo: null }).toEqual({ fruit: null, sheets: {}, ...project, photo: null })
+  expect(read.photo?.type).toBe('image/jpeg')
+  expect(Buffer.from(await read.photo!.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
 })
 
 test('a project without a crown is kept and read, too', async () => {
@@ -38,7 +39,7 @@ test('a project without a crown is kept and read, too', async () => {
 test('settings may be absent', async () => {
   const strokes = JSON.stringify({ crown: { points: CROWN } })
   const read = await readProject(zip({ 'photo.png': 'x', 'strokes.json': strokes }))
-  expect([read.settings, read.seed, read.photo.type]).toEqual([DEFAULT_SETTINGS, 0, 'image/png'])
+  expect([read.settings, read.seed, read.photo?.type]).toEqual([DEFAULT_SETTINGS, 0, 'image/png'])
 })
 
 test.each([
@@ -66,4 +67,28 @@ test('a leaf of one’s own goes with the project', async () => {
   const project = { photo: jpeg, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf }
   const read = await readProject(await writeProject(project))
   expect([await read.leaf?.text(), read.leaf?.type]).toEqual(['a leaf', 'image/png'])
+})
+
+test('sketches on paper are read as they were written, with a fruit and without a photo', async () => {
+  const front = { ...NO_STROKES, crown: CROWN, branches: [{ points: TRUNK, width: 7 }] }
+  const strokes = withSheet(front, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
+  const sheets = { front: { width: 900, height: 1200 }, side: { width: 450, height: 600 } }
+  const written = { photo: null, strokes, sheets, settings: DEFAULT_SETTINGS, seed: 2, leaf: null }
+  const read = await readProject(await writeProject({ ...written, fruit: new Blob(['a pear']) }))
+  expect(read).toMatchObject(written)
+  expect(await read.fruit?.text()).toBe('a pear')
+})
+
+test('a side that goes with a photo’s strokes is kept with them', async () => {
+  const strokes = withSheet(STROKES, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
+  const sheets = { side: { width: 450, height: 600 } }
+  const project = { photo: jpeg, strokes, sheets, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }
+  const read = await readProject(await writeProject(project))
+  expect([read.strokes, read.sheets]).toEqual([strokes, sheets])
+  expect(read.photo?.size).toBe(jpeg.size)
+})
+
+test('a sketch that is a picture is said to be one', async () => {
+  const picture = new Blob([zipSync({ 'front.png': strToU8('png'), 'settings.json': strToU8('{}') })])
+  await expect(readProject(picture)).rejects.toThrow('sketched as a picture')
 })

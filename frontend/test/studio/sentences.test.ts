@@ -8,6 +8,9 @@ test.each([
   ['/branches/2/points/7', { kind: 'branch', index: 2 }],
   ['/strokes/erase/1', { kind: 'erase', index: 1 }],
   ['/strokes/scale/metres', { kind: 'scale', index: 0 }],
+  ['/front/branches/2', { kind: 'branch', index: 2 }],
+  ['/side/crown', { kind: 'crown', index: 0, sheet: 'side' }],
+  ['/sketches/side/branches/1/points/3', { kind: 'branch', index: 1, sheet: 'side' }],
   ['/settings/height', null],
   [null, null],
 ])('the pointer %s leads to %o', (pointer, stroke) => {

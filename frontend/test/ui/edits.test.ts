@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { advance, begin, redo, undo } from '../../src/history'
-import { type Line, NO_STROKES, withoutStroke, withScale, withStroke } from '../../src/strokes'
+import { type Line, NO_STROKES, withoutStroke, withScale, withSheet, withStroke } from '../../src/strokes'
 import { editSaid } from '../../src/ui/edits'
 
 const LOOP: Line = [
@@ -50,4 +50,9 @@ test('a measured line is named, and its length when that is said', () => {
     'Measured line drawn.',
     'The measured line is 1.8 m long.',
   ])
+})
+
+test('what is drawn on the other sheet is told as such', () => {
+  const side = withSheet(trunked.present, 'side', withStroke(NO_STROKES, 'branch', [...TRUNK]))
+  expect(editSaid(trunked, advance(trunked, side))).toBe('Trunk, left side drawn.')
 })

@@ -37,3 +37,19 @@ test('the judgement falls with the fit', () => {
   expect(new Set(judged).size).toBe(4)
   expect(judged[0]).toContain('very close')
 })
+
+test('a sketched tree is told by how much of the strokes is in it', () => {
+  const score = { front_covered: 0.984, front_true: 1, in_planes: 0.1 }
+  const alone = model({ status: 'succeeded', score })
+  expect(matchOf(alone)).toBe('98% of the front’s strokes are in the tree')
+  expect(judgementOf(alone)).toBe('The tree goes where you drew.')
+  expect(figuresOfModel(alone).map(({ row, value }) => [row, value])).toEqual([
+    ['frontCovered', '98%'],
+    ['frontTrue', '100%'],
+    ['inPlanes', '10%'],
+  ])
+  const both = { ...alone, score: { ...score, side_covered: 0.85 } }
+  expect(matchOf(both)).toBe('98% of the front’s strokes and 85% of the side’s are in the tree')
+  expect(judgementOf(both)).toContain('leaves some strokes out')
+  expect(matchOf({ ...both, score: { ...score, side_covered: 0.98 } })).toContain('98% of the strokes of both sides')
+})

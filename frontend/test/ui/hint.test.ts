@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
 import { advance, begin } from '../../src/history'
 import { EMPTY, type Grown, type Model, type State, type StrokeWarning, type TraceAnswer } from '../../src/state'
-import { type Line, NO_STROKES, withStroke } from '../../src/strokes'
+import { type Line, NO_STROKES, withSheet, withStroke } from '../../src/strokes'
 import { text } from '../../src/text'
 import { hintOf } from '../../src/ui/hint'
 
@@ -90,4 +90,24 @@ test('the measuring tool says what to measure, and the line asks for its length'
     tone: 'step',
     text: text.hints.measured,
   })
+})
+
+test('on paper it goes from the trunk to the branches, to the other side, and on', () => {
+  const { hints } = text.sheets
+  const [bare, limbed] = [withStroke(NO_STROKES, 'branch', LINE), withStroke(trunk, 'branch', LINE)]
+  const drawing = (present: typeof two, change: Partial<State> = {}) =>
+    said({ source: 'sketch', tool: 'branch', history: begin(present), ...change })
+  expect(drawing(NO_STROKES)).toBe(hints.trunk)
+  expect(drawing(NO_STROKES, { tool: 'crown' })).toBe(hints.takeBranch)
+  expect(drawing(limbed)).toBe(hints.side)
+  expect(drawing(limbed, { sheet: 'side' })).toBe(hints.sideTrunk)
+  expect(drawing(withSheet(limbed, 'side', bare), { sheet: 'side' })).toBe(hints.branches)
+  expect(drawing(withSheet(limbed, 'side', limbed), { grown: {} as Grown })).toBe(hints.refine)
+})
+
+test('beside a photo the side’s sheet says what it is for', () => {
+  const { hints } = text.sheets
+  const beside = (present: typeof two) => said({ sheet: 'side', tool: 'branch', history: begin(present) })
+  expect(beside(two)).toBe(hints.mixed)
+  expect(beside(withSheet(two, 'side', two))).toBe(hints.mixedGrow)
 })

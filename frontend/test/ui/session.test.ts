@@ -13,7 +13,7 @@ function studioWith(drafts: readonly { id: string; model?: string }[]) {
   vi.spyOn(studio.keeper, 'list').mockResolvedValue(drafts as unknown as Draft[])
   vi.spyOn(studio.keeper, 'find').mockImplementation(async id => {
     const draft = drafts.find(one => one.id === id) as unknown as Draft | undefined
-    return draft ? { draft, photo: new Blob(), leaf: null } : null
+    return draft ? { draft, photo: new Blob(), side: null, leaf: null, fruit: null } : null
   })
   const openDraft = vi.spyOn(studio.opener, 'openDraft').mockResolvedValue()
   const openModel = vi.spyOn(studio.opener, 'openModel').mockResolvedValue()

@@ -95,3 +95,10 @@ test('per cent are never ahead, and the time that is left is said where it is kn
   expect(figuresOf(model({ progress: 0.4, eta_s: 3.6 }))).toBe('40% · about 4 s left')
   expect(figuresOf(model({ progress: 0.1, eta_s: 200 }))).toBe('10% · about 3 min left')
 })
+
+test('a sketch needs a trunk and no crown; another fruit is another tree', () => {
+  const bare = withStroke(EMPTY.history.present, 'branch', TRUNK)
+  expect(standingOf(state({ source: 'sketch', history: begin(EMPTY.history.present) }))).toBe('noFront')
+  expect(standingOf(state({ source: 'sketch', history: begin(bare) }))).toBe('ready')
+  expect(standingOf(finished({ fruit: new Blob(['a pear']) }))).toBe('settingsChanged')
+})

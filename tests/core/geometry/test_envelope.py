@@ -98,3 +98,15 @@ def test_rounding_makes_the_sections_circles_and_can_be_taken_back(sphere: Envel
     assert sphere.reach(rounded[inside]) == pytest.approx(flattened.reach(points[inside]))
     assert flattened.unrounded(rounded) == pytest.approx(points)
     assert sphere.rounded(points) == pytest.approx(points)
+
+
+def test_middles_of_the_sections_are_where_both_sides_show_them(sphere: Envelope, flattened: Envelope) -> None:
+    points = world(30, 100, 7.0)
+    assert flattened.middles(points) == pytest.approx(world(100, 100, 2.0), abs=0.1)
+    assert sphere.middles(points) == pytest.approx(world(100, 100, 0.0), abs=0.1)
+
+
+def test_what_the_side_shows_is_told_at_any_place_across(sphere: Envelope, flattened: Envelope) -> None:
+    points = np.vstack([world(x, 100, z) for x in (100, 155) for z in (-0.5, 0.5, 3.5, 4.5)])
+    assert flattened.shown_from_side(points).tolist() == 2 * [False, True, True, False]
+    assert sphere.shown_from_side(points).all()

@@ -5,9 +5,10 @@ import pytest
 from tests.core.grow.crowns import Case, limbed_case, trunk_case
 
 from treestroke.core.geometry.camera import Floats
+from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import TYPE_1, TYPE_2, Kind, choose_library, visible_subtrees
 from treestroke.core.grow.params import GrowthParams, growth_for
-from treestroke.core.grow.replacement import Grown, grow
+from treestroke.core.grow.replacement import grow
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.traverse import child_counts
 

@@ -152,3 +152,13 @@ def test_the_same_seed_places_the_same_leaves(scene, leaves):
 def test_params_out_of_range_are_refused(wrong):
     with pytest.raises(ValueError, match="must"):
         LeafParams(**wrong)
+
+
+@pytest.mark.parametrize("off", [0, 40])
+def test_no_card_s_centre_lies_outside_a_side_that_was_drawn(scene, camera, off):
+    tree, mask, envelope, photo, atlas = scene
+    side = np.roll(cv2.ellipse(np.zeros((400, 300), np.uint8), (150, 150), (60, 120), 0, 0, 360, 1, -1) > 0, off, 1)
+    slim = envelope.with_side(side, camera)
+    centres = place((tree, mask, slim, photo, atlas)).centres
+    assert slim.shown_from_side(centres).all()
+    assert np.percentile(centres[:, 2], [1, 99]) == pytest.approx([(off - 60) / 36, min(off + 60, 117) / 36], abs=0.35)

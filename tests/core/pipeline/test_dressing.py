@@ -1,5 +1,6 @@
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -8,11 +9,13 @@ from tests.conftest import DATA, EXAMPLES
 
 import treestroke
 from treestroke.core.leaf.atlas import tile_labs
+from treestroke.core.leaf.fruit import fruit_among
+from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.service.inputs import load_photo, load_strokes
-from treestroke.service.model import Model
+from treestroke.service.making import Model
 
 MAPLE, BARE = EXAMPLES / "sugar_maple_autumn", DATA / "bigleaf_maple_bare"
 
@@ -116,7 +119,9 @@ def test_a_leaf_s_picture_colours_the_tree() -> None:
     picture = np.zeros((120, 90, 4), np.uint8)
     cv2.ellipse(picture, (45, 50), (30, 45), 0, 0, 360, (60, 90, 200, 255), -1)
     given = load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json"))
-    tree = model_photo(see(*given), ModelSettings(iterations=30), np.random.default_rng(0), leaf_picture=picture)
+    tree = model_photo(
+        see(*given), ModelSettings(iterations=30), np.random.default_rng(0), pictures=OwnPictures(picture)
+    )
     assert tree.atlas is not None
     assert (tile_labs(tree.atlas)[:, 2] < -30).all()
 
@@ -126,3 +131,21 @@ def test_a_season_gives_the_same_bytes_again(season: str) -> None:
     tree = BARE.with_suffix(".jpg"), BARE.with_suffix(".strokes.json")
     again = treestroke.model(*tree, {"iterations": 30, "season": season})
     assert again.glb == modelled(BARE, season=season).glb
+
+
+@pytest.mark.parametrize("settings", [{}, {"season": "bare"}, {"leaf_density": 0.0}], ids=["leafy", "bare", "thin"])
+def test_fruit_hangs_on_the_same_tree_with_or_without_leaves(settings: dict[str, Any]) -> None:
+    picture = np.zeros((120, 110, 4), np.uint8)
+    cv2.circle(picture, (55, 60), 50, (230, 130, 20, 255), -1)
+    seen = see(load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json")))
+    what = seen, ModelSettings(iterations=30, **settings)
+    plain = model_photo(*what, np.random.default_rng(0))
+    borne = model_photo(*what, np.random.default_rng(0), pictures=OwnPictures(fruit=picture))
+    assert borne.cards is not None
+    assert borne.atlas is not None
+    fruit = fruit_among(borne.cards, borne.atlas)
+    assert 120 <= fruit.sum() <= 400
+    assert np.array_equal(borne.bark.mesh.positions, plain.bark.mesh.positions)
+    assert np.array_equal(borne.bark.texture, plain.bark.texture)
+    assert np.array_equal(borne.cards.centres[~fruit], np.zeros((0, 3)) if plain.cards is None else plain.cards.centres)
+    assert borne.measures.figures["crown_width"] == plain.measures.figures["crown_width"]

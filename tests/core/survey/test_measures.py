@@ -5,7 +5,7 @@ import pytest
 from tests.builders import fork, oak, stick
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.envelope import Depth, Envelope
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.survey.measures import Measures, Scale, measure_tree
 
@@ -82,3 +82,14 @@ def test_branches_are_counted_by_order() -> None:
     assert measured(stick()).branches_by_order == (1,)
     assert measured(fork()).branches_by_order == (1, 1)
     assert measured(oak(3)).branches_by_order[0] == 1
+
+
+def test_a_drawn_side_makes_the_depth_as_sure_as_the_width_and_the_volume_that_of_ellipses() -> None:
+    slim = replace(DISC, depth=Depth(np.zeros(500), 0.5 * DISC.radius_px))
+    figures = measure_tree(oak(), 4.0, True, None, 12.0, slim, GIVEN).figures
+    width, depth = figures["crown_width"], figures["crown_depth"]
+    assert (depth.basis, figures["crown_volume"].basis) == ("measured", "derived")
+    assert depth.high / depth.value == pytest.approx(width.high / width.value)
+    assert figures["crown_volume"].value == pytest.approx(np.pi * 1.0 * 0.5 * 2.0)
+    assert "left side" in depth.meaning
+    assert "ellipses" in figures["crown_volume"].meaning

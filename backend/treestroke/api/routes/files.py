@@ -8,6 +8,7 @@ from fastapi.responses import FileResponse
 from treestroke.api.deps import ModelId, ShelfOf
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_answers, send_blob
+from treestroke.codec.project import VIEWS
 from treestroke.service import models
 from treestroke.service.jobs import GLB, PREVIEW
 from treestroke.service.photos import NotFound, Shelf
@@ -35,6 +36,14 @@ _MANY: dict[int | str, dict[str, Any]] = {
     else answer
     for status, answer in file_answers(_GLB).items()
 }
+_SKETCH: dict[int | str, dict[str, Any]] = {
+    status: {**answer, "content": {**answer["content"], **file_answers(_PNG)[status]["content"]}}
+    if status in (200, 206)
+    else answer
+    for status, answer in file_answers(_JSON, "StrokeSketch").items()
+}
+View = Annotated[str, Path(json_schema_extra={"pattern": "^(front|side)$"})]
+SketchEnding = Annotated[str, Path(json_schema_extra={"pattern": "^(json|png)$"})]
 Ending = Annotated[str, Path(json_schema_extra={"pattern": _ENDING, "example": "glb"})]
 
 
@@ -53,12 +62,12 @@ def get_preview(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
 @router.get("/strokes.json", response_class=FileResponse, responses=file_answers(_JSON, "Strokes"))
 def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Give the strokes that the tree was made of."""
-    return send_blob(request, shelf, models.see(shelf.database, id).row.strokes_blob, _JSON)
+    return _drawing(request, shelf, id, "strokes.json")
 
 
 @router.get("/project", response_class=FileResponse, responses={**file_answers(_ZIP), **documented(507)})
 def get_project(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
-    """Download NAME.treestroke: photo, strokes and settings, for the command line and the page."""
+    """Download NAME.treestroke: all that the tree is made of, for the command line and the page."""
     row, blob = models.project_of(shelf, id)
     return send_blob(request, shelf, blob, _ZIP, f"{row.name or row.id}.treestroke")
 
@@ -67,6 +76,21 @@ def get_project(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
 def get_tree_file(request: Request, shelf: ShelfOf, id: ModelId, ending: Ending) -> Response:
     """Download one of the further files that the settings asked for; ``files`` of the model names them."""
     return _file(request, shelf, id, f"tree.{ending}")
+
+
+@router.get("/{view}.{ending}", response_class=FileResponse, responses=_SKETCH)
+def get_sketch(request: Request, shelf: ShelfOf, id: ModelId, view: View, ending: SketchEnding) -> Response:
+    """Give a sketch that the tree was made of: front.json or front.png, side.json or side.png."""
+    if view not in VIEWS:
+        raise NotFound("file")
+    return _drawing(request, shelf, id, f"{view}.{ending}")
+
+
+def _drawing(request: Request, shelf: Shelf, id: str, name: str) -> Response:
+    blob = models.see(shelf.database, id).row.drawings.get(name)
+    if blob is None:
+        raise NotFound("file")
+    return send_blob(request, shelf, blob, _PNG if name.endswith(".png") else _JSON)
 
 
 def _file(request: Request, shelf: Shelf, id: str, name: str) -> Response:

@@ -21,7 +21,8 @@ from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import models, photos
 from treestroke.service.models import MAX_PAGE, Seen
 from treestroke.service.photos import Shelf
-from treestroke.service.tracing import MAX_NAME, Wish, read_name
+from treestroke.service.wishes import MAX_NAME, Wish, read_name
+from treestroke.shapes import STROKES_EXAMPLE
 from treestroke.store.leases import TERMINAL
 from treestroke.store.tables import Photo
 
@@ -33,12 +34,14 @@ _LOCATION = {
     "Location": {"schema": {"type": "string", "pattern": "^/v1/models/mdl_[0-9a-f]{24}$"}, "description": "the model"},
     "Preference-Applied": {"schema": {"type": "string"}, "description": "the wait that Prefer asked for"},
 }
-_FILES = ("get_tree", "get_preview", "get_strokes", "get_project", "get_tree_file")
+_FILES = ("get_tree", "get_preview", "get_strokes", "get_sketch", "get_project", "get_tree_file")
 _CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
 _TEXT = {"type": "string"}
-_TEXTS = ("strokes", "settings", "seed", "name", "leaf")
+_BINARY = {"type": "string", "format": "binary"}
+_SKETCH = {**_TEXT, "contentMediaType": "application/json, image/png"}
+_FIELDS = ("photo", "strokes", "front", "side", "settings", "seed", "name", "leaf", "fruit")
 _ASK: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -50,20 +53,22 @@ _ASK: dict[str, Any] = {
             "multipart/form-data": {
                 "schema": {
                     "type": "object",
-                    "required": ["photo", "strokes"],
                     "properties": {
-                        "photo": {"type": "string", "format": "binary", "description": "JPEG, PNG or WebP"},
-                        "strokes": {**_TEXT, "description": "Strokes, as JSON"},
+                        "photo": {**_BINARY, "description": "JPEG, PNG or WebP"},
+                        "strokes": {**_TEXT, "description": "Strokes, as JSON; with a photo"},
+                        "front": {**_SKETCH, "description": "Sketch of the front, in place of strokes: JSON or PNG"},
+                        "side": {**_SKETCH, "description": "Sketch of the left side: JSON or PNG"},
                         "settings": {**_TEXT, "description": "ModelSettings, as JSON"},
                         "seed": {**_TEXT, "pattern": "^[0-9]{1,18}$"},
                         "name": {**_TEXT, "maxLength": MAX_NAME, "pattern": NAME_PATTERN},
-                        "leaf": {"type": "string", "format": "binary", "description": "PNG of a leaf cut out"},
+                        "leaf": {**_BINARY, "description": "PNG of a leaf cut out"},
+                        "fruit": {**_BINARY, "description": "PNG of a fruit cut out"},
                     },
                     "additionalProperties": False,
                 },
                 "example": {
                     "photo": "(the file's bytes)",
-                    "strokes": json.dumps(schemas.STROKES_EXAMPLE),
+                    "strokes": json.dumps(STROKES_EXAMPLE),
                     "settings": '{"height": 14}',
                     "seed": "1",
                     "name": "The old oak",
@@ -94,27 +99,29 @@ class _Request:
 
 
 async def _request(request: Request, shelf: ShelfOf) -> _Request:
-    """Read a request for a model: JSON that names a photo, or a form that brings one."""
+    """Read a request for a model: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
         return _Request(await run_in_threadpool(models.read_wish, shelf, await request.body()))
     if kind != "multipart/form-data":
-        raise HTTPException(415, "send application/json, or a form with the fields photo and strokes")
-    fields = 1 + len(_TEXTS)
-    async with request.form(max_files=fields, max_fields=fields, max_part_size=MAX_TEXT_BYTES) as form:
+        raise HTTPException(415, "send application/json, or a form with photo and strokes, or front and side")
+    most = len(_FIELDS)
+    async with request.form(max_files=most, max_fields=most, max_part_size=MAX_TEXT_BYTES) as form:
         if len(form) < len(form.multi_items()):
             raise HTTPException(400, "the form has a field twice; send each once")
         photo = form.get("photo")
-        if not isinstance(photo, UploadFile):
+        if photo is not None and not isinstance(photo, UploadFile):
             raise HTTPException(400, "the form has no file in the field photo; send the photo there")
         texts = {name: await _text(field) for name, field in form.items() if field is not photo}
-        content = await photo.read()
+        content = None if photo is None else await photo.read()
     return await run_in_threadpool(_take_in, shelf, content, texts)
 
 
-def _take_in(shelf: Shelf, content: bytes, texts: dict[str, bytes]) -> _Request:
-    check_length(content)
-    return _Request(models.read_fields(shelf, texts), photos.take_in(shelf, content))
+def _take_in(shelf: Shelf, photo: bytes | None, texts: dict[str, bytes]) -> _Request:
+    if photo is None:
+        return _Request(models.read_fields(shelf, texts, brings_photo=False))
+    check_length(photo)
+    return _Request(models.read_fields(shelf, texts), photos.take_in(shelf, photo))
 
 
 async def _text(field: UploadFile | str) -> bytes:

@@ -10,8 +10,9 @@ from treestroke.api.deps import JsonBody, PhotoId, ShelfOf, check_length, leads_
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
-from treestroke.schemas import STROKES_EXAMPLE, Photo, TraceAnswer
+from treestroke.schemas import Photo, TraceAnswer
 from treestroke.service import photos
+from treestroke.shapes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/photos", tags=["photos"])
 _RAW = ("image/jpeg", "image/png", "image/webp", "application/octet-stream")

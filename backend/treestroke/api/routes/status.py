@@ -10,13 +10,14 @@ from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.project import MAX_TEXT_BYTES
+from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
 from treestroke.service.files import files_on_offer
-from treestroke.service.model import ENGINE
-from treestroke.service.tracing import MAX_NAME
+from treestroke.service.making import ENGINE
+from treestroke.service.wishes import MAX_NAME
 
 router = APIRouter(tags=["service"])
 
@@ -50,6 +51,7 @@ def limits(settings: SettingsOf) -> Limits:
         json_bytes=MAX_TEXT_BYTES,
         name_length=MAX_NAME,
         leaf_bytes=MAX_LEAF_BYTES,
+        sketch_bytes=MAX_SKETCH_BYTES,
         trace_seconds=settings.trace_seconds,
         model_seconds=settings.model_seconds,
         wait_seconds=MAX_WAIT_SECONDS,

@@ -57,6 +57,22 @@ class Envelope:
         z = (z - self.depth.middle_px[row]) / np.maximum(self.depth.radius_px[row], 1e-9)
         return np.hypot(x / np.maximum(self.radius_px[row], 1e-9), z)
 
+    def shown_from_side(self, points_world: Floats) -> NDArray[np.bool_]:
+        """Tell which points (n, 3), metres, lie in the rows of the crown's left side; all without a second side."""
+        if self.depth is None:
+            return np.ones(len(points_world), dtype=np.bool_)
+        row = self._rows(self.camera.pixels_from_world(points_world))
+        away_px = points_world[:, 2] / self.camera.metres_per_pixel - self.depth.middle_px[row]
+        return np.asarray(np.abs(away_px) <= self.depth.radius_px[row])
+
+    def middles(self, points_world: Floats) -> Floats:
+        """Centres (n, 3), metres, of the sections at the points' heights; at Z = 0 without a second side."""
+        points_px = self.camera.pixels_from_world(points_world)
+        row = self._rows(points_px)
+        depth_px = np.zeros(len(row)) if self.depth is None else self.depth.middle_px[row]
+        centres_px = np.stack([self.middle_px[row], points_px[:, 1]], axis=1)
+        return self.camera.world_from_pixels(centres_px, depth_px * self.camera.metres_per_pixel)
+
     def half_depth(self, points_world: Floats) -> Floats:
         """Half the envelope's depth (n,), metres, at the points' X and Y (0 outside it)."""
         points_px = self.camera.pixels_from_world(points_world)

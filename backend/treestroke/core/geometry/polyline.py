@@ -69,16 +69,21 @@ def distances_to_segment(points: Floats, start: Floats, end: Floats) -> Floats:
     return np.asarray(np.linalg.norm(points - start - along[:, None] * way, axis=1))
 
 
-def places_along(line: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """Find how far along a chain (n, d), n >= 2, the place nearest to each point (m, d) lies, and their gap (m,)."""
+def places_along(line: Floats, points: Floats, missing: Indices | None = None) -> tuple[Floats, Floats]:
+    """Find how far along a chain (n, d), n >= 2, the place nearest to each point (m, d) lies, and their gap (m,).
+
+    Of pieces that are ``missing``, named by the point where they begin, no place is nearest.
+    """
     start, along = line[:-1], np.diff(line, axis=0)
     square = np.maximum((along**2).sum(axis=1), 1e-12)
-    share = (points @ along.T - (start * along).sum(axis=1)) / square
-    share = np.clip(share, 0.0, 1.0)
-    away = points[:, None] - start - share[..., None] * along
-    gaps = np.sqrt((away**2).sum(axis=2))
-    rows, best = np.arange(len(points)), gaps.argmin(axis=1)
-    return arc_lengths(line)[best] + share[rows, best] * np.sqrt(square[best]), gaps[rows, best]
+    share = np.clip((points @ along.T - (start * along).sum(axis=1)) / square, 0.0, 1.0)
+    away = sum((points[:, None, axis] - start[:, axis] - share * along[:, axis]) ** 2 for axis in range(line.shape[1]))
+    away = np.asarray(away)
+    if missing is not None:
+        away[:, missing] = np.inf
+    rows, best = np.arange(len(points)), away.argmin(axis=1)
+    gaps = np.sqrt(away[rows, best])
+    return arc_lengths(line)[best] + share[rows, best] * np.sqrt(square[best]), gaps
 
 
 def place_at(line: Floats, arcs: Floats | float) -> Floats:

@@ -20,17 +20,18 @@ FADE = 0.35
 """Share of a visible limb, before its end, over which the measured radius gives way to the pipes' one."""
 
 
-def pipe_radii(points: Floats, parents: Indices, measured: Floats, tip: float) -> Floats:
+def pipe_radii(points: Floats, parents: Indices, measured: Floats, tip: float, slender: float = 0.0) -> Floats:
     """Give each joint (n,) of a tree (n, 3) its radius; no child is thicker than its parent.
 
     ``measured`` (n,) holds known radii, 0 elsewhere, and is kept where it is known, save near the end of a visible
-    limb, where it fades into the pipe model. ``tip`` is the radius of the thinnest twigs. All in one unit.
+    limb, where it fades into the pipe model. ``tip`` is the radius of the thinnest twigs. All in one unit. A limb still
+    thick where it ends fades over ``slender`` of its radii there, if that is further.
     """
     tree = Skeleton(points, measured, parents)
     pipes = pipe_counts(tree, TWIG_TIPS * tip)
     base = float(measured[0]) if measured[0] > 0 else tip * float(pipes[0]) ** 0.4
     model = radii_of_pipes(pipes, base, tip)
-    weight = _weights(tree, pipes)
+    weight = _weights(tree, pipes, slender)
     known = measured > 0
     mixed = np.where(known, measured, 1.0) ** weight * model ** (1 - weight)
     radii = np.where(known, mixed, model)
@@ -58,7 +59,7 @@ def radii_of_pipes(pipes: Floats, base: float, tip: float) -> Floats:
     return np.asarray(base * (pipes / pipes[0]) ** (1 / exponent))
 
 
-def _weights(tree: Skeleton, pipes: Floats) -> Floats:
+def _weights(tree: Skeleton, pipes: Floats, slender: float) -> Floats:
     """Weigh the measured radius (n,): 1, falling to 0 over the last part of each visible limb."""
     known = tree.radii > 0
     visible = np.where(known, pipes, -1.0)
@@ -69,5 +70,7 @@ def _weights(tree: Skeleton, pipes: Floats) -> Floats:
         if not known[own[0]]:
             continue
         arc = np.cumsum(np.where(known[own], lengths[own], 0.0))
-        weight[own] = np.clip((arc[-1] - arc) / max(FADE * arc[-1], 1e-12), 0, 1)
+        end = float(tree.radii[own][known[own]][-1])
+        fade = min(max(FADE * arc[-1], slender * end), arc[-1])
+        weight[own] = np.clip((arc[-1] - arc) / max(fade, 1e-12), 0, 1)
     return np.where(known, weight, 0.0)

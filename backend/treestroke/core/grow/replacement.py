@@ -6,8 +6,6 @@ again and again; a shoot that leaves the crown is clipped, and the crown bounds 
 go; subtrees on a stem are stretched toward the crown's edge.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +14,7 @@ from treestroke.core.grow.crown import crown_of, pixels_of, world_of
 from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.form import curved
 from treestroke.core.grow.growing import Growing, rules_for
+from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.limb_ends import with_limbs_carried_on
 from treestroke.core.grow.params import GrowthParams
@@ -23,32 +22,10 @@ from treestroke.core.grow.radii import pipe_radii
 from treestroke.core.grow.stem import foot_of, with_leader
 from treestroke.core.grow.twigs import with_twigs
 from treestroke.core.progress import Report, silent
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 
 REACHED_PX = 10.0
 """An image attractor counts as reached within this distance of a branch, px of a crown 1,000 px wide."""
-
-
-@dataclass(frozen=True, eq=False)
-class Grown:
-    """A grown tree.
-
-    Attributes
-    ----------
-    skeleton
-        The whole tree, 3D, metres, world frame, with radii by the pipe model.
-    born
-        (n,) iteration at which each joint appeared, from 1; 0 for those of the visible tree.
-    choices
-        (k, 3) the branch, subtree and angle of each replacement.
-    attractors_reached
-        Share of the image attractors within 10 px (of a crown 1,000 px wide) of a branch.
-    """
-
-    skeleton: Skeleton
-    born: Indices
-    choices: Indices
-    attractors_reached: float
 
 
 def grow(

@@ -70,12 +70,15 @@ class Atlas:
         (k, 3) mean colour of each tile's opaque part, sRGB, 0 to 255.
     recolour
         How the photo's colours became the tiles', or None where they are the same.
+    fruit
+        The tile that shows a fruit, if one does; no leaf shows it.
     """
 
     image: NDArray[np.uint8]
     boxes: Floats
     colours: Floats
     recolour: Recolour | None = None
+    fruit: int | None = None
 
 
 def leaf_atlas(

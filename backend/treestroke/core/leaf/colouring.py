@@ -76,8 +76,8 @@ class Colouring:
         Hidden places take the colour of another place of about the same height, displaced smoothly in space, so
         that clumps persist, while the back is no mirror image and no colour is smeared along the view.
         """
-        half_depth = self.envelope.half_depth(points)
-        hidden = np.clip((SHOWN_DEPTH * half_depth - points[:, 2]) / np.maximum(half_depth, 1e-6), 0, 1)
+        half_depth, nearness = self.envelope.half_depth(points), points[:, 2] - self.envelope.middles(points)[:, 2]
+        hidden = np.clip((SHOWN_DEPTH * half_depth - nearness) / np.maximum(half_depth, 1e-6), 0, 1)
         radius = self.envelope.radius_px.max() * self.grid.camera.metres_per_pixel
         height = self.grid.inside.shape[0] * self.grid.cell_m
         x = points[:, 0] + hidden * SIDEWAYS * radius * self.sideways.at(points)

@@ -74,8 +74,17 @@ class Crown:
         cells = self.grid.flat_cells(leaves.centres[:, 0], leaves.centres[:, 1])
         behind = self.grid.front.ravel()[cells] > leaves.centres[:, 2]
         shown = behind & (share_inside(leaves, self.outlines, self.grid) >= FITTING)
-        flat = np.abs(leaves.centres[:, 2]) <= FLAT * self.height
-        return np.asarray(shown & (flat | (self.envelope.reach(leaves.centres) <= 1.0)))
+        return np.asarray(shown & self._in_solid(leaves.centres))
+
+    def _in_solid(self, centres: Floats) -> NDArray[np.bool_]:
+        """Which places (m, 3) lie in the crown's solid; of a crown that two sides show, in both of them.
+
+        A limb may be drawn to the edge of both sides at once, where no ellipse reaches, and bears leaves there.
+        """
+        if self.envelope.depth is not None:
+            return self.envelope.shown_from_side(centres)
+        flat = np.abs(centres[:, 2]) <= FLAT * self.height
+        return np.asarray(flat | (self.envelope.reach(centres) <= 1.0))
 
 
 def crown_of(grid: FoliageGrid, envelope: Envelope, atlas: Atlas, size: float, rng: np.random.Generator) -> Crown:
@@ -87,6 +96,7 @@ def crown_of(grid: FoliageGrid, envelope: Envelope, atlas: Atlas, size: float, r
     top, centre, bottom = ((camera.root_px[1] - rows_px) * scale).tolist()
     middle_px = envelope.middle_px[int(np.clip(rows_px[1], 0, camera.height - 1))]
     middle = np.array([(middle_px - camera.root_px[0]) * scale, centre, 0.0])
+    middle[2] = envelope.middles(middle[None])[0, 2]
     columns = np.flatnonzero(grid.inside.any(axis=0))
     side = size * float(columns[-1] - columns[0] + 1) * grid.cell_m
     area = float((alphas > 127).mean()) * (side * sum(SIDES) / 2) ** 2

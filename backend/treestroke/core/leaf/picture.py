@@ -52,10 +52,11 @@ def opaque_part(picture: Image) -> Image:
         It is no such picture, or all of it is transparent.
     """
     if picture.ndim != 3 or picture.shape[2] != 4 or picture.dtype != np.uint8:
-        raise ValueError(f"a leaf's picture must be (h, w, 4) uint8, got {picture.shape} {picture.dtype}")
+        what = f"{picture.shape} {picture.dtype}"
+        raise ValueError(f"a leaf's picture must be (h, w, 4) uint8, and so must a fruit's; got {what}")
     opaque = picture[..., 3] >= OPAQUE
     if not opaque.any():
-        raise ValueError("a leaf's picture needs pixels that are not transparent")
+        raise ValueError("a leaf's picture needs pixels that are not transparent, and so does a fruit's")
     rows, columns = np.flatnonzero(opaque.any(axis=1)), np.flatnonzero(opaque.any(axis=0))
     return picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 

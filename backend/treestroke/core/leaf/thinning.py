@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.mesh import ALPHA_CUT
 from treestroke.core.geometry.silhouette import HALF_AZIMUTHS_RAD, Framing, Mask
 from treestroke.core.leaf.atlas import Atlas, tile_alphas
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves
+from treestroke.core.leaf.fruit import fruit_among
+from treestroke.core.leaf.leaves import Floats, Indices, Leaves, join_leaves
 
 _DOTS_ACROSS = 8
 """A tile is looked at in 8 x 8 dots: about the texels of the copy that a viewer takes for a card of 10 px."""
@@ -21,6 +22,8 @@ _NEAR_SIDE = 0.4
 """Worth of a cell on the side that faces a viewer, over that of a cell of the silhouette."""
 _OUTSIDE = -0.5
 """Worth of a cell beside the silhouette."""
+_FRUIT = 0.25
+"""Most of the cards kept that are fruit, as long as there are leaves."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +62,7 @@ def thin_leaves(
     wanted: NDArray[np.float64],
     params: ThinningParams = ThinningParams(),
 ) -> Leaves:
-    """Choose ``count`` of the cards and enlarge them, in their order.
+    """Choose ``count`` of the cards and enlarge the leaves among them, in their order; fruit stays as far as it may.
 
     Chosen are those that cover most of the silhouettes, and of the sides that the crown shows from eight azimuths;
     cards that would reach over the silhouettes' edge grow less or not at all. Deterministic.
@@ -80,6 +83,13 @@ def thin_leaves(
     """
     if count >= len(leaves):
         return leaves
+    fruit = fruit_among(leaves, atlas)
+    if fruit.any():
+        left = max(int(_FRUIT * count), count - int((~fruit).sum()))
+        first = fruit & (np.cumsum(fruit) <= left)
+        others = leaves.select(~fruit), replace(atlas, fruit=None), count - int(first.sum())
+        foliage = thin_leaves(*others, view, wanted, params)
+        return join_leaves([foliage, leaves.select(first)])
     if count <= 0:
         return leaves.select(np.zeros(len(leaves), dtype=bool))
     dots = _dots(tile_alphas(atlas))[leaves.tiles]

@@ -96,7 +96,8 @@ def _with_fruit(
 ) -> tuple[Leaves, Atlas]:
     """Hang fruit too, by numbers of its own: leaves and wood are those of the tree without fruit."""
     own, envelope = rng.spawn(1)[0], tree.envelope
-    views = CrownViews(View(closed(tree.likeness, CLOSED_SHARE["bare"]), envelope.camera))
+    crown = closed(tree.likeness | np.isposinf(tree.portrait.front), CLOSED_SHARE["bare"])
+    views = CrownViews(View(crown, envelope.camera))
     fruit = hang_fruit(tree.grown.skeleton, envelope, views, picture, FruitParams(), own)
     return with_fruit(leaves, atlas if len(leaves) else None, fruit, picture)
 

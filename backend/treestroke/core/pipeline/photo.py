@@ -1,6 +1,6 @@
 """System A: a 3D tree from one photo and a few strokes (Tan et al. 2008). The recipe reads top to bottom."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -11,11 +11,12 @@ from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unsee
 from treestroke.core.pipeline.growing import Seen, grow_tree, see
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sight import Mask, Photo
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.strokes import Strokes, StrokeWarning
+from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +56,21 @@ def trace_photo(photo: Photo, strokes: Strokes, known: Foliage | None = None) ->
         The strokes do not describe a tree.
     """
     return _in_photo(see(photo, strokes, known))
+
+
+def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
+    """Lay a sketch of the tree's left side beside what was traced in place of the one before: it gives depth.
+
+    Raises
+    ------
+    StrokesError
+        The sketch does not describe a tree.
+    """
+    if side is None and traced.seen.side is None:
+        return traced
+    drawing = None if side is None else draw_side(side, "side")
+    warnings = traced.seen.sight.warnings + (() if drawing is None else drawing.warnings)
+    return replace(traced, seen=replace(traced.seen, side=drawing), warnings=warnings)
 
 
 def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:

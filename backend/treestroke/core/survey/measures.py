@@ -95,19 +95,21 @@ def measure_tree(
     figures = {
         "height": _height(height, scale),
         "crown_width": _figure(_spread(crown[:, 0]), "m", "crown_width", scale, "measured", WIDTH),
-        "crown_depth": _figure(_spread(crown[:, 2]), "m", "crown_depth", scale, "derived", DEPTH),
+        "crown_depth": _depth(_spread(crown[:, 2]), envelope, scale),
         "trunk_diameter": _trunk(skeleton, trunk_seen, scale),
-        "crown_volume": _figure(_volume(envelope), "m³", "crown_volume", scale, "derived", VOLUME),
+        "crown_volume": _volume(envelope, scale),
         "leaf_area": _figure(leaf_area, "m²", "leaf_area", scale, "derived", LEAF_AREA),
     }
     return Measures(scale, figures, _by_order(skeleton))
 
 
 HEIGHT = "from the root to the topmost leaf or twig"
-WIDTH = "of the crown from side to side in the photo, without the outermost hundredth of the leaves"
-DEPTH = "of the crown along the view, which no single photo shows: as grown"
+WIDTH = "of the crown from side to side as the front shows it, without the outermost hundredth of the leaves"
+DEPTH = "of the crown along the view, which no single picture shows: as grown"
+DEPTH_SEEN = "of the crown from back to front as its left side shows it, without the outermost hundredth of the leaves"
 DIAMETER = f"of the thickest stem {BREAST_HEIGHT} m above the root"
-VOLUME = "of the solid whose level sections are circles as wide as the crown in the photo"
+VOLUME = "of the solid whose level sections are circles as wide as the crown's front"
+VOLUME_OF_TWO = "of the solid whose level sections are ellipses as wide as the crown's front, as deep as its left side"
 LEAF_AREA = "one side of all leaves, as grown: the photo shows the outermost only"
 
 
@@ -134,6 +136,22 @@ def _spread(places: Floats) -> float:
     return float(high - low)
 
 
+def _depth(depth: float, envelope: Envelope, scale: Scale) -> Measure:
+    """Take a depth that was drawn as sure as a width."""
+    if envelope.depth is None:
+        return _figure(depth, "m", "crown_depth", scale, "derived", DEPTH)
+    return _figure(depth, "m", "crown_width", scale, "measured", DEPTH_SEEN)
+
+
+def _volume(envelope: Envelope, scale: Scale) -> Measure:
+    """Add up the solid's level sections, circles or ellipses."""
+    deep, meaning = envelope.radius_px, VOLUME
+    if envelope.depth is not None:
+        deep, meaning = envelope.depth.radius_px, VOLUME_OF_TWO
+    volume = float(np.pi * (envelope.radius_px * deep).sum() * envelope.camera.metres_per_pixel**3)
+    return _figure(volume, "m³", "crown_volume", scale, "derived", meaning)
+
+
 def _trunk(skeleton: Skeleton, seen: bool, scale: Scale) -> Measure:
     name: str = "trunk_diameter" if seen else "hidden_trunk_diameter"
     return _figure(_trunk_diameter(skeleton), "m", name, scale, "measured" if seen else "derived", DIAMETER)
@@ -150,10 +168,6 @@ def _trunk_diameter(skeleton: Skeleton) -> float | None:
     share = (BREAST_HEIGHT - foot[crosses]) / (points[crosses, 1] - foot[crosses])
     below = skeleton.radii[parents[crosses]]
     return 2 * float((below + share * (skeleton.radii[crosses] - below)).max())
-
-
-def _volume(envelope: Envelope) -> float:
-    return float(np.pi * (envelope.radius_px**2).sum() * envelope.camera.metres_per_pixel**3)
 
 
 def _by_order(skeleton: Skeleton) -> tuple[int, ...]:

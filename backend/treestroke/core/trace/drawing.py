@@ -2,9 +2,22 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.polyline import Floats
+from treestroke.core.imaging.outline import filled_and_crossing
+from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.branched import Branched
-from treestroke.core.strokes import StrokeWarning
+from treestroke.core.stroke_rules import CROSSING, check_crown, clamped
+from treestroke.core.strokes import Sketch, Stroke, StrokeWarning
+from treestroke.core.trace.hull import crown_around
+from treestroke.core.trace.inked import follow_ink
+from treestroke.core.trace.lined import link_strokes
+from treestroke.core.trace.lines import branched_from
+
+CHECKED_SIDE = 750
+"""Long side, px, of the picture in which a crown is checked: sketches are drawn up while they are drawn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -14,8 +27,8 @@ class Drawing:
     Attributes
     ----------
     tree
-        The 2D skeleton, canvas px (x right, y down), joints at most ``STEP`` of its height apart; radii are those of
-        the brush, 0 where there was none.
+        The 2D skeleton, canvas px (x right, y down), joints at most `lines.STEP` of its height apart; radii are those
+        of the brush, 0 where there was none.
     crown
         (k, 2) closed outline of the foliage, px: as drawn, else the dilated hull of the strokes.
     crown_drawn
@@ -31,3 +44,38 @@ class Drawing:
     crown_drawn: bool
     size: tuple[int, int]
     warnings: tuple[StrokeWarning, ...]
+
+
+def draw_up(sketch: Sketch) -> Drawing:
+    """Turn a sketch into one connected 2D tree: every stroke lies along it.
+
+    Source: the two-sketch paper, section 4; `lined` and `inked` say where we differ.
+
+    Raises
+    ------
+    StrokesError
+        There is no trunk, a stroke or the crown is unusable, or the strokes are no tree. The message names the stroke.
+    """
+    if sketch.ink is None:
+        lines, height, warnings = link_strokes(sketch.branches, sketch.canvas)
+    else:
+        lines, height, warnings = follow_ink(sketch.ink)
+    tree = branched_from(lines, height)
+    if sketch.crown is None:
+        return Drawing(tree, crown_around(tree, height, sketch.canvas), False, sketch.canvas, warnings)
+    crown, crossing = _drawn_crown(sketch.crown, tree, sketch.canvas)
+    return Drawing(tree, crown, True, sketch.canvas, (*crossing, *warnings))
+
+
+def _drawn_crown(crown: Stroke, tree: Branched, canvas: tuple[int, int]) -> tuple[Floats, tuple[StrokeWarning, ...]]:
+    """Check the crown that was drawn, and that there is something of the tree in it."""
+    width, height = canvas
+    outline = clamped(crown, ("crown",), width, height, 3, "canvas").points
+    coarse = min(1.0, CHECKED_SIDE / max(canvas))
+    size = max(1, round(height * coarse)), max(1, round(width * coarse))
+    filled, crossing = filled_and_crossing(outline * coarse, *size)
+    check_crown(filled, "canvas")
+    if not sample_nearest(filled, tree.skeleton.points * coarse, False).any():
+        what = "no branch reaches into it; draw it around the foliage of the tree that is drawn"
+        raise StrokesError.at(("crown",), what, "crown_apart")
+    return np.array(outline), (CROSSING,) if crossing else ()

@@ -1,0 +1,102 @@
+"""What a service answers, read by its client: problems, values and streams of events."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeVar
+
+import httpx
+from pydantic import BaseModel, ValidationError
+
+from treestroke.schemas import Fault, Problem
+
+Answer = TypeVar("Answer", bound=BaseModel)
+_LONGEST_PAUSE_S = 10.0
+
+
+class ServiceError(Exception):
+    """The service refuses a request, or does not answer.
+
+    Attributes
+    ----------
+    status
+        HTTP status; 0 where no answer came.
+    code, detail
+        What is wrong, for programs (``unreachable`` where no answer came) and for people.
+    errors
+        The fields that are at fault.
+    """
+
+    def __init__(self, status: int, code: str, detail: str, errors: tuple[Fault, ...] = ()) -> None:
+        super().__init__(f"{detail} ({code})")
+        self.status, self.code, self.detail, self.errors = status, code, detail, errors
+
+
+class Again(ServiceError):
+    """What may come right by itself."""
+
+    def __init__(
+        self, status: int, code: str, detail: str, errors: tuple[Fault, ...] = (), pause_s: float = 0.0
+    ) -> None:
+        super().__init__(status, code, detail, errors)
+        self.pause_s = pause_s
+
+
+@dataclass(frozen=True)
+class Event:
+    """One event of a stream; most have no id."""
+
+    kind: str
+    id: str
+    text: str
+
+
+def checked(response: httpx.Response) -> httpx.Response:
+    """Give an answer that is none of an error."""
+    if response.is_success:
+        return response
+    try:
+        problem = Problem.model_validate_json(response.content, extra="ignore")
+    except ValidationError:
+        raise ServiceError(response.status_code, "unknown_answer", response.reason_phrase) from None
+    said = (response.status_code, problem.code, problem.detail, tuple(problem.errors))
+    if response.status_code != 503:
+        raise ServiceError(*said)
+    pause = response.headers.get("Retry-After", "")
+    raise Again(*said, pause_s=min(float(pause), _LONGEST_PAUSE_S) if pause.isdecimal() else 0.0)
+
+
+def read(kind: type[Answer], content: bytes | str) -> Answer:
+    """Read an answer; what a newer service adds is left out."""
+    try:
+        return kind.model_validate_json(content, extra="ignore")
+    except ValidationError as error:
+        raise ServiceError(
+            200, "unknown_answer", f"this is no {kind.__name__} of treestroke's; is it there?"
+        ) from error
+
+
+def unreachable(address: object, error: httpx.TransportError) -> ServiceError:
+    """Say that no answer came."""
+    why = str(error) or type(error).__name__
+    return ServiceError(0, "unreachable", f"{address} does not answer ({why}); start it by `treestroke serve`")
+
+
+def events_of(chunks: Iterator[bytes]) -> Iterator[Event]:
+    """Read the text/event-stream format, of which a comment is a ping."""
+    fields: dict[str, str] = {}
+    for line in _lines(chunks):
+        name, _, value = line.partition(":")
+        if name:
+            fields[name] = value.removeprefix(" ")
+        elif not line:
+            if "data" in fields:
+                yield Event(fields.get("event", ""), fields.get("id", ""), fields["data"])
+            fields = {}
+
+
+def _lines(chunks: Iterator[bytes]) -> Iterator[str]:
+    rest = b""
+    for chunk in chunks:
+        *whole, rest = (rest + chunk).split(b"\n")
+        for line in whole:
+            yield line.removesuffix(b"\r").decode()

@@ -1,0 +1,34 @@
+"""Sketches traced as they are drawn."""
+
+from typing import Any
+
+from fastapi import APIRouter, Response
+
+from treestroke.api.deps import JsonBody, ShelfOf
+from treestroke.api.errors import documented
+from treestroke.schemas import SKETCHES_EXAMPLE, SketchTraceAnswer
+from treestroke.service import sketches
+
+router = APIRouter(prefix="/v1/sketches", tags=["sketches"])
+_TRACE: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/SketchTraceRequest"},
+                "example": {**SKETCHES_EXAMPLE, "rev": 7, "grow": False},
+            }
+        },
+    }
+}
+
+
+@router.post(
+    "/trace",
+    response_model=SketchTraceAnswer,
+    responses=documented(400, 403, 408, 413, 415, 422, 503),
+    openapi_extra=_TRACE,
+)
+def trace_sketches(shelf: ShelfOf, body: JsonBody) -> Response:
+    """Find the branches that sketches show; with ``grow`` the whole tree's skeleton too. Nothing is kept."""
+    return Response(sketches.trace_sketches(shelf, body), media_type="application/json")

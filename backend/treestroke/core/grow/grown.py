@@ -1,0 +1,27 @@
+"""What growth gives, by whatever method."""
+
+from dataclasses import dataclass
+
+from treestroke.core.skeleton.skeleton import Indices, Skeleton
+
+
+@dataclass(frozen=True, eq=False)
+class Grown:
+    """A grown tree.
+
+    Attributes
+    ----------
+    skeleton
+        The whole tree, 3D, metres, world frame, with radii by the pipe model.
+    born
+        (n,) iteration (or level) at which each joint appeared, from 1; 0 for those of the visible tree.
+    choices
+        (k, 3) the branch, subtree and angle of each replacement; none where growth does not replace.
+    attractors_reached
+        Share of the image attractors within 10 px (of a crown 1,000 px wide) of a branch; 0 where there are none.
+    """
+
+    skeleton: Skeleton
+    born: Indices
+    choices: Indices
+    attractors_reached: float = 0.0

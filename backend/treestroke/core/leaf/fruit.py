@@ -1,0 +1,186 @@
+"""Fruit: a picture of it on two crossed upright cards, hung below the twigs.
+
+Depth retrieval from two sketches, section 7: fruit are textured quads that follow the phyllotaxis of their twig, with
+random factors in place and direction. Ours stand apart from each other and mostly where the crown shows them.
+"""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.vectors import UP, unit
+from treestroke.core.geometry.views import CrownViews
+from treestroke.core.leaf.arrangement import Seats, seats_along, thin_edges
+from treestroke.core.leaf.atlas import TILE_SIDE, Atlas, tile_labs
+from treestroke.core.leaf.easel import MARGIN, Image
+from treestroke.core.leaf.leaves import Floats, Indices, Leaves, join_leaves
+from treestroke.core.leaf.palette import nearest_colour
+from treestroke.core.skeleton.skeleton import Skeleton
+
+GOLDEN_RAD = np.pi * (3 - np.sqrt(5.0))
+TRIED = 12
+"""Places that are tried for each fruit."""
+STALK = 0.7
+"""How far a fruit's stalk leads from its twig, in widths of the fruit: around it, and as far out of the crown."""
+TURN_SCATTER = 0.4
+"""Standard deviation of the turn about the twig from one fruit to the next, about the golden angle, rad."""
+TALLEST = 2.0
+"""Tall pictures are clusters, or fruit that is drawn with its stalk: up to this factor larger than round ones."""
+SHADES = (0.9, 1.0)
+"""Brightness: fruit is seen at the crown's outside, and shines."""
+OUTWARD = 8.0
+"""Power of the reach from the crown's axis by which fruit is likelier at the outside."""
+
+
+@dataclass(frozen=True)
+class FruitParams:
+    """How much fruit a tree bears, and how large.
+
+    Attributes
+    ----------
+    width
+        Narrowest and widest fruit, shares of the crown's width, for a picture no taller than wide.
+    per_metre
+        Fruit for each metre of the side of a square as large as the crown's outline.
+    fewest, most
+        Fruit on the smallest and the largest tree, where there is room.
+    apart
+        Least distance between two fruit, in widths.
+    """
+
+    width: tuple[float, float] = (0.012, 0.018)
+    per_metre: float = 30.0
+    fewest: int = 60
+    most: int = 200
+    apart: float = 1.6
+
+    def __post_init__(self) -> None:
+        if not 0 < self.width[0] <= self.width[1] <= 0.2:
+            raise ValueError(f"width must be two shares, 0 to 0.2, the smaller first, got {self.width}")
+        if not (0 <= self.fewest <= self.most and self.per_metre >= 0 and self.apart >= 0):
+            raise ValueError(f"counts must be in order, and nothing negative, got {self}")
+
+
+def hang_fruit(
+    skeleton: Skeleton,
+    envelope: Envelope,
+    views: CrownViews,
+    picture: Image,
+    params: FruitParams,
+    rng: np.random.Generator,
+) -> Leaves:
+    """Hang fruit on the twigs of a grown tree (metres): first one card of each, then, crossing it, its other one.
+
+    Every fruit's middle and lower end lie inside the views and its middle inside the envelope. They come in random
+    order, so that the first few stand all over the crown. Their tile is yet to be named (`with_fruit`).
+    """
+    side = params.per_metre * np.sqrt(2 * envelope.radius_px.sum()) * envelope.camera.metres_per_pixel
+    count = int(np.clip(round(float(side)), params.fewest, params.most))
+    seats = seats_along(skeleton, thin_edges(skeleton).astype(np.float64), TRIED * count, rng)
+    aspect = picture.shape[0] / picture.shape[1]
+    crown_m = 2 * float(envelope.radius_px.max()) * envelope.camera.metres_per_pixel
+    width = crown_m * rng.uniform(*params.width, len(seats)) * float(np.clip(aspect, 1, TALLEST))
+    drop = width * aspect
+    around = unit(_around(seats, rng) + _outward(seats.points, envelope), UP)
+    feet = seats.points + STALK * width[:, None] * around
+    half = 0.5 * np.maximum(width, drop) / (1 - 2 * MARGIN)
+    middles = feet - drop[:, None] / 2 * UP
+    inside = views.inside(middles) & views.inside(feet - drop[:, None] * UP) & (envelope.reach(middles) <= 1)
+    likelihood = np.where(inside, np.clip(envelope.reach(middles), 0.05, 1) ** OUTWARD, 0.0)
+    chosen = _chosen(middles, likelihood, params.apart * width, count, rng)
+    return _crossed(feet[chosen], half[chosen], seats.joints[chosen], rng)
+
+
+def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Image) -> tuple[Leaves, Atlas]:
+    """Add fruit to the leaves and its picture to their atlas, in place of the tile that fewest leaves show.
+
+    Those leaves show the tile of the most similar colour instead. Without an atlas the fruit's tile is the only one.
+    """
+    tile, colour = _tile(picture), picture[picture[..., 3] > 127][:, :3].astype(np.float64).mean(axis=0)
+    if atlas is None:
+        alone = Atlas(tile, np.array([[0.0, 0.0, 1.0, 1.0]]), colour[None], fruit=0)
+        return replace(fruit, tiles=np.zeros(len(fruit), dtype=np.int64)), alone
+    place = int(np.bincount(leaves.tiles, minlength=len(atlas.boxes)).argmin())
+    others, labs = np.delete(np.arange(len(atlas.boxes)), place), tile_labs(atlas)
+    alike = int(others[nearest_colour(labs[[place]], labs[others])[0][0]])
+    leaves = replace(leaves, tiles=np.where(leaves.tiles == place, alike, leaves.tiles))
+    image, colours = atlas.image.copy(), atlas.colours.copy()
+    left, top = np.rint(atlas.boxes[place, :2] * image.shape[1::-1]).astype(int).tolist()
+    image[top : top + TILE_SIDE, left : left + TILE_SIDE], colours[place] = tile, colour
+    hung = replace(fruit, tiles=np.full(len(fruit), place, dtype=np.int64))
+    return join_leaves([leaves, hung]), replace(atlas, image=image, colours=colours, fruit=place)
+
+
+def fruit_among(leaves: Leaves, atlas: Atlas) -> NDArray[np.bool_]:
+    """Tell which cards (m,) are fruit."""
+    return np.zeros(len(leaves), dtype=bool) if atlas.fruit is None else leaves.tiles == atlas.fruit
+
+
+def _around(seats: Seats, rng: np.random.Generator) -> Floats:
+    """Give unit vectors (n, 3) square to the twigs, each turned by the golden angle from the one before."""
+    turn = GOLDEN_RAD * np.arange(len(seats)) + rng.normal(0, TURN_SCATTER, len(seats))
+    side = unit(np.cross(seats.directions, UP), np.array([1.0, 0.0, 0.0]))
+    across = np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * np.cross(seats.directions, side)
+    return np.asarray(across)
+
+
+def _outward(points: Floats, envelope: Envelope) -> Floats:
+    """Give level unit vectors (n, 3) away from the middles of the crown's sections."""
+    middles = envelope.middles(points)
+    return unit((points - middles) * np.array([1.0, 0.0, 1.0]), UP)
+
+
+def _chosen(points: Floats, likelihood: Floats, apart: Floats, count: int, rng: np.random.Generator) -> Indices:
+    """Draw up to ``count`` of the points (n, 3), by their likelihood, none nearer to another than ``apart`` (n,)."""
+    late = rng.exponential(size=len(points)) / np.maximum(likelihood, 1e-12)
+    found: list[int] = []
+    free = likelihood > 0
+    for index in np.argsort(late, kind="stable").tolist():
+        if len(found) == count:
+            break
+        if free[index]:
+            found.append(index)
+            free &= ((points - points[index]) ** 2).sum(axis=1) >= apart**2
+    return np.array(found, dtype=np.int64)
+
+
+def _crossed(feet: Floats, half: Floats, joints: Indices, rng: np.random.Generator) -> Leaves:
+    """Hang two crossed upright square cards, of half a side (n,), with the fruit's stalk at each foot (n, 3)."""
+    count = len(feet)
+    azimuth = rng.uniform(0, 2 * np.pi, count) + np.array([[0.0], [np.pi / 2]])
+    level = np.stack([np.cos(azimuth), np.zeros_like(azimuth), np.sin(azimuth)], axis=-1)
+    centres = feet - ((1 - 2 * MARGIN) * half)[:, None] * UP
+    return Leaves(
+        np.tile(centres, (2, 1)),
+        (half[:, None] * level).reshape(-1, 3),
+        np.tile(half[:, None] * UP, (2, 1)),
+        np.zeros(2 * count, dtype=np.int64),
+        np.repeat([False, True], count),
+        np.tile(rng.uniform(*SHADES, count), 2),
+        np.tile(joints, 2),
+    )
+
+
+def _tile(picture: Image) -> Image:
+    """Lay a picture (h, w, 4), straight alpha, on a clear tile, its top in the middle of the upper margin.
+
+    The clear part has the fruit's mean colour, so that edges and mip levels show no halo.
+    """
+    room = round(TILE_SIDE * (1 - 2 * MARGIN))
+    height, width = picture.shape[:2]
+    size = max(1, round(width * room / max(height, width))), max(1, round(height * room / max(height, width)))
+    alpha = picture[..., 3:].astype(np.float32) / 255
+    premultiplied = np.concatenate([alpha * picture[..., :3], alpha], axis=2).astype(np.float32)
+    filtering = cv2.INTER_AREA if max(height, width) > room else cv2.INTER_LINEAR
+    small = cv2.resize(premultiplied, size, interpolation=filtering).reshape(size[1], size[0], 4)
+    mean = picture[picture[..., 3] > 127][:, :3].mean(axis=0)
+    colour = np.where(small[..., 3:] > 1 / 255, small[..., :3] / np.maximum(small[..., 3:], 1e-3), mean)
+    tile = np.empty((TILE_SIDE, TILE_SIDE, 4), dtype=np.uint8)
+    tile[:] = (*np.rint(mean).astype(int).tolist(), 0)
+    top, left = (TILE_SIDE - room) // 2, (TILE_SIDE - size[0]) // 2
+    laid = np.concatenate([colour, 255 * small[..., 3:]], axis=2)
+    tile[top : top + size[1], left : left + size[0]] = np.clip(np.rint(laid), 0, 255)
+    return tile

@@ -1,0 +1,200 @@
+"""Which branch of the one sketch answers a branch of the other."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from treestroke.core.geometry.polyline import Floats, Indices
+from treestroke.core.lift.sheet import BINS, Sheet
+from treestroke.core.lift.weaving import HALVED, PLANE, Walk, Weave, walk
+
+SHORTEST = 8.0
+"""Units of a branch that may stay without a partner of their own: they are led to their end where the partner ended."""
+SPUR, TAIL = 80.0, 40.0
+"""Units of height by which a branch may rise or droop further than its partner, for a while and at its end."""
+SPARE = 0.05
+"""Share of a sketch's length up to which the tree may show what that sketch does not: such spurs and tails."""
+FEATURES, LEVEL, LEFT, FRESH = 0.3, 60.0, 1.0, 0.6
+TWICE, FLAT, UNTRUE, CROWDED = 0.5, 2.0, 3.0, 40.0
+"""Cost of a unit by which two branches' features differ, that stays unpaired, that pairs for the first time (a gain),
+that is walked twice, that lies flat, that is untrue; cost of a level between them and of a like limb at their height.
+Tuned on the drawn and grown pairs of the tests."""
+ALONE = -1
+"""Stands for no branch."""
+CLOSE = 150.0
+"""Units of height at which limbs crowd each other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Match:
+    """A walk along a branch and another, what it costs, and which other: ALONE for none."""
+
+    walk: Walk
+    cost: float
+    other: int
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What is sought: partners for a run of joints of a branch of the leading sheet.
+
+    Attributes
+    ----------
+    weave, leader
+        The tree so far; the leading sheet, 0 for the front.
+    number, run
+        The branch, and the joints of it (n,) that have no partner yet.
+    radius_weight
+        The paper's k2.
+    """
+
+    weave: Weave
+    leader: int
+    number: int
+    run: Indices
+    radius_weight: float
+
+    @property
+    def sheets(self) -> tuple[Sheet, Sheet]:
+        """The leader's and the follower's sheet."""
+        return self.weave.sheets[self.leader], self.weave.sheets[1 - self.leader]
+
+    def features(self) -> Floats:
+        """Tell how unlike the branch each of the other sheet's is (k,): the paper's F, and what a drooping limb shows.
+
+        Beside the greatest height of the family its least height counts, and the level: a stem answers a stem.
+        """
+        lead, follow = self.sheets
+        number = self.number
+        unlike = np.abs(follow.family_top - lead.family_top[number])
+        unlike += np.abs(follow.family_lowest - lead.family_lowest[number])
+        thick = np.array([np.max(follow.radii[follow.own(m)[:3]]) for m in range(len(follow.paths))])
+        known = (thick > 0) & (lead.radii[self.run[0]] > 0)
+        unlike += np.where(known, self.radius_weight * np.abs(thick - lead.radii[self.run[0]]), 0.0)
+        return np.asarray(FEATURES * unlike + LEVEL * np.abs(follow.level - lead.level[number]))
+
+    def candidates(self, unlike: Floats, tried: set[int], most: int) -> list[int]:
+        """List the most promising of the branches that pass heights of the run."""
+        lead, follow = self.sheets
+        mine = np.bincount(lead.bins[self.run], weights=lead.lengths[self.run], minlength=BINS)
+        there = follow.lengths_by_height(np.ones(len(follow.points), dtype=bool)) > 0
+        fresh = follow.lengths_by_height(~self.weave.used[1 - self.leader])[:, mine > 0].sum(axis=1)
+        shared = there @ mine
+        full = follow.lengths_by_height(np.abs(follow.aside) > PLANE) > 0
+        unlike = unlike - FLAT * (full @ mine)
+        cost = unlike - LEFT * shared - FRESH * np.minimum(fresh, shared)
+        cost[shared < min(SHORTEST, 0.5 * mine.sum())] = np.inf
+        cost[list(tried - {ALONE})] = np.inf
+        order = np.argsort(cost, kind="stable")[:most]
+        return [int(m) for m in order if np.isfinite(cost[m])]
+
+    def best(self, tried: set[int], most: int) -> Match:
+        """Find the cheapest walk with a branch that is not among those tried, or alone; add to those tried."""
+        if not self.weave.points:
+            # The first pair is that of the stems: all else stands on it.
+            return Match(self.match(0), 0.0, 0)
+        unlike = self.features()
+        alone = self.alone()
+        found: list[Match] = []
+        while not found and (others := self.candidates(unlike, tried, most)):
+            walks = [(other, self.match(other)) for other in others]
+            leading = [each for each in walks if np.isin(self.run, each[1].joints[0]).any()]
+            found = [Match(walk, self.cost(walk, unlike[other]), other) for other, walk in leading]
+            tried.update([] if found else others)
+        best = min(found, key=lambda match: match.cost, default=Match(alone, np.inf, ALONE))
+        if best.other == 0 and (alone.invented().sum(axis=1) < self.spare()).all():
+            # With the stem it lies flat: going on from where it is may do better.
+            best = min(best, Match(alone, self.cost(alone, 0.0), ALONE), key=lambda match: match.cost)
+        tried.add(best.other)
+        return best
+
+    def match(self, other: int) -> Walk:
+        """Walk the branch together with another, from where both leave the tree to where their heights part."""
+        lead, follow = self.sheets
+        chain, partner = lead.paths[self.number], follow.paths[other]
+        start_height, other_height = (
+            float(sheet.points[sheet.bud[b], 1]) for sheet, b in ((lead, self.number), (follow, other))
+        )
+        if follow.top[other] < start_height - HALVED:
+            partner = detour(follow, other, start_height)
+        elif lead.top[self.number] < other_height - HALVED:
+            chain = detour(lead, self.number, other_height)
+        end = int(np.flatnonzero(chain == self.run[-1])[-1]) + 1
+        first = int(np.flatnonzero(chain == self.run[0])[-1])
+        i, j = self.weave.start(self.leader, chain[:first], partner)
+        # A stem passes all heights: one may come down on it below where one left it.
+        low = 0 if other == 0 else j
+        found = walk(self.sheets, chain[i:end], partner[low:], j - low)
+        return found.cut(0, max(_parting(found, self.spare()), 1))
+
+    def spare(self) -> Floats:
+        """Length that may still be invented in the leader's and the follower's view (2,)."""
+        lengths = np.array([sheet.lengths.sum() for sheet in self.sheets])
+        return np.asarray(SPARE * lengths - self.weave.invented[:: 1 - 2 * self.leader])
+
+    def alone(self) -> Walk:
+        """Lead the branch on to the end of the run while the follower stays where it is."""
+        lead, follow = self.sheets
+        chain = lead.paths[self.number]
+        first, end = np.flatnonzero(np.isin(chain, self.run))[[0, -1]].tolist()
+        i, partner = self.weave.last_partner(self.leader, chain[:first])
+        joints = np.stack([chain[i : end + 1], np.full(end + 1 - i, partner)])
+        places = [
+            np.column_stack([sheet.points[each], sheet.radii[each]])
+            for sheet, each in zip((lead, follow), joints, strict=True)
+        ]
+        return Walk(joints, np.stack(places))
+
+    def cost(self, found: Walk, unlike: float) -> float:
+        """Price a walk: what it leaves, repeats, flattens or invents, and how unlike the branches are."""
+        lead, follow = self.sheets
+        used = self.weave.used[self.leader], self.weave.used[1 - self.leader]
+        first, _ = self.weave.attachment(self.leader, found)
+        new = found.cut(first, found.joints.shape[1])
+        lengths = new.lengths()
+        paired = np.isin(self.run, new.joints[0])
+        fresh = np.unique(new.joints[1][~used[1][new.joints[1]]])
+        twice = used[0][new.joints[0]] & used[1][new.joints[1]]
+        flat = (np.abs(lead.aside[new.joints[0]]) < PLANE) | (np.abs(follow.aside[new.joints[1]]) < PLANE)
+        cost = unlike + LEFT * lead.lengths[self.run[~paired]].sum() - FRESH * follow.lengths[fresh].sum()
+        cost += lengths @ (TWICE * twice + FLAT * flat) + UNTRUE * new.invented().sum()
+        return float(cost + CROWDED * self._crowd(new))
+
+    def _crowd(self, new: Walk) -> float:
+        """Count limbs of like height that went to the same side in both sketches, near ones more."""
+        if new.joints.shape[1] == 0:
+            return 0.0
+        lead, follow = self.sheets
+        ends = self.weave.ends
+        here = np.array([lead.aside[new.joints[0, -1]], follow.aside[new.joints[1, -1]]])[:: 1 - 2 * self.leader]
+        height = new.places[0, -1, 1]
+        return float(sum(np.exp(-abs(y - height) / CLOSE) for x, y, z in ends if x * here[0] > 0 and z * here[1] > 0))
+
+
+def detour(sheet: Sheet, number: int, height: float) -> Indices:
+    """Lead the path to a branch past its bud up its bearer to a height, and back down to the bud.
+
+    So drooping limbs answer each other whose buds are not equally high.
+    """
+    path = sheet.paths[number]
+    bud = int(sheet.bud[number])
+    place = int(np.flatnonzero(path == bud)[0])
+    bearing = sheet.paths[int(sheet.branch[bud])]
+    arm = bearing[place + 1 :]
+    reached = np.flatnonzero(sheet.points[arm, 1] >= height)
+    if len(path) == len(bearing) or len(reached) == 0:
+        return path
+    arm = arm[: reached[0] + 1]
+    return np.concatenate([path[: place + 1], arm, arm[-2::-1], path[place:]])
+
+
+def _parting(found: Walk, spare: Floats) -> int:
+    """Count the points up to which two climbers stay at equal height, but for spurs and tails of a spare length (2,)."""
+    invented = found.invented()
+    for start, end in found.runs().tolist():
+        spare = spare - invented[:, start:end].sum(axis=1)
+        most = np.abs(found.apart[start:end]).max()
+        allowed = TAIL if end == len(found.apart) else SPUR
+        if most > 2 * HALVED + SHORTEST and (most > allowed or spare.min() < 0):
+            return start
+    return len(found.apart)

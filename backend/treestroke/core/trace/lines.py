@@ -1,0 +1,124 @@
+"""Lines that grow from one another, and the skeleton that they make."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from treestroke.core.errors import StrokesError
+from treestroke.core.geometry.polyline import Floats, arc_lengths, place_at
+from treestroke.core.skeleton.branched import Branched
+from treestroke.core.skeleton.skeleton import Skeleton
+
+STEP = 0.008
+"""Of the tree's height: as far as joints lie apart at most."""
+SAME_PLACE = 0.0005
+"""Of the tree's height: buds and bends nearer to each other share a joint."""
+MAX_JOINTS = 10_000
+LEAST_HEIGHT = 0.02
+"""Of the canvas's long side: a lower drawing has no height to measure by."""
+
+
+@dataclass(frozen=True, eq=False)
+class Line:
+    """One branch as it was drawn.
+
+    Attributes
+    ----------
+    points
+        (n, 2) px from its place on its bearer (the stem: from the root) to its tip, n >= 2.
+    radii
+        (n,) px, 0 where they are not known.
+    bearer
+        The line that it grows from, an earlier one; -1 for the stem.
+    place
+        How far along the bearer, px.
+    """
+
+    points: Floats
+    radii: Floats
+    bearer: int
+    place: float
+
+
+def tree_height(root: Floats, points: Floats, canvas: tuple[int, int]) -> float:
+    """Measure from the root (2,) up to the topmost of the points (n, 2), px.
+
+    Raises
+    ------
+    StrokesError
+        They do not rise above the root.
+    """
+    height = float(root[1] - points[:, 1].min())
+    if height < LEAST_HEIGHT * max(canvas):
+        what = "the strokes do not rise above the lower end of the trunk; draw the tree upward from its root"
+        raise StrokesError.at(("branches",), what, "tree_flat")
+    return height
+
+
+def check_length(length: float, height: float) -> None:
+    """Refuse lines that are longer together, px, than `MAX_JOINTS` on a tree of the given height, px.
+
+    Raises
+    ------
+    StrokesError
+        They are.
+    """
+    most = MAX_JOINTS * STEP
+    if length > most * height:
+        what = (
+            f"all together they are {length / height:.0f} times as long as the tree is high, at most {most:.0f} times"
+        )
+        raise StrokesError.at(("branches",), f"{what} is allowed; draw fewer or shorter ones", "strokes_too_long")
+
+
+def branched_from(lines: list[Line], height: float) -> Branched:
+    """Join lines (the stem first, each after its bearer) to one skeleton of a tree ``height`` px high.
+
+    A joint stands at each line's own points, at each bud, and between them so that none are further than `STEP` apart.
+
+    Raises
+    ------
+    StrokesError
+        It has more than `MAX_JOINTS`.
+    """
+    buds: list[list[float]] = [[] for _ in lines]
+    for line in lines[1:]:
+        buds[line.bearer].append(line.place)
+    points: list[Floats] = []
+    radii: list[Floats] = []
+    parents: list[int] = []
+    branch: list[int] = []
+    stations: list[tuple[Floats, list[int]]] = []
+    for index, line in enumerate(lines):
+        at = _stations(line, buds[index], height)
+        joints = list(range(len(parents), len(parents) + len(at)))
+        if line.bearer >= 0:
+            bearer_at, bearer_joints = stations[line.bearer]
+            joints = [bearer_joints[int(np.abs(bearer_at - line.place).argmin())], *joints[:-1]]
+        own = at if line.bearer < 0 else at[1:]
+        points.append(place_at(line.points, own))
+        radii.append(np.interp(own, arc_lengths(line.points), line.radii))
+        parents += [-1, *joints[:-1]] if line.bearer < 0 else joints[:-1]
+        branch += [index] * len(own)
+        stations.append((at, joints))
+    if len(parents) > MAX_JOINTS:
+        what = f"all together they bend too often ({len(parents)} joints, at most {MAX_JOINTS}); draw them smoother"
+        raise StrokesError.at(("branches",), what, "strokes_too_long")
+    return Branched(Skeleton(np.concatenate(points), np.concatenate(radii), np.array(parents)), np.array(branch))
+
+
+def _stations(line: Line, buds: list[float], height: float) -> Floats:
+    """Choose where along a line its joints stand (m,), px: its ends, its buds, its bends and between them."""
+    arcs = arc_lengths(line.points)
+    near, fixed = SAME_PLACE * height, [0.0, float(arcs[-1])]
+    for place in sorted([*buds]):
+        if min(abs(place - other) for other in (fixed[0], fixed[1], fixed[-1])) > near:
+            fixed.append(place)
+    held = np.array(sorted(fixed))
+    bends = arcs[np.abs(arcs[:, None] - held).min(axis=1) > near]
+    at = np.sort(np.concatenate([held, bends]))
+    at = at[np.append(True, np.diff(at) > 0)]
+    parts = np.maximum(np.ceil(np.diff(at) / (STEP * height)), 1).astype(np.int64)
+    within = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
+    between = np.repeat(at[:-1], parts) + within * np.repeat(np.diff(at) / parts, parts)
+    return np.append(between, at[-1])

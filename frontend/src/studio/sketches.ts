@@ -1,0 +1,40 @@
+import type { components } from '../api/schema'
+import type { Extent } from '../sheets'
+import { fromWire, type Line, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
+
+export type StrokeSketch = components['schemas']['StrokeSketch']
+
+/** One sheet's strokes, and how large a sheet they were drawn on. */
+export interface SketchFile {
+  readonly strokes: Strokes
+  readonly size: Extent
+}
+
+/** Room around strokes whose sheet is not known, as a share of their height. */
+const MARGIN = 0.08
+
+/** Write one sheet's strokes as sketch files and the service have them, with the size of what they were drawn on. */
+export function sketchToWire(strokes: Strokes, sheet: SheetName, { width, height }: Extent): StrokeSketch {
+  const { crown, branches = [] } = toWire(onSheet(strokes, sheet))
+  return { canvas: [width, height], ...(crown && { crown }), branches }
+}
+
+/** Read a sketch file, or throw a TypeError where it has another form. */
+export function sketchFrom(value: unknown): SketchFile {
+  const { crown, branches } = fromWire(value)
+  const strokes = { ...fromWire({}), crown, branches }
+  const lines = [...(crown ? [crown] : []), ...branches.map(({ points }) => points)]
+  return { strokes, size: canvasOf(value) ?? around(lines.flat()) }
+}
+
+function canvasOf(value: unknown): Extent | null {
+  const { canvas } = value as { canvas?: readonly unknown[] | null }
+  const [width, height] = canvas ?? []
+  return typeof width === 'number' && typeof height === 'number' && width > 0 && height > 0 ? { width, height } : null
+}
+
+function around(points: Line): Extent {
+  const [right, bottom] = [0, 1].map(axis => Math.max(1, ...points.map(point => point[axis]!)))
+  const margin = MARGIN * bottom!
+  return { width: Math.ceil(right! + margin), height: Math.ceil(bottom! + margin) }
+}

@@ -1,0 +1,74 @@
+import { expect, test } from 'vitest'
+import { begin } from '../src/history'
+import { brushWidth, commonLevels, fittedTo, isDrawn, isPaper, levelsOf, paper, strayLevels } from '../src/sheets'
+import { EMPTY, type State } from '../src/state'
+import { type Line, NO_STROKES, type Strokes, withSheet, withStroke } from '../src/strokes'
+import { photo } from './builders'
+
+const up = (root: number, top: number): Line => [
+  [450, root],
+  [450, top],
+]
+const trunk = (root: number, top: number) => withStroke(NO_STROKES, 'branch', up(root, top))
+const both = (front: Strokes, side: Strokes) => withSheet(front, 'side', side)
+const state = (present: Strokes, changes: Partial<State> = {}): State => ({
+  ...EMPTY,
+  ...{ source: 'sketch', photo: paper(), side: paper(), history: begin(present) },
+  ...changes,
+})
+
+test('paper is upright, and as high as the sheet that it lies beside', () => {
+  expect(paper()).toMatchObject({ width: 900, height: 1200, id: null, url: null })
+  expect(paper(600)).toMatchObject({ width: 450, height: 600 })
+})
+
+test('only a photo whose tree is traced is no paper', () => {
+  expect(isPaper({ source: 'photo' }, 'front')).toBe(false)
+  expect(isPaper({ source: 'photo' }, 'side')).toBe(true)
+  expect(isPaper({ source: 'sketch' }, 'front')).toBe(true)
+})
+
+test('a tree stands where its trunk does and ends at its topmost stroke, whichever way the trunk was drawn', () => {
+  const limb = withStroke(trunk(1100, 300), 'branch', up(500, 120))
+  expect(levelsOf(limb)).toEqual({ root: 1100, top: 120 })
+  expect(levelsOf(trunk(300, 1100))).toEqual({ root: 1100, top: 300 })
+  expect(levelsOf(NO_STROKES)).toBeNull()
+})
+
+test('the lines run through both sheets at one height: where a tree is expected, then where the front’s is', () => {
+  expect(commonLevels(state(NO_STROKES), 'side')).toEqual({ root: 1104, top: 96 })
+  const drawn = state(trunk(1000, 200), { side: paper(600) })
+  expect(commonLevels(drawn, 'front')).toEqual({ root: 1000, top: 200 })
+  expect(commonLevels(drawn, 'side')).toEqual({ root: 500, top: 100 })
+  expect(commonLevels({ ...drawn, side: null }, 'side')).toBeNull()
+})
+
+test('a side of another height shows its own lines, one of the same height none', () => {
+  expect(strayLevels(state(both(trunk(1100, 100), trunk(1110, 90))))).toBeNull()
+  expect(strayLevels(state(both(trunk(1100, 100), trunk(1100, 300))))).toEqual({ root: 1100, top: 300 })
+  expect(strayLevels(state(trunk(1100, 100)))).toBeNull()
+})
+
+test('a drawing that is moved to another sheet fills it and keeps its form, and its brushes their share', () => {
+  const drawn = withStroke(NO_STROKES, 'branch', up(1200, 0), 12)
+  const { branches } = fittedTo(drawn, paper(), { width: 800, height: 600 })
+  expect(branches).toEqual([
+    {
+      points: [
+        [400, 600],
+        [400, 0],
+      ],
+      width: 6,
+    },
+  ])
+})
+
+test('a brush is so wide a share of its paper, a pencil has no width', () => {
+  expect(brushWidth({ brush: 0.018 }, { width: 900, height: 1200 })).toBe(21.6)
+  expect(brushWidth({ brush: null }, photo())).toBeNull()
+})
+
+test('each sheet knows whether anything is drawn on it', () => {
+  const drawn = both(NO_STROKES, trunk(9, 1))
+  expect([isDrawn(drawn, 'front'), isDrawn(drawn, 'side')]).toEqual([false, true])
+})
