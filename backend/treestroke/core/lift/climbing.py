@@ -34,21 +34,26 @@ def climb(lead: Floats, follow: Floats, start: int) -> Indices:
     (n,) the follower's point at each of the leader's.
     """
     cost = _cost(lead, follow)
-    steps, edges = np.diff(lead[:, 1], prepend=lead[0, 1]), np.diff(follow[:, 1])
+    edges = np.diff(follow[:, 1])
     between = 0.5 * (cost[:, 1:] + cost[:, :-1])
     onward, backward = (
         np.concatenate([np.zeros((len(lead), 1)), np.cumsum((between + price) * edges, axis=1)], axis=1)
         for price in (ONWARD, BACKWARD)
     )
-    arrived = cost * steps[:, None]
+    # The second of each pair runs from the follower's last point to its first, as a walk backward does.
+    before = np.stack([-onward, backward[:, ::-1]], axis=1)
+    stepped = cost * np.diff(lead[:, 1], prepend=lead[0, 1])[:, None]
+    left = np.stack([stepped, stepped[:, ::-1]], axis=1) + before
     ahead, back = onward[0] - onward[0, start], backward[0, start] - backward[0]
     total = np.where(np.arange(len(follow)) < start, back, ahead)
+    both, reached = np.stack([total, total[::-1]]), np.empty((2, len(follow)))
     for row in range(1, len(lead)):
-        arrived[row] += total
-        ahead = np.minimum.accumulate(arrived[row] - onward[row]) + onward[row]
-        back = np.minimum.accumulate((arrived[row] + backward[row])[::-1])[::-1] - backward[row]
-        total = np.minimum(ahead, back)
-    return _trace_back(start, int(total.argmin()), arrived, onward, backward)
+        left[row] += both
+        np.minimum.accumulate(left[row], axis=1, out=reached)
+        reached -= before[row]
+        np.minimum(reached[0], reached[1, ::-1], out=both[0])
+        both[1] = both[0, ::-1]
+    return _trace_back(start, int(both[0].argmin()), left, before)
 
 
 def _cost(lead: Floats, follow: Floats) -> Floats:
@@ -59,13 +64,21 @@ def _cost(lead: Floats, follow: Floats) -> Floats:
     return np.asarray(np.minimum(apart * apart, WORST) + UNEVEN * uneven * uneven)
 
 
-def _trace_back(start: int, end: int, arrived: Floats, onward: Floats, backward: Floats) -> Indices:
-    """Find the places (n,) of the cheapest walk from a place to a place."""
-    places = np.full(len(arrived), start, dtype=np.int64)
-    for row in range(len(arrived) - 1, 0, -1):
+def _trace_back(start: int, end: int, left: Floats, before: Floats) -> Indices:
+    """Find the places (n,) of the cheapest walk from a place to a place.
+
+    ``left`` (n, 2, m) is what it costs to leave each place onward and, last place first, backward, short of what
+    ``before`` (n, 2, m) says of the place that is gone to.
+    """
+    places = np.full(len(left), start, dtype=np.int64)
+    last = left.shape[2] - 1
+    for row in range(len(left) - 1, 0, -1):
         places[row] = end
-        reach = np.empty(arrived.shape[1])
-        reach[: end + 1] = arrived[row, : end + 1] + (onward[row, end] - onward[row, : end + 1])
-        reach[end + 1 :] = arrived[row, end + 1 :] + (backward[row, end + 1 :] - backward[row, end])
-        end = int(reach.argmin())
+        onward, backward = left[row, 0, : end + 1], left[row, 1, : last - end]
+        near = int(onward.argmin())
+        if end < last:
+            far = int(backward.argmin())
+            if backward[far] - before[row, 1, last - end] < onward[near] - before[row, 0, end]:
+                near = last - far
+        end = near
     return places

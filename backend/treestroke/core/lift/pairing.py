@@ -1,12 +1,13 @@
 """Which branch of the one sketch answers a branch of the other."""
 
 from dataclasses import dataclass
+from math import exp
 
 import numpy as np
 
 from treestroke.core.geometry.polyline import Floats, Indices
-from treestroke.core.lift.sheet import BINS, Sheet
-from treestroke.core.lift.weaving import HALVED, PLANE, Walk, Weave, walk
+from treestroke.core.lift.sheet import BINS, Mask, Sheet
+from treestroke.core.lift.weaving import HALVED, Walk, Weave, walk
 
 SHORTEST = 8.0
 """Units of a branch that may stay without a partner of their own: they are led to their end where the partner ended."""
@@ -68,7 +69,7 @@ class Search:
         number = self.number
         unlike = np.abs(follow.family_top - lead.family_top[number])
         unlike += np.abs(follow.family_lowest - lead.family_lowest[number])
-        thick = np.array([np.max(follow.radii[follow.own(m)[:3]]) for m in range(len(follow.paths))])
+        thick = follow.thickness
         known = (thick > 0) & (lead.radii[self.run[0]] > 0)
         unlike += np.where(known, self.radius_weight * np.abs(thick - lead.radii[self.run[0]]), 0.0)
         return np.asarray(FEATURES * unlike + LEVEL * np.abs(follow.level - lead.level[number]))
@@ -77,12 +78,9 @@ class Search:
         """List the most promising of the branches that pass heights of the run."""
         lead, follow = self.sheets
         mine = np.bincount(lead.bins[self.run], weights=lead.lengths[self.run], minlength=BINS)
-        there = follow.lengths_by_height(np.ones(len(follow.points), dtype=bool)) > 0
         fresh = follow.lengths_by_height(~self.weave.used[1 - self.leader])[:, mine > 0].sum(axis=1)
-        shared = there @ mine
-        full = follow.lengths_by_height(np.abs(follow.aside) > PLANE) > 0
-        unlike = unlike - FLAT * (full @ mine)
-        cost = unlike - LEFT * shared - FRESH * np.minimum(fresh, shared)
+        shared = follow.passing @ mine
+        cost = unlike - FLAT * (follow.reaching @ mine) - LEFT * shared - FRESH * np.minimum(fresh, shared)
         cost[shared < min(SHORTEST, 0.5 * mine.sum())] = np.inf
         cost[list(tried - {ALONE})] = np.inf
         order = np.argsort(cost, kind="stable")[:most]
@@ -94,17 +92,18 @@ class Search:
             # The first pair is that of the stems: all else stands on it.
             return Match(self.match(0), 0.0, 0)
         unlike = self.features()
-        alone = self.alone()
         found: list[Match] = []
         while not found and (others := self.candidates(unlike, tried, most)):
             walks = [(other, self.match(other)) for other in others]
-            leading = [each for each in walks if np.isin(self.run, each[1].joints[0]).any()]
+            leading = [each for each in walks if self._paired(each[1]).any()]
             found = [Match(walk, self.cost(walk, unlike[other]), other) for other, walk in leading]
             tried.update([] if found else others)
-        best = min(found, key=lambda match: match.cost, default=Match(alone, np.inf, ALONE))
-        if best.other == 0 and (alone.invented().sum(axis=1) < self.spare()).all():
+        best = min(found, key=lambda match: match.cost) if found else Match(self.alone(), np.inf, ALONE)
+        if best.other == 0:
             # With the stem it lies flat: going on from where it is may do better.
-            best = min(best, Match(alone, self.cost(alone, 0.0), ALONE), key=lambda match: match.cost)
+            alone = self.alone()
+            if (alone.invented.sum(axis=1) < self.spare()).all():
+                best = min(best, Match(alone, self.cost(alone, 0.0), ALONE), key=lambda match: match.cost)
         tried.add(best.other)
         return best
 
@@ -136,7 +135,7 @@ class Search:
         """Lead the branch on to the end of the run while the follower stays where it is."""
         lead, follow = self.sheets
         chain = lead.paths[self.number]
-        first, end = np.flatnonzero(np.isin(chain, self.run))[[0, -1]].tolist()
+        first, end = (int(np.flatnonzero(chain == joint)[0]) for joint in self.run[[0, -1]])
         i, partner = self.weave.last_partner(self.leader, chain[:first])
         joints = np.stack([chain[i : end + 1], np.full(end + 1 - i, partner)])
         places = [
@@ -151,24 +150,29 @@ class Search:
         used = self.weave.used[self.leader], self.weave.used[1 - self.leader]
         first, _ = self.weave.attachment(self.leader, found)
         new = found.cut(first, found.joints.shape[1])
-        lengths = new.lengths()
-        paired = np.isin(self.run, new.joints[0])
-        fresh = np.unique(new.joints[1][~used[1][new.joints[1]]])
+        fresh = np.zeros(len(follow.points), dtype=bool)
+        fresh[new.joints[1]] = True
+        fresh &= ~used[1]
         twice = used[0][new.joints[0]] & used[1][new.joints[1]]
-        flat = (np.abs(lead.aside[new.joints[0]]) < PLANE) | (np.abs(follow.aside[new.joints[1]]) < PLANE)
-        cost = unlike + LEFT * lead.lengths[self.run[~paired]].sum() - FRESH * follow.lengths[fresh].sum()
-        cost += lengths @ (TWICE * twice + FLAT * flat) + UNTRUE * new.invented().sum()
+        flat = lead.flat[new.joints[0]] | follow.flat[new.joints[1]]
+        cost = unlike + LEFT * lead.lengths[self.run[~self._paired(new)]].sum() - FRESH * follow.lengths[fresh].sum()
+        cost += new.lengths() @ (TWICE * twice + FLAT * flat) + UNTRUE * new.invented.sum()
         return float(cost + CROWDED * self._crowd(new))
+
+    def _paired(self, found: Walk) -> Mask:
+        """Tell which joints of the run (n,) a walk comes to."""
+        reached = np.zeros(len(self.sheets[0].points), dtype=bool)
+        reached[found.joints[0]] = True
+        return np.asarray(reached[self.run])
 
     def _crowd(self, new: Walk) -> float:
         """Count limbs of like height that went to the same side in both sketches, near ones more."""
         if new.joints.shape[1] == 0:
             return 0.0
-        lead, follow = self.sheets
-        ends = self.weave.ends
-        here = np.array([lead.aside[new.joints[0, -1]], follow.aside[new.joints[1, -1]]])[:: 1 - 2 * self.leader]
-        height = new.places[0, -1, 1]
-        return float(sum(np.exp(-abs(y - height) / CLOSE) for x, y, z in ends if x * here[0] > 0 and z * here[1] > 0))
+        here = [float(sheet.aside[joint]) for sheet, joint in zip(self.sheets, new.joints[:, -1], strict=True)]
+        right, toward = here[:: 1 - 2 * self.leader]
+        height = float(new.places[0, -1, 1])
+        return sum(exp(-abs(y - height) / CLOSE) for x, y, z in self.weave.ends if x * right > 0 and z * toward > 0)
 
 
 def detour(sheet: Sheet, number: int, height: float) -> Indices:
@@ -190,8 +194,8 @@ def detour(sheet: Sheet, number: int, height: float) -> Indices:
 
 def _parting(found: Walk, spare: Floats) -> int:
     """Count the points up to which two climbers stay at equal height, but for spurs and tails of a spare length (2,)."""
-    invented = found.invented()
-    for start, end in found.runs().tolist():
+    invented = found.invented
+    for start, end in found.runs.tolist():
         spare = spare - invented[:, start:end].sum(axis=1)
         most = np.abs(found.apart[start:end]).max()
         allowed = TAIL if end == len(found.apart) else SPUR

@@ -90,7 +90,7 @@ def _pair(weave: Weave, leader: int, number: int, params: RetrievalParams) -> No
 
 def _open_run(leading: Sheet, used: Mask, number: int) -> Indices:
     """Give the first run of a branch's joints that nothing stands for and that is worth a walk."""
-    own = leading.own(number)
+    own = leading.own[number]
     open_ = ~used[own]
     edges = np.flatnonzero(np.diff(np.concatenate([[False], open_, [False]]).astype(np.int8)))
     for start, end in edges.reshape(-1, 2).tolist():

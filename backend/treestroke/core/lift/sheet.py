@@ -1,6 +1,7 @@
 """A sketch made ready for depth retrieval: joints evenly spaced, and what the paper says about each branch."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ Mask = NDArray[np.bool_]
 
 STRAIGHT = 0.3
 """How far, units, joints may be off a straight piece and yet be left out."""
+PLANE = 20.0
+"""Units on either side of the stem's two planes in which a limb looks flat."""
 BIN, LOWEST, BINS = 8.0, -400.0, 200
 """Heights are counted in bins of 8 units from -400 up; what is beyond falls in the last bin."""
 
@@ -62,16 +65,36 @@ class Sheet:
     family_length: Floats
     bins: Indices
 
-    def own(self, number: int) -> Indices:
-        """List the joints of a branch without its bud."""
-        path = self.paths[number]
-        return path[self.branch[path] == number]
+    @cached_property
+    def own(self) -> list[Indices]:
+        """The joints of each branch without its bud."""
+        return [path[self.branch[path] == number] for number, path in enumerate(self.paths)]
+
+    @cached_property
+    def thickness(self) -> Floats:
+        """Radius with which each branch begins (k,)."""
+        return np.array([np.max(self.radii[own[:3]]) for own in self.own])
+
+    @cached_property
+    def passing(self) -> Mask:
+        """Which bins of height each branch passes (k, bins)."""
+        return self.lengths_by_height(np.ones(len(self.points), dtype=bool)) > 0
+
+    @cached_property
+    def reaching(self) -> Mask:
+        """Which bins of height each branch passes to the left or right of the stem (k, bins)."""
+        return self.lengths_by_height(~self.flat) > 0
+
+    @cached_property
+    def flat(self) -> Mask:
+        """Which joints (n,) lie before or behind the stem, so that the other sketch's plane would hold them."""
+        return np.asarray(np.abs(self.aside) < PLANE)
 
     def lengths_by_height(self, chosen: Mask) -> Floats:
         """Sum the lengths of the chosen joints (n,) by branch and bin of height (k, bins)."""
         cell = self.branch * BINS + self.bins
         total = np.bincount(cell, weights=self.lengths * chosen, minlength=len(self.paths) * BINS)
-        return total.reshape(len(self.paths), BINS)
+        return np.asarray(total, dtype=np.float64).reshape(len(self.paths), BINS)
 
     def order(self) -> list[int]:
         """List branches level by level from the stem, in a level the one with the longest family first."""

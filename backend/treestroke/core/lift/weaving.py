@@ -1,6 +1,7 @@
 """Where two sketches are woven into one tree: each joint a place on the front and a place on the side."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -12,8 +13,6 @@ HALVED = 4.0
 """Units apart in height up to which a joint lies midway between its two points; both are then within 2 units."""
 GIVEN_UP = 12.0
 """Units apart in height from which on a joint lies at its leader's point."""
-PLANE = 20.0
-"""Units on either side of the stem's two planes in which a limb looks flat."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +30,7 @@ class Walk:
     joints: Indices
     places: Floats
 
-    @property
+    @cached_property
     def apart(self) -> Floats:
         """How much higher the leader is than the follower (n,)."""
         return np.asarray(self.places[0, :, 1] - self.places[1, :, 1])
@@ -40,37 +39,47 @@ class Walk:
         """Keep the points from ``start`` to before ``end``."""
         return Walk(self.joints[:, start:end], self.places[:, start:end])
 
-    def runs(self) -> Indices:
-        """Bound the runs of points at unequal heights (k, 2): first point, and the point after the last."""
-        off = np.abs(self.apart) > HALVED
-        edges = np.diff(np.concatenate([[False], off, [False]]).astype(np.int8))
-        return np.flatnonzero(edges).reshape(-1, 2)
+    @cached_property
+    def steps(self) -> Floats:
+        """Move in x and y of the leader and the follower to each point (2, n, 2), none to the first."""
+        steps = np.zeros((2, len(self.apart), 2))
+        steps[:, 1:] = self.places[:, 1:, :2] - self.places[:, :-1, :2]
+        return steps
 
+    @cached_property
+    def runs(self) -> Indices:
+        """Bounds of the runs of points at unequal heights (k, 2): first point, and the point after the last."""
+        off = np.zeros(len(self.apart) + 2, dtype=bool)
+        off[1:-1] = np.abs(self.apart) > HALVED
+        return np.flatnonzero(off[1:] != off[:-1]).reshape(-1, 2)
+
+    @cached_property
     def led(self) -> Mask:
-        """Tell which points (n,) have the leader's height: in a run of unequal heights the one that moves says it."""
-        steps = np.abs(np.diff(self.places[:, :, 1], axis=1, prepend=self.places[:, :1, 1]))
-        led = np.ones(len(steps[0]), dtype=bool)
-        for start, end in self.runs().tolist():
-            led[start:end] = steps[0, start:end].sum() >= steps[1, start:end].sum()
+        """Which points (n,) have the leader's height: in a run of unequal heights the one that moves says it."""
+        climbs = np.abs(self.steps[:, :, 1])
+        led = np.ones(len(self.apart), dtype=bool)
+        for start, end in self.runs.tolist():
+            led[start:end] = climbs[0, start:end].sum() >= climbs[1, start:end].sum()
         return led
 
+    @cached_property
     def invented(self) -> Floats:
         """Length of the piece before each point that the leader's and the follower's view (2, n) do not have."""
-        off, led = np.abs(self.apart) > 2 * HALVED, self.led()
-        steps = np.diff(self.places[:, :, :2], axis=1, prepend=self.places[:, :1, :2])
+        off, led, steps = np.abs(self.apart) > 2 * HALVED, self.led, self.steps
         shown = [np.hypot(steps[0, :, 0], steps[1, :, 1]), np.hypot(steps[1, :, 0], steps[0, :, 1])]
         return np.where(off & np.stack([~led, led]), shown, 0.0)
 
     def lengths(self) -> Floats:
         """Length of the piece before each point (n,), seen from the front and the side together."""
-        steps = np.diff(self.places[:, :, :2], axis=1, prepend=self.places[:, :1, :2])
+        steps = self.steps
         return np.asarray(np.sqrt(steps[0, :, 0] ** 2 + steps[1, :, 0] ** 2 + steps[0, :, 1] ** 2))
 
 
 def walk(sheets: tuple[Sheet, Sheet], lead: Indices, follow: Indices, start: int = 0) -> Walk:
     """Walk two chains of joints, of the leader's and the follower's sheet, the latter from its place ``start`` on."""
     chains = [sheet.points[chain] for sheet, chain in zip(sheets, (lead, follow), strict=True)]
-    at = climb(*(np.column_stack([points[:, 1], arc_lengths(points)]) for points in chains), start)
+    leader, follower = (np.column_stack([points[:, 1], arc_lengths(points)]) for points in chains)
+    at = climb(leader, follower, start)
     places, whole = _every_joint(at)
     shapes = [
         np.column_stack([points, sheet.radii[chain]])
@@ -145,9 +154,9 @@ class Weave:
 
     def start(self, leader: int, lead: Indices, follow: Indices) -> tuple[int, int]:
         """Find the furthest places on both chains that one joint stands for: where a walk along them leaves the tree."""
-        place = {joint: i for i, joint in enumerate(follow.tolist())}
-        for i in range(len(lead) - 1, -1, -1):
-            found = [place[j] for j in self.partners[leader].get(int(lead[i]), ()) if j in place]
+        place = dict(zip(follow.tolist(), range(len(follow)), strict=True))
+        for i, joint in reversed(list(enumerate(lead.tolist()))):
+            found = [place[j] for j in self.partners[leader].get(joint, ()) if j in place]
             if found:
                 return i, max(found)
         return 0, 0
@@ -162,13 +171,17 @@ class Weave:
 
     def attachment(self, leader: int, found: Walk) -> tuple[int, int]:
         """Find where a walk leaves the tree for good: its first new point and the joint that bears it (-1: none)."""
-        parents = [self.sheets[leader].parents, self.sheets[1 - leader].parents]
-        for i in range(found.joints.shape[1] - 1, -1, -1):
-            a, b = int(found.joints[0, i]), int(found.joints[1, i])
-            for pair in ((a, b), (a, int(parents[1][b])), (int(parents[0][a]), b)):
-                joint = self.at.get(pair if leader == 0 else pair[::-1], -1)
+        lead, follow = found.joints
+        before = self.sheets[leader].parents[lead], self.sheets[1 - leader].parents[follow]
+        known = [
+            np.stack(pair[:: 1 - 2 * leader]).T[::-1].tolist()
+            for pair in ((lead, follow), (lead, before[1]), (before[0], follow))
+        ]
+        for left, pairs in enumerate(zip(*known, strict=True)):
+            for a, b in pairs:
+                joint = self.at.get((a, b), -1)
                 if joint >= 0:
-                    return i + 1, joint
+                    return len(lead) - left, joint
         return 0, -1
 
     def lay(self, leader: int, found: Walk, origins: Indices) -> None:
@@ -178,7 +191,7 @@ class Weave:
         points = self._placed(leader, new)
         number = self.walks[-1] + 1 if self.walks else 0
         self._mark(leader, new)
-        for view, length in zip((leader, 1 - leader), new.invented().sum(axis=1).tolist(), strict=True):
+        for view, length in zip((leader, 1 - leader), new.invented.sum(axis=1).tolist(), strict=True):
             self.invented[view] += length
         for i, (a, b) in enumerate(new.joints.T.tolist()):
             pair = (a, b) if leader == 0 else (b, a)
@@ -196,7 +209,7 @@ class Weave:
 
     def _mark(self, leader: int, new: Walk) -> None:
         """Note which joints a walk stands for."""
-        near, led = np.abs(new.apart) <= HALVED + 0.5, new.led()
+        near, led = np.abs(new.apart) <= HALVED + 0.5, new.led
         self.used[leader][new.joints[0, near | led]] = True
         self.used[1 - leader][new.joints[1, near | ~led]] = True
 
@@ -205,7 +218,7 @@ class Weave:
         apart = new.apart
         yields = np.clip((GIVEN_UP - np.abs(apart)) / (GIVEN_UP - HALVED), 0.0, 1.0)
         midway = 0.5 * np.clip(apart, -HALVED, HALVED) * yields
-        height = np.where(new.led(), new.places[0, :, 1] - midway, new.places[1, :, 1] + midway)
+        height = np.where(new.led, new.places[0, :, 1] - midway, new.places[1, :, 1] + midway)
         front, side = new.places[leader], new.places[1 - leader]
         return np.column_stack([front[:, 0], height, side[:, 0], self._radii(leader, new)])
 

@@ -1,0 +1,50 @@
+"""Summary numbers of the sketches that come with the project."""
+
+from pathlib import Path
+
+import pytest
+from tests.conftest import EXAMPLES
+
+from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.service.making import Model
+from treestroke.service.sketch import sketch
+
+SKETCHES = EXAMPLES / "sketches"
+PAIRS = {"pear": 8.0, "orange": 5.0, "pine": 18.0, "vine": 1.9, "imagined": 6.0}
+"""By name: height, metres."""
+pytestmark = pytest.mark.golden
+
+
+def side_of(name: str, side: str) -> Path:
+    return next(path for ending in ("json", "png") if (path := SKETCHES / f"{name}.{side}.{ending}").exists())
+
+
+@pytest.fixture(scope="module", params=PAIRS)
+def model(request: pytest.FixtureRequest) -> Model:
+    settings = {"height": PAIRS[request.param], "species": "pine" if request.param == "pine" else "auto"}
+    return sketch(side_of(request.param, "front"), side_of(request.param, "side"), settings)
+
+
+def test_every_tree_is_true_to_both_of_its_sketches(model: Model) -> None:
+    score = model.report["score"]
+    assert min(score["front_covered"], score["side_covered"]) >= 0.98
+    assert min(score["front_true"], score["side_true"]) >= 0.95
+    assert score["silhouette_iou"] >= 0.9
+
+
+def test_every_tree_is_full_and_no_pair_of_planes(model: Model) -> None:
+    score = model.report["score"]
+    assert score["paired"] >= 0.8
+    assert score["in_planes"] <= 0.25
+
+
+def test_every_tree_is_one_and_bears_about_2000_small_branches(model: Model) -> None:
+    skeleton = model.tree.grown.skeleton
+    assert (skeleton.parents[1:] >= 0).all()
+    assert model.report["counts"]["branches"] == pytest.approx(2000 + 110, abs=130)
+    assert model.report["counts"]["iterations"] == ModelSettings().iterations
+
+
+def test_trunks_are_as_thick_as_trees_have_them_or_as_the_brush_was(model: Model) -> None:
+    thickest = float(model.tree.grown.skeleton.radii.max()) / model.report["settings"]["height"]
+    assert 0.008 < thickest < 0.09
