@@ -8,6 +8,7 @@ from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 
 Pair = tuple[Branched, Branched]
+Course = Callable[[float], tuple[float, float]]
 Stroke = tuple[int, int, Sequence[tuple[float, float]]]
 """Branch that bears it, joint of that branch, and its further points."""
 
@@ -47,11 +48,11 @@ class Pen:
         self,
         bearer: int,
         share: float,
-        course: Callable[[float], tuple[float, float]],
+        course: Course,
         length: float,
         radius: float = 0.0,
     ) -> int:
-        """Draw a branch from a share of its bearer on, along ``course`` (t from 0 to 1 -> offset); bearer -1: the stem."""
+        """Draw a branch from a share of its bearer along ``course`` (t from 0 to 1 -> offset); bearer -1: the stem."""
         joint = 0 if bearer < 0 else self.chains[bearer][round(share * (len(self.chains[bearer]) - 1))]
         number = 0 if bearer < 0 else len(self.chains)
         if bearer >= 0:
@@ -95,8 +96,24 @@ def broadleaf(limbs: int, seed: int, twigs: int = 2, radius: float = 0.0) -> Bra
     return pen.drawn()
 
 
-def _arch(out: float, rise: float, droop: float) -> Callable[[float], tuple[float, float]]:
+def _arch(out: float, rise: float, droop: float) -> Course:
     return lambda t: (out * t, rise * np.sin(0.5 * np.pi * t) - droop * t**3)
+
+
+def _bough(out: float, tilt: float, lift: float) -> Course:
+    return lambda t: (out * t, abs(out) * tilt * t + lift * t**3)
+
+
+def _willow(out: float, rise: float, hang: float) -> Course:
+    return lambda t: (out * np.sin(0.5 * np.pi * t), 2.2 * rise * np.sin(np.pi * t) - hang * t**2)
+
+
+def _cordon(out: float) -> Course:
+    return lambda t: (out * t, 30 * np.sin(2 * t))
+
+
+def _shoot(aside: float, up: float) -> Course:
+    return lambda t: (aside * t * t, up * t)
 
 
 def pine(limbs: int, seed: int) -> Branched:
@@ -108,7 +125,7 @@ def pine(limbs: int, seed: int) -> Branched:
         share = 0.15 + 0.8 * (i + rng.uniform(0, 0.6)) / limbs
         out = (1 if i % 2 else -1) * (60 + 260 * (1 - share)) * rng.uniform(0.8, 1.2)
         tilt, lift = rng.uniform(-0.35, 0.1), rng.uniform(0, 30)
-        pen.stroke(0, share, lambda t, o=out, k=tilt, u=lift: (o * t, abs(o) * k * t + u * t**3), abs(out))
+        pen.stroke(0, share, _bough(out, tilt, lift), abs(out))
     return pen.drawn()
 
 
@@ -121,8 +138,7 @@ def weeping(limbs: int, seed: int) -> Branched:
         share = 0.45 + 0.5 * (i + rng.uniform(0, 0.8)) / limbs
         out = (1 if i % 2 else -1) * rng.uniform(120, 330)
         rise, hang = rng.uniform(60, 140), rng.uniform(350, 950 * share)
-        course = lambda t, o=out, r=rise, h=hang: (o * np.sin(0.5 * np.pi * t), 2.2 * r * np.sin(np.pi * t) - h * t**2)  # noqa: E731
-        pen.stroke(0, share, course, hang + rise)
+        pen.stroke(0, share, _willow(out, rise, hang), hang + rise)
     return pen.drawn()
 
 
@@ -133,10 +149,10 @@ def vine(side: bool, seed: int) -> Branched:
     pen.stroke(-1, 0.0, lambda t: (15 * np.sin(5 * t), 520 * t), 520)
     for sign in (-1, 1):
         out = sign * (rng.uniform(60, 110) if side else rng.uniform(600, 800))
-        arm = pen.stroke(0, 0.97, lambda t, o=out: (o * t, 30 * np.sin(2 * t)), abs(out))
+        arm = pen.stroke(0, 0.97, _cordon(out), abs(out))
         for k in range(2 if side else 6):
             aside, up = rng.uniform(-60, 60), rng.uniform(300, 500)
-            pen.stroke(arm, (k + 0.8) / (2 if side else 6), lambda t, a=aside, u=up: (a * t * t, u * t), up)
+            pen.stroke(arm, (k + 0.8) / (2 if side else 6), _shoot(aside, up), up)
     return pen.drawn()
 
 

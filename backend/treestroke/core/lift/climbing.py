@@ -10,9 +10,9 @@ import numpy as np
 from treestroke.core.geometry.polyline import Floats, Indices
 
 NEAR = 3.0
-"""Units of height that two climbers may be apart almost for free."""
+"""Units of height apart at which a unit walked costs 1; nearer it is nearly free, further it grows as the square."""
 WORST = 3.0
-"""What a unit walked apart costs at most, in terms of NEAR apart: beyond it is wrong anyhow."""
+"""What a unit walked apart costs at most: beyond it is wrong anyhow."""
 ONWARD, BACKWARD = 0.02, 0.25
 """Cost of each unit that the follower walks: it turns back only where that keeps the heights."""
 UNEVEN = 0.3
@@ -47,13 +47,14 @@ def climb(lead: Floats, follow: Floats, start: int) -> Indices:
     ahead, back = onward[0] - onward[0, start], backward[0, start] - backward[0]
     total = np.where(np.arange(len(follow)) < start, back, ahead)
     both, reached = np.stack([total, total[::-1]]), np.empty((2, len(follow)))
-    for row in range(1, len(lead)):
-        left[row] += both
-        np.minimum.accumulate(left[row], axis=1, out=reached)
-        reached -= before[row]
-        np.minimum(reached[0], reached[1, ::-1], out=both[0])
-        both[1] = both[0, ::-1]
-    return _trace_back(start, int(both[0].argmin()), left, before)
+    forth, turned, ahead, back = both[0], both[0, ::-1], reached[0], reached[1, ::-1]
+    for here, short in zip(left[1:], before[1:], strict=True):
+        here += both
+        np.minimum.accumulate(here, axis=1, out=reached)
+        reached -= short
+        np.minimum(ahead, back, out=forth)
+        both[1] = turned
+    return _trace_back(start, int(forth.argmin()), left, before)
 
 
 def _cost(lead: Floats, follow: Floats) -> Floats:

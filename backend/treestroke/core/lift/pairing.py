@@ -10,7 +10,7 @@ from treestroke.core.lift.sheet import BINS, Mask, Sheet
 from treestroke.core.lift.weaving import HALVED, Walk, Weave, walk
 
 SHORTEST = 8.0
-"""Units of a branch that may stay without a partner of their own: they are led to their end where the partner ended."""
+"""Units of a branch that need no partner: it is led on where its partner ends, and a shorter rest is left out."""
 SPUR, TAIL = 80.0, 40.0
 """Units of height by which a branch may rise or droop further than its partner, for a while and at its end."""
 SPARE = 0.05
@@ -19,7 +19,7 @@ FEATURES, LEVEL, LEFT, FRESH = 0.3, 60.0, 1.0, 0.6
 TWICE, FLAT, UNTRUE, CROWDED = 0.5, 2.0, 3.0, 40.0
 """Cost of a unit by which two branches' features differ, that stays unpaired, that pairs for the first time (a gain),
 that is walked twice, that lies flat, that is untrue; cost of a level between them and of a like limb at their height.
-Tuned on the drawn and grown pairs of the tests."""
+Tuned on the drawn pairs of the tests."""
 ALONE = -1
 """Stands for no branch."""
 CLOSE = 150.0
@@ -193,12 +193,12 @@ def detour(sheet: Sheet, number: int, height: float) -> Indices:
 
 
 def _parting(found: Walk, spare: Floats) -> int:
-    """Count the points up to which two climbers stay at equal height, but for spurs and tails of a spare length (2,)."""
+    """Count the points up to which two climbers keep equal heights, but for spurs and tails of a spare length (2,)."""
     invented = found.invented
     for start, end in found.runs.tolist():
         spare = spare - invented[:, start:end].sum(axis=1)
-        most = np.abs(found.apart[start:end]).max()
+        most = float(np.abs(found.apart[start:end]).max())
         allowed = TAIL if end == len(found.apart) else SPUR
         if most > 2 * HALVED + SHORTEST and (most > allowed or spare.min() < 0):
-            return start
+            return int(start)
     return len(found.apart)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ STRAIGHT = 0.3
 PLANE = 20.0
 """Units on either side of the stem's two planes in which a limb looks flat."""
 BIN, LOWEST, BINS = 8.0, -400.0, 200
-"""Heights are counted in bins of 8 units from -400 up; what is beyond falls in the last bin."""
+"""Heights are counted in bins of 8 units from -400 up; what is beyond falls in the first or the last bin."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +153,7 @@ def _bends(sketch: Branched) -> Mask:
     shape = np.column_stack([sketch.skeleton.points, sketch.skeleton.radii])
     for chain in sketch.chains():
         cuts = [0] + [i for i in range(1, len(chain) - 1) if int(chain[i]) in buds] + [len(chain) - 1]
-        for start, end in zip(cuts, cuts[1:], strict=False):
+        for start, end in pairwise(cuts):
             kept[chain[start : end + 1][simplified(shape[chain[start : end + 1]], STRAIGHT)]] = True
         kept[chain[[0, -1]]] = True
     return kept

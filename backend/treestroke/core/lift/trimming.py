@@ -55,7 +55,7 @@ def _successors(parents: Indices, walks: Indices, kept: Mask) -> Indices:
 
 
 def _branches(parents: Indices, after: Indices, kept: Mask) -> Indices:
-    """Number branches (n,) in the order in which they begin."""
+    """Give branches numbers (n,) in the order in which they begin."""
     branch = np.zeros(len(parents), dtype=np.int64)
     count = 0
     for joint in range(1, len(parents)):

@@ -12,7 +12,7 @@ from treestroke.core.lift.sheet import Mask, Sheet
 HALVED = 4.0
 """Units apart in height up to which a joint lies midway between its two points; both are then within 2 units."""
 GIVEN_UP = 12.0
-"""Units apart in height from which on a joint lies at its leader's point."""
+"""Units apart in height from which on a joint has the height of the one point that moves."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +153,7 @@ class Weave:
     invented: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
     def start(self, leader: int, lead: Indices, follow: Indices) -> tuple[int, int]:
-        """Find the furthest places on both chains that one joint stands for: where a walk along them leaves the tree."""
+        """Find the furthest places on two chains that one joint stands for: where a walk along them leaves the tree."""
         place = dict(zip(follow.tolist(), range(len(follow)), strict=True))
         for i, joint in reversed(list(enumerate(lead.tolist()))):
             found = [place[j] for j in self.partners[leader].get(joint, ()) if j in place]
@@ -173,13 +173,10 @@ class Weave:
         """Find where a walk leaves the tree for good: its first new point and the joint that bears it (-1: none)."""
         lead, follow = found.joints
         before = self.sheets[leader].parents[lead], self.sheets[1 - leader].parents[follow]
-        known = [
-            np.stack(pair[:: 1 - 2 * leader]).T[::-1].tolist()
-            for pair in ((lead, follow), (lead, before[1]), (before[0], follow))
-        ]
-        for left, pairs in enumerate(zip(*known, strict=True)):
-            for a, b in pairs:
-                joint = self.at.get((a, b), -1)
+        points = zip(*(each[::-1].tolist() for each in (lead, follow, *before)), strict=True)
+        for left, (a, b, under_a, under_b) in enumerate(points):
+            for pair in ((a, b), (a, under_b), (under_a, b)):
+                joint = self.at.get(pair if leader == 0 else pair[::-1], -1)
                 if joint >= 0:
                     return len(lead) - left, joint
         return 0, -1

@@ -18,6 +18,7 @@ COVERED, TRUE = 2.0, 4.0
 PLANE = 20.0
 """Units on either side of the stem's planes in which a limb counts as lying in them."""
 _MARGIN = 16
+"""Pixels left free around all that is drawn, for the width of brushes."""
 _SHIFT = 4
 """Bits of a unit that lines are placed to."""
 _SAMPLE = 1.0
@@ -61,7 +62,7 @@ def fidelity(front: Branched, side: Branched, tree: Branched, paired: Mask) -> F
 
 
 def _agreement(sketch: Skeleton, tree: Skeleton, axis: int) -> tuple[float, float]:
-    """Tell the share of a sketch that the tree covers seen along the other axis, and the share of the tree that is so."""
+    """Tell what share of a sketch the tree, seen along the other axis, covers, and what share of the tree is true."""
     seen = Skeleton(tree.points[:, [axis, 1]], tree.radii, tree.parents)
     frame = _frame(sketch.points, seen.points)
     strokes, limbs = _drawn(sketch, frame), _drawn(seen, frame)
