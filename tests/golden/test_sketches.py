@@ -1,5 +1,6 @@
 """Summary numbers of the sketches that come with the project."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -10,8 +11,7 @@ from treestroke.service.making import Model
 from treestroke.service.sketch import sketch
 
 SKETCHES = EXAMPLES / "sketches"
-PAIRS = {"pear": 8.0, "orange": 5.0, "pine": 18.0, "vine": 1.9, "imagined": 6.0}
-"""By name: height, metres."""
+PAIRS = ("pear", "orange", "pine", "vine", "imagined")
 pytestmark = pytest.mark.golden
 
 
@@ -21,7 +21,7 @@ def side_of(name: str, side: str) -> Path:
 
 @pytest.fixture(scope="module", params=PAIRS)
 def model(request: pytest.FixtureRequest) -> Model:
-    settings = {"height": PAIRS[request.param], "species": "pine" if request.param == "pine" else "auto"}
+    settings = json.loads((SKETCHES / f"{request.param}.settings.json").read_text())
     return sketch(side_of(request.param, "front"), side_of(request.param, "side"), settings)
 
 

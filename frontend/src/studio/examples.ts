@@ -1,3 +1,5 @@
+import type { Settings } from '../state'
+
 const photos = import.meta.glob<string>('../../../examples/*.jpg', { query: '?url', import: 'default', eager: true })
 const strokes = import.meta.glob<string>('../../../examples/*.strokes.json', {
   query: '?url',
@@ -28,13 +30,19 @@ const pictures = import.meta.glob<string>('../../../examples/sketches/*.{leaf,fr
   eager: true,
 })
 
-/** A bundled tree as drawn from the front and from its left, perhaps with a leaf and a fruit; by its files' name. */
+const settings = import.meta.glob<Partial<Settings>>('../../../examples/sketches/*.settings.json', {
+  import: 'default',
+  eager: true,
+})
+
+/** A bundled tree as drawn from the front and from its left, perhaps with a leaf, a fruit and settings; by its files' name. */
 export interface SketchExample {
   readonly name: string
   readonly front: string
   readonly side: string | undefined
   readonly leaf: string | undefined
   readonly fruit: string | undefined
+  readonly settings: Partial<Settings>
 }
 
 export const SKETCH_EXAMPLES: readonly SketchExample[] = Object.entries(sketches)
@@ -46,5 +54,12 @@ export const SKETCH_EXAMPLES: readonly SketchExample[] = Object.entries(sketches
       pictures[`${stem}.leaf.png`],
       pictures[`${stem}.fruit.png`],
     ]
-    return { name: stem.split('/').at(-1)!, front, side, leaf, fruit }
+    return {
+      name: stem.split('/').at(-1)!,
+      front,
+      side,
+      leaf,
+      fruit,
+      settings: settings[`${stem}.settings.json`] ?? {},
+    }
   })

@@ -47,7 +47,7 @@ export class Opener {
   }
 
   /** Open an example that was drawn on paper, and grow it. */
-  openSketches({ name, front, side, leaf, fruit }: SketchExample): Promise<void> {
+  openSketches({ name, front, side, leaf, fruit, settings }: SketchExample): Promise<void> {
     return this.#opening(async () => {
       const bring = async (url: string | undefined) => (url ? await this.client.getFile(url) : null)
       const [ahead, left, ...own] = await Promise.all([front, side, leaf, fruit].map(bring))
@@ -55,7 +55,8 @@ export class Opener {
       const history = begin(other ? withSheet(one!.strokes, 'side', other.strokes) : one!.strokes)
       const sheets = { photo: sheetOfSize(one!.size), side: other ? sheetOfSize(other.size) : paper(one!.size.height) }
       const pictures = { leaf: own[0] ?? null, fruit: own[1] ?? null }
-      this.#put({ source: 'sketch', ...sheets, name: text.examples[name] ?? name, history, ...pictures })
+      const how = { settings: { ...DEFAULT_SETTINGS, ...settings }, ...pictures }
+      this.#put({ source: 'sketch', ...sheets, name: text.examples[name] ?? name, history, ...how })
       void this.grower.grow()
     })
   }

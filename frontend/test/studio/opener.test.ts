@@ -178,7 +178,7 @@ test('a drawing on paper is kept and comes back: both sheets, the side’s pictu
   expect(calls.some(({ path }) => path === '/v1/photos')).toBe(false)
 })
 
-test('an example from two sides is opened on paper of its size and grown, with its fruit', async () => {
+test('an example from two sides is opened on paper of its size and grown, with its fruit and settings', async () => {
   const sketch = { canvas: [1200, 1100], branches: [{ points: TRUNK }] }
   const calls = service(call => {
     if (call.path.endsWith('.json')) return Response.json(sketch)
@@ -186,11 +186,11 @@ test('an example from two sides is opened on paper of its size and grown, with i
   })
   const { store, opener } = new Studio()
   const urls = { front: '/page/f.json', side: '/page/s.json', leaf: undefined, fruit: '/page/fruit.png' }
-  await opener.openSketches({ name: 'pear', ...urls })
+  await opener.openSketches({ name: 'pear', ...urls, settings: { height: 8 } })
   await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
   expect(store.state).toMatchObject({ name: 'Pear tree', tool: 'branch', side: { width: 1200, height: 1100 } })
   const { body } = calls.find(call => call.path === '/v1/models')!
-  expect(body).toMatchObject({ sketches: { front: sketch, side: sketch }, fruit: btoa('a pear') })
+  expect(body).toMatchObject({ sketches: { front: sketch, side: sketch }, fruit: btoa('a pear'), settings: { height: 8 } })
 })
 
 test('sketches over a photo are laid on it as large as it is', async () => {

@@ -18,8 +18,9 @@ def test_two_that_rise_evenly_stay_at_equal_heights() -> None:
 
 
 def test_the_follower_begins_where_it_is_told() -> None:
-    at = climb(chain([50.0, 60.0, 70.0]), chain(np.arange(0, 101, 10.0)), 5)
-    assert at.tolist() == [5, 6, 7]
+    at = climb(chain(np.arange(50, 71, 2.0)), chain(np.arange(0, 101, 2.0)), 25)
+    assert at == pytest.approx(np.arange(25, 36), abs=1)
+    assert at[0] == 25
 
 
 def test_the_follower_stays_at_its_tip_where_the_leader_goes_higher() -> None:
