@@ -15,11 +15,13 @@ from treestroke.core.survey.fidelity import Fidelity, fidelity
 PAIRS = pairs()
 STEM = [(0.0, 300.0), (0.0, 500.0), (0.0, 1000.0)]
 IN_PLANES = {
-    # Limbs of the two sketches leave at unlike heights here, so that many are walked together with the stem; ...
+    # Nearly all that lies flat was walked with the other sketch's stem. The front has twice as many limbs as the side
+    # and higher ones, so that for some only the stem is left; ...
     "broad 9/6": 0.4,
-    # ... and a level limb passes few heights, a hanging one such as the other's limbs do not reach.
+    # ... level boughs pass few heights and find partners rarely; ...
     "pine 24/18": 0.6,
-    "weeping 9/7": 0.47,
+    # ... and most of the side's limbs that no limb of the front used come down along the front's stem.
+    "weeping 9/7": 0.46,
 }
 """Share of the limbs' length in the two planes of view, of the pairs that do not keep to a quarter."""
 
@@ -62,20 +64,14 @@ def test_the_tree_is_in_one_piece_from_the_origin(name: str) -> None:
     assert is_one_tree(retrieved(name))
 
 
-@pytest.mark.parametrize("name", PAIRS)
+# The neat pair is drawn with long pieces, so that the nearest drawn joint is far.
+@pytest.mark.parametrize("name", sorted(set(PAIRS) - {"neat"}))
 def test_each_joint_tells_the_drawn_joints_near_it(name: str) -> None:
     found, (front, side) = retrieved(name), PAIRS[name]
-    assert max(len(front), len(side)) > max(found.front.max(), found.side.max())
-    if name == "neat":
-        # Drawn with long pieces, so the joints are far.
-        return
-    points = found.tree.skeleton.points
-    known = found.origin != LONE
-    away = [
-        np.abs(sketch.skeleton.points[joints] - points[:, [axis, 1]])[known].max(axis=1)
-        for sketch, joints, axis in ((front, found.front, 0), (side, found.side, 2))
-    ]
-    assert np.quantile(away, 0.95) < 12.0
+    points, known = found.tree.skeleton.points, found.origin != LONE
+    for sketch, joints, axis in ((front, found.front, 0), (side, found.side, 2)):
+        away = np.abs(sketch.skeleton.points[joints] - points[:, [axis, 1]])[known].max(axis=1)
+        assert np.quantile(away, 0.95) < 12.0
 
 
 def test_points_of_equal_height_pair_up() -> None:

@@ -40,6 +40,14 @@ def test_a_further_stem_becomes_a_branch_of_the_root() -> None:
     assert edge_lengths(tree.skeleton)[2] == pytest.approx(0.2)
 
 
+def test_a_limb_may_leave_at_the_root_itself() -> None:
+    points = np.array([[0.0, 0.0], [0.0, 1.0], [0.2, 0.3], [0.4, 0.5]])
+    tree = split(Skeleton(points, np.array([0.2, 0.1, 0.1, 0.05]), np.array([-1, 0, 0, 2])))
+    assert sorted(len(chain) for chain in tree.chains()) == [2, 3]
+    assert tree.branch[0] == 0
+    assert tree.levels().tolist() == [0, 1]
+
+
 @pytest.mark.parametrize("branch", [[0, 0, 1, 1], [1, 1, 1, 1], [0, 0, 0, 0], [0, 0, 2, 2]])
 def test_branches_that_are_no_chains_are_refused(branch: list[int]) -> None:
     points = np.array([[0.0, 0.0], [0.0, 1.0], [-1.0, 2.0], [1.0, 2.0]])

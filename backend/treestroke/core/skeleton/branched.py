@@ -80,5 +80,6 @@ def branched(skeleton: Skeleton, successors: Indices) -> Branched:
     parents = np.where((skeleton.parents < 0) & (np.arange(len(skeleton)) > 0), 0, skeleton.parents)
     branch = np.zeros(len(skeleton), dtype=np.int64)
     for number, limb in enumerate(limbs(skeleton, successors)):
-        branch[limb if skeleton.parents[limb[0]] < 0 else limb[1:]] = number
+        is_stem = skeleton.parents[limb[0]] < 0 and (len(limb) == 1 or successors[limb[0]] == limb[1])
+        branch[limb if is_stem else limb[1:]] = number
     return Branched(Skeleton(skeleton.points, skeleton.radii, parents), branch)
