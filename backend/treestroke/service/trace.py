@@ -89,8 +89,8 @@ def trace(
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
     mapping or values. Without branch strokes the foliage alone is found. ``after`` is the last trace of the same photo:
     its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once, and
-    everything while all strokes do. ``grow`` asks for the tree, too, that `model` would grow of them, and of the sketch of
-    its left ``side`` where there is one.
+    everything while all strokes do. ``grow`` asks for the tree, too, that `model` would grow of them, and of the sketch
+    of its left ``side`` where there is one.
 
     Raises
     ------

@@ -1,7 +1,9 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
-
 from tests.builders import fork, oak
+
 from treestroke.core.skeleton.branched import Branched, branched
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -20,7 +22,7 @@ def test_a_fork_is_a_stem_and_one_branch_with_its_bud() -> None:
 
 def test_chains_hold_every_edge_once() -> None:
     tree = split(oak())
-    edges = [(a, b) for chain in tree.chains() for a, b in zip(chain[:-1], chain[1:], strict=True)]
+    edges = [(a, b) for chain in tree.chains() for a, b in pairwise(chain.tolist())]
     assert sorted(b for _, b in edges) == list(range(1, len(tree)))
     assert all(tree.skeleton.parents[b] == a for a, b in edges)
 
