@@ -190,7 +190,11 @@ test('an example from two sides is opened on paper of its size and grown, with i
   await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
   expect(store.state).toMatchObject({ name: 'Pear tree', tool: 'branch', side: { width: 1200, height: 1100 } })
   const { body } = calls.find(call => call.path === '/v1/models')!
-  expect(body).toMatchObject({ sketches: { front: sketch, side: sketch }, fruit: btoa('a pear'), settings: { height: 8 } })
+  expect(body).toMatchObject({
+    sketches: { front: sketch, side: sketch },
+    fruit: btoa('a pear'),
+    settings: { height: 8 },
+  })
 })
 
 test('sketches over a photo are laid on it as large as it is', async () => {
