@@ -11,13 +11,11 @@ CROWN = [[100, 100], [800, 100], [800, 700], [100, 700]]
 
 def test_a_drawn_crown_is_kept() -> None:
     drawing = draw_up(sketch(TRUNK, *ARMS, crown=CROWN))
-    assert drawing.crown_drawn
     assert drawing.crown.tolist() == CROWN
 
 
 def test_without_one_the_crown_is_drawn_round_all_but_the_bare_foot() -> None:
     drawing = draw_up(sketch(TRUNK, *ARMS))
-    assert not drawing.crown_drawn
     crown = drawing.crown.astype(np.float32)
     for x, y in [TRUNK[-1], *(arm[-1] for arm in ARMS)]:
         assert cv2.pointPolygonTest(crown, (x, y), True) > 30

@@ -41,8 +41,8 @@ class Sheet:
         For each branch the joints from the root to its tip: the descending path p, turned upward.
     bud
         (k,) joint that bears each branch, 0 for the stem.
-    level, top, lowest
-        (k,) level, H and h of each branch.
+    level, top
+        (k,) level and H of each branch.
     family_top, family_lowest, family_length
         (k,) greatest height M and least height of each branch and its offspring, and the length of them all.
     bins
@@ -60,7 +60,6 @@ class Sheet:
     bud: Indices
     level: Indices
     top: Floats
-    lowest: Floats
     family_top: Floats
     family_lowest: Floats
     family_length: Floats
@@ -138,7 +137,6 @@ def sheet(sketch: Branched, step: float) -> Sheet:
         bud,
         level,
         top,
-        lowest,
         family[0],
         -family[1],
         family[2],
