@@ -127,6 +127,7 @@ class TracedSketch(Wire):
 
     skeleton: TracedSkeleton
     crown: list[Point] = Field(description="closed outline: as drawn, or around the strokes")
+    crown_drawn: bool = Field(description="whether the crown was drawn")
     size: tuple[int, int] = Field(description="width and height of the canvas")
 
 

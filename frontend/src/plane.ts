@@ -33,6 +33,15 @@ export function distanceToLine(line: Line, place: Point, closed = false): number
   return least
 }
 
+/** Leave out of a line what lies no further than `apart` from the rest of it; its ends stay. */
+export function simplified(line: Line, apart: number): Line {
+  const [first, last] = [line[0]!, line.at(-1)!]
+  const gaps = line.map(place => distanceToPiece([first, last], place))
+  const bend = gaps.indexOf(gaps.reduce((most, gap) => Math.max(most, gap)))
+  if (gaps[bend]! <= apart) return [first, last]
+  return [...simplified(line.slice(0, bend + 1), apart), ...simplified(line.slice(bend), apart).slice(1)]
+}
+
 /** Whether two pieces have a point in common. */
 export function cross(one: Piece, other: Piece): boolean {
   return straddles(one, other) && straddles(other, one)

@@ -82,10 +82,12 @@ export interface State {
   /** How wide branches are drawn on paper, as a share of its height; null for a pencil, which says nothing of it. */
   readonly brush: number | null
   readonly selection: Selection | null
-  /** A photo or project is being read. */
+  /** A photo, a sketch or a project is being read. */
   readonly opening: boolean
   readonly tracing: boolean
   readonly traced: Traced | null
+  /** What was mended in reading the pictures of sketches, and the strokes that came of them. */
+  readonly remark: { readonly of: Strokes; readonly text: string } | null
   /** The live tree. */
   readonly grown: Grown | null
   /** A model is being asked for. */
@@ -147,6 +149,7 @@ export const EMPTY: State = {
   opening: false,
   tracing: false,
   traced: null,
+  remark: null,
   grown: null,
   asking: false,
   model: null,

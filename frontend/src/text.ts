@@ -33,7 +33,7 @@ export const text = {
     drop: 'Let go to open it',
     notThis: 'Drop a photo (JPEG, PNG or WebP) or a .treestroke project.',
     pasted: 'Pasted photo',
-    reading: 'Reading the photo …',
+    reading: 'Reading the picture …',
   },
   header: {
     home: 'treestroke: all drawings',
@@ -222,8 +222,8 @@ export const text = {
     modelGone: 'This tree is no longer there. It was deleted; the strokes are still yours to grow again.',
     draftGone: 'This drawing is no longer kept in this browser.',
     projectIncomplete: 'This project has no photo or no strokes. Save it anew from where it came.',
-    sketchIsPicture:
-      'This tree was sketched as a picture, not by strokes: it cannot be drawn on here. Its files are whole.',
+    noSketch:
+      'This is no drawing that can be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',
     projectUnreadable: 'This project file is damaged and cannot be read. Save it anew from where it came.',
     photoTooLarge: (megabytes: number, most: number) =>
       `This file has ${megabytes.toFixed(1)} MB; at most ${most.toFixed(0)} MB are taken. Make the picture smaller.`,

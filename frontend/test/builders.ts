@@ -1,6 +1,9 @@
 import type { Grown, Model, Photo, SketchTraceAnswer, TraceAnswer } from '../src/state'
 import type { Line } from '../src/strokes'
 
+/** The beginning of a PNG: as much of one as the page itself looks at. */
+export const PNG = new Uint8Array([137, 80, 78, 71, 13, 10, 26, 10])
+
 export const CROWN: Line = [
   [20, 10],
   [80, 10],
@@ -28,7 +31,30 @@ export function answer(grown: Grown | null = null): TraceAnswer {
 /** What sketches show, the front alone where there is no other. */
 export function sketchAnswer(changes: Partial<SketchTraceAnswer> = {}): SketchTraceAnswer {
   const { skeleton } = answer()
-  return { rev: null, front: { skeleton, crown: [[20, 10]], size: [900, 1200] }, side: null, warnings: [], ...changes }
+  const front = {
+    skeleton,
+    crown: [[20, 10]] as [number, number][],
+    crown_drawn: false,
+    size: [900, 1200] as [number, number],
+  }
+  return { rev: null, front, side: null, warnings: [], ...changes }
+}
+
+/** What the picture of a sketch shows: a trunk, and one limb that leaves it halfway. */
+export function drawnAnswer(changes: Partial<SketchTraceAnswer['front']> = {}): SketchTraceAnswer {
+  const skeleton = {
+    points: [
+      [50, 95],
+      [50, 70],
+      [50, 40],
+      [60, 60],
+      [70, 50],
+    ] as [number, number][],
+    radii: [6, 5, 1, 2, 2],
+    parents: [-1, 0, 1, 1, 3],
+    stroke: [0, 0, 0, 1, 1],
+  }
+  return sketchAnswer({ front: { skeleton, crown: [[20, 10]], crown_drawn: false, size: [100, 100], ...changes } })
 }
 
 export function grown(points = 2): Grown {

@@ -13,6 +13,7 @@ type Answer = Response | 'down'
 /** Stand in for the service behind `fetch`: `answer` says what it answers to each call; gives the calls that came. */
 export function service(answer: (call: Call) => Answer | Promise<Answer>): Call[] {
   const calls: Call[] = []
+  vi.stubGlobal('FileReader', Reader)
   vi.stubGlobal('fetch', async (path: string, { method = 'GET', body }: RequestInit = {}) => {
     const call = { method, path, body: typeof body === 'string' ? JSON.parse(body) : body }
     calls.push(call)
@@ -21,6 +22,17 @@ export function service(answer: (call: Call) => Answer | Promise<Answer>): Call[
     return answered
   })
   return calls
+}
+
+/** Stands in for the browser's reader of files. */
+class Reader {
+  result: string | null = null
+  onload = () => {}
+
+  async readAsDataURL(file: Blob): Promise<void> {
+    this.result = `data:${file.type};base64,${Buffer.from(await file.arrayBuffer()).toString('base64')}`
+    this.onload()
+  }
 }
 
 /** A problem as the service words it. */

@@ -67,6 +67,13 @@ def test_one_sketch_alone_is_traced_and_says_what_was_assumed(client: httpx.Clie
     assert [warning["code"] for warning in told["warnings"]] == ["side_assumed"]
 
 
+def test_a_crown_that_was_drawn_is_told_from_one_that_was_assumed(client: httpx.Client) -> None:
+    outline = {"points": [[20, 100], [100, 20], [180, 100], [100, 180]]}
+    told = client.post(TRACE, json={"front": {**sketched.FRONT, "crown": outline}, "side": sketched.SIDE}).json()
+    assert (told["front"]["crown"], told["front"]["crown_drawn"]) == (outline["points"], True)
+    assert (len(told["side"]["crown"]) > 3, told["side"]["crown_drawn"]) == (True, False)
+
+
 @pytest.mark.parametrize(
     ("request_", "pointer", "code"),
     [

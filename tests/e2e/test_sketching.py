@@ -1,4 +1,4 @@
-"""Drawing a tree from two sides: on paper, over photos, beside a photo's strokes, on a phone."""
+"""Drawing a tree from two sides: on paper, over photos, beside a photo's strokes, from pictures, on a phone."""
 
 import json
 import struct
@@ -11,6 +11,7 @@ from tests.e2e.conftest import OpenPage, Service
 from tests.e2e.visitor import ROOT, Path2D, Visitor
 
 PHOTO = ROOT / "examples" / "oak_02.jpg"
+DRAWINGS = {sheet: ROOT / "examples" / "sketches" / f"imagined.{sheet}.png" for sheet in ("front", "side")}
 STILL_MS = 400
 """Until what was zoomed stands still."""
 FRONT: list[Path2D] = [
@@ -41,7 +42,7 @@ def draw_all(visitor: Visitor, sheet: str, lines: list[Path2D]) -> None:
 
 def branches(visitor: Visitor, sheet: str) -> list[Any]:
     drawn = visitor.traced[-1].get(sheet) or {"branches": []}
-    return [branch["points"] for branch in drawn["branches"]]
+    return [branch["points"] for branch in drawn.get("branches", ())]
 
 
 def lined_up(visitor: Visitor) -> tuple[float, float]:
@@ -145,6 +146,63 @@ def test_a_side_sketch_says_how_deep_the_tree_of_a_photo_is(visitor: Visitor, se
     told = service.models()[0]
     assert told["id"] != guessed["id"]
     assert told["score"]["depth_over_width"] < 0.8 * guessed["score"]["depth_over_width"]
+
+
+def test_a_pair_of_pictures_is_an_example_that_is_grown_and_drawn_on(
+    visitor: Visitor, open_page: OpenPage, service: Service
+) -> None:
+    page = visitor.page
+    page.get_by_role("button", name="Imagined tree").click()
+    visitor.wait_for_preview("model")
+    expect(page.get_by_text("are in the tree").first).to_be_visible()
+    expect(page.get_by_text("rings of branches were cut open")).to_be_visible()
+    read = {sheet: branches(visitor, sheet) for sheet in DRAWINGS}
+    assert all(len(lines) > 10 for lines in read.values())
+    assert all("crown" in visitor.traced[-1][sheet] for sheet in DRAWINGS)
+    widths = [branch["width"] for branch in visitor.traced[-1]["front"]["branches"]]
+    assert widths[0] == max(widths) > 3 * min(widths)
+    visitor.shot("imagined")
+    other = open_page(f"/#{service.models()[0]['id']}")
+    other.wait_for_preview("model")
+    assert {sheet: branches(other, sheet) for sheet in DRAWINGS} == read
+
+
+def test_a_picture_from_the_disk_is_opened_drawn_on_and_grown(visitor: Visitor, service: Service) -> None:
+    page = visitor.page
+    visitor.choose(page.get_by_role("button", name="Open a drawing").first, DRAWINGS["front"])
+    visitor.wait_for_preview("live")
+    read = len(branches(visitor, "front"))
+    visitor.sheet = "side"
+    field = page.locator("[data-of=side] .canvas")
+    visitor.give(field, DRAWINGS["side"], media_type="image/png", down=0.75)
+    visitor.until(lambda: len(branches(visitor, "side")) > 10 and visitor.traced[-1]["grow"])
+    page.keyboard.press("Control+z")
+    visitor.until(lambda: branches(visitor, "side") == [])
+    page.keyboard.press("Control+Shift+z")
+    visitor.until(lambda: len(branches(visitor, "side")) > 10 and visitor.traced[-1]["grow"])
+    visitor.sheet = "front"
+    visitor.draw([(640, 500), (760, 470), (850, 500)])
+    visitor.until(lambda: len(branches(visitor, "front")) == read + 1 and visitor.traced[-1]["grow"])
+    page.get_by_role("button", name="Grow", exact=True).click()
+    visitor.wait_for_preview("model")
+    assert service.models()[0]["name"] == "imagined.front"
+
+
+def test_a_picture_of_no_tree_is_refused_and_loses_nothing(visitor: Visitor) -> None:
+    page = on_paper(visitor).page
+    draw_all(visitor, "front", FRONT[:2])
+    visitor.until(lambda: len(branches(visitor, "front")) == 2)
+    heading = page.locator("[data-of=front]").get_by_role("button", name="Open a drawing")
+    visitor.choose(heading, PHOTO)
+    notice = page.locator(".notice")
+    expect(notice).to_contain_text("Save it as a PNG")
+    page.get_by_role("button", name="Close this message").click()
+    visitor.expect_complaint("422")
+    leaf = DRAWINGS["front"].with_name("orange.leaf.png")
+    visitor.choose(heading, leaf)
+    expect(notice).to_contain_text("draw branches as lines")
+    visitor.draw(FRONT[2])
+    visitor.until(lambda: len(branches(visitor, "front")) == 3)
 
 
 def test_on_a_phone_one_sheet_is_seen_at_a_time(open_page: OpenPage) -> None:

@@ -32,7 +32,7 @@ _DROP = """(target, file) => {
     const events = file.how === 'paste'
         ? [new ClipboardEvent('paste', { clipboardData: dataTransfer, bubbles: true, cancelable: true })]
         : ['dragenter', 'dragover', 'drop'].map(name =>
-            new DragEvent(name, { dataTransfer, bubbles: true, cancelable: true }))
+            new DragEvent(name, { dataTransfer, bubbles: true, cancelable: true, clientY: file.y }))
     for (const event of events) target.dispatchEvent(event)
 }"""
 _AXE = """async () => (await axe.run()).violations.map(one =>
@@ -229,10 +229,14 @@ class Visitor:
             opener.click()
         chooser.value.set_files(list(files))  # type: ignore[arg-type]
 
-    def give(self, target: Locator, file: Path, how: str = "drop", media_type: str = "image/jpeg") -> None:
-        """Drop a file on a part of the page, or paste it there."""
-        content = base64.b64encode(file.read_bytes()).decode()
-        target.evaluate(_DROP, {"content": content, "name": file.name, "type": media_type, "how": how})
+    def give(
+        self, target: Locator, file: Path, how: str = "drop", media_type: str = "image/jpeg", down: float = 0
+    ) -> None:
+        """Drop a file on a part of the page, or paste it there; ``down`` is where, as a share of the part's height."""
+        content, box = base64.b64encode(file.read_bytes()).decode(), target.bounding_box()
+        assert box is not None
+        y = box["y"] + down * box["height"]
+        target.evaluate(_DROP, {"content": content, "name": file.name, "type": media_type, "how": how, "y": y})
 
 
 def strokes_of(photo: Path) -> dict[str, Any]:

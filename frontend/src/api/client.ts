@@ -6,7 +6,6 @@ type Schemas = components['schemas']
 
 /** Refusals that only ask to come again. */
 const BUSY = ['overloaded', 'database_unavailable']
-const PART = 0x8000
 
 /** The service refused: `detail` is a sentence for the user, `pointer` the field at fault, such as /branches/0. */
 export class Refused extends Error {
@@ -70,6 +69,11 @@ export class Client {
     return ask('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
   }
 
+  /** Find what a sketch shows that is a picture, a PNG. */
+  async traceDrawing(picture: Blob): Promise<SketchTraceAnswer> {
+    return this.traceSketches({ front: { picture: await base64(picture) } }, false)
+  }
+
   /** Ask for a model; the same `key` asks for the same one, however often it is sent. */
   async grow({ evidence: { strokes, ...evidence }, leaf, fruit, ...wish }: Wish, key: string): Promise<Model> {
     const drawn = { ...evidence, ...(strokes && { strokes: toWire(strokes) }) }
@@ -126,10 +130,12 @@ function json(body: unknown, headers: Record<string, string> = {}): RequestInit 
   return { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json', ...headers } }
 }
 
-async function base64(file: Blob): Promise<string> {
-  const bytes = new Uint8Array(await file.arrayBuffer())
-  let letters = ''
-  // By parts: a call takes no more arguments than that.
-  for (let at = 0; at < bytes.length; at += PART) letters += String.fromCharCode(...bytes.subarray(at, at + PART))
-  return btoa(letters)
+/** The browser reads by itself: the page goes on meanwhile, however large the file is. */
+function base64(file: Blob): Promise<string> {
+  return new Promise((done, failed) => {
+    const reader = new FileReader()
+    reader.onload = () => done(String(reader.result).split(',')[1] ?? '')
+    reader.onerror = () => failed(reader.error)
+    reader.readAsDataURL(file)
+  })
 }

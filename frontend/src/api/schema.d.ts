@@ -733,6 +733,11 @@ export interface components {
                 number
             ][];
             /**
+             * Crown Drawn
+             * @description whether the crown was drawn
+             */
+            crown_drawn: boolean;
+            /**
              * Size
              * @description width and height of the canvas
              */

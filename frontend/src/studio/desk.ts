@@ -6,6 +6,7 @@ import { NO_STROKES, onSheet, type SheetName, withSheet } from '../strokes'
 import { text } from '../text'
 import { uploaded } from './photos'
 import { faultOf, Unusable } from './sentences'
+import type { SketchFile } from './sketches'
 
 /** Lays sheets out, and pictures under what is drawn on them. */
 export class Desk {
@@ -77,6 +78,22 @@ export class Desk {
       throw new Unusable(text.welcome.notThis)
     })
     return { ...sheetOfSize(size), file, url: URL.createObjectURL(file) }
+  }
+}
+
+/** Put a sketch in the place of a sheet's strokes, which an undo brings back; paper without a picture becomes as large. */
+export function redrawn(state: State, sheet: SheetName, { strokes, size }: SketchFile): Partial<State> {
+  const before = groundOf(state, sheet)!
+  const ground = before.url ? before : sheetOfSize(size)
+  const { history, ...laid } = { ...state, ...relaid(state, sheet, ground) }
+  const drawn = withSheet(history.present, sheet, fittedTo(strokes, size, ground))
+  return {
+    photo: laid.photo,
+    side: laid.side,
+    history: advance(history, drawn),
+    selection: null,
+    sheet,
+    tool: 'branch',
   }
 }
 

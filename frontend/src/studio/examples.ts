@@ -19,7 +19,7 @@ export const EXAMPLES: readonly Example[] = Object.entries(photos).map(([path, p
   return { name: stem.split('/').at(-1)!, photo, strokes: strokes[`${stem}.strokes.json`]! }
 })
 
-const sketches = import.meta.glob<string>('../../../examples/sketches/*.{front,side}.json', {
+const sketches = import.meta.glob<string>('../../../examples/sketches/*.{front,side}.{json,png}', {
   query: '?url',
   import: 'default',
   eager: true,
@@ -35,7 +35,7 @@ const settings = import.meta.glob<Partial<Settings>>('../../../examples/sketches
   eager: true,
 })
 
-/** A bundled tree as drawn from the front and from its left, perhaps with a leaf, a fruit and settings; by its files' name. */
+/** A bundled tree as drawn from the front and from its left, by strokes or as pictures, perhaps with a leaf, a fruit and settings; by its files' name. */
 export interface SketchExample {
   readonly name: string
   readonly front: string
@@ -46,20 +46,15 @@ export interface SketchExample {
 }
 
 export const SKETCH_EXAMPLES: readonly SketchExample[] = Object.entries(sketches)
-  .filter(([path]) => path.endsWith('.front.json'))
+  .filter(([path]) => path.includes('.front.'))
   .map(([path, front]) => {
-    const stem = path.replace(/\.front\.json$/, '')
-    const [side, leaf, fruit] = [
-      sketches[`${stem}.side.json`],
-      pictures[`${stem}.leaf.png`],
-      pictures[`${stem}.fruit.png`],
-    ]
+    const stem = path.replace(/\.front\.\w+$/, '')
     return {
       name: stem.split('/').at(-1)!,
       front,
-      side,
-      leaf,
-      fruit,
+      side: sketches[path.replace('.front.', '.side.')],
+      leaf: pictures[`${stem}.leaf.png`],
+      fruit: pictures[`${stem}.fruit.png`],
       settings: settings[`${stem}.settings.json`] ?? {},
     }
   })

@@ -1,7 +1,7 @@
 import { text } from '../text'
+import { isPng } from './png'
 import { Unusable } from './sentences'
 
-const PNG = [137, 80, 78, 71, 13, 10, 26, 10]
 /** A picture is looked at in this size, px: what is transparent anywhere is so there, too. */
 const SIDE = 128
 
@@ -11,8 +11,7 @@ export async function readLeaf(
   mostBytes: number,
   alphaOf: (file: Blob) => Promise<Uint8Array> = decodedAlpha,
 ): Promise<Blob> {
-  const head = new Uint8Array(await file.slice(0, PNG.length).arrayBuffer())
-  if (!PNG.every((byte, at) => head[at] === byte)) throw new Unusable(text.faults.leaf.noPng)
+  if (!(await isPng(file))) throw new Unusable(text.faults.leaf.noPng)
   if (file.size > mostBytes) throw new Unusable(text.faults.leaf.tooLarge(file.size / 1e6, mostBytes / 1e6))
   const alpha = await alphaOf(file).catch(() => {
     throw new Unusable(text.faults.leaf.unreadable)

@@ -1,22 +1,26 @@
 import { type Client, Refused } from '../api/client'
 import { begin, type History } from '../history'
-import { fittedTo, paper, sheetOfSize } from '../sheets'
+import { fittedTo, groundOf, paper, sheetOfSize } from '../sheets'
 import { DEFAULT_SETTINGS, EMPTY, type Ground, type Model, type Photo, type State, type Store } from '../state'
-import { fromWire, NO_STROKES, onSheet, type Strokes, withSheet } from '../strokes'
+import { fromWire, NO_STROKES, onSheet, type SheetName, type Strokes, withSheet } from '../strokes'
 import { text } from '../text'
+import { redrawn } from './desk'
 import type { Example, SketchExample } from './examples'
 import type { Grower } from './grower'
 import type { Keeper, Kept } from './keeper'
 import { pictureOf, uploaded } from './photos'
 import { isProject, type Project, readProject } from './project'
 import { faultOf, Unusable } from './sentences'
-import { sketchFrom } from './sketches'
+import { type Drawn, paired, remarkOn, type SketchFile } from './sketches'
+import { readSketch } from './sketchPicture'
 
 /** What takes the place of the present drawing. */
 interface Drawing extends Partial<Pick<State, 'source' | 'side' | 'settings' | 'seed' | 'leaf' | 'fruit'>> {
   readonly photo: Ground
   readonly name: string
   readonly history: History<Strokes>
+  /** What was mended in reading it. */
+  readonly remark?: string | undefined
 }
 
 /** In the place of a picture that is no longer known: another than any. */
@@ -24,6 +28,9 @@ const FORGOTTEN = new Blob([])
 
 /** Opens photos, paper, projects, examples, drawings and models; what was open before stays until that has worked. */
 export class Opener {
+  /** Counts what was asked to be opened: the last wins, whatever takes longest. */
+  #asked = 0
+
   constructor(
     private readonly store: Store,
     private readonly client: Client,
@@ -34,15 +41,36 @@ export class Opener {
   /** Open a photo or a project that was chosen, dropped or pasted. */
   openFile(file: File): Promise<void> {
     return this.#opening(async () => {
-      if (isProject(file)) return this.#openProject(await readProject(file), file.name)
-      this.#put({ photo: await this.#upload(file), name: stem(file.name), history: begin(NO_STROKES) })
+      if (isProject(file)) return this.#projectOf(await this.#read(file), stem(file.name))
+      const photo = await this.#upload(file)
+      return () => this.#put({ photo, name: stem(file.name), history: begin(NO_STROKES) })
     })
   }
 
   /** Open two white sheets. */
   openPaper(): Promise<void> {
-    return this.#opening(async () => {
+    return this.#opening(async () => () => {
       this.#put({ source: 'sketch', photo: paper(), side: paper(), name: '', history: begin(NO_STROKES) })
+    })
+  }
+
+  /** Open a sketch of a tree's front, as strokes or as a picture, to be drawn on. */
+  openSketch(file: File): Promise<void> {
+    return this.#opening(async () => {
+      const drawn = await this.#laidOut({ photo: null, ...paired(await this.#sketchIn(file), null) })
+      return () => this.#put({ ...drawn, name: stem(file.name) })
+    })
+  }
+
+  /** Open a sketch on a sheet, in the place of what is drawn there; an undo brings that back. */
+  openOn(sheet: SheetName, file: File): Promise<void> {
+    return this.#opening(async () => {
+      const sketch = await this.#sketchIn(file)
+      return () => {
+        if (!groundOf(this.store.state, sheet)) return
+        this.store.set(redrawn(this.store.state, sheet, sketch))
+        this.#remark(remarkOn(sheet, sketch))
+      }
     })
   }
 
@@ -51,13 +79,10 @@ export class Opener {
     return this.#opening(async () => {
       const bring = async (url: string | undefined) => (url ? await this.client.getFile(url) : null)
       const [ahead, left, ...own] = await Promise.all([front, side, leaf, fruit].map(bring))
-      const [one, other] = await Promise.all([ahead, left].map(async file => file && sketchFrom(await jsonOf(file))))
-      const history = begin(other ? withSheet(one!.strokes, 'side', other.strokes) : one!.strokes)
-      const sheets = { photo: sheetOfSize(one!.size), side: other ? sheetOfSize(other.size) : paper(one!.size.height) }
-      const pictures = { leaf: own[0] ?? null, fruit: own[1] ?? null }
-      const how = { settings: { ...DEFAULT_SETTINGS, ...settings }, ...pictures }
-      this.#put({ source: 'sketch', ...sheets, name: text.examples[name] ?? name, history, ...how })
-      void this.grower.grow()
+      const [one, other] = await Promise.all([ahead, left].map(async file => file && this.#sketchIn(file)))
+      const drawn = await this.#laidOut({ photo: null, ...paired(one!, other ?? null) })
+      const how = { settings: { ...DEFAULT_SETTINGS, ...settings }, leaf: own[0] ?? null, fruit: own[1] ?? null }
+      return () => this.#putToGrow({ ...drawn, ...how, name: text.examples[name] ?? name })
     })
   }
 
@@ -66,8 +91,8 @@ export class Opener {
     return this.#opening(async () => {
       const [file, drawn] = await Promise.all([this.client.getFile(photo), this.client.getFile(strokes)])
       const history = begin(fromWire(await jsonOf(drawn)))
-      this.#put({ photo: await this.#upload(file), name: text.examples[name] ?? name, history })
-      void this.grower.grow()
+      const ground = await this.#upload(file)
+      return () => this.#putToGrow({ photo: ground, name: text.examples[name] ?? name, history })
     })
   }
 
@@ -78,13 +103,16 @@ export class Opener {
       if (!found) throw new Unusable(text.faults.draftGone)
       const { draft, leaf, fruit } = found
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
-      this.#put({ ...draft, ...(await this.#sheetsOf(found)), settings, leaf, fruit }, id)
-      const model = draft.model && (await this.#find(draft.model))
+      const sheets = await this.#sheetsOf(found)
       const own = {
         leaf: draft.modelHadOtherLeaf ? FORGOTTEN : leaf,
         fruit: draft.modelHadOtherFruit ? FORGOTTEN : fruit,
       }
-      if (model && draft.modelOf) this.grower.show(model, draft.modelOf, own)
+      return async () => {
+        this.#put({ ...draft, ...sheets, settings, leaf, fruit }, id)
+        const model = draft.model && (await this.#find(draft.model))
+        if (model && draft.modelOf && this.keeper.id === id) this.grower.show(model, draft.modelOf, own)
+      }
     })
   }
 
@@ -93,12 +121,14 @@ export class Opener {
     return this.#opening(async () => {
       const model = await this.#find(id)
       if (!model) throw new Unusable(text.faults.modelGone)
-      const project = await readProject(await this.client.getFile(model.files.project!))
+      const project = await this.#read(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
       const { leaf, fruit = null } = project
-      const { strokes, ...sheets } = await laidOut(project, file => this.#photoOf(model.photo, file))
-      this.#put({ ...sheets, name: model.name, history: begin(strokes), settings, seed: model.seed, leaf, fruit })
-      this.grower.show(model, strokes, { leaf, fruit })
+      const drawn = await this.#laidOut(project, file => this.#photoOf(model.photo, file))
+      return () => {
+        this.#put({ ...drawn, name: model.name, settings, seed: model.seed, leaf, fruit })
+        this.grower.show(model, drawn.history.present, { leaf, fruit })
+      }
     })
   }
 
@@ -109,23 +139,35 @@ export class Opener {
     this.store.set({ ...EMPTY, limits: this.store.state.limits })
   }
 
-  async #opening(open: () => Promise<void>): Promise<void> {
-    if (this.store.state.opening) return
+  /** Bring what is to be opened, then put it in its place, unless something else was asked for or left meanwhile. */
+  async #opening(bring: () => Promise<() => void | Promise<void>>): Promise<void> {
+    const [turn, left] = [++this.#asked, this.keeper.id]
+    const isLast = () => turn === this.#asked
     this.store.fault('photo', null)
     this.store.set({ opening: true })
     try {
-      await open()
+      const put = await bring()
+      if (isLast() && this.keeper.id === left) await put()
     } catch (error) {
-      this.store.fault('photo', faultOf(error))
+      const fault = faultOf(error)
+      if (isLast()) this.store.fault('photo', fault)
     } finally {
-      this.store.set({ opening: false })
+      if (isLast()) this.store.set({ opening: false })
     }
   }
 
-  async #openProject(project: Project, name: string): Promise<void> {
+  async #projectOf(project: Project, name: string): Promise<() => void> {
     const { settings, seed, leaf, fruit = null } = project
-    const { strokes, ...sheets } = await laidOut(project, file => this.#upload(file))
-    this.#put({ ...sheets, name: stem(name), history: begin(strokes), settings, seed, leaf, fruit })
+    const drawn = await this.#laidOut(project)
+    return () => this.#put({ ...drawn, name, settings, seed, leaf, fruit })
+  }
+
+  #read(file: Blob): Promise<Project> {
+    return readProject(file, picture => this.#sketchIn(picture))
+  }
+
+  #sketchIn(file: Blob): Promise<SketchFile> {
+    return readSketch(file, this.client, this.store.state.limits)
   }
 
   #upload(file: Blob): Promise<Photo> {
@@ -163,6 +205,11 @@ export class Opener {
     }
   }
 
+  #putToGrow(drawing: Drawing): void {
+    this.#put(drawing)
+    void this.grower.grow()
+  }
+
   #put(drawing: Drawing, draft: string | null = null): void {
     const { source = 'photo', side = null, photo, name, history } = drawing
     const { settings = DEFAULT_SETTINGS, seed = 0, leaf = null, fruit = null } = drawing
@@ -172,16 +219,30 @@ export class Opener {
     const tool = history.present.crown || source === 'sketch' ? 'branch' : 'crown'
     const opened = { source, photo, side, name, history, settings, seed, leaf, fruit, tool } as const
     this.store.set({ ...EMPTY, limits, online, opening: true, ...opened })
+    this.#remark(drawing.remark)
   }
-}
 
-/** Lay a project's strokes on their sheets; those of the front go with the photo that lies under them. */
-async function laidOut({ photo: file, strokes, sheets = {} }: Project, send: (file: Blob) => Promise<Photo>) {
-  const { front, side } = sheets
-  const photo = file ? await send(file) : sheetOfSize(front!)
-  const left = side ? sheetOfSize(side) : front ? paper(photo.height) : null
-  const moved = front ? withSheet(strokes, 'front', fittedTo(onSheet(strokes, 'front'), front, photo)) : strokes
-  return { source: front ? ('sketch' as const) : ('photo' as const), photo, side: left, strokes: moved }
+  #remark(said = ''): void {
+    this.store.set({ remark: said ? { of: this.store.strokes, text: said } : null })
+  }
+
+  /** Lay strokes out on their sheets; those of the front go with the photo that lies under them. */
+  async #laidOut(
+    { photo: file, strokes, sheets = {}, remark }: Drawn & Pick<Project, 'photo'>,
+    send = (photo: Blob) => this.#upload(photo),
+  ) {
+    const { front, side } = sheets
+    const photo: Ground = file ? await send(file) : sheetOfSize(front!)
+    const left = side ? sheetOfSize(side) : front ? paper(photo.height) : null
+    const moved = front ? withSheet(strokes, 'front', fittedTo(onSheet(strokes, 'front'), front, photo)) : strokes
+    return {
+      source: front ? ('sketch' as const) : ('photo' as const),
+      photo,
+      side: left,
+      history: begin(moved),
+      remark,
+    }
+  }
 }
 
 async function jsonOf(file: Blob): Promise<unknown> {

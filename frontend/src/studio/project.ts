@@ -1,18 +1,15 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate'
-import { type Extent, isDrawn } from '../sheets'
+import { isDrawn } from '../sheets'
 import { DEFAULT_SETTINGS, type Settings } from '../state'
-import { fromWire, onSheet, type SheetName, type Strokes, toWire, withSheet } from '../strokes'
+import { fromWire, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
 import { text } from '../text'
 import { Unusable } from './sentences'
-import { sketchFrom, sketchToWire } from './sketches'
+import { type Drawn, paired, type SketchFile, sketchFrom, sketchToWire } from './sketches'
 
 /** What a project file holds. */
-export interface Project {
+export interface Project extends Drawn {
   /** Absent where it is made of sketches on paper. */
   readonly photo: Blob | null
-  readonly strokes: Strokes
-  /** The sizes of the sheets that sketches were drawn on; the front's makes the tree one of sketches. */
-  readonly sheets?: Readonly<Partial<Record<SheetName, Extent>>>
   readonly settings: Settings
   readonly seed: number
   /** The person's own picture of a leaf. */
@@ -70,14 +67,17 @@ function written(value: unknown): Uint8Array {
   return strToU8(JSON.stringify(value))
 }
 
+/** Reads a sketch that is a picture. */
+type ReadPicture = (picture: Blob) => Promise<SketchFile>
+
 /** Read a project, or throw `Unusable` where it is damaged or none. */
-export async function readProject(file: Blob): Promise<Project> {
+export async function readProject(file: Blob, readPicture: ReadPicture): Promise<Project> {
   const members = await unzip(file)
   const photo = Object.keys(members).find(name => /^photo\.\w+$/.test(name))
   const { seed, ...settings } = settingsOf(members['settings.json'])
   return {
     photo: photo ? picture(members[photo], TYPES[photo.split('.')[1]!]) : null,
-    ...drawingOf(members, photo !== undefined),
+    ...(await drawingOf(members, photo !== undefined, readPicture)),
     settings: { ...DEFAULT_SETTINGS, ...settings },
     seed: seed ?? 0,
     leaf: picture(members[PICTURES.leaf]),
@@ -85,20 +85,26 @@ export async function readProject(file: Blob): Promise<Project> {
   }
 }
 
-/** Read strokes over a photo, or sketches; a picture of a sketch has no strokes to go on with. */
-function drawingOf(members: Record<string, Uint8Array>, hasPhoto: boolean): Pick<Project, 'strokes' | 'sheets'> {
-  const strokes = members['strokes.json']
-  const [front, side] = SHEETS.map(sheet => members[`${sheet}.json`])
-  if (members['front.png'] || members['side.png']) throw new Unusable(text.faults.sketchIsPicture)
-  if (!front && !(strokes && hasPhoto)) throw new Unusable(text.faults.projectIncomplete)
-  const [drawn, other] = [sketchOf(front), sketchOf(side)]
-  const sheets = { ...(drawn && { front: drawn.size }), ...(other && { side: other.size }) }
-  const ahead = drawn?.strokes ?? strokesOf(strokes!)
-  return { strokes: other ? withSheet(ahead, 'side', other.strokes) : ahead, sheets }
+/** Read strokes over a photo, or sketches. */
+async function drawingOf(
+  members: Record<string, Uint8Array>,
+  hasPhoto: boolean,
+  readPicture: ReadPicture,
+): Promise<Drawn> {
+  const json = members['strokes.json']
+  const [front, side] = await Promise.all(SHEETS.map(sheet => sketchOf(members, sheet, readPicture)))
+  if (!front && !(json && hasPhoto)) throw new Unusable(text.faults.projectIncomplete)
+  return paired(front ?? { strokes: strokesOf(json!) }, side ?? null)
 }
 
-function sketchOf(json: Uint8Array | undefined): { strokes: Strokes; size: Extent } | null {
-  return json ? read(json, sketchFrom) : null
+async function sketchOf(
+  members: Record<string, Uint8Array>,
+  sheet: SheetName,
+  readPicture: ReadPicture,
+): Promise<SketchFile | null> {
+  const json = members[`${sheet}.json`]
+  const drawing = picture(members[`${sheet}.png`])
+  return json ? read(json, sketchFrom) : drawing && (await readPicture(drawing))
 }
 
 function picture(bytes: Uint8Array | undefined, type = 'image/png'): Blob | null {

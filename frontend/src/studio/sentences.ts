@@ -12,7 +12,7 @@ export function faultOf(error: unknown): Fault {
   if (error instanceof Unusable) return { text: error.message }
   if (!(error instanceof Refused)) throw error
   const stroke = strokeAt(error.pointer)
-  return { text: wording(error.code) ?? withoutPlace(error.message), ...(stroke && { stroke }) }
+  return { text: wording(error.code) ?? sentenceOf(error.message), ...(stroke && { stroke }) }
 }
 
 /** Find the stroke that a JSON pointer leads to: /crown, /strokes/erase/0, /branches/2/points, /sketches/side/crown. */
@@ -29,8 +29,8 @@ function wording(code: string): string | undefined {
   return (text.faults.codes as Readonly<Record<string, string>>)[code]
 }
 
-/** Leave out where in the request the fault lies, and begin as a sentence does. */
-function withoutPlace(detail: string): string {
+/** Write what the service says as a sentence, without where in the request the fault lies. */
+export function sentenceOf(detail: string): string {
   const sentence = detail.replace(/^[\w/.-]+: /, '')
   return `${sentence.charAt(0).toUpperCase()}${sentence.slice(1)}${/[.!?]$/.test(sentence) ? '' : '.'}`
 }

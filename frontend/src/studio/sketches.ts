@@ -1,6 +1,7 @@
 import type { components } from '../api/schema'
 import type { Extent } from '../sheets'
-import { fromWire, type Line, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
+import { fromWire, type Line, onSheet, type SheetName, type Strokes, toWire, withSheet } from '../strokes'
+import { text } from '../text'
 
 export type StrokeSketch = components['schemas']['StrokeSketch']
 
@@ -8,6 +9,17 @@ export type StrokeSketch = components['schemas']['StrokeSketch']
 export interface SketchFile {
   readonly strokes: Strokes
   readonly size: Extent
+  /** What was mended in a picture of them, in sentences for the user. */
+  readonly remark?: string
+}
+
+/** What is drawn of a tree: over its photo, or on sheets. */
+export interface Drawn {
+  readonly strokes: Strokes
+  /** The sizes of the sheets that sketches were drawn on; the front's makes the tree one of sketches. */
+  readonly sheets?: Readonly<Partial<Record<SheetName, Extent>>>
+  /** What was mended in pictures of sketches, in sentences for the user. */
+  readonly remark?: string
 }
 
 /** Room around strokes whose sheet is not known, as a share of their height. */
@@ -25,6 +37,19 @@ export function sketchFrom(value: unknown): SketchFile {
   const strokes = { ...fromWire({}), crown, branches }
   const lines = [...(crown ? [crown] : []), ...branches.map(({ points }) => points)]
   return { strokes, size: canvasOf(value) ?? around(lines.flat()) }
+}
+
+/** Put the left side beside the front, which is no sketch where its size is not given. */
+export function paired(front: Pick<SketchFile, 'strokes'> & Partial<SketchFile>, side: SketchFile | null): Drawn {
+  const sheets = { ...(front.size && { front: front.size }), ...(side && { side: side.size }) }
+  const strokes = side ? withSheet(front.strokes, 'side', side.strokes) : front.strokes
+  const remark = [remarkOn('front', front), side && remarkOn('side', side)].filter(Boolean).join(' ')
+  return { strokes, sheets, ...(remark && { remark }) }
+}
+
+/** Say of a sheet what was mended on it. */
+export function remarkOn(sheet: SheetName, { remark }: Partial<SketchFile>): string {
+  return remark ? text.sheets.remark(text.sheets[sheet], remark) : ''
 }
 
 function canvasOf(value: unknown): Extent | null {

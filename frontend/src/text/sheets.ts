@@ -5,7 +5,7 @@ export const sheetsText = {
   /** In which direction each is seen. */
   seen: {
     front: 'as the viewer stands before it',
-    side: 'from the tree’s left; right is towards the viewer',
+    side: 'from its left; viewer at the right',
   },
   seenLong: {
     front: 'You stand before the tree and look at it.',
@@ -21,7 +21,26 @@ export const sheetsText = {
   stray: 'drawn to here: it will be fitted',
   on: (stroke: string) => `${stroke}, left side`,
   lay: 'Lay a photo under',
-  drop: 'Let go to lay it under this sheet',
+  openDrawing: 'Open a drawing',
+  opened: 'Drawing opened.',
+  /** Where a picture is dropped: what comes of it, and what for. */
+  drop: {
+    lay: ['Lay it under this sheet', 'a photo to draw over'],
+    photo: ['Open it as a photo', 'to draw over its tree'],
+    drawing: ['Open it as a drawing', 'its strokes become yours to draw on'],
+  },
+  remark: (sheet: string, what: string) => `${sheet}: ${what}`,
+  /** What was mended in the picture of a sketch, by the service's codes. */
+  mended: {
+    branch_joined: (count: number) => (count === 1 ? 'a gap was bridged.' : `${count} gaps were bridged.`),
+    loop_cut: (count: number) =>
+      count === 1 ? 'a ring of branches was cut open.' : `${count} rings of branches were cut open.`,
+    crown_crosses_itself: () => 'the crown line crosses itself; everything inside it was taken.',
+  },
+  leftOut: (count: number, most: number) =>
+    count === 1
+      ? `the shortest branch was left out: ${most} can be drawn at most.`
+      : `the ${count} shortest branches were left out: ${most} can be drawn at most.`,
   hide: 'Hide the photo',
   show: 'Show the photo',
   lift: 'Take the photo away',
@@ -47,7 +66,7 @@ export const sheetsText = {
     mixed: 'Draw the trunk and its branches as seen from the left.',
     mixedGrow: 'Draw on, or grow the tree: the side stands in for the depth that is guessed.',
     how: {
-      mouse: 'Drag, each branch outward.',
+      mouse: 'Drag, each branch outward; or drop a drawing.',
       touch: 'One finger draws; two move and zoom.',
       pen: 'Draw with the pen, each branch outward.',
     },
@@ -57,7 +76,7 @@ export const sheetsText = {
   drawing: 'Drawing',
   welcome: {
     draw: 'Draw it yourself',
-    drawHint: 'on white paper, from two sides',
+    drawHint: 'on white paper, from two sides; or bring a PNG of dark strokes',
     examples: 'Or drawn from two sides',
     examplesHint: 'Two sketches, one tree: no photo needed.',
   },

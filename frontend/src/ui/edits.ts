@@ -12,14 +12,14 @@ export function editSaid(before: History<Strokes>, now: History<Strokes>): strin
   const { scale } = now.present
   if (scale && before.present.scale?.points === scale.points && before.present.scale !== scale)
     return text.strokes.measured(text.metres(scale.metres))
-  const gone = missing(before.present, now.present)
-  const come = missing(now.present, before.present)
-  if (come) return text.strokes.drawn(strokeName(come))
-  return gone && text.strokes.deleted(strokeName(gone))
+  const [gone] = missing(before.present, now.present)
+  const [come, more] = missing(now.present, before.present)
+  if (come) return more ? text.sheets.opened : text.strokes.drawn(strokeName(come))
+  return gone ? text.strokes.deleted(strokeName(gone)) : null
 }
 
-/** Find the stroke of `strokes` that `others` have not. */
-function missing(strokes: Strokes, others: Strokes): StrokeRef | null {
+/** Find the strokes of `strokes` that `others` have not: more than one were not drawn, but opened. */
+function missing(strokes: Strokes, others: Strokes): StrokeRef[] {
   const known = new Set(strokeRefs(others).map(ref => lineOf(others, ref)))
-  return strokeRefs(strokes).find(ref => !known.has(lineOf(strokes, ref))) ?? null
+  return strokeRefs(strokes).filter(ref => !known.has(lineOf(strokes, ref)))
 }

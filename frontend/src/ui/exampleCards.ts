@@ -1,6 +1,6 @@
-import { fromWire, withSheet } from '../strokes'
+import { fromWire } from '../strokes'
 import { EXAMPLES, type Example, SKETCH_EXAMPLES, type SketchExample } from '../studio/examples'
-import { sketchFrom } from '../studio/sketches'
+import { paired, sketchFrom } from '../studio/sketches'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el } from './dom'
@@ -14,7 +14,7 @@ export function exampleCards(studio: Studio): HTMLElement {
 
 /** Make a card of every bundled pair of sketches. */
 export function sketchCards(studio: Studio): HTMLElement {
-  return el('ul', { class: 'picks' }, ...SKETCH_EXAMPLES.map(example => sketchCard(example, studio)))
+  return el('ul', { class: 'picks pairs' }, ...SKETCH_EXAMPLES.map(example => sketchCard(example, studio)))
 }
 
 function card(example: Example, studio: Studio): HTMLElement {
@@ -50,11 +50,16 @@ function sketchCard(example: SketchExample, studio: Studio): HTMLElement {
 
 /** Draw both sides; without them the card is good as well. */
 async function draw({ front, side }: SketchExample, frame: HTMLElement, { client }: Studio): Promise<void> {
+  const urls = [front, ...(side ? [side] : [])]
+  if (front.endsWith('.png')) {
+    frame.append(...urls.map(src => el('img', { src, alt: '', decoding: 'async' })))
+    frame.classList.add('of-pictures')
+    return
+  }
   try {
-    const files = await Promise.all([front, ...(side ? [side] : [])].map(url => client.getFile(url)))
+    const files = await Promise.all(urls.map(url => client.getFile(url)))
     const [ahead, left] = await Promise.all(files.map(async file => sketchFrom(JSON.parse(await file.text()))))
-    const strokes = left ? withSheet(ahead!.strokes, 'side', left.strokes) : ahead!.strokes
-    frame.append(drawnPair(ahead!.size, strokes, left?.size ?? null))
+    frame.append(drawnPair(ahead!.size, paired(ahead!, left ?? null).strokes, left?.size ?? null))
   } catch {
     return
   }

@@ -24,8 +24,16 @@ export function hintOf(state: State, pointer: PointerKind): Hint {
   if (fault) return { tone: 'fault', text: fault.text, ...(fault.stroke && { stroke: fault.stroke }) }
   if (!state.online) return { tone: 'note', text: text.hints.offline }
   const next = step(state, pointer)
+  const note = noteOf(state)
+  return note && !next.deletes ? { tone: 'note', text: note, how: next.text } : next
+}
+
+/** Say what was mended in what is drawn, as it was read or in the stroke that was drawn last. */
+function noteOf(state: State): string | null {
+  const { remark, history } = state
+  if (remark?.of === history.present) return remark.text
   const warning = newWarning(state)
-  return warning && !next.deletes ? { tone: 'note', text: warningText(warning), how: next.text } : next
+  return warning ? warningText(warning) : null
 }
 
 /** Find a warning about the stroke that was drawn last; older ones have been read. */

@@ -4,10 +4,11 @@ import { isProject } from '../studio/project'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { el } from './dom'
-import './intake.css'
+import { dropVeil, type Way } from './dropVeil'
 
 const PHOTOS = 'image/jpeg,image/png,image/webp'
 const PROJECTS = '.treestroke'
+const SKETCHES = 'image/png,application/json,.json'
 
 /** Ask before a drawing is left that the browser could not keep. */
 export function mayLeave({ store }: Studio): boolean {
@@ -22,34 +23,37 @@ export function choose(studio: Studio, what: 'photo' | 'any' = 'any'): void {
 }
 
 /** Let the user choose a picture on the disk. */
-export function choosePicture(take: (file: File) => void): void {
-  const input = el('input', { type: 'file', accept: PHOTOS })
+export function choosePicture(take: (file: File) => void, accept = PHOTOS): void {
+  const input = el('input', { type: 'file', accept })
   input.addEventListener('change', () => input.files?.[0] && take(input.files[0]))
   input.click()
 }
 
+/** Let the user choose a sketch on the disk: a picture of it, or its strokes. */
+export function chooseSketch(take: (file: File) => void): void {
+  choosePicture(take, SKETCHES)
+}
+
+/** Open a sketch in the place of the present drawing. */
+export function openSketch(studio: Studio, file: File): void {
+  if (mayLeave(studio)) void studio.opener.openSketch(file)
+}
+
 /** Open what is dropped on the page or pasted into it. */
 export function takeFiles(studio: Studio): void {
-  const says = el('p', {})
-  const veil = el('div', { class: 'drop-veil', hidden: true }, says)
-  document.body.append(veil)
-  let leaving = 0
+  const veil = dropVeil()
   addEventListener('dragover', event => {
     if (!event.dataTransfer?.types.includes('Files')) return
     event.preventDefault()
-    veil.hidden = false
-    says.textContent = sheetUnder(studio, event) ? text.sheets.drop : text.welcome.drop
-    clearTimeout(leaving)
-    leaving = window.setTimeout(() => {
-      veil.hidden = true
-    }, 300)
+    veil.show(waysOf(studio, event), event)
   })
   addEventListener('drop', event => {
     event.preventDefault()
-    veil.hidden = true
+    veil.hide()
     const files = [...(event.dataTransfer?.files ?? [])]
-    const [sheet, picture] = [sheetUnder(studio, event), files.find(isPhoto)]
-    if (sheet && picture) void studio.desk.lay(sheet, picture)
+    const picture = files.find(file => isPhoto(file) || isStrokes(file))
+    const way = picture && veil.wayAt(waysOf(studio, event), event)
+    if (way?.take) way.take(picture!)
     else openOne(studio, files)
   })
   addEventListener('paste', event => {
@@ -58,11 +62,27 @@ export function takeFiles(studio: Studio): void {
   })
 }
 
-/** Find the sheet of paper that something is dropped on. */
-function sheetUnder({ store }: Studio, { target }: DragEvent): SheetName | null {
+/** List what can become of what is dragged: a PNG may be a photo or a drawing, which only the user knows. */
+function waysOf(studio: Studio, event: DragEvent): readonly Way[] {
+  const { drop } = text.sheets
+  const [part, sheet] = sheetUnder(studio, event)
+  const kinds = [...(event.dataTransfer?.items ?? [])].map(({ type }) => type)
+  const drawing: Way = sheet
+    ? { words: drop.drawing, over: part, take: file => void studio.opener.openOn(sheet, file) }
+    : { words: drop.drawing, take: file => openSketch(studio, file) }
+  const photo: Way = sheet
+    ? { words: drop.lay, over: part, take: file => void studio.desk.lay(sheet, file) }
+    : { words: drop.photo, take: file => openFile(studio, file) }
+  if (kinds.includes('image/png')) return [photo, drawing]
+  if (kinds.includes('application/json')) return [drawing]
+  return [sheet && kinds.some(kind => kind.startsWith('image/')) ? photo : { words: [text.welcome.drop] }]
+}
+
+/** Find the sheet of paper that something is dragged over. */
+function sheetUnder({ store }: Studio, { target }: DragEvent): readonly [Element, SheetName] | readonly [] {
   const part = target instanceof Element ? target.closest<HTMLElement>('[data-of]') : null
   const sheet = part?.dataset.of as SheetName | undefined
-  return sheet && isPaper(store.state, sheet) ? sheet : null
+  return part && sheet && isPaper(store.state, sheet) ? [part, sheet] : []
 }
 
 function openOne(studio: Studio, files: readonly File[]): void {
@@ -78,6 +98,10 @@ function openFile(studio: Studio, file: File): void {
 /** Let the service judge any picture; it names the formats that it takes. */
 function isPhoto(file: File): boolean {
   return file.type.startsWith('image/')
+}
+
+function isStrokes(file: File): boolean {
+  return file.type === 'application/json'
 }
 
 function named(picture: File): File {

@@ -5,22 +5,23 @@ import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el, icon, svg } from './dom'
 import { ICONS } from './icons'
-import { choosePicture } from './intake'
+import { choosePicture, chooseSketch } from './intake'
 
 const { sheets: words } = text
 
 /** Make a sheet's heading: which side it shows, from where it is seen, and the picture that lies under its strokes. */
-export function sheetHeading({ store, desk }: Studio, sheet: SheetName): HTMLElement {
+export function sheetHeading({ store, desk, opener }: Studio, sheet: SheetName): HTMLElement {
   const square = (label: string, path: string, act: () => void) =>
     button({ class: 'button square', 'aria-label': label, title: label }, act, icon(path))
   const lay = square(words.lay, ICONS.photo, () => choosePicture(file => void desk.lay(sheet, file)))
+  const bring = square(words.openDrawing, ICONS.drawing, () => chooseSketch(file => void opener.openOn(sheet, file)))
   const hide = square(words.hide, ICONS.eye, () => desk.show(sheet, hidden()))
   const lift = square(words.lift, ICONS.remove, () => desk.lift(sheet))
   const close = square(words.close, ICONS.cross, () => desk.closeSide())
   close.hidden = sheet === 'front'
   const name = el('h2', { title: words.seenLong[sheet] }, words[sheet])
   const seen = el('p', { class: 'soft', title: words.seenLong[sheet] }, words.seen[sheet])
-  const tools = el('div', { class: 'sheet-tools' }, lay, hide, lift, close)
+  const tools = el('div', { class: 'sheet-tools' }, bring, lay, hide, lift, close)
   const heading = el('div', { class: 'sheet-heading' }, compass(sheet), name, seen, tools)
   store.watch(
     state => state,
@@ -28,6 +29,7 @@ export function sheetHeading({ store, desk }: Studio, sheet: SheetName): HTMLEle
       const ground = groundOf(state, sheet)
       heading.hidden = !hasHeading(state)
       heading.classList.toggle('active', state.sheet === sheet)
+      bring.hidden = !isPaper(state, sheet)
       lay.hidden = !isPaper(state, sheet) || Boolean(ground?.url)
       hide.hidden = lift.hidden = !isPaper(state, sheet) || !ground?.url
       hide.ariaLabel = hide.title = ground?.hidden ? words.show : words.hide

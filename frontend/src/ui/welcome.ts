@@ -6,7 +6,7 @@ import { exampleCards, sketchCards } from './exampleCards'
 import { grownTrees } from './grownTrees'
 import { ICONS } from './icons'
 import { illustration } from './illustration'
-import { choose, mayLeave } from './intake'
+import { choose, chooseSketch, mayLeave, openSketch } from './intake'
 import './welcome.css'
 
 /** Lay out what is seen while no photo is open: what this is, and every way to begin. */
@@ -38,6 +38,12 @@ function hero(studio: Studio): HTMLElement {
     icon(ICONS.sheet),
     text.sheets.welcome.draw,
   )
+  const bring = button(
+    { class: 'button outlined hero-draw' },
+    () => chooseSketch(file => openSketch(studio, file)),
+    icon(ICONS.drawing),
+    text.sheets.openDrawing,
+  )
   const fault = el('p', { class: 'fault', role: 'alert', hidden: true })
   studio.store.watch(
     state => state.faults.photo,
@@ -52,7 +58,7 @@ function hero(studio: Studio): HTMLElement {
     el('h1', {}, ...phrases()),
     lead(),
     el('div', { class: 'hero-begin' }, begin, el('span', { class: 'hero-other' }, text.welcome.otherWays)),
-    el('div', { class: 'hero-begin' }, draw, el('span', { class: 'soft' }, text.sheets.welcome.drawHint)),
+    el('div', { class: 'hero-begin' }, draw, bring, el('span', { class: 'soft' }, text.sheets.welcome.drawHint)),
     fault,
     el('p', { class: 'soft' }, text.welcome.takes),
   )

@@ -1,13 +1,14 @@
 import 'fake-indexeddb/auto'
 import { IDBFactory } from 'fake-indexeddb'
+import { strToU8, zipSync } from 'fflate'
 import { afterEach, beforeEach, expect, test, vi } from 'vitest'
 import type { Limits } from '../../src/state'
 import { DEFAULT_SETTINGS } from '../../src/state'
 import { NO_STROKES, toWire } from '../../src/strokes'
 import { writeProject } from '../../src/studio/project'
 import { Studio } from '../../src/studio/studio'
-import { answer, CROWN, model, sketchAnswer, TRUNK } from '../builders'
-import { type Call, Events, problem, service } from '../service'
+import { answer, CROWN, drawnAnswer, LIMB, model, PNG, sketchAnswer, TRUNK } from '../builders'
+import { type Call, Events, problem, service, settle } from '../service'
 
 const STROKES = { crown: CROWN, branches: [{ points: TRUNK }], erase: [], scale: null }
 const PHOTO = { id: 'pho_1', width: 100, height: 100, image: '/v1/photos/pho_1/image' }
@@ -206,4 +207,150 @@ test('sketches over a photo are laid on it as large as it is', async () => {
   await opener.openFile(new File([file], 'Pear.treestroke'))
   expect(store.state).toMatchObject({ source: 'sketch', photo: { id: 'pho_1', width: 100 }, side: { height: 100 } })
   expect(store.strokes.branches[0]?.points).toEqual(TRUNK.map(([x, y]) => [x / 2, y / 2]))
+})
+
+const png = (name = 'Oak.png') => new File([PNG], name, { type: 'image/png' })
+const READ = {
+  crown: null,
+  branches: [
+    { points: TRUNK, width: 10 },
+    {
+      points: [
+        [50, 70],
+        [70, 50],
+      ],
+      width: 4,
+    },
+  ],
+}
+const isReading = ({ path, body }: Call) => path === '/v1/sketches/trace' && 'picture' in body.front
+const reads = (call: Call) => (isReading(call) ? Response.json(drawnAnswer()) : serve(call))
+
+test('a drawing that is a picture is opened as strokes on paper of its size', async () => {
+  const calls = service(reads)
+  const { store, opener } = new Studio()
+  await opener.openSketch(png())
+  expect(store.state).toMatchObject({ source: 'sketch', name: 'Oak', tool: 'branch', photo: { width: 100, url: null } })
+  expect(store.state.side).toMatchObject({ height: 100 })
+  expect(store.strokes).toMatchObject(READ)
+  expect(calls.find(isReading)!.body).toEqual({ front: { picture: Buffer.from(PNG).toString('base64') }, grow: false })
+})
+
+test('a drawing that is strokes is opened without asking', async () => {
+  const calls = service(serve)
+  const { store, opener } = new Studio()
+  const sketch = { canvas: [200, 300], branches: [{ points: TRUNK }] }
+  await opener.openSketch(new File([JSON.stringify(sketch)], 'oak.front.json'))
+  expect(store.state.photo).toMatchObject({ width: 200, height: 300 })
+  expect(calls.some(isReading)).toBe(false)
+})
+
+test('a drawing takes the place of a sheet’s strokes, which an undo brings back', async () => {
+  service(reads)
+  const { store, opener, sketchbook } = new Studio()
+  await opener.openPaper()
+  sketchbook.draw('branch', TRUNK)
+  sketchbook.draw('branch', LIMB, 'side')
+  await opener.openOn('side', png())
+  expect(store.strokes.side).toEqual(READ)
+  expect(store.state).toMatchObject({ sheet: 'side', side: { width: 100, height: 100 }, photo: { width: 900 } })
+  expect(store.strokes.branches).toEqual([{ points: TRUNK }])
+  sketchbook.undo()
+  expect(store.strokes.side?.branches).toHaveLength(1)
+})
+
+test('a drawing on a sheet with a photo is fitted to the photo', async () => {
+  vi.stubGlobal('createImageBitmap', async () => ({ width: 400, height: 200, close() {} }))
+  service(reads)
+  const { store, opener, desk } = new Studio()
+  await opener.openPaper()
+  await desk.lay('side', jpeg())
+  await opener.openOn('side', png())
+  expect(store.state.side).toMatchObject({ width: 400, height: 200 })
+  expect(store.strokes.side?.branches[0]).toEqual({ points: TRUNK.map(([x, y]) => [100 + 2 * x, 2 * y]), width: 20 })
+})
+
+test('what was mended in a drawing is said until it is drawn on', async () => {
+  const warnings = [{ code: 'loop_cut', stroke: 'front/picture', detail: 'a loop was cut open at (9, 9)' }]
+  service(call => (isReading(call) ? Response.json({ ...drawnAnswer(), warnings }) : serve(call)))
+  const { store, opener } = new Studio()
+  await opener.openSketch(png())
+  expect(store.state.remark?.of).toBe(store.strokes)
+  expect(store.state.remark?.text).toMatch(/^Front: .*ring/)
+})
+
+test.each([
+  ['the service’s refusal', png(), 'Draw the tree'],
+  ['neither a PNG nor strokes', jpeg(), 'Save it as a PNG'],
+  ['a PNG that is too large', new File([PNG, new Uint8Array(90)], 'large.png'), 'at most'],
+])('%s is said and leaves the sheets as they were', async (_, file, word) => {
+  const refusal = problem(422, 'sketch_empty', 'front/picture: the picture shows no strokes. Draw the tree')
+  service(call => (isReading(call) ? refusal : serve(call)))
+  const { store, opener, sketchbook } = new Studio()
+  await opener.openPaper()
+  store.set({ limits: { sketch_bytes: 50 } as Limits })
+  sketchbook.draw('branch', TRUNK)
+  const { photo, side, history } = store.state
+  await opener.openOn('front', file)
+  expect(store.state.faults.photo?.text).toContain(word)
+  expect(store.state).toMatchObject({ opening: false })
+  expect([store.state.photo, store.state.side, store.state.history]).toEqual([photo, side, history])
+})
+
+test('the file that was opened last wins, though the first takes longer', async () => {
+  let first: (answer: Response) => void = () => {}
+  let count = 0
+  service(call => {
+    if (!isReading(call)) return serve(call)
+    return count++ === 0 ? new Promise<Response>(done => (first = done)) : Response.json(drawnAnswer())
+  })
+  const { store, opener } = new Studio()
+  const slow = opener.openSketch(png('slow.png'))
+  await settle()
+  expect(store.state.opening).toBe(true)
+  await opener.openSketch(png('quick.png'))
+  first(problem(422, 'sketch_empty', 'nothing is drawn'))
+  await slow
+  expect(store.state).toMatchObject({ name: 'quick', opening: false, faults: {} })
+})
+
+test('a drawing that is left while another one is read stays left', async () => {
+  let answered: (answer: Response) => void = () => {}
+  service(call => (isReading(call) ? new Promise<Response>(done => (answered = done)) : serve(call)))
+  const { store, opener } = new Studio()
+  await opener.openPaper()
+  const reading = opener.openOn('front', png())
+  await settle()
+  opener.close()
+  answered(Response.json(drawnAnswer()))
+  await reading
+  expect(store.state).toMatchObject({ photo: null, opening: false })
+})
+
+test('an example of pictures is opened as strokes, and grown', async () => {
+  const calls = service(call => (call.path.endsWith('.png') ? new Response(PNG) : reads(call)))
+  const { store, opener } = new Studio()
+  const urls = { front: '/page/f.png', side: '/page/s.png', leaf: undefined, fruit: undefined }
+  await opener.openSketches({ name: 'imagined', ...urls, settings: { height: 6 } })
+  await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
+  expect(store.state).toMatchObject({ name: 'Imagined tree', side: { width: 100, height: 100 } })
+  const { sketches } = calls.find(({ path }) => path === '/v1/models')!.body
+  expect(sketches.front).toEqual({ canvas: [100, 100], branches: READ.branches })
+  expect(sketches.side).toEqual(sketches.front)
+})
+
+test('a model and a project of pictures are opened as strokes to draw on', async () => {
+  const settings = strToU8('{"height": 6}')
+  const project = zipSync({ 'front.png': PNG, 'side.png': PNG, 'settings.json': settings })
+  service(call => (call.path === '/project' ? new Response(new Uint8Array(project)) : reads(call)))
+  const { store, opener, sketchbook } = new Studio()
+  await opener.openModel('mdl_1')
+  expect(store.state).toMatchObject({ source: 'sketch', model: { id: 'mdl_1' } })
+  expect(store.state.modelOf).toBe(store.strokes)
+  expect(store.strokes).toEqual({ ...NO_STROKES, ...READ, side: READ })
+  sketchbook.draw('branch', LIMB, 'side')
+  expect(store.strokes.side?.branches).toHaveLength(3)
+  await opener.openFile(new File([new Uint8Array(project)], 'Imagined.treestroke'))
+  expect(store.state).toMatchObject({ name: 'Imagined', model: null, settings: { height: 6 } })
+  expect(store.strokes).toEqual({ ...NO_STROKES, ...READ, side: READ })
 })

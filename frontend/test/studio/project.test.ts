@@ -16,13 +16,15 @@ const jpeg = new Blob([readFileSync(new URL('../../../examples/osage_orange_autu
   type: 'image/jpeg',
 })
 
+const opened = (file: Blob) => readProject(file, () => Promise.reject(new Error('there is no picture')))
+
 function zip(members: Record<string, string>): Blob {
   return new Blob([zipSync(Object.fromEntries(Object.entries(members).map(([name, held]) => [name, strToU8(held)])))])
 }
 
 test('a project is read as it was written', async () => {
   const project = { photo: jpeg, strokes: STROKES, settings: { ...DEFAULT_SETTINGS, height: 14 }, seed: 8, leaf: null }
-  const read = await readProject(await writeProject(project))
+  const read = await opened(await writeProject(project))
   expect({ ...read, photo: null }).toEqual({ fruit: null, sheets: {}, ...project, photo: null })
   expect(read.photo?.type).toBe('image/jpeg')
   expect(Buffer.from(await read.photo!.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
@@ -30,7 +32,7 @@ test('a project is read as it was written', async () => {
 
 test('a project without a crown is kept and read, too', async () => {
   const strokes = { crown: null, branches: [{ points: TRUNK }], erase: [], scale: null }
-  const read = await readProject(
+  const read = await opened(
     await writeProject({ photo: jpeg, strokes, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }),
   )
   expect(read.strokes).toEqual(strokes)
@@ -38,7 +40,7 @@ test('a project without a crown is kept and read, too', async () => {
 
 test('settings may be absent', async () => {
   const strokes = JSON.stringify({ crown: { points: CROWN } })
-  const read = await readProject(zip({ 'photo.png': 'x', 'strokes.json': strokes }))
+  const read = await opened(zip({ 'photo.png': 'x', 'strokes.json': strokes }))
   expect([read.settings, read.seed, read.photo?.type]).toEqual([DEFAULT_SETTINGS, 0, 'image/png'])
 })
 
@@ -48,7 +50,7 @@ test.each([
   ['strokes of another form', zip({ 'photo.jpg': 'x', 'strokes.json': '{"crown": 7}' }), 'damaged'],
   ['no JSON', zip({ 'photo.jpg': 'x', 'strokes.json': '{' }), 'damaged'],
 ])('%s is said in a sentence', async (_, file, word) => {
-  await expect(readProject(file)).rejects.toThrow(word)
+  await expect(opened(file)).rejects.toThrow(word)
 })
 
 test('a project is known by its ending or its type', () => {
@@ -65,7 +67,7 @@ test('a name makes a file name that every system takes', () => {
 test('a leaf of one’s own goes with the project', async () => {
   const leaf = new Blob(['a leaf'], { type: 'image/png' })
   const project = { photo: jpeg, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf }
-  const read = await readProject(await writeProject(project))
+  const read = await opened(await writeProject(project))
   expect([await read.leaf?.text(), read.leaf?.type]).toEqual(['a leaf', 'image/png'])
 })
 
@@ -74,7 +76,7 @@ test('sketches on paper are read as they were written, with a fruit and without 
   const strokes = withSheet(front, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
   const sheets = { front: { width: 900, height: 1200 }, side: { width: 450, height: 600 } }
   const written = { photo: null, strokes, sheets, settings: DEFAULT_SETTINGS, seed: 2, leaf: null }
-  const read = await readProject(await writeProject({ ...written, fruit: new Blob(['a pear']) }))
+  const read = await opened(await writeProject({ ...written, fruit: new Blob(['a pear']) }))
   expect(read).toMatchObject(written)
   expect(await read.fruit?.text()).toBe('a pear')
 })
@@ -83,12 +85,21 @@ test('a side that goes with a photo’s strokes is kept with them', async () => 
   const strokes = withSheet(STROKES, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
   const sheets = { side: { width: 450, height: 600 } }
   const project = { photo: jpeg, strokes, sheets, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }
-  const read = await readProject(await writeProject(project))
+  const read = await opened(await writeProject(project))
   expect([read.strokes, read.sheets]).toEqual([strokes, sheets])
   expect(read.photo?.size).toBe(jpeg.size)
 })
 
-test('a sketch that is a picture is said to be one', async () => {
-  const picture = new Blob([zipSync({ 'front.png': strToU8('png'), 'settings.json': strToU8('{}') })])
-  await expect(readProject(picture)).rejects.toThrow('sketched as a picture')
+test('a sketch that is a picture is read as strokes, and what was mended in it is said', async () => {
+  const picture = zip({ 'front.png': 'ahead', 'side.png': 'left', 'settings.json': '{"height": 6}' })
+  const size = { width: 450, height: 600 }
+  const ways = { ahead: TRUNK, left: LIMB } as Readonly<Record<string, typeof TRUNK>>
+  const project = await readProject(picture, async file => {
+    const [held, strokes] = [await file.text(), { ...NO_STROKES }]
+    const branches = [{ points: ways[held]!, width: 7 }]
+    return { strokes: { ...strokes, branches }, size, ...(held === 'left' && { remark: 'a gap was bridged.' }) }
+  })
+  expect(project).toMatchObject({ sheets: { front: size, side: size }, remark: 'Left side: a gap was bridged.' })
+  expect(project.strokes.branches).toEqual([{ points: TRUNK, width: 7 }])
+  expect(project.strokes.side?.branches).toEqual([{ points: LIMB, width: 7 }])
 })

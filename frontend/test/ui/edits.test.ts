@@ -56,3 +56,7 @@ test('what is drawn on the other sheet is told as such', () => {
   const side = withSheet(trunked.present, 'side', withStroke(NO_STROKES, 'branch', [...TRUNK]))
   expect(editSaid(trunked, advance(trunked, side))).toBe('Trunk, left side drawn.')
 })
+
+test('strokes that come all at once were opened, not drawn', () => {
+  expect(editSaid(empty, advance(empty, branched.present))).toBe('Drawing opened.')
+})

@@ -111,3 +111,13 @@ test('beside a photo the side’s sheet says what it is for', () => {
   expect(beside(two)).toBe(hints.mixed)
   expect(beside(withSheet(two, 'side', two))).toBe(hints.mixedGrow)
 })
+
+test('what was mended in reading a drawing is said until it is drawn on', () => {
+  const remark = { of: trunk, text: 'Front: a gap was bridged.' }
+  expect(hintOf(state({ tool: 'branch', history: begin(trunk), remark }), 'mouse')).toEqual({
+    tone: 'note',
+    text: remark.text,
+    how: text.hints.waiting,
+  })
+  expect(said({ tool: 'branch', history: begin(two), remark })).toBe(text.hints.waiting)
+})
