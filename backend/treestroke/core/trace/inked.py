@@ -21,6 +21,7 @@ from treestroke.core.geometry.polyline import (
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.centre_lines import Graph, Mask, graph_of, thinned, with_crossings_joined, without_spurs
+from treestroke.core.trace.foot import stood
 from treestroke.core.trace.gaps import bridge_gaps
 from treestroke.core.trace.lines import Line, check_length, tree_height
 from treestroke.core.trace.spanning import Path, paths_of
@@ -206,6 +207,7 @@ def _lengthened(points: Floats, radii: Floats, ink: Mask, root: bool, tip: bool)
     if root:
         start = _beyond(points[::-1], float(radii[0]), ink)[::-1]
         points, radii = np.vstack([start, points]), np.append(np.repeat(radii[:1], len(start)), radii)
+        return stood(points, radii, ink)
     return points, radii
 
 
