@@ -2,7 +2,7 @@
 
 import time
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from treestroke.core.progress import Report
@@ -11,11 +11,12 @@ from treestroke.core.progress import Report
 class Stopwatch:
     """A progress report that charges the time between calls to the stage under way, and passes the calls on."""
 
-    def __init__(self, report: Report) -> None:
+    def __init__(self, report: Report, clock: Callable[[], float] = time.perf_counter) -> None:
         self.seconds: defaultdict[str, float] = defaultdict(float)
         self._report = report
+        self._clock = clock
         self._stage = ""
-        self._since = time.perf_counter()
+        self._since = clock()
 
     def __call__(self, stage: str, fraction: float) -> None:
         """Charge the time since the last call; a new stage's name begins that stage."""
@@ -30,7 +31,7 @@ class Stopwatch:
         self(name, 1.0)
 
     def _charge(self, stage: str) -> None:
-        now = time.perf_counter()
+        now = self._clock()
         if self._stage:
             self.seconds[self._stage] += now - self._since
         self._stage, self._since = stage, now
