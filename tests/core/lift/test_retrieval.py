@@ -15,13 +15,12 @@ from treestroke.core.survey.fidelity import Fidelity, fidelity
 PAIRS = pairs()
 STEM = [(0.0, 300.0), (0.0, 500.0), (0.0, 1000.0)]
 IN_PLANES = {
-    # Nearly all that lies flat was walked with the other sketch's stem. The front has twice as many limbs as the side
-    # and higher ones, so that for some only the stem is left; ...
-    "broad 9/6": 0.4,
-    # ... level boughs pass few heights and find partners rarely; ...
-    "pine 24/18": 0.6,
-    # ... and most of the side's limbs that no limb of the front used come down along the front's stem.
-    "weeping 9/7": 0.46,
+    # The front has half again as many limbs as the side, and higher ones, so that for some only the stem is left.
+    "broad 9/6": 0.28,
+    # Level boughs pass few heights: for two fifths of them the other sketch has nothing but its stem.
+    "pine 24/18": 0.53,
+    # Where most limbs of the side hang lower than the front's, they stray from one to another.
+    "weeping 9/7": 0.2,
 }
 """Share of the limbs' length in the two planes of view, of the pairs that do not keep to a quarter."""
 
@@ -102,7 +101,7 @@ def test_where_buds_differ_a_limb_leaves_the_tree_at_the_lower_one() -> None:
     assert limb[0, 1] < 310
     low = limb[:, 1] < 490
     assert limb[low, 0] == pytest.approx(0.0)
-    assert limb[-1] == pytest.approx([300, 700, 200])
+    assert limb[-1] == pytest.approx([300, 700, 200], abs=1.0)
 
 
 def test_on_the_other_sketch_s_stem_a_limb_keeps_its_own_radius() -> None:
@@ -110,15 +109,16 @@ def test_on_the_other_sketch_s_stem_a_limb_keeps_its_own_radius() -> None:
     side = sketched(STEM, (0, 1, [(200.0, 700.0)]), radii=(16.0, 6.0))
     tree = retrieve_depth(front, side).tree
     height = tree.skeleton.points[:, 1]
-    extension = tree.skeleton.radii[(tree.branch == 1) & (height > 320) & (height <= 500)]
-    assert extension == pytest.approx(6.0)
+    extension = (tree.branch == 1) & (height > 301) & (height <= 500)
+    assert extension.any()
+    assert tree.skeleton.radii[extension] == pytest.approx(np.interp(height[extension], [300, 700], [16, 6]), abs=0.3)
 
 
-def test_brushes_meet_at_their_mean_and_one_alone_counts_whole() -> None:
+def test_brushes_meet_at_their_mean_but_hide_no_ink_and_one_alone_counts_whole() -> None:
     front = sketched(STEM, (0, 1, [(300.0, 700.0)]), radii=(20.0, 10.0))
-    both = retrieve_depth(front, sketched(STEM, (0, 1, [(200.0, 700.0)]), radii=(16.0, 6.0))).tree
-    assert both.skeleton.radii[0] == 18
-    assert both.skeleton.radii[-1] == pytest.approx(8)
+    both = retrieve_depth(front, sketched(STEM, (0, 1, [(200.0, 700.0)]), radii=(18.0, 4.0))).tree
+    assert both.skeleton.radii[0] == 19
+    assert both.skeleton.radii[-1] == pytest.approx(8.5)
     one = retrieve_depth(front, sketched(STEM, (0, 1, [(200.0, 700.0)]), radii=(16.0, 0.0))).tree
     assert one.skeleton.radii[-1] == pytest.approx(10)
 

@@ -30,7 +30,7 @@ def along(lead: list[tuple[float, float]], follow: list[tuple[float, float]]) ->
     """Give a walk by its places."""
     places = np.array([lead, follow], dtype=np.float64)
     joints = np.tile(np.arange(len(lead)), (2, 1))
-    return Walk(joints, np.concatenate([places, np.zeros((2, len(lead), 1))], axis=2))
+    return Walk(joints, np.concatenate([places, np.zeros((2, len(lead), 1))], axis=2), np.zeros(len(lead), dtype=bool))
 
 
 def test_walkers_keep_to_equal_heights() -> None:

@@ -7,21 +7,25 @@ import numpy as np
 
 from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.lift.sheet import BINS, Mask, Sheet
+from treestroke.core.lift.straying import stray
 from treestroke.core.lift.weaving import HALVED, Walk, Weave, walk
 
 SHORTEST = 8.0
 """Units of a branch that need no partner: it is led on where its partner ends, and a shorter rest is left out."""
 SPUR, TAIL = 80.0, 40.0
-"""Units of height by which a branch may rise or droop further than its partner, for a while and at its end."""
-SPARE = 0.05
-"""Share of a sketch's length up to which the tree may show what that sketch does not: such spurs and tails."""
+"""Units of height by which a branch may rise or droop further than its partner, for a while and at its end; the
+former, too, by which it may be led on alone."""
+SPARE = 0.045
+"""Share of its length up to which the tree may show what a sketch does not: such spurs and tails, and crossings."""
 FEATURES, LEVEL, LEFT, FRESH = 0.3, 60.0, 1.0, 0.6
 TWICE, FLAT, UNTRUE, CROWDED = 0.5, 2.0, 3.0, 40.0
 """Cost of a unit by which two branches' features differ, that stays unpaired, that pairs for the first time (a gain),
 that is walked twice, that lies flat, that is untrue; cost of a level between them and of a like limb at their height.
 Tuned on the drawn pairs of the tests."""
-ALONE = -1
-"""Stands for no branch."""
+ALONE, STRAYED = -1, -2
+"""Stand for no branch, and for several."""
+BURDEN = 100.0
+"""Cost of what lies flat or is invented of a walk up to which no better one is sought."""
 CLOSE = 150.0
 """Units of height at which limbs crowd each other."""
 
@@ -47,6 +51,8 @@ class Search:
         The branch, and the joints of it (n,) that have no partner yet.
     radius_weight
         The paper's k2.
+    late
+        Whether all that pairs well is paired: what is left may stray from branch to branch.
     """
 
     weave: Weave
@@ -54,6 +60,7 @@ class Search:
     number: int
     run: Indices
     radius_weight: float
+    late: bool = False
 
     @property
     def sheets(self) -> tuple[Sheet, Sheet]:
@@ -82,7 +89,7 @@ class Search:
         shared = follow.passing @ mine
         cost = unlike - FLAT * (follow.reaching @ mine) - LEFT * shared - FRESH * np.minimum(fresh, shared)
         cost[shared < min(SHORTEST, 0.5 * mine.sum())] = np.inf
-        cost[list(tried - {ALONE})] = np.inf
+        cost[list(tried - {ALONE, STRAYED})] = np.inf
         order = np.argsort(cost, kind="stable")[:most]
         return [int(m) for m in order if np.isfinite(cost[m])]
 
@@ -102,10 +109,37 @@ class Search:
         if best.other == 0:
             # With the stem it lies flat: going on from where it is may do better.
             alone = self.alone()
-            if (alone.invented.sum(axis=1) < self.spare()).all():
+            if (alone.invented.sum(axis=1) < self.spare()).all() and np.abs(alone.apart).max() <= SPUR:
                 best = min(best, Match(alone, self.cost(alone, 0.0), ALONE), key=lambda match: match.cost)
+        if self.late and STRAYED not in tried and self.burden(best.walk)[0] > BURDEN:
+            best = min(best, self.stray(), key=lambda match: match.cost)
         tried.add(best.other)
         return best
+
+    def burden(self, found: Walk) -> tuple[float, float]:
+        """Price what of the new part of a walk lies flat or is invented, and measure that part."""
+        new = self.new(found)
+        lengths = new.lengths()
+        return float(FLAT * lengths @ self._flat(new) + UNTRUE * new.invented.sum()), float(lengths.sum())
+
+    def new(self, found: Walk) -> Walk:
+        """Give the part of a walk that the tree does not have."""
+        first, _ = self.weave.attachment(self.leader, found)
+        return found.cut(first, found.joints.shape[1])
+
+    def _flat(self, new: Walk) -> Mask:
+        """Tell which points of a walk (n,) lie in the plane of one sketch."""
+        lead, follow = self.sheets
+        return np.asarray(lead.flat[new.joints[0]] | follow.flat[new.joints[1]])
+
+    def stray(self) -> Match:
+        """Walk the run with as many branches as it takes; it costs too much where there is no such walk."""
+        chain = self.sheets[0].paths[self.number]
+        first, end = (int(np.flatnonzero(chain == joint)[-1]) for joint in self.run[[0, -1]])
+        found = stray(self.weave, self.leader, chain, first, end + 1)
+        if found is None or not self._paired(found).any() or (found.invented.sum(axis=1) > self.spare()).any():
+            return Match(self.alone(), np.inf, STRAYED)
+        return Match(found, self.cost(found, 0.0), STRAYED)
 
     def match(self, other: int) -> Walk:
         """Walk the branch together with another, from where both leave the tree to where their heights part."""
@@ -123,12 +157,19 @@ class Search:
         i, j = self.weave.start(self.leader, chain[:first], partner)
         # A stem passes all heights: one may come down on it below where one left it.
         low = 0 if other == 0 else j
-        found = walk(self.sheets, chain[i:end], partner[low:], j - low)
+        key = self.leader, chain[i:end].tobytes(), partner[low:].tobytes(), j - low
+        if key not in self.weave.walked:
+            self.weave.walked[key] = walk(self.sheets, chain[i:end], partner[low:], j - low)
+        found = self.weave.walked[key]
         return found.cut(0, max(_parting(found, self.spare()), 1))
 
     def spare(self) -> Floats:
         """Length that may still be invented in the leader's and the follower's view (2,)."""
         lengths = np.array([sheet.lengths.sum() for sheet in self.sheets])
+        if self.late:
+            both = zip(self.weave.sheets, self.weave.used, strict=True)
+            left = sum(float(sheet.lengths[~used].sum()) for sheet, used in both)
+            lengths = np.maximum(lengths, np.add(self.weave.shown[:: 1 - 2 * self.leader], left))
         return np.asarray(SPARE * lengths - self.weave.invented[:: 1 - 2 * self.leader])
 
     def alone(self) -> Walk:
@@ -142,21 +183,19 @@ class Search:
             np.column_stack([sheet.points[each], sheet.radii[each]])
             for sheet, each in zip((lead, follow), joints, strict=True)
         ]
-        return Walk(joints, np.stack(places))
+        return Walk(joints, np.stack(places), np.zeros(joints.shape[1], dtype=bool))
 
     def cost(self, found: Walk, unlike: float) -> float:
         """Price a walk: what it leaves, repeats, flattens or invents, and how unlike the branches are."""
         lead, follow = self.sheets
         used = self.weave.used[self.leader], self.weave.used[1 - self.leader]
-        first, _ = self.weave.attachment(self.leader, found)
-        new = found.cut(first, found.joints.shape[1])
+        new = self.new(found)
         fresh = np.zeros(len(follow.points), dtype=bool)
         fresh[new.joints[1]] = True
         fresh &= ~used[1]
         twice = used[0][new.joints[0]] & used[1][new.joints[1]]
-        flat = lead.flat[new.joints[0]] | follow.flat[new.joints[1]]
         cost = unlike + LEFT * lead.lengths[self.run[~self._paired(new)]].sum() - FRESH * follow.lengths[fresh].sum()
-        cost += new.lengths() @ (TWICE * twice + FLAT * flat) + UNTRUE * new.invented.sum()
+        cost += new.lengths() @ (TWICE * twice + FLAT * self._flat(new)) + UNTRUE * new.invented.sum()
         return float(cost + CROWDED * self._crowd(new))
 
     def _paired(self, found: Walk) -> Mask:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.geometry.polyline import Indices
-from treestroke.core.lift.pairing import ALONE, SHORTEST, Search
+from treestroke.core.lift.pairing import ALONE, SHORTEST, STRAYED, Match, Search
 from treestroke.core.lift.sheet import Mask, Sheet, sheet
 from treestroke.core.lift.trimming import trimmed
 from treestroke.core.lift.weaving import HALVED, Weave
@@ -19,6 +19,13 @@ from treestroke.core.skeleton.branched import Branched
 PAIRED, COMPLEMENTED, LONE = 0, 1, 2
 """How a joint came: a branch of the front paired with one of the side; one of the side that no pair used, given a
 branch of the front; one at a height that the other sketch does not have."""
+ATTEMPTS = ((0.5, False), (0.8, True))
+"""Cost of a unit of a walk, as far as it lies flat or is invented, above which a branch waits until others are paired:
+what they leave over may suit it better, and what may be invented goes to them first. And whether of those that waited
+all of the front come before the side, or the longest first whichever it is of. Small differences decide much, so the
+tree that lies flat the least is taken."""
+ENOUGH = 0.15
+"""Share of the limbs' length that may lie flat without another attempt."""
 
 
 @dataclass(frozen=True)
@@ -67,25 +74,69 @@ class Retrieved:
 def retrieve_depth(front: Branched, side: Branched, params: RetrievalParams = RetrievalParams()) -> Retrieved:
     """Weave a front and a left-side sketch into one tree."""
     sheets = sheet(front, params.step), sheet(side, params.step)
-    used = np.zeros(len(sheets[0].points), dtype=bool), np.zeros(len(sheets[1].points), dtype=bool)
-    weave = Weave(sheets, used)
-    for leader in (0, 1):
-        for number in sheets[leader].order():
-            _pair(weave, leader, number, params)
-    tree, joints, origin = trimmed(weave)
+    weaves: list[Weave] = []
+    for dear, front_first in ATTEMPTS:
+        if not weaves or _flat_share(weaves[-1]) > ENOUGH:
+            weaves.append(_woven(_empty(sheets, weaves), params, dear, front_first))
+    tree, joints, origin = trimmed(min(weaves, key=_flat_share))
     return Retrieved(tree, sheets[0].given[joints[0]], sheets[1].given[joints[1]], origin)
 
 
-def _pair(weave: Weave, leader: int, number: int, params: RetrievalParams) -> None:
-    """Find partners for all of a branch of the leading sheet that has none yet."""
+def _empty(sheets: tuple[Sheet, Sheet], others: list[Weave]) -> Weave:
+    """Begin a weave of two sheets; what was walked for others need not be walked anew."""
+    used = np.zeros(len(sheets[0].points), dtype=bool), np.zeros(len(sheets[1].points), dtype=bool)
+    return Weave(sheets, used, others[0].walked) if others else Weave(sheets, used)
+
+
+def _woven(weave: Weave, params: RetrievalParams, dear: float, front_first: bool) -> Weave:
+    """Weave two sheets: first what pairs well, then what is left, the longest first."""
+    order = [(leader, number) for leader in (0, 1) for number in weave.sheets[leader].order()]
+    for leader, number in order:
+        _pair(weave, leader, number, params, dear)
+    left = {each: -_open_length(weave, *each) for each in order}
+    for leader, number in sorted(order, key=lambda each: (each[0] * front_first, left[each])):
+        _pair(weave, leader, number, params, None)
+    return weave
+
+
+def _flat_share(weave: Weave) -> float:
+    """Measure what share of the limbs' length lies in the plane of one sketch."""
+    points, parents, walks = np.array(weave.points)[:, :3], np.array(weave.parents), np.array(weave.walks)
+    lengths = np.where(walks > 0, np.linalg.norm(points - points[np.maximum(parents, 0)], axis=1), 0.0)
+    front, side = (sheet.flat[joints] for sheet, joints in zip(weave.sheets, np.array(weave.joints).T, strict=True))
+    return float(lengths[front | side].sum() / max(lengths.sum(), 1e-9))
+
+
+def _pair(weave: Weave, leader: int, number: int, params: RetrievalParams, dear: float | None) -> None:
+    """Find partners for all of a branch of the leading sheet that has none yet, as far as they are not too ``dear``."""
     tried: set[int] = set()
-    while len(run := _open_run(weave.sheets[leader], weave.used[leader], number)):
-        search = Search(weave, leader, number, run, params.radius_weight)
+    used = weave.used[leader]
+    while len(run := _open_run(weave.sheets[leader], used, number)):
+        search = Search(weave, leader, number, run, params.radius_weight, dear is None)
         best = search.best(tried, params.tries)
-        lone = (np.abs(best.walk.apart) > 2 * HALVED) | (best.other == ALONE)
-        weave.lay(leader, best.walk, np.where(lone, LONE, COMPLEMENTED if leader else PAIRED))
+        if weave.points and dear is not None:
+            burden, length = search.burden(best.walk)
+            if burden > dear * length:
+                return
+        weave.lay(leader, best.walk, _origins(weave, leader, best))
+        if used[run].any():
+            tried.discard(STRAYED)
         if best.other == ALONE:
-            weave.used[leader][run] = True
+            used[run] = True
+
+
+def _origins(weave: Weave, leader: int, best: Match) -> Indices:
+    """Tell how the points of a walk (n,) come; the side's first for one of the front is a pair."""
+    found = best.walk
+    lone = (np.abs(found.apart) > 2 * HALVED) | found.strayed | (best.other == ALONE)
+    taken = weave.used[0][found.joints[1]] if leader else np.zeros(len(lone), dtype=bool)
+    return np.where(lone, LONE, np.where(taken, COMPLEMENTED, PAIRED))
+
+
+def _open_length(weave: Weave, leader: int, number: int) -> float:
+    """Measure what has no partner yet of a branch of the leading sheet."""
+    own = weave.sheets[leader].own[number]
+    return float(weave.sheets[leader].lengths[own[~weave.used[leader][own]]].sum())
 
 
 def _open_run(leading: Sheet, used: Mask, number: int) -> Indices:

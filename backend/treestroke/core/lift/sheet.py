@@ -71,6 +71,15 @@ class Sheet:
         return [path[self.branch[path] == number] for number, path in enumerate(self.paths)]
 
     @cached_property
+    def arcs(self) -> Floats:
+        """Length of the path from the root to each joint (n,)."""
+        arcs = np.zeros(len(self.points))
+        for joint, parent in enumerate(self.parents.tolist()):
+            if parent >= 0:
+                arcs[joint] = arcs[parent] + self.lengths[joint]
+        return arcs
+
+    @cached_property
     def thickness(self) -> Floats:
         """Radius with which each branch begins (k,)."""
         return np.array([np.max(self.radii[own[:3]]) for own in self.own])

@@ -11,6 +11,9 @@ from treestroke.core.skeleton.skeleton import Skeleton
 TOLERANCE = 0.5
 """How far, units, a joint may be off a straight piece and yet be left out."""
 
+STANDS = 8.0
+"""How far, units, a joint may be from a sheet's joint and yet stand for it."""
+
 
 def trimmed(weave: Weave) -> tuple[Branched, Indices, Indices]:
     """Turn a weave into a branched skeleton.
@@ -22,25 +25,29 @@ def trimmed(weave: Weave) -> tuple[Branched, Indices, Indices]:
     points, parents = np.array(weave.points), np.array(weave.parents)
     joints, origins = np.array(weave.joints).T, np.array(weave.origins)
     walks = np.array(weave.walks)
-    kept = _needed(joints, parents, walks)
+    kept = _needed(weave, points, joints, parents, walks)
     after = _successors(parents, walks, kept)
     branch = _branches(parents, after, kept)
     kept &= _bends(points, parents, after, origins, kept)
     return _gathered(points, parents, branch, kept), joints[:, kept], origins[kept]
 
 
-def _needed(joints: Indices, parents: Indices, walks: Indices) -> Mask:
+def _needed(weave: Weave, points: Floats, joints: Indices, parents: Indices, walks: Indices) -> Mask:
     """Drop ends whose every joint stands for what others stand for too, the latest first; the stem stays."""
     kept = np.ones(len(parents), dtype=bool)
     children = np.bincount(parents[1:], minlength=len(parents))
-    front, side = (np.bincount(each).tolist() for each in joints)
-    a, b = joints.tolist()
+    stands = [
+        np.hypot(*(points[:, [axis, 1]] - sheet.points[each]).T) <= STANDS
+        for axis, sheet, each in zip((0, 2), weave.sheets, joints, strict=True)
+    ]
+    counts = [np.bincount(each, weights=at).tolist() for each, at in zip(joints, stands, strict=True)]
     for joint in range(len(parents) - 1, 0, -1):
-        if walks[joint] > 0 and children[joint] == 0 and front[a[joint]] > 1 and side[b[joint]] > 1:
+        mine = [(count, int(each[joint])) for count, each, at in zip(counts, joints, stands, strict=True) if at[joint]]
+        if walks[joint] > 0 and children[joint] == 0 and all(count[each] > 1 for count, each in mine):
             kept[joint] = False
-            front[a[joint]] -= 1
-            side[b[joint]] -= 1
             children[parents[joint]] -= 1
+            for count, each in mine:
+                count[each] -= 1
     return kept
 
 
@@ -49,7 +56,10 @@ def _successors(parents: Indices, walks: Indices, kept: Mask) -> Indices:
     after = np.full(len(parents), -1, dtype=np.int64)
     for joint in range(len(parents) - 1, 0, -1):
         parent = parents[joint]
-        if kept[joint] and (after[parent] < 0 or walks[after[parent]] != walks[parent]):
+        own = walks[joint] == walks[parent]
+        if kept[joint] and (
+            own or (walks[parent] > 0 and (after[parent] < 0 or walks[after[parent]] != walks[parent]))
+        ):
             after[parent] = joint
     return after
 

@@ -11,8 +11,11 @@ from treestroke.core.lift.sheet import Mask, Sheet
 
 HALVED = 4.0
 """Units apart in height up to which a joint lies midway between its two points; both are then within 2 units."""
-GIVEN_UP = 12.0
-"""Units apart in height from which on a joint has the height of the one point that moves."""
+KEPT, GIVEN_UP = 6.0, 12.0
+"""Units apart in height up to which a joint keeps 2 units from the one point that moves, toward the other, so that both
+sketches' strokes are near; and from which on it has that point's own height."""
+SLACK = 1.5
+"""Units by which a limb may be thinner than half of the wider of its two strokes, whose ink it would leave bare."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +28,13 @@ class Walk:
         (2, n) joints of the leader's and the follower's sheet.
     places
         (2, n, 3) x, y and radius of each.
+    strayed
+        (n,) where the follower crosses over from one branch to another, and is not at its joint.
     """
 
     joints: Indices
     places: Floats
+    strayed: Mask
 
     @cached_property
     def apart(self) -> Floats:
@@ -37,7 +43,7 @@ class Walk:
 
     def cut(self, start: int, end: int) -> "Walk":
         """Keep the points from ``start`` to before ``end``."""
-        return Walk(self.joints[:, start:end], self.places[:, start:end])
+        return Walk(self.joints[:, start:end], self.places[:, start:end], self.strayed[start:end])
 
     @cached_property
     def steps(self) -> Floats:
@@ -66,8 +72,9 @@ class Walk:
     def invented(self) -> Floats:
         """Length of the piece before each point that the leader's and the follower's view (2, n) do not have."""
         off, led, steps = np.abs(self.apart) > 2 * HALVED, self.led, self.steps
+        unseen = np.stack([off & ~led, off & led | self.strayed])
         shown = [np.hypot(steps[0, :, 0], steps[1, :, 1]), np.hypot(steps[1, :, 0], steps[0, :, 1])]
-        return np.where(off & np.stack([~led, led]), shown, 0.0)
+        return np.where(unseen, shown, 0.0)
 
     def lengths(self) -> Floats:
         """Length of the piece before each point (n,), seen from the front and the side together."""
@@ -88,7 +95,7 @@ def walk(sheets: tuple[Sheet, Sheet], lead: Indices, follow: Indices, start: int
     leading = _between(shapes[0], places)
     following = _between(shapes[1], _levelled(shapes[1][:, 1], whole, leading[:, 1]))
     joints = np.stack([lead[np.round(places).astype(np.int64)], follow[whole]])
-    return Walk(joints, np.stack([leading, following]))
+    return Walk(joints, np.stack([leading, following]), np.zeros(len(whole), dtype=bool))
 
 
 def _every_joint(at: Indices) -> tuple[Floats, Indices]:
@@ -130,18 +137,21 @@ class Weave:
         Front and side.
     used
         Which joints of each some joint stands for.
+    walked
+        Walks by leader, both chains of joints and the follower's start: other weaves of the same sheets may share them.
     points, joints, parents, origins, walks
         By joint: x, y, z and radius; joint of each sheet; parent; how it came; number of the walk it came with.
     at, partners
         Joint by its joints of both sheets; by joint of a sheet those of the other that go with it.
     ends
         By limb: how far right of the stem its end is in the front, its height, and how far in the side.
-    invented
-        By sheet: length that the tree shows and the sketch does not.
+    shown, invented
+        By sheet: length that the tree shows, and what of that the sketch does not.
     """
 
     sheets: tuple[Sheet, Sheet]
     used: tuple[Mask, Mask]
+    walked: dict[tuple[int, bytes, bytes, int], Walk] = field(default_factory=dict)
     points: list[Floats] = field(default_factory=list)
     joints: list[tuple[int, int]] = field(default_factory=list)
     parents: list[int] = field(default_factory=list)
@@ -150,6 +160,7 @@ class Weave:
     at: dict[tuple[int, int], int] = field(default_factory=dict)
     partners: tuple[dict[int, list[int]], dict[int, list[int]]] = field(default_factory=lambda: ({}, {}))
     ends: list[tuple[float, float, float]] = field(default_factory=list)
+    shown: list[float] = field(default_factory=lambda: [0.0, 0.0])
     invented: list[float] = field(default_factory=lambda: [0.0, 0.0])
 
     def start(self, leader: int, lead: Indices, follow: Indices) -> tuple[int, int]:
@@ -188,13 +199,12 @@ class Weave:
         points = self._placed(leader, new)
         number = self.walks[-1] + 1 if self.walks else 0
         self._mark(leader, new)
-        for view, length in zip((leader, 1 - leader), new.invented.sum(axis=1).tolist(), strict=True):
-            self.invented[view] += length
         for i, (a, b) in enumerate(new.joints.T.tolist()):
             pair = (a, b) if leader == 0 else (b, a)
-            self.at.setdefault(pair, len(self.points))
-            self.partners[0].setdefault(pair[0], []).append(pair[1])
-            self.partners[1].setdefault(pair[1], []).append(pair[0])
+            if not new.strayed[i]:
+                self.at.setdefault(pair, len(self.points))
+                self.partners[0].setdefault(pair[0], []).append(pair[1])
+                self.partners[1].setdefault(pair[1], []).append(pair[0])
             self.parents.append(bearer if i == 0 else len(self.points) - 1)
             self.points.append(points[i])
             self.joints.append(pair)
@@ -205,26 +215,34 @@ class Weave:
             self.ends.append((float(front), float(self.points[-1][1]), float(side)))
 
     def _mark(self, leader: int, new: Walk) -> None:
-        """Note which joints a walk stands for."""
+        """Note which joints a walk stands for, and how much it shows."""
         near, led = np.abs(new.apart) <= HALVED + 0.5, new.led
         self.used[leader][new.joints[0, near | led]] = True
-        self.used[1 - leader][new.joints[1, near | ~led]] = True
+        self.used[1 - leader][new.joints[1, (near | ~led) & ~new.strayed]] = True
+        moved = np.hypot(new.steps[..., 0], new.steps[..., 1])
+        for sums, lengths in ((self.shown, moved), (self.invented, new.invented)):
+            for view, length in zip((leader, 1 - leader), lengths.sum(axis=1).tolist(), strict=True):
+                sums[view] += length
 
     def _placed(self, leader: int, new: Walk) -> Floats:
         """Give x, y, z and radius (n, 4) of a walk's points."""
         apart = new.apart
-        yields = np.clip((GIVEN_UP - np.abs(apart)) / (GIVEN_UP - HALVED), 0.0, 1.0)
+        yields = np.clip((GIVEN_UP - np.abs(apart)) / (GIVEN_UP - KEPT), 0.0, 1.0)
         midway = 0.5 * np.clip(apart, -HALVED, HALVED) * yields
         height = np.where(new.led, new.places[0, :, 1] - midway, new.places[1, :, 1] + midway)
         front, side = new.places[leader], new.places[1 - leader]
         return np.column_stack([front[:, 0], height, side[:, 0], self._radii(leader, new)])
 
     def _radii(self, leader: int, new: Walk) -> Floats:
-        """Give the mean radius (n,), the thinner where one walks on a bearer of the other's level; 0 if unknown."""
+        """Give the mean radius (n,), but let no more than SLACK of the thicker's ink stand out; 0 if unknown.
+
+        Where one walks on a bearer of the other's level, the thinner counts.
+        """
         levels = [
             sheet.level[sheet.branch[joints]]
             for sheet, joints in zip((self.sheets[leader], self.sheets[1 - leader]), new.joints, strict=True)
         ]
         one, other = new.places[:, :, 2]
-        both = np.where(levels[0] == levels[1], 0.5 * (one + other), np.minimum(one, other))
+        mean = np.maximum(0.5 * (one + other), np.maximum(one, other) - SLACK)
+        both = np.where(levels[0] == levels[1], mean, np.minimum(one, other))
         return np.asarray(np.where((one > 0) & (other > 0), both, np.maximum(one, other)))
