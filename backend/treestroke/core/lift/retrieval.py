@@ -26,6 +26,8 @@ all of the front come before the side, or the longest first whichever it is of. 
 tree that lies flat the least is taken."""
 ENOUGH = 0.15
 """Share of the limbs' length that may lie flat without another attempt."""
+MANY = 150
+"""Branches of both sketches from which on one attempt has to do, which takes seconds."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,8 @@ def retrieve_depth(front: Branched, side: Branched, params: RetrievalParams = Re
     """Weave a front and a left-side sketch into one tree."""
     sheets = sheet(front, params.step), sheet(side, params.step)
     weaves: list[Weave] = []
-    for dear, front_first in ATTEMPTS:
+    branches = sum(len(each.own) for each in sheets)
+    for dear, front_first in ATTEMPTS if branches < MANY else ATTEMPTS[:1]:
         if not weaves or _flat_share(weaves[-1]) > ENOUGH:
             weaves.append(_woven(_empty(sheets, weaves), params, dear, front_first))
     tree, joints, origin = trimmed(min(weaves, key=_flat_share))

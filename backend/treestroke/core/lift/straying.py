@@ -54,8 +54,10 @@ class _Rows:
             nodes = np.sort(order[low:high])
             came, total = self._stepped(row, states[-1], nodes, total, float(ahead[row]))
             if row < self.new:
-                here = np.isin(nodes, self.weave.partners[self.leader].get(int(self.chain[row]), []))
-                came, total = np.where(here, -1, came), np.where(here, 0.0, total)
+                partners = self.weave.partners[self.leader].get(int(self.chain[row]))
+                if partners:
+                    here = np.isin(nodes, partners)
+                    came, total = np.where(here, -1, came), np.where(here, 0.0, total)
             elif not np.isfinite(total).any():
                 return _traced(states[1:], back[1:], last) if row > self.new else []
             states.append(nodes)
@@ -74,7 +76,8 @@ class _Rows:
         rate = np.where(used, USED, FRESH) + FLAT * flat + TWICE * (used & self.weave.used[self.leader][joint])
         apart = lead.points[joint, 1] - follow.points[nodes, 1]
         crossed = np.where(drawn, 0.0, np.where(far > ahead, np.inf, far))
-        cost = total[:, None] + np.hypot(lead.lengths[joint], far) * rate + CROSSED * crossed + UNEVEN * apart**2
+        walked = np.sqrt(far * far + lead.lengths[joint] ** 2)
+        cost = total[:, None] + walked * rate + CROSSED * crossed + UNEVEN * apart**2
         came = cost.argmin(axis=0)
         return came, cost[came, np.arange(len(nodes))]
 
@@ -89,7 +92,9 @@ def stray(weave: Weave, leader: int, chain: Indices, first: int, end: int) -> Wa
 
 def _moved(follow: Sheet, old: Indices, new: Indices) -> tuple[Floats, Mask]:
     """Measure how far it is between joints, and tell whether the sketch shows the way."""
-    far = np.hypot(*np.moveaxis(follow.points[new] - follow.points[old], -1, 0))
+    x, y = follow.points.T
+    right, up = x[new] - x[old], y[new] - y[old]
+    far = np.sqrt(right * right + up * up)
     along = np.abs(follow.arcs[new] - follow.arcs[old])
     own = (follow.branch[old] == follow.branch[new]) & (along <= 1.2 * far + 0.5 * ASIDE)
     return far, (far <= ASIDE) | own
