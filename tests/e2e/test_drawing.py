@@ -53,6 +53,7 @@ def test_what_is_deleted_comes_back_by_undo(visitor: Visitor) -> None:
     visitor.shot("selected")
     visitor.page.keyboard.press("Delete")
     visitor.until(lambda: len(last_branches(visitor)) == 1)
+    visitor.wait_until_traced()
     visitor.page.keyboard.press("Control+z")
     visitor.until(lambda: last_branches(visitor) == both)
     visitor.page.get_by_role("button", name="Clear all strokes").click()
@@ -107,7 +108,7 @@ def test_a_traced_branch_that_is_deleted_is_gone_and_comes_back(visitor: Visitor
     visitor.shot("traced-selected")
     page.keyboard.press("Delete")
     visitor.until(lambda: len(visitor.traced[-1]["erase"]) == 1)
-    visitor.wait_until_traced()  # or the undo would find the old trace still there, and ask for nothing
+    visitor.wait_until_traced()
     assert joint not in visitor.skeleton()["points"]
     page.keyboard.press("Control+z")
     visitor.until(lambda: len(visitor.traced[-1]["erase"]) == 0)

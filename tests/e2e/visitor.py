@@ -144,7 +144,10 @@ class Visitor:
             self.page.wait_for_timeout(50)
 
     def wait_until_traced(self) -> None:
-        """Wait until the page shows what was traced along the strokes as they are now."""
+        """Wait until the page shows what was traced along the strokes as they are now.
+
+        An undo before that leads back to strokes that it still has a trace of, and asks for nothing.
+        """
         expect(self.page.locator(".sketch-stale")).to_have_count(0)
 
     def skeleton(self) -> dict[str, Any]:
