@@ -33,14 +33,10 @@ from treestroke.service.threads import one_thread
 
 @dataclass(frozen=True, eq=False)
 class SketchTrace:
-    """What sketches show, and the tree that default settings and seed 0 let grow of them, where it was asked for.
-
-    ``crowned`` names the sides on which a crown was drawn.
-    """
+    """What sketches show, and the tree that default settings and seed 0 let grow of them, where it was asked for."""
 
     seen: SeenSketches
     grown: GrownTree | None
-    crowned: frozenset[str]
 
     def answer(self) -> dict[str, Any]:
         """Give the trace as plain values: ``front``, ``side`` and ``warnings``.
@@ -48,22 +44,14 @@ class SketchTrace:
         With a tree also ``grown``, ``photo`` and ``score``.
         """
         found = {
-            "front": self._plain("front", self.seen.front),
-            "side": None if self.seen.side is None else self._plain("side", self.seen.side),
+            "front": _plain(self.seen.front),
+            "side": None if self.seen.side is None else _plain(self.seen.side),
             "warnings": [asdict(warning) for warning in self.seen.warnings],
         }
         if self.grown is None:
             return found
         grown = plain_grown(self.grown.live)
         return {**found, "grown": grown, "photo": grown["photo"], "score": self.grown.score}
-
-    def _plain(self, name: str, drawing: Drawing) -> dict[str, Any]:
-        return {
-            "skeleton": plain_skeleton(drawing.tree.skeleton, drawing.tree.branch),
-            "crown": drawing.crown.round(2).tolist(),
-            "crown_drawn": name in self.crowned,
-            "size": list(drawing.size),
-        }
 
 
 def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool = False) -> SketchTrace:
@@ -77,12 +65,8 @@ def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool
         A sketch cannot be used; the message says what, where and how to mend it.
     """
     with one_thread():
-        drawn, beside = load_sketch(front, "front"), None if side is None else load_sketch(side, "side")
-        seen = see_sketches(drawn, beside)
-        grown = grow_sketches(seen, ModelSettings(), np.random.default_rng(0)) if grow else None
-        sides = {"front": drawn, "side": beside}
-        crowned = frozenset(name for name, one in sides.items() if one is not None and one.crown is not None)
-        return SketchTrace(seen, grown, crowned)
+        seen = see_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
+        return SketchTrace(seen, grow_sketches(seen, ModelSettings(), np.random.default_rng(0)) if grow else None)
 
 
 def sketch(
@@ -126,3 +110,12 @@ def sketch(
             on_grown,
             name,
         )
+
+
+def _plain(drawing: Drawing) -> dict[str, Any]:
+    return {
+        "skeleton": plain_skeleton(drawing.tree.skeleton, drawing.tree.branch),
+        "crown": drawing.crown.round(2).tolist(),
+        "crown_drawn": drawing.crown_drawn,
+        "size": list(drawing.size),
+    }

@@ -17,21 +17,17 @@ export function mayLeave({ store }: Studio): boolean {
 
 /** Let the user choose a photo or a project on the disk. */
 export function choose(studio: Studio, what: 'photo' | 'any' = 'any'): void {
-  const input = el('input', { type: 'file', accept: what === 'photo' ? PHOTOS : `${PHOTOS},${PROJECTS}` })
-  input.addEventListener('change', () => input.files?.[0] && openFile(studio, input.files[0]))
-  input.click()
+  fromDisk(what === 'photo' ? PHOTOS : `${PHOTOS},${PROJECTS}`, file => openFile(studio, file))
 }
 
 /** Let the user choose a picture on the disk. */
-export function choosePicture(take: (file: File) => void, accept = PHOTOS): void {
-  const input = el('input', { type: 'file', accept })
-  input.addEventListener('change', () => input.files?.[0] && take(input.files[0]))
-  input.click()
+export function choosePicture(take: (file: File) => void): void {
+  fromDisk(PHOTOS, take)
 }
 
 /** Let the user choose a sketch on the disk: a picture of it, or its strokes. */
 export function chooseSketch(take: (file: File) => void): void {
-  choosePicture(take, SKETCHES)
+  fromDisk(SKETCHES, take)
 }
 
 /** Open a sketch in the place of the present drawing. */
@@ -83,6 +79,12 @@ function sheetUnder({ store }: Studio, { target }: DragEvent): readonly [Element
   const part = target instanceof Element ? target.closest<HTMLElement>('[data-of]') : null
   const sheet = part?.dataset.of as SheetName | undefined
   return part && sheet && isPaper(store.state, sheet) ? [part, sheet] : []
+}
+
+function fromDisk(accept: string, take: (file: File) => void): void {
+  const input = el('input', { type: 'file', accept })
+  input.addEventListener('change', () => input.files?.[0] && take(input.files[0]))
+  input.click()
 }
 
 function openOne(studio: Studio, files: readonly File[]): void {

@@ -31,6 +31,8 @@ class Drawing:
         of the brush, 0 where there was none.
     crown
         (k, 2) closed outline of the foliage, px: as drawn, else the dilated hull of the strokes.
+    crown_drawn
+        Whether it was drawn.
     size
         Width and height of the canvas, px.
     warnings
@@ -39,6 +41,7 @@ class Drawing:
 
     tree: Branched
     crown: Floats
+    crown_drawn: bool
     size: tuple[int, int]
     warnings: tuple[StrokeWarning, ...]
 
@@ -59,9 +62,9 @@ def draw_up(sketch: Sketch) -> Drawing:
         lines, height, warnings = follow_ink(sketch.ink)
     tree = branched_from(lines, height)
     if sketch.crown is None:
-        return Drawing(tree, crown_around(tree, height, sketch.canvas), sketch.canvas, warnings)
+        return Drawing(tree, crown_around(tree, height, sketch.canvas), False, sketch.canvas, warnings)
     crown, crossing = _drawn_crown(sketch.crown, tree, sketch.canvas)
-    return Drawing(tree, crown, sketch.canvas, (*crossing, *warnings))
+    return Drawing(tree, crown, True, sketch.canvas, (*crossing, *warnings))
 
 
 def _drawn_crown(crown: Stroke, tree: Branched, canvas: tuple[int, int]) -> tuple[Floats, tuple[StrokeWarning, ...]]:
