@@ -19,7 +19,11 @@ class Table(DeclarativeBase):
     """What all tables share."""
 
     metadata = MetaData(naming_convention=_NAMES)
-    type_annotation_map = {dict[str, Any]: JSON(none_as_null=True), float: Float}  # noqa: RUF012
+    type_annotation_map = {  # noqa: RUF012
+        dict[str, Any]: JSON(none_as_null=True),
+        list[dict[str, Any]]: JSON(none_as_null=True),
+        float: Float,
+    }
 
 
 class Photo(Table):
@@ -34,6 +38,10 @@ class Photo(Table):
     width: Mapped[int]
     height: Mapped[int]
     blob: Mapped[str] = mapped_column(String(64))
+    bytes: Mapped[int] = mapped_column(insert_default=0, server_default="0")
+    """Of the blob, which may be many times as large as what was uploaded."""
+    warnings: Mapped[list[dict[str, Any]]] = mapped_column(insert_default=list, server_default="[]")
+    """What was mended when it was read: code, stroke and detail of each."""
     created: Mapped[float]
     deleted: Mapped[float | None]
 
