@@ -70,6 +70,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.shelf = Shelf(database, blobs, tracers)
     app.state.dispatcher = dispatcher
     app.state.closing = asyncio.Event()
+    tracers.start()
     dispatcher.start()
     try:
         yield

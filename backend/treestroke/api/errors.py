@@ -19,7 +19,7 @@ from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
-from treestroke.service.pool import Crashed, Overloaded
+from treestroke.service.pool import CannotStart, Crashed, Overloaded
 
 MEDIA_TYPE = "application/problem+json"
 _RETRY = {"Retry-After": "1"}
@@ -104,6 +104,12 @@ def _crashed(_: Request, error: Crashed) -> JSONResponse:
     return problem(503, "tracing_stopped", detail, headers=_RETRY)
 
 
+def _cannot_start(_: Request, error: CannotStart) -> JSONResponse:
+    log.error("tracer_not_started", why=str(error))
+    detail = f"the process that reads this cannot be started ({error}); try again"
+    return problem(503, "tracing_unavailable", detail, headers=_RETRY)
+
+
 def _storage(_: Request, error: OSError) -> JSONResponse:
     log.error("storage_failed", error=str(error))
     return problem(507, "storage_full", "the service cannot store this: its disk may be full; try again later")
@@ -143,6 +149,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     KeyReused: _reused,
     Overloaded: _busy,
     Crashed: _crashed,
+    CannotStart: _cannot_start,
     OSError: _storage,
     OperationalError: _database,
     HTTPException: _http,

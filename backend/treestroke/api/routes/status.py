@@ -31,7 +31,7 @@ async def live() -> Health:
 @router.get("/readyz", responses={503: {"model": Health}, **documented(403)})
 def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Health:
     """Tell whether requests can be taken, part by part; without workers or broker they are taken and wait."""
-    health = readiness(shelf, dispatcher.broker_takes)
+    health = readiness(shelf, dispatcher)
     if health.status == "down":
         response.status_code = 503
     return health
