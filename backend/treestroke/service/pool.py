@@ -39,7 +39,7 @@ for _why in ("slow", "crash"):
 
 
 class Overloaded(Exception):
-    """More calls wait than the pool takes."""
+    """More wait than may."""
 
 
 class Crashed(Exception):
@@ -97,7 +97,7 @@ class Tracers:
     def _enter(self, key: str) -> int:
         with self._lock:
             if sum(self._busy) >= WAITING:
-                raise Overloaded
+                raise Overloaded("too much is being traced at the moment")
             at = self._homes.pop(key, None)
             if at is None:
                 load = [

@@ -42,6 +42,8 @@ def limits(settings: SettingsOf) -> Limits:
     """Name everything that is bounded."""
     return Limits(
         photo_bytes=MAX_BYTES,
+        photo_stored_bytes=settings.photo_mb * 10**6,
+        photos_stored_bytes=settings.photos_mb * 10**6,
         photo_pixels=MAX_PIXELS,
         photo_side_min=MIN_SIDE,
         photo_side_max=MAX_SIDE,
