@@ -335,6 +335,8 @@ class Limits(Wire):
     """What the service takes."""
 
     photo_bytes: int
+    photo_stored_bytes: int = Field(description="of a photo as it is kept, a PNG without loss")
+    photos_stored_bytes: int = Field(description="of all photos together as they are kept, the deleted for a day too")
     photo_pixels: int
     photo_side_min: int
     photo_side_max: int

@@ -26,8 +26,6 @@ _LOOK_SECONDS = 0.2
 _SLOWEST_RESTART_SECONDS = 10.0
 _WELL_AFTER_SECONDS = 3.0
 _START_SECONDS = 60.0
-_LONGEST_PATH = 70
-"""A socket's path has at most 107 bytes; multiprocessing appends 33 to the folder's."""
 
 
 class Child:
@@ -103,7 +101,7 @@ def serve(settings: Settings) -> int:
             **os.environ,
             **settings.environment(),
             "TREESTROKE_DATA": str(folder),
-            **_temporary(folder / "tmp"),
+            "TMPDIR": str(folder / "tmp"),
             LIFELINE: "1",
         }
         port = listener.getsockname()[1]
@@ -159,11 +157,6 @@ def _clear(folder: Path) -> None:
     """Begin with an empty folder for what an earlier run left half done."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-
-
-def _temporary(folder: Path) -> dict[str, str]:
-    """Name the folder for what lives shortly, unless the sockets that Python makes there would have too long a path."""
-    return {"TMPDIR": str(folder)} if len(os.fsencode(folder)) <= _LONGEST_PATH else {}
 
 
 def _announce(page: str, host: str, port: int) -> None:

@@ -10,6 +10,7 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 from treestroke.core.errors import SettingsError, shown
 
 PREFIX = "TREESTROKE_"
+PHOTO_MB, PHOTOS_MB = 120, 20_000
 
 
 def _setting(default: object, meaning: str, **bounds: float) -> object:
@@ -38,6 +39,16 @@ class Settings(BaseSettings):
     model_seconds: Annotated[float, _setting(300, "a model that takes longer fails, in seconds", gt=0, le=86_400)]
     memory_mb: Annotated[
         int, _setting(4096, "address space of one tracing or growing process, in MB", ge=1024, le=2**20)
+    ]
+    photo_mb: Annotated[
+        int,
+        _setting(PHOTO_MB, "a photo that takes more as it is kept (PNG) is refused, in MB", ge=1, le=2**20),
+    ]
+    photos_mb: Annotated[
+        int,
+        _setting(
+            PHOTOS_MB, "what all photos may take as they are kept, deleted ones for a day too, in MB", ge=1, le=2**20
+        ),
     ]
     keep_days: Annotated[
         float, _setting(0, "models and photos older than this are deleted; 0 keeps them", ge=0, le=36_500)

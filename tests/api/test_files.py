@@ -170,6 +170,17 @@ def test_the_project_opens_on_the_command_line_and_gives_the_same_tree(
     assert ran(tmp_path / "tree.treestroke") == service.client.get(model["files"]["tree.glb"]).content
 
 
+def test_a_part_of_a_project_is_sent_of_the_one_that_was_packed(service: Service, made: dict[str, Any]) -> None:
+    place = made["files"]["project"]
+    whole = service.client.get(place)
+    before = {path: path.stat().st_mtime_ns for path in (service.data / "projects").iterdir()}
+    for first in range(3):
+        answer = service.client.get(place, headers={"Range": f"bytes={first}-{first}"})
+        assert answer.content == whole.content[first : first + 1]
+    assert {path: path.stat().st_mtime_ns for path in (service.data / "projects").iterdir()} == before
+    assert not (service.data / "blobs" / whole.headers["etag"][1:3] / whole.headers["etag"].strip('"')).exists()
+
+
 def test_the_report_is_the_command_lines(client: httpx.Client, made: dict[str, Any]) -> None:
     needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
     assert set(made["report"]) == needed | {"measures", "variants", "files"}

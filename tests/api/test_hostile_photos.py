@@ -36,17 +36,18 @@ def memory_kb(service: Service, name: str = "VmRSS") -> int:
 def children(service: Service) -> dict[int, tuple[float, int]]:
     """Read the CPU seconds and the highest memory, kB, of the tracing processes."""
     web, found = int(service.web_process().name), {}
-    parents = {}
     for folder in service.web_process().parent.glob("[0-9]*"):
         try:
             fields = (folder / "stat").read_text().rpartition(")")[2].split()
-            parents[int(folder.name)] = int(fields[1])
             status = (folder / "status").read_text()
+            command = (folder / "cmdline").read_bytes()
         except OSError:
+            continue
+        if int(fields[1]) != web or b"spawn_main" not in command:
             continue
         high = [int(line.split()[1]) for line in status.splitlines() if line.startswith("VmHWM:")]
         found[int(folder.name)] = ((int(fields[11]) + int(fields[12])) / 100, high[0] if high else 0)
-    return {pid: figures for pid, figures in found.items() if parents.get(parents[pid]) == web}
+    return found
 
 
 @pytest.mark.parametrize("orientation", range(1, 9))

@@ -33,6 +33,7 @@ def test_the_service_lives_and_is_ready(client: httpx.Client) -> None:
 def test_the_limits_are_told(client: httpx.Client) -> None:
     limits = client.get("/v1/limits").json()
     assert (limits["photo_bytes"], limits["photo_pixels"]) == (25_000_000, 50_000_000)
+    assert (limits["photo_stored_bytes"], limits["photos_stored_bytes"]) == (120_000_000, 20_000_000_000)
     assert (limits["photo_side_min"], limits["photo_side_max"]) == (64, 16_384)
     assert (limits["strokes"], limits["points"]) == (200, 10_000)
     assert (limits["leaf_bytes"], limits["sketch_bytes"]) == (4_000_000, 25_000_000)

@@ -178,6 +178,21 @@ def test_a_stored_photo_may_be_larger_than_an_upload(maple_photo: Path) -> None:
     assert np.array_equal(decode_stored(stored), UPRIGHT)
 
 
+@pytest.mark.parametrize("tile", [(1, 1500), (1, 700), (40, 50), (700, 1), (1, 12_000)])
+def test_what_is_small_as_an_upload_is_not_stored_a_hundred_times_as_large(tile: tuple[int, int]) -> None:
+    noise = np.random.default_rng(0).integers(0, 256, (*tile, 3), dtype=np.uint8)
+    height, width = 700, max(1500, tile[1])
+    picture = np.ascontiguousarray(np.tile(noise, (height, -(-width // tile[1]), 1))[:height, :width])
+    stored = encode_stored(picture)
+    assert np.array_equal(decode_stored(stored), picture)
+    assert len(stored) < 3 * len(encode_png(picture)) < picture.size / 3
+
+
+def test_an_ordinary_photo_is_stored_in_the_fast_way(maple_photo: Path) -> None:
+    photo = decode_photo(maple_photo.read_bytes(), "photo")
+    assert 0.7 < len(encode_stored(photo)) / photo.size < 0.8
+
+
 def in_strips(data: bytes, monkeypatch: pytest.MonkeyPatch) -> np.ndarray:
     with monkeypatch.context() as patch:
         patch.setattr(treestroke.codec.image, "_STRIP", 7 * 90)

@@ -1,6 +1,9 @@
 import io
 import json
+import struct
+import tracemalloc
 import zipfile
+from dataclasses import fields
 from pathlib import Path
 
 import numpy as np
@@ -15,22 +18,34 @@ from treestroke.codec.project import Project, read_project, write_project
 from treestroke.core.errors import TreestrokeError
 
 
-def packed(**members: bytes) -> bytes:
+def packed(how: int = zipfile.ZIP_STORED, **members: bytes) -> bytes:
     out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
+    with zipfile.ZipFile(out, "w", how) as archive:
         for name, data in members.items():
             archive.writestr(name.replace("_", "."), data)
     return out.getvalue()
 
 
+def opened(data: bytes) -> Project:
+    return read_project(io.BytesIO(data), "oak.treestroke")
+
+
+def written(project: Project) -> bytes:
+    out, parts = io.BytesIO(), {field.name: getattr(project, field.name) for field in fields(Project)}
+    settings = parts.pop("settings")
+    given = {part: io.BytesIO(content) for part, content in parts.items() if content is not None}
+    write_project(out, given, settings)
+    return out.getvalue()
+
+
 def test_a_project_gives_back_its_parts() -> None:
     settings = json.dumps({"height": 12, "seed": 3}).encode()
-    project = read_project(packed(photo_jpg=b"P", strokes_json=b"S", settings_json=settings), "oak.treestroke")
+    project = opened(packed(photo_jpg=b"P", strokes_json=b"S", settings_json=settings))
     assert (project.photo, project.strokes, project.settings) == (b"P", b"S", {"height": 12, "seed": 3})
 
 
 def test_settings_may_be_absent() -> None:
-    assert read_project(packed(photo_png=b"P", strokes_json=b"S"), "oak.treestroke").settings == {}
+    assert opened(packed(photo_png=b"P", strokes_json=b"S")).settings == {}
 
 
 @pytest.mark.parametrize(
@@ -55,16 +70,72 @@ def test_settings_may_be_absent() -> None:
 )
 def test_what_is_no_project_is_refused_by_name(data: bytes) -> None:
     with pytest.raises(TreestrokeError, match=r"^oak\.treestroke: "):
-        read_project(data, "oak.treestroke")
+        opened(data)
 
 
-def test_a_photo_may_be_as_large_as_a_stored_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    data = packed(photo_png=bytes(MAX_BYTES + 1), strokes_json=b"S")
-    assert len(read_project(data, "oak.treestroke").photo) == MAX_BYTES + 1
-    monkeypatch.setattr("treestroke.codec.project.MAX_STORED_BYTES", MAX_BYTES)
-    with pytest.raises(TreestrokeError, match=r"^oak\.treestroke: photo\.png has more than 25 MB") as refused:
-        read_project(data, "oak.treestroke")
+def png_of(width: int, height: int, size: int) -> bytes:
+    """Begin a PNG of so many pixels, and go on with nothing up to a size."""
+    head = b"\x89PNG\r\n\x1a\n" + struct.pack(">I4sII", 13, b"IHDR", width, height)
+    return head + bytes(size - len(head))
+
+
+def test_a_photo_may_be_as_large_as_a_stored_one_of_its_pixels() -> None:
+    size = 3 * 5000 * 5000
+    assert len(opened(packed(photo_png=png_of(5000, 5000, size), strokes_json=b"S")).photo) == size
+
+
+@pytest.mark.parametrize("photo", [png_of(2000, 2000, MAX_BYTES + 1), b"\xff\xd8\xff" + bytes(MAX_BYTES)])
+def test_a_photo_larger_than_its_pixels_need_is_refused(photo: bytes) -> None:
+    with pytest.raises(
+        TreestrokeError, match=r"^oak\.treestroke: photo\.png has 25\.0 MB, more than the 25\.0"
+    ) as refused:
+        opened(packed(zipfile.ZIP_DEFLATED, photo_png=photo, strokes_json=b"S"))
     assert refused.value.code == "project_too_large"
+
+
+@pytest.mark.parametrize(
+    "padded",
+    [
+        {"settings_json": 100_001},
+        {"leaf_png": 4_000_001},
+        {"side_png": 25_000_001},
+        {"strokes_json": 64_000_001},
+        {"strokes_json": 40_000_000, "side_json": 24_000_001},
+    ],
+)
+def test_what_would_unpack_to_more_than_a_project_needs_is_not_unpacked(padded: dict[str, int]) -> None:
+    members = {"photo_png": b"P", "strokes_json": b"S"} | {name: b" " * size for name, size in padded.items()}
+    data = packed(zipfile.ZIP_DEFLATED, **members)
+    del members
+    tracemalloc.start()
+    with pytest.raises(TreestrokeError, match="make it smaller") as refused:
+        opened(data)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert refused.value.code == "project_too_large"
+    assert peak < 3_000_000
+
+
+def test_more_than_a_part_s_size_says_is_not_unpacked() -> None:
+    data = bytearray(packed(zipfile.ZIP_DEFLATED, photo_png=png_of(64, 64, 50_000), strokes_json=b"S"))
+    struct.pack_into("<I", data, data.index(b"PK\x01\x02") + 24, 10)
+    with pytest.raises(TreestrokeError, match="no project file that can be read") as refused:
+        opened(bytes(data))
+    assert refused.value.code == "project_unreadable"
+
+
+def test_a_table_of_many_members_is_not_read() -> None:
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for at in range(25_000):
+            archive.writestr(zipfile.ZipInfo(f"{at}"), b"")
+    with pytest.raises(TreestrokeError, match="its table of members is too long"):
+        opened(out.getvalue())
+
+
+def test_a_member_that_is_packed_in_another_way_is_refused() -> None:
+    with pytest.raises(TreestrokeError, match="neither stored nor deflated"):
+        opened(packed(zipfile.ZIP_LZMA, photo_png=b"P", strokes_json=b"S"))
 
 
 @pytest.mark.parametrize("side", [64, 1000])
@@ -75,7 +146,7 @@ def test_no_stored_photo_is_larger_than_is_allowed(side: int) -> None:
 
 def test_what_is_written_is_read_back() -> None:
     project = Project(b"\xff\xd8P", b"S", {"height": 12.0, "seed": 3})
-    assert read_project(write_project(project), "oak.treestroke") == project
+    assert opened(written(project)) == project
 
 
 @pytest.mark.parametrize(
@@ -88,11 +159,11 @@ def test_what_is_written_is_read_back() -> None:
     ],
 )
 def test_sketches_are_read_back_with_or_without_a_photo(project: Project) -> None:
-    assert read_project(write_project(project), "oak.treestroke") == project
+    assert opened(written(project)) == project
 
 
 def test_a_sketch_is_named_by_its_content() -> None:
-    data = write_project(Project(None, None, {}, front=b"{}", side=b"\x89PNG"))
+    data = written(Project(None, None, {}, front=b"{}", side=b"\x89PNG"))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         assert archive.namelist() == ["front.json", "side.png", "settings.json"]
 
@@ -100,7 +171,7 @@ def test_a_sketch_is_named_by_its_content() -> None:
 def test_either_command_opens_a_project_of_sketches(tmp_path: Path) -> None:
     front, side = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SIDE))
     project, settings = tmp_path / "drawn.treestroke", {"iterations": 5, "leaf_density": 0.1}
-    project.write_bytes(write_project(Project(None, None, {**settings, "seed": 4}, front=front, side=side)))
+    project.write_bytes(written(Project(None, None, {**settings, "seed": 4}, front=front, side=side)))
     for command in ("model", "sketch"):
         assert main([command, str(project), "--out", str(tmp_path / f"{command}.glb")]) == 0
     by_library = treestroke.sketch(front, side, settings, 4).glb
@@ -109,8 +180,8 @@ def test_either_command_opens_a_project_of_sketches(tmp_path: Path) -> None:
 
 def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:
     one, other = (Project(b"P", b"S", settings) for settings in ({"height": 1, "seed": 2}, {"seed": 2, "height": 1}))
-    assert write_project(one) == write_project(other)
-    with zipfile.ZipFile(io.BytesIO(write_project(one))) as archive:
+    assert written(one) == written(other)
+    with zipfile.ZipFile(io.BytesIO(written(one))) as archive:
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
@@ -118,7 +189,7 @@ def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:
 def test_a_photo_is_named_by_its_content_and_not_compressed_again(kind: str, ending: str) -> None:
     out = io.BytesIO()
     Image.new("RGB", (64, 64)).save(out, kind)
-    with zipfile.ZipFile(io.BytesIO(write_project(Project(out.getvalue(), b"S", {})))) as archive:
+    with zipfile.ZipFile(io.BytesIO(written(Project(out.getvalue(), b"S", {})))) as archive:
         photo = archive.infolist()[0]
     assert (photo.filename, photo.compress_type) == (f"photo.{ending}", zipfile.ZIP_STORED)
 
@@ -129,7 +200,7 @@ def test_the_command_line_opens_what_is_written(
     stored = encode_stored(decode_photo(maple_photo.read_bytes(), "photo"))
     settings = {"iterations": 3, "leaf_density": 0.1}
     project = tmp_path / "maple.treestroke"
-    project.write_bytes(write_project(Project(stored, maple_strokes.read_bytes(), {**settings, "seed": 4})))
+    project.write_bytes(written(Project(stored, maple_strokes.read_bytes(), {**settings, "seed": 4})))
     monkeypatch.setattr("treestroke.codec.image.MAX_BYTES", len(stored) - 1)
     assert main(["model", str(project), "--out", str(tmp_path / "a.glb")]) == 0
     assert (tmp_path / "a.glb").read_bytes() == treestroke.model(stored, maple_strokes, settings, 4).glb

@@ -1,4 +1,5 @@
 import json
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +36,18 @@ def test_a_known_length_is_kept() -> None:
 
 def test_a_width_is_kept() -> None:
     assert strokes_from(GOOD).branches[0].width == 4.0
+
+
+@pytest.mark.parametrize("crown", ["[" + "[]," * 2_300_000 + "[]]", '"' + "\N{DECIDUOUS TREE}" * 300_000 + '"'])
+def test_more_than_the_longest_strokes_need_is_not_read(crown: str) -> None:
+    text = f'{{"crown": {crown}}}'.encode()
+    tracemalloc.start()
+    with pytest.raises(StrokesError, match=r"^oak: ") as refused:
+        parse_strokes(text, "oak")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert refused.value.code in ("too_many_points", "malformed_json")
+    assert peak < 100_000
 
 
 def test_a_byte_order_mark_is_forgiven() -> None:

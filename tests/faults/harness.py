@@ -293,5 +293,4 @@ class Service:
         database.close()
         temporary = [path.name for path in self.data.rglob(".*")]
         assert temporary == []
-        # Sockets of living processes are there, and those of the killed until the next start; but no file.
         assert [path.name for path in (self.data / "tmp").rglob("*") if path.is_file()] == []

@@ -26,14 +26,15 @@ class Process:
 
 
 def processes(sessions: set[int]) -> list[Process]:
-    """List the processes of some sessions; the dead that nobody has waited for do not count."""
+    """List the processes of some sessions; the dead, all of whose threads are gone, do not count."""
     found = []
     for folder in Path("/proc").iterdir():
         if folder.name.isdecimal():
             with suppress(OSError):
-                state, parent, _, session = (folder / "stat").read_text().rpartition(")")[2].split()[:4]
+                state, parent, _, session, *others = (folder / "stat").read_text().rpartition(")")[2].split()
+                threads = int(others[13])
                 command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()
-                if state not in "ZX" and int(session) in sessions:
+                if (state not in "ZX" or threads > 1) and int(session) in sessions:
                     found.append(Process(int(folder.name), int(parent), int(session), command.strip()))
     return found
 

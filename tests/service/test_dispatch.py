@@ -1,8 +1,15 @@
-"""Workers that are gone, as another one of their host finds them."""
+"""Workers that are gone, as another one of their host finds them, and the dispatcher's own thread."""
 
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+from sqlalchemy import text
 from tests.rows import add_model, find
 
-from treestroke.service.dispatch import bury_dead, say_alive
+from treestroke.service.dispatch import Dispatcher, bury_dead, say_alive
+from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import Worker
 
@@ -31,3 +38,50 @@ def test_a_host_s_name_may_have_strokes_of_its_own(database: Database) -> None:
     id = held_by(database, "a/b/7/x")
     bury_dead(database, "a/b", lambda _: False)
     assert find(database, id).status == "queued"
+
+
+@pytest.fixture
+def sent() -> list[str]:
+    return []
+
+
+@pytest.fixture
+def dispatcher(database: Database, sent: list[str]) -> Iterator[Dispatcher]:
+    made = Dispatcher(database, Blobs(database.path.parent), sent.append, 0)
+    yield made
+    made.stop()
+
+
+def test_a_row_that_cannot_be_read_keeps_no_other_job_from_its_worker(
+    database: Database, dispatcher: Dispatcher, sent: list[str]
+) -> None:
+    broken = held_by(database, "here/7/a")
+    with database.writing() as session:
+        session.execute(text("UPDATE models SET settings = '{' WHERE id = :id"), {"id": broken})
+    waiting = add_model(database).id
+    dispatcher.start()
+    deadline = time.monotonic() + 10
+    while waiting not in sent and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert sent == [waiting]
+    assert [thread.name for thread in threading.enumerate()].count("dispatcher") == 1
+
+
+def test_a_dispatcher_says_that_it_does_not_run(dispatcher: Dispatcher) -> None:
+    assert dispatcher.state.startswith("does not run")
+    dispatcher.start()
+    assert dispatcher.state == "ok"
+    dispatcher.stop()
+    assert dispatcher.state.startswith("does not run")
+
+
+def test_a_dispatcher_that_fails_again_and_again_says_so(
+    database: Database, dispatcher: Dispatcher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("treestroke.service.dispatch._OVERDUE_SECONDS", 1.0)
+    with database.writing() as session:
+        session.execute(text("DROP TABLE workers"))
+    dispatcher.start()
+    assert dispatcher.state == "ok"
+    time.sleep(1.1)
+    assert "has not finished a round for 1 s" in dispatcher.state

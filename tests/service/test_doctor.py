@@ -1,20 +1,24 @@
 """Every part of the service, well and ill for real."""
 
+import resource
 import shutil
 import socket
 import sqlite3
 import subprocess
+import sys
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import closing
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
 
 from treestroke.cli import main
 from treestroke.service.dispatch import say_alive
-from treestroke.service.doctor import Finding, examine
-from treestroke.settings import read_settings
+from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation
+from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import Photo
@@ -44,8 +48,12 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", str(place)], check=True)
 
 
+def settings_of(folder: Path, **given: object) -> Settings:
+    return read_settings(**{"data": folder, "port": 0, **given})
+
+
 def findings(folder: Path, **given: object) -> dict[str, Finding]:
-    return {finding.part: finding for finding in examine(read_settings(data=folder, **given))}
+    return {finding.part: finding for finding in examine_deployment(settings_of(folder, **given))}
 
 
 def ill(folder: Path, **given: object) -> dict[str, str]:
@@ -53,12 +61,78 @@ def ill(folder: Path, **given: object) -> dict[str, str]:
 
 
 def test_all_is_well(folder: Path) -> None:
-    found = findings(folder)
+    found = {finding.part: finding for finding in examine(settings_of(folder))}
     assert list(found) == [
-        "packages", "growth engine", "data folder", "disk", "queue", "database", "files", "workers",
+        "packages", "growth engine", "tracers", "data folder", "disk", "web process", "queue", "database", "files",
+        "workers",
     ]  # fmt: skip
-    assert ill(folder) == {}
+    assert {part: one.found for part, one in found.items() if not one.well} == {}
     assert found["files"].found == "all 1 there"
+
+
+@pytest.mark.parametrize(("broker_url", "missing"), [("", ""), ("redis://127.0.0.1/0", "missing: packaging")])
+def test_what_the_worker_imports_for_a_redis_is_missed_where_there_is_one(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, broker_url: str, missing: str
+) -> None:
+    for name in ("kombu.transport.redis", "packaging.version"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    monkeypatch.setitem(sys.modules, "packaging", None)
+    packages = next(examine_installation(settings_of(folder, broker_url=broker_url)))
+    assert (packages.part, packages.well) == ("packages", not missing)
+    assert missing in packages.found
+
+
+def test_tracers_that_cannot_start_are_ill(folder: Path) -> None:
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    looks = examine_installation(settings_of(folder))
+    next(looks), next(looks)
+    try:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (4, hard))
+        tracers = next(looks)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+    assert (tracers.part, tracers.well) == ("tracers", False)
+    assert tracers.found == "none can be started: Too many open files"
+    assert "ulimit" in tracers.mend
+
+
+class Answers(BaseHTTPRequestHandler):
+    """Says about itself what its server was told to say."""
+
+    def do_GET(self) -> None:
+        self.send_response(200)
+        self.end_headers()
+        self.wfile.write(self.server.said)  # type: ignore[attr-defined]
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("said", "found"),
+    [
+        (b'{"status": "ok", "checks": {"dispatcher": "ok", "tracers": "ok"}}', None),
+        (b'{"status": "degraded", "checks": {"workers": "none; jobs wait", "tracers": "ok"}}', None),
+        (b'{"status": "degraded", "checks": {"dispatcher": "does not run", "broker": "ok"}}', "dispatcher: does not"),
+        (b'{"status": "down", "checks": {"database": "unavailable"}}', "database: unavailable"),
+        (b"<html>", "is another program"),
+    ],
+)
+def test_a_web_process_that_runs_is_asked_how_it_is(folder: Path, said: bytes, found: str | None) -> None:
+    with ThreadingHTTPServer(("127.0.0.1", 0), Answers) as server:
+        server.said = said  # type: ignore[attr-defined]
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        looked = ill(folder, port=server.server_port)
+        server.shutdown()
+    assert list(looked) == ([] if found is None else ["web process"])
+    assert found is None or found in looked["web process"]
+
+
+def test_a_web_process_that_does_not_run_is_for_its_owner_to_start(folder: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = server.getsockname()[1]
+    found = findings(folder, port=port)["web process"]
+    assert (found.well, found.found) == (True, f"none at 127.0.0.1:{port}")
 
 
 def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> None:
@@ -153,12 +227,13 @@ def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
 
 
 def test_the_command_says_what_mends_it_and_leaves_with_1(
-    folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setenv("TREESTROKE_PORT", "0")
     assert main(["doctor", "--data", str(folder)]) == 0
     shutil.rmtree(folder / "blobs")
     assert main(["doctor", "--data", str(folder)]) == 1
     told = capsys.readouterr()
     assert "ILL  files          1 of 1 missing" in told.out
     assert f"                    mend: restore {folder / 'blobs'} from a copy" in told.out
-    assert told.err == "treestroke: 1 of 8 parts are ill\n"
+    assert told.err == "treestroke: 1 of 10 parts are ill\n"

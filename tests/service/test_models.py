@@ -1,11 +1,9 @@
-import base64
 import json
 from typing import Any
 
 import pytest
 from tests.api import drawn, sketched
 
-from treestroke.codec.project import read_project
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
 from treestroke.service.models import KeyReused
@@ -74,17 +72,6 @@ def test_a_key_that_outlived_its_model_gives_a_new_one(shelf: Shelf) -> None:
     assert models.ask_for_model(shelf, wish(shelf, photo), "key").row.id == second
 
 
-def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf) -> None:
-    photo = photos.add_photo(shelf, drawn.encoded())
-    row = models.ask_for_model(shelf, wish(shelf, photo.id, seed=7), None).row
-    _, blob = models.project_of(shelf, row.id)
-    project = read_project(shelf.blobs.get(blob), "x")
-    assert project.photo == shelf.blobs.get(photo.blob)
-    assert json.loads(project.strokes) == {**drawn.STROKES, "erase": []}
-    assert project.settings == {**row.settings, "seed": 7}
-    assert models.project_of(shelf, row.id)[1] == blob
-
-
 def test_a_model_of_sketches_needs_no_photo_and_is_known_again(shelf: Shelf) -> None:
     asked = json.dumps(sketched.wish(seed=3)).encode()
     first = models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row
@@ -109,18 +96,6 @@ def test_the_same_strokes_with_another_side_are_another_model(shelf: Shelf) -> N
     ]
     assert len({row.fingerprint for row in rows}) == 3
     assert [list(row.drawings) for row in rows] == [["strokes.json"], *[["strokes.json", "side.json"]] * 2]
-
-
-def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf) -> None:
-    sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
-    fruit = base64.b64encode(sketched.berry()).decode()
-    asked = models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
-    row = models.ask_for_model(shelf, asked, None).row
-    assert list(row.drawings) == ["front.json", "side.png"]
-    project = read_project(shelf.blobs.get(models.project_of(shelf, row.id)[1]), "x")
-    assert (project.photo, project.strokes, project.leaf, project.fruit) == (None, None, None, sketched.berry())
-    assert json.loads(project.front or b"") == sketched.FRONT
-    assert (project.side or b"").startswith(b"\x89PNG")
 
 
 def test_a_model_that_there_is_not_is_not_found(shelf: Shelf) -> None:

@@ -1,4 +1,6 @@
 import hashlib
+import time
+from dataclasses import replace
 
 import pytest
 from tests.api import drawn
@@ -6,6 +8,9 @@ from tests.api import drawn
 from treestroke.core.errors import PhotoError
 from treestroke.service import photos
 from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.retention import sweep
+from treestroke.service.tracing import NoRoom
+from treestroke.store.queries import stored_bytes
 from treestroke.store.tables import Photo
 
 
@@ -38,3 +43,38 @@ def test_the_same_photo_twice_is_two_photos_and_one_file(shelf: Shelf) -> None:
         photos.delete_photo(shelf, first.id)
     with pytest.raises(NotFound):
         photos.trace_photo(shelf, first.id, b"{}")
+
+
+def kept(shelf: Shelf) -> int:
+    with shelf.database.reading() as session:
+        return stored_bytes(session)
+
+
+def test_a_photo_counts_by_what_it_takes_as_it_is_kept(shelf: Shelf) -> None:
+    assert kept(shelf) == 0
+    first, other = (photos.add_photo(shelf, drawn.encoded(seed=seed)) for seed in (0, 1))
+    photos.add_photo(shelf, drawn.encoded())  # the pixels of the first, which are kept once
+    assert kept(shelf) == first.bytes + other.bytes
+    assert first.bytes == shelf.blobs.path(first.blob).stat().st_size
+
+
+def test_a_deleted_photo_counts_until_it_is_removed_for_good(shelf: Shelf) -> None:
+    row = photos.add_photo(shelf, drawn.encoded())
+    full = replace(shelf, photos_bytes=row.bytes)
+    photos.delete_photo(shelf, row.id)
+    with pytest.raises(NoRoom):
+        photos.add_photo(full, drawn.encoded(seed=1))
+    with shelf.database.writing() as session:
+        session.query(Photo).update({"deleted": time.time() - 25 * 3600})
+    sweep(shelf.database, shelf.blobs, keep_days=0)
+    assert photos.add_photo(full, drawn.encoded())
+
+
+def test_no_photo_is_taken_beyond_what_all_may_take(shelf: Shelf) -> None:
+    row = photos.add_photo(shelf, drawn.encoded())
+    tight = replace(shelf, photos_bytes=row.bytes + 1000)
+    for take in (photos.add_photo, photos.take_in):
+        with pytest.raises(NoRoom):
+            take(tight, drawn.encoded(seed=1))
+    assert count(shelf, Photo) == 1
+    assert sum(path.is_file() for path in shelf.blobs.folder.rglob("*")) == 1

@@ -1,15 +1,18 @@
+import multiprocessing
 import os
+import resource
 import signal
 import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 
 import pytest
 from tests.service import pool_work as work
 
 from treestroke.core.errors import PhotoError
-from treestroke.service.pool import WAITING, Crashed, Overloaded, Tracers
+from treestroke.service.pool import WAITING, CannotStart, Crashed, Overloaded, Tracers
 
 SECONDS = 1.0
 
@@ -108,3 +111,51 @@ def test_a_pool_that_is_closed_leaves_no_process() -> None:
     pool.close()
     assert len(pids) == 2
     assert not [pid for pid in pids if alive(pid)]
+
+
+@contextmanager
+def spare_descriptors(count: int) -> Iterator[None]:
+    """Let this process open no more than so many files."""
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    free = os.open(os.devnull, os.O_RDONLY)
+    os.close(free)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (free + count, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+def test_a_process_that_cannot_be_started_leaves_nothing_and_the_next_call_tries_again(tracers: Tracers) -> None:
+    tracers("j", work.process)  # Python's own tracker of resources runs from now on
+    pool, failures = Tracers(1, SECONDS, 1536), []
+    open_before = os.listdir("/proc/self/fd")
+    for spare in range(32):
+        with spare_descriptors(spare), suppress(CannotStart):
+            pool("a", work.process)
+        failures.append(pool.failure)
+        if pool.failure is None:
+            break
+        assert os.listdir("/proc/self/fd") == open_before
+    assert failures[-1] is None
+    assert len(failures) > 3
+    assert set(failures[:-1]) == {"Too many open files"}
+    pool.close()
+
+
+def test_a_process_that_ends_before_it_is_ready_is_no_process() -> None:
+    others, pool = multiprocessing.active_children(), Tracers(1, SECONDS, 64)
+    for _ in range(2):
+        with pytest.raises(CannotStart, match="it ended before it was ready"):
+            pool("a", work.process)
+    assert multiprocessing.active_children() == others
+
+
+def test_all_processes_are_started_before_they_are_asked_for_anything() -> None:
+    others, pool = set(multiprocessing.active_children()), Tracers(2, SECONDS, 1536)
+    pool.start()
+    deadline = time.monotonic() + 30
+    while len(started := set(multiprocessing.active_children()) - others) < 2 and time.monotonic() < deadline:
+        time.sleep(0.02)
+    assert {pool(f"key {at}", work.process) for at in range(4)} == {child.pid for child in started}
+    pool.close()

@@ -5,19 +5,32 @@ from typing import Any
 import pytest
 from tests.api import drawn, sketched
 
-from treestroke.core.errors import StrokesError, TreestrokeError
+from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.service import tracing
 from treestroke.store.blobs import Blobs
 
+MB = 10**6
 STROKES = {"strokes": json.dumps(drawn.STROKES).encode()}
 FRONT, SIDE = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SIDE))
 
 
 @pytest.fixture
 def photo(tmp_path: Path) -> Path:
-    blob, width, height = tracing.keep_photo(tmp_path, drawn.encoded())
+    blob, size, width, height = tracing.keep_photo(tmp_path, drawn.encoded(), MB, MB)
     assert (width, height) == (drawn.WIDTH, drawn.HEIGHT)
+    assert Blobs(tmp_path).path(blob).stat().st_size == size
     return Blobs(tmp_path).path(blob)
+
+
+@pytest.mark.parametrize(
+    ("most", "room", "refusal"), [(1000, MB, PhotoError), (MB, 1000, tracing.NoRoom), (MB, -1, tracing.NoRoom)]
+)
+def test_a_photo_that_takes_too_much_is_not_written(
+    tmp_path: Path, most: int, room: int, refusal: type[Exception]
+) -> None:
+    with pytest.raises(refusal):
+        tracing.keep_photo(tmp_path, drawn.encoded(), most, room)
+    assert list(tmp_path.iterdir()) == []
 
 
 def body(**request: Any) -> bytes:
@@ -35,7 +48,8 @@ def test_one_more_stroke_is_answered_from_what_is_known(photo: Path, monkeypatch
 def test_the_photos_that_were_used_longest_ago_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tracing, "_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT)
     monkeypatch.setattr(tracing, "_known", type(tracing._known)())
-    photos = [Blobs(tmp_path).path(tracing.keep_photo(tmp_path, drawn.encoded(seed=seed))[0]) for seed in range(3)]
+    blobs = [tracing.keep_photo(tmp_path, drawn.encoded(seed=seed), MB, MB)[0] for seed in range(3)]
+    photos = [Blobs(tmp_path).path(blob) for blob in blobs]
     for at in (0, 1, 0, 2):
         tracing.check_wish(photos[at], STROKES)
     assert list(tracing._known) == [photos[0], photos[2]]

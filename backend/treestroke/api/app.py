@@ -24,6 +24,7 @@ from treestroke.schemas import ModelRequest, Problem, Rename, SketchTraceRequest
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.pool import Tracers
+from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -67,14 +68,18 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     database.migrate()
     tracers = Tracers(settings.tracers, settings.trace_seconds, settings.memory_mb)
     dispatcher = Dispatcher(database, blobs, partial(send_hint, make_queue(settings)), settings.keep_days)
-    app.state.shelf = Shelf(database, blobs, tracers)
+    limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
+    app.state.shelf = Shelf(database, blobs, tracers, *limits)
+    app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
     app.state.closing = asyncio.Event()
+    tracers.start()
     dispatcher.start()
     try:
         yield
     finally:
         dispatcher.stop()
+        app.state.projects.close()
         tracers.close()
         database.close()
 

@@ -7,6 +7,7 @@ from fastapi import Depends, HTTPException, Path, Request
 from treestroke.codec.image import MAX_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
+from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 
 
@@ -23,6 +24,11 @@ def _shelf(request: Request) -> Shelf:
 def _dispatcher(request: Request) -> Dispatcher:
     dispatcher: Dispatcher = request.app.state.dispatcher
     return dispatcher
+
+
+def _projects(request: Request) -> Projects:
+    projects: Projects = request.app.state.projects
+    return projects
 
 
 def media_type(request: Request) -> str:
@@ -63,5 +69,6 @@ PhotoId = Annotated[str, _id("pho")]
 ModelId = Annotated[str, _id("mdl")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
 ShelfOf = Annotated[Shelf, Depends(_shelf)]
+ProjectsOf = Annotated[Projects, Depends(_projects)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]
 JsonBody = Annotated[bytes, Depends(_json_body)]

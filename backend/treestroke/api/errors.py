@@ -19,7 +19,8 @@ from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
-from treestroke.service.pool import Crashed, Overloaded
+from treestroke.service.pool import CannotStart, Crashed, Overloaded
+from treestroke.service.tracing import NoRoom
 
 MEDIA_TYPE = "application/problem+json"
 _RETRY = {"Retry-After": "1"}
@@ -94,14 +95,25 @@ def _reused(_: Request, __: KeyReused) -> JSONResponse:
     return problem(422, "idempotency_key_reused", detail)
 
 
-def _busy(_: Request, __: Overloaded) -> JSONResponse:
-    return problem(503, "overloaded", "too much is being traced at the moment; try again", headers=_RETRY)
+def _no_room(_: Request, __: NoRoom) -> JSONResponse:
+    detail = "all photos together would take more than they may here; delete some, whose room is free a day later"
+    return problem(507, "photos_full", f"{detail}, or raise TREESTROKE_PHOTOS_MB")
+
+
+def _busy(_: Request, error: Overloaded) -> JSONResponse:
+    return problem(503, "overloaded", f"{error}; try again", headers=_RETRY)
 
 
 def _crashed(_: Request, error: Crashed) -> JSONResponse:
     log.error("tracer_replaced", why=str(error))
     detail = "this took too long or failed; try again, or with fewer strokes"
     return problem(503, "tracing_stopped", detail, headers=_RETRY)
+
+
+def _cannot_start(_: Request, error: CannotStart) -> JSONResponse:
+    log.error("tracer_not_started", why=str(error))
+    detail = f"the process that reads this cannot be started ({error}); try again"
+    return problem(503, "tracing_unavailable", detail, headers=_RETRY)
 
 
 def _storage(_: Request, error: OSError) -> JSONResponse:
@@ -141,8 +153,10 @@ _ANSWERS: dict[type[Exception], Any] = {
     RequestValidationError: _invalid,
     NotFound: _missing,
     KeyReused: _reused,
+    NoRoom: _no_room,
     Overloaded: _busy,
     Crashed: _crashed,
+    CannotStart: _cannot_start,
     OSError: _storage,
     OperationalError: _database,
     HTTPException: _http,

@@ -1,6 +1,7 @@
 """Stored files as answers: whole, in part, or not again."""
 
 import re
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -31,8 +32,13 @@ def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]
 
 
 def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: str | None = None) -> Response:
-    """Send a blob; its name is its ETag. One range is honoured, whatever else Range says is passed over."""
-    path, tag = shelf.blobs.path(blob), f'"{blob}"'
+    """Send a blob, which is named by its SHA-256, as `send_file` does."""
+    return send_file(request, shelf.blobs.path(blob), blob, kind, download)
+
+
+def send_file(request: Request, path: Path, sha256: str, kind: str, download: str | None = None) -> Response:
+    """Send a file; its SHA-256 is its ETag. One range is honoured, whatever else Range says is passed over."""
+    tag = f'"{sha256}"'
     headers = {"ETag": tag, "Cache-Control": "private, no-cache"}
     if _names(request.headers.get("if-none-match", ""), tag):
         return Response(status_code=304, headers=headers)

@@ -2,21 +2,24 @@
 
 import io
 import json
+import shutil
 import zipfile
 import zlib
-from collections.abc import Container
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import Any
+from typing import Any, BinaryIO, cast
 
-from treestroke.codec.archive import zipped
-from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, StoredPhoto
+from treestroke.codec.archive import zip_into
+from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
 from treestroke.codec.json_text import read_json
+from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.errors import SettingsError, TreestrokeError
 from treestroke.core.stroke_rules import Place
 
 MAX_TEXT_BYTES = 64_000_000
-"""More than the longest strokes that are allowed ever need."""
+"""More than the longest strokes that are allowed ever need; of all texts of a project together."""
+MAX_SETTINGS_BYTES = 100_000
 
 VIEWS = ("front", "side")
 _PNG = b"\x89PNG"
@@ -27,6 +30,9 @@ _NAMES = {
     **{f"{part}.png": part for part in (*VIEWS, *_PICTURES)},
 }
 """Which part each member is, but the photo."""
+_ORDER = ("photo", "strokes", *VIEWS, "settings", *_PICTURES)
+_PIECE = 1_000_000
+"""Bytes that are read at once; also of the table of members."""
 
 
 @dataclass(frozen=True)
@@ -89,24 +95,25 @@ def sketch_ending(sketch: bytes) -> str:
     return "png" if sketch.startswith(_PNG) else "json"
 
 
-def read_project(data: bytes, name: str) -> Project:
+def read_project(file: BinaryIO, name: str) -> Project:
     """Open a project file; ``name`` appears in messages.
 
     The photo is the one member called ``photo`` with any ending; sketches are ``front`` and ``side`` with .json or
-    .png; settings.json, leaf.png and fruit.png may be absent.
+    .png; settings.json, leaf.png and fruit.png may be absent. How large each part is, is judged before it is unpacked.
 
     Raises
     ------
     TreestrokeError
-        No ZIP, damaged, or without what makes a tree.
+        No ZIP, damaged, without what makes a tree, or with a part that is too large.
     SettingsError
         settings.json holds no JSON object.
     """
     try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        with zipfile.ZipFile(cast("BinaryIO", _Pieces(file))) as archive:
             members = _members(archive, name)
             _check_whole(members, name)
-            contents = {part: _member(archive, info, _limit(part), name) for part, info in members.items()}
+            _check_sizes(archive, members, name)
+            contents = {part: _content(archive, info) for part, info in members.items()}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         what = f"this is no project file that can be read ({error}); export it anew"
         raise TreestrokeError(f"{name}: {what}", code="project_unreadable") from error
@@ -115,20 +122,41 @@ def read_project(data: bytes, name: str) -> Project:
     return Project(photo, contents.pop("strokes", None), settings, **contents)
 
 
-def write_project(project: Project) -> bytes:
-    """Write a project file that `read_project` reads back; equal projects give equal bytes."""
-    photo, front, side = project.photo or b"", project.front or b"", project.side or b""
-    ending = next((ending for start, ending in _ENDINGS.items() if photo.startswith(start)), "png")
-    members = {
-        f"photo.{ending}": project.photo,
-        "strokes.json": project.strokes,
-        f"front.{sketch_ending(front)}": project.front,
-        f"side.{sketch_ending(side)}": project.side,
-        "settings.json": json.dumps(project.settings, indent=2, sort_keys=True).encode(),
-        "leaf.png": project.leaf,
-        "fruit.png": project.fruit,
-    }
-    return zipped({name: content for name, content in members.items() if content is not None})
+def write_project(out: BinaryIO, parts: Mapping[str, BinaryIO], settings: Mapping[str, Any]) -> None:
+    """Write parts, by name, as a project file that `read_project` reads back; equal ones give equal bytes."""
+    given = {**parts, "settings": io.BytesIO(json.dumps(settings, indent=2, sort_keys=True).encode())}
+    zip_into(out, {f"{part}.{_ending(part, given[part])}": given[part] for part in _ORDER if part in given})
+
+
+def _ending(part: str, content: BinaryIO) -> str:
+    """Say what the file of a part ends in, by its first bytes."""
+    beginning = content.read(len(_PNG))
+    if part in ("photo", *_PICTURES):
+        return next((ending for start, ending in _ENDINGS.items() if beginning.startswith(start)), "png")
+    return sketch_ending(beginning)
+
+
+class _Pieces:
+    """A file that is read in pieces: a table of members that is longer than one is no project's."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self.seek, self.tell, self.seekable, self.close = file.seek, file.tell, file.seekable, file.close
+
+    def read(self, size: int = -1) -> bytes:
+        """Read at most one piece.
+
+        Raises
+        ------
+        zipfile.BadZipFile
+            There is more, and all of it is asked for.
+        """
+        if size < 0 or size > _PIECE:
+            found = self._file.read(_PIECE + 1)
+            if len(found) > _PIECE:
+                raise zipfile.BadZipFile("its table of members is too long")
+            return found
+        return self._file.read(size)
 
 
 def _members(archive: zipfile.ZipFile, name: str) -> dict[str, zipfile.ZipInfo]:
@@ -151,18 +179,37 @@ def _check_whole(parts: Container[str], name: str) -> None:
         raise TreestrokeError(f"{name}: in the project, {error}", code="project_unreadable") from error
 
 
-def _limit(part: str) -> int:
-    """Say how many bytes a part may have."""
+def _check_sizes(archive: zipfile.ZipFile, members: Mapping[str, zipfile.ZipInfo], name: str) -> None:
+    """Judge from the table of members, and from a photo's first bytes, what unpacking would take."""
+    room = MAX_TEXT_BYTES
+    for part, info in members.items():
+        if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+            raise NotImplementedError(f"{info.filename} is neither stored nor deflated")
+        text = info.filename.endswith(".json")
+        limit = min(_limit(archive, part, info), room if text else MAX_STORED_BYTES)
+        if info.file_size > limit:
+            what = f"{info.filename} has {info.file_size / 1e6:.1f} MB, more than the {limit / 1e6:.1f} MB"
+            raise TreestrokeError(f"{name}: {what} that it may have; make it smaller", code="project_too_large")
+        room -= info.file_size if text else 0
+
+
+def _limit(archive: zipfile.ZipFile, part: str, info: zipfile.ZipInfo) -> int:
+    """Say how many bytes a part may have: a photo as many as its pixels need, where it was stored by a service."""
     if part == "photo":
-        return MAX_STORED_BYTES
-    return MAX_LEAF_BYTES if part in _PICTURES else MAX_TEXT_BYTES
+        with archive.open(info) as member:
+            return most_stored_bytes(member.read(PHOTO_HEAD))
+    if part == "settings":
+        return MAX_SETTINGS_BYTES
+    if part in _PICTURES:
+        return MAX_LEAF_BYTES
+    return MAX_SKETCH_BYTES if info.filename.endswith(".png") else MAX_TEXT_BYTES
 
 
-def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, limit: int, name: str) -> bytes:
-    if info.file_size > limit:
-        what = f"{info.filename} has more than {limit // 10**6} MB; make it smaller"
-        raise TreestrokeError(f"{name}: {what}", code="project_too_large")
-    return archive.read(info)
+def _content(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
+    out = io.BytesIO()
+    with archive.open(info) as member:
+        shutil.copyfileobj(member, out, _PIECE)
+    return out.getvalue()
 
 
 def _settings(text: bytes, name: str) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from treestroke.codec.json_text import read_json
 from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES, PNG, read_picture
-from treestroke.codec.strokes import kind_of, list_of, plain_stroke, stroke_of, table_of
+from treestroke.codec.strokes import check_extent, check_plain, kind_of, list_of, plain_stroke, stroke_of, table_of
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import check_count
 from treestroke.core.strokes import Sketch, Stroke
@@ -34,6 +34,8 @@ def parse_sketch(data: bytes, name: str) -> Sketch:
     try:
         if data.startswith(PNG):
             return read_picture(data)
+        check_extent(data)
+        check_plain(data)
         return sketch_from(read_json(data, StrokesError, "the sketch is neither PNG nor JSON:", "save it anew"))
     except StrokesError as error:
         raise error.within(name) from error

@@ -10,8 +10,13 @@ import numpy as np
 
 from treestroke.codec.json_text import read_json
 from treestroke.core.errors import StrokesError, shown
-from treestroke.core.stroke_rules import MAX_POINTS, Place, check_count
+from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES, Place, check_count
 from treestroke.core.strokes import Length, Stroke, Strokes
+
+_MOST_SIGNS = {b"[": 1.1 * MAX_STROKES * MAX_POINTS, b"{": 1000 * MAX_STROKES, b",": 2.2 * MAX_STROKES * MAX_POINTS}
+"""What the longest strokes need, and some for names and unknown keys, which are told from them later."""
+_MOST_WIDE_BYTES = 1_000_000
+"""Of text with signs that are no ASCII, each of which may make all of it four times as large in memory."""
 
 
 def parse_strokes(text: str | bytes, name: str) -> Strokes:
@@ -23,9 +28,11 @@ def parse_strokes(text: str | bytes, name: str) -> Strokes:
         No JSON, a wrong type, an unknown or missing key, NaN or infinity, too many strokes or points; the message
         names the file and the stroke.
     """
-    value = read_json(text, StrokesError, f"{name}: the strokes are", "save them anew")
     try:
-        return strokes_from(value)
+        data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
+        check_extent(data)
+        check_plain(data)
+        return strokes_from(read_json(data, StrokesError, "the strokes are", "save them anew"))
     except StrokesError as error:
         raise error.within(name) from error
 
@@ -67,6 +74,31 @@ def plain_stroke(stroke: Stroke) -> dict[str, object]:
     """Give one stroke as plain mappings, lists and numbers."""
     width = {} if stroke.width is None else {"width": stroke.width}
     return {"points": stroke.points.tolist(), **width}
+
+
+def check_extent(text: bytes) -> None:
+    """Refuse JSON that holds more than the longest strokes need: to read it would take minutes and gigabytes.
+
+    Raises
+    ------
+    StrokesError
+        It does.
+    """
+    if any(text.count(sign) > most for sign, most in _MOST_SIGNS.items()):
+        most = f"more than {MAX_STROKES} strokes of {MAX_POINTS} points need"
+        raise StrokesError(f"it holds {most}; thin them out", code="too_many_points")
+
+
+def check_plain(text: bytes) -> None:
+    """Refuse long JSON of strokes with signs that strokes do not need.
+
+    Raises
+    ------
+    StrokesError
+        It is such.
+    """
+    if len(text) > _MOST_WIDE_BYTES and not text.isascii():
+        raise StrokesError("strokes need no other signs than ASCII; leave them out", code="malformed_json")
 
 
 def table_of(value: object, place: Place, known: Sequence[str]) -> Mapping[str, Any]:

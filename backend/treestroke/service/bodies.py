@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from treestroke.codec.json_text import read_json
+from treestroke.codec.strokes import check_extent
 from treestroke.core.errors import StrokesError, TreestrokeError, shown
-from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES, Place
+from treestroke.core.stroke_rules import Place
 
 MAX_REV = 2**53 - 1
-_MOST_SIGNS = {b"[": 1.1 * MAX_STROKES * MAX_POINTS, b"{": 1000 * MAX_STROKES, b",": 2.2 * MAX_STROKES * MAX_POINTS}
-"""What the longest strokes need, and some for names and unknown keys, which are told from them later."""
 
 
 def read_value(text: bytes, what: str) -> Any:
@@ -20,9 +19,10 @@ def read_value(text: bytes, what: str) -> Any:
     StrokesError
         It is no JSON, or holds more.
     """
-    if any(text.count(sign) > most for sign, most in _MOST_SIGNS.items()):
-        most = f"more than {MAX_STROKES} strokes of {MAX_POINTS} points need"
-        raise StrokesError(f"{what}: it holds {most}; thin them out", code="too_many_points")
+    try:
+        check_extent(text)
+    except StrokesError as error:
+        raise error.within(what) from error
     return read_json(text, StrokesError, f"{what}: it is", "send valid JSON")
 
 

@@ -27,6 +27,8 @@ RESEND_SECONDS = 5.0
 _TICK_SECONDS = 0.5
 _BACKOFF_SECONDS = 2.0
 _SWEEP_SECONDS = 600.0
+_OVERDUE_SECONDS = 30.0
+"""Jobs wait for a dispatcher that has not done all its work once within this."""
 _UNKNOWN_SLOTS = 2
 """Hints that are sent where no worker has spoken yet: one may be about to start."""
 LOST = Counter("treestroke_attempts_lost", "Attempts whose lease ran out.")
@@ -63,11 +65,22 @@ class Dispatcher:
         self._wake, self._stopped = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
         self._quiet_until = self._sweep_at = 0.0
+        self._well_at = time.monotonic()
         self.broker_takes = True
 
     def start(self) -> None:
         """Begin."""
         self._thread.start()
+
+    @property
+    def state(self) -> str:
+        """Say "ok", or what is wrong with it."""
+        if not self._thread.is_alive():
+            return "does not run; jobs wait until the service is started anew"
+        silent_s = time.monotonic() - self._well_at
+        return (
+            "ok" if silent_s < _OVERDUE_SECONDS else f"has not finished a round for {silent_s:.0f} s; its log says why"
+        )
 
     def wake(self) -> None:
         """Look at the queue now: something has changed."""
@@ -81,12 +94,12 @@ class Dispatcher:
 
     def _run(self) -> None:
         while not self._stopped.is_set():
-            try:
-                self.recover()
-                self.dispatch()
-                self.sweep()
-            except (SQLAlchemyError, OSError) as error:
-                log.error("dispatch_failed", error=str(error))
+            # Each has its turn, whatever became of the others.
+            done = [_tried(step) for step in (self.recover, self.dispatch, self.sweep)]
+            if all(done):
+                self._well_at = time.monotonic()
+            else:
+                self._stopped.wait(_BACKOFF_SECONDS)
             self._wake.wait(_TICK_SECONDS)
             self._wake.clear()
 
@@ -144,6 +157,19 @@ class Dispatcher:
         SENT.inc()
         self.broker_takes, self._sent[id] = True, now
         return True
+
+
+def _tried(step: Callable[[], None]) -> bool:
+    """Take one of the dispatcher's steps; nothing that fails in it ends the thread, without which no job is grown."""
+    try:
+        step()
+    except (SQLAlchemyError, OSError) as error:
+        log.error("dispatch_failed", error=str(error))
+    except Exception:
+        log.exception("dispatch_failed")
+    else:
+        return True
+    return False
 
 
 def say_alive(database: Database, worker: str, slots: int) -> None:

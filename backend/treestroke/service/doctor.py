@@ -1,21 +1,26 @@
 """What is missing or broken, and how to mend it."""
 
+import os
 import shutil
 import sqlite3
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+import httpx
+from pydantic import ValidationError
 from redis import Redis, RedisError
 from sqlalchemy import func, select, text
 from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke import __version__
 from treestroke.schemas import Health
+from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
+from treestroke.service.pool import CannotStart, Crashed, Tracers
 from treestroke.service.retention import referenced
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
@@ -24,10 +29,15 @@ from treestroke.store.tables import Model, Worker
 
 _LEAST_FREE_BYTES = 500_000_000
 _BROKER_SECONDS = 2
+_WEB_SECONDS = 5.0
 _WATCH_SECONDS = 3.0
 """A worker that lives beats within this."""
 _SERVE = "`treestroke serve`"
 _PARTS = ("cv2", "maxflow", "PIL", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
+_REDIS_PARTS = ("kombu.transport.redis",)
+"""What a worker imports, by name alone, once it queues on a Redis."""
+_ONLY_THERE = ("dispatcher", "tracers")
+"""What only the web process can tell of itself."""
 
 
 @dataclass(frozen=True)
@@ -40,9 +50,14 @@ class Finding:
     mend: str = ""
 
 
-def readiness(shelf: Shelf, broker_takes: bool) -> Health:
+def readiness(shelf: Shelf, dispatcher: Dispatcher) -> Health:
     """Tell whether requests can be taken, from what is at hand: cheap enough to be asked every second."""
-    checks = {"broker": "ok" if broker_takes else "does not take messages; jobs wait"}
+    failure = shelf.tracers.failure
+    checks = {
+        "broker": "ok" if dispatcher.broker_takes else "does not take messages; jobs wait",
+        "dispatcher": dispatcher.state,
+        "tracers": "ok" if failure is None else f"the last start failed ({failure}); the next request tries again",
+    }
     try:
         with shelf.database.reading() as session:
             workers = session.scalars(select(Worker.id)).all()
@@ -59,18 +74,30 @@ def readiness(shelf: Shelf, broker_takes: bool) -> Health:
 
 def examine(settings: Settings) -> Iterator[Finding]:
     """Look at everything that the service needs, one part after another; nothing is made that is not there yet."""
-    yield _parts()
+    yield from examine_installation(settings)
+    yield from examine_deployment(settings)
+
+
+def examine_installation(settings: Settings) -> Iterator[Finding]:
+    """Look at what was installed, and whether it starts."""
+    yield _parts(_PARTS if settings.embedded else (*_PARTS, *_REDIS_PARTS))
     yield _engine()
+    yield _tracers(settings)
+
+
+def examine_deployment(settings: Settings) -> Iterator[Finding]:
+    """Look at what runs and what is kept."""
     folder = _folder(settings)
     yield folder
     yield _disk(settings)
+    yield _web_process(settings)
     yield Finding("queue", True, "files in the data folder") if settings.embedded else _redis(settings)
     if folder.well:
         yield from _rows(settings)
 
 
-def _parts() -> Finding:
-    missing = [name for name in _PARTS if not _imports(name)]
+def _parts(names: Sequence[str]) -> Finding:
+    missing = sorted({lack for name in names if (lack := _lack(name)) is not None})
     if missing:
         return Finding(
             "packages", False, f"missing: {', '.join(missing)}", "run `make setup`, or install treestroke anew"
@@ -78,16 +105,17 @@ def _parts() -> Finding:
     return Finding("packages", True, f"all there; treestroke {__version__}")
 
 
-def _imports(name: str) -> bool:
+def _lack(name: str) -> str | None:
+    """Import a module; name what is missing for that, which may be another one."""
     try:
         import_module(name)
-    except ImportError:
-        return False
-    return True
+    except ImportError as error:
+        return error.name or name
+    return None
 
 
 def _engine() -> Finding:
-    if _imports("treestroke.core.grow._engine"):
+    if _lack("treestroke.core.grow._engine") is None:
         return Finding("growth engine", True, "compiled")
     mend = "install a C compiler and Python's headers (python3-dev), and install treestroke anew"
     return Finding("growth engine", False, "not compiled: growth takes many times longer", mend)
@@ -115,6 +143,41 @@ def _disk(settings: Settings) -> Finding:
     well = free > _LEAST_FREE_BYTES
     mend = "" if well else f"free space until {_LEAST_FREE_BYTES // 10**6} MB are free, or move the data folder"
     return Finding("disk", well, f"{free // 10**6} MB free", mend)
+
+
+def _tracers(settings: Settings) -> Finding:
+    """Start a process as the web process does, and have it answer."""
+    pool = Tracers(1, settings.trace_seconds, settings.memory_mb)
+    try:
+        pool("", os.getpid)
+    except (CannotStart, Crashed) as error:
+        mend = "allow more processes and open files (ulimit -u, ulimit -n), or more TREESTROKE_MEMORY_MB"
+        return Finding("tracers", False, f"none can be started: {error}", mend)
+    finally:
+        pool.close()
+    return Finding("tracers", True, "one started and answered")
+
+
+def _web_process(settings: Settings) -> Finding:
+    """Ask the web process, where one runs, how it is."""
+    if settings.port == 0:
+        return Finding("web process", True, "not asked: port 0 is any free one")
+    at = httpx.URL(scheme="http", host=settings.host, port=settings.port, path="/readyz")
+    place, mend = f"{at.host}:{at.port}", f"start {_SERVE} anew; its log says why"
+    try:
+        health = Health.model_validate_json(httpx.get(at, timeout=_WEB_SECONDS, trust_env=False).content)
+    except httpx.ConnectError:
+        return Finding("web process", True, f"none at {place}")
+    except httpx.TransportError:
+        return Finding("web process", False, f"{place} does not answer within {_WEB_SECONDS:g} s", mend)
+    except ValidationError:
+        mend = "take another port for treestroke (--port, TREESTROKE_PORT)"
+        return Finding("web process", False, f"{place} is another program", mend)
+    ill = {name: check for name, check in health.checks.items() if check != "ok"}
+    if health.status != "down":
+        ill = {name: check for name, check in ill.items() if name in _ONLY_THERE}
+    said = "; ".join(f"{name}: {check}" for name, check in ill.items())
+    return Finding("web process", not ill, said or f"answers at {place}", mend if ill else "")
 
 
 def _redis(settings: Settings) -> Finding:

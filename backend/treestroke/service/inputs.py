@@ -1,16 +1,16 @@
 """What a caller may hand in as photo, strokes, sketches and settings, brought to values."""
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from treestroke.codec.image import (
     MAX_BYTES,
     MAX_LEAF_BYTES,
-    MAX_STORED_BYTES,
     Picture,
     check_size,
     decode_fruit,
@@ -33,8 +33,9 @@ FruitLike = LeafLike
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
 
-def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeError]) -> bytes:
-    """Read a file that the person named, at most one byte more than ``limit``.
+@contextmanager
+def open_input(path: str | os.PathLike[str], kind: type[TreestrokeError]) -> Iterator[BinaryIO]:
+    """Open a file that the person named.
 
     Raises
     ------
@@ -43,13 +44,25 @@ def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeEr
     """
     try:
         with Path(path).open("rb") as file:
-            return file.read(limit + 1)
+            yield file
     except FileNotFoundError as error:
         raise kind(f"{os.fspath(path)}: there is no such file; check the path") from error
     except (IsADirectoryError, NotADirectoryError, PermissionError) as error:
         raise kind(f"{os.fspath(path)}: it cannot be read ({error.strerror}); name a file that can") from error
     except ValueError as error:
         raise kind(f"{os.fspath(path)!r}: this is no path ({error}); check it") from error
+
+
+def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeError]) -> bytes:
+    """Read a file that the person named, at most one byte more than ``limit``.
+
+    Raises
+    ------
+    TreestrokeError
+        As `open_input`.
+    """
+    with open_input(path, kind) as file:
+        return file.read(limit + 1)
 
 
 def load_photo(photo: PhotoLike, report: Report = silent) -> Picture:
@@ -151,8 +164,8 @@ def load_project(path: str | os.PathLike[str]) -> Project:
     TreestrokeError
         As `read_project`; or the file cannot be read.
     """
-    data = read_input(path, MAX_STORED_BYTES + MAX_TEXT_BYTES, TreestrokeError)
-    return read_project(data, os.fspath(path))
+    with open_input(path, TreestrokeError) as file:
+        return read_project(file, os.fspath(path))
 
 
 def _cut_out(

@@ -10,7 +10,7 @@ from sqlalchemy import update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.image import StoredPhoto
-from treestroke.codec.project import VIEWS, Project, sketch_ending, write_project
+from treestroke.codec.project import VIEWS, Project, sketch_ending
 from treestroke.service import tracing, wishes
 from treestroke.service.making import ENGINE
 from treestroke.service.photos import NotFound, Shelf
@@ -177,18 +177,6 @@ def restore(database: Database, id: str) -> Seen:
         session.execute(update(Model).where(Model.id == id).values(deleted=None))
         session.refresh(row)
         return _seen(session, row)
-
-
-def project_of(shelf: Shelf, id: str) -> tuple[Model, str]:
-    """Pack what a model is made of as a project file; give the model and the file's blob.
-
-    Raises
-    ------
-    NotFound
-        There is no such model.
-    """
-    row = see(shelf.database, id).row
-    return row, shelf.blobs.put(write_project(project_from(shelf.blobs, row)))
 
 
 def project_from(blobs: Blobs, row: Model) -> Project:

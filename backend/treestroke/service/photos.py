@@ -9,9 +9,10 @@ from sqlalchemy import update
 from treestroke.core.errors import PhotoError
 from treestroke.service import tracing
 from treestroke.service.pool import Crashed, Tracers
+from treestroke.settings import PHOTO_MB, PHOTOS_MB
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.queries import new_id
+from treestroke.store.queries import new_id, stored_bytes
 from treestroke.store.queries import photo as find_photo
 from treestroke.store.tables import Photo
 
@@ -27,6 +28,10 @@ class Shelf:
     database: Database
     blobs: Blobs
     tracers: Tracers
+    photo_bytes: int = PHOTO_MB * 10**6
+    """What one photo may take as it is kept."""
+    photos_bytes: int = PHOTOS_MB * 10**6
+    """What all of them may take."""
 
 
 def add_photo(shelf: Shelf, content: bytes) -> Photo:
@@ -50,15 +55,21 @@ def take_in(shelf: Shelf, content: bytes) -> Photo:
     ------
     PhotoError
         It cannot be used.
+    NoRoom
+        All photos together would take more than they may.
     OSError
         The disk is full.
     """
     sha256 = hashlib.sha256(content).hexdigest()
+    with shelf.database.reading() as session:
+        room = shelf.photos_bytes - stored_bytes(session)
+    folder, most = shelf.blobs.folder.parent, shelf.photo_bytes
     try:
-        blob, width, height = shelf.tracers(sha256, tracing.keep_photo, shelf.blobs.folder.parent, content)
+        blob, size, width, height = shelf.tracers(sha256, tracing.keep_photo, folder, content, most, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
-    return Photo(id=new_id("pho"), sha256=sha256, width=width, height=height, blob=blob, created=time.time())
+    now = time.time()
+    return Photo(id=new_id("pho"), sha256=sha256, width=width, height=height, blob=blob, bytes=size, created=now)
 
 
 def get_photo(shelf: Shelf, id: str) -> Photo:

@@ -14,7 +14,7 @@ from treestroke.codec.image import Picture, decode_photo, decode_stored, encode_
 from treestroke.codec.project import VIEWS
 from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.core.errors import TreestrokeError
+from treestroke.core.errors import PhotoError, TreestrokeError
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import see_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
@@ -41,16 +41,28 @@ class Known:
 _known: OrderedDict[Path, Known] = OrderedDict()
 
 
-def keep_photo(folder: Path, content: bytes) -> tuple[str, int, int]:
-    """Decode an uploaded photo and store its upright pixels; give the blob, the width and the height.
+class NoRoom(Exception):
+    """All photos together would take more than they may."""
+
+
+def keep_photo(folder: Path, content: bytes, most: int, room: int) -> tuple[str, int, int, int]:
+    """Decode an uploaded photo and store its upright pixels; give the blob, its bytes, the width and the height.
 
     Raises
     ------
     PhotoError
-        As `decode_photo`.
+        As `decode_photo`; or it would take more than ``most`` bytes.
+    NoRoom
+        It would take more than ``room`` bytes.
     """
     picture = decode_photo(content, "photo")
-    return Blobs(folder).put(encode_stored(picture)), picture.shape[1], picture.shape[0]
+    stored = encode_stored(picture)
+    if len(stored) > most:
+        what = f"kept as PNG it takes {len(stored) / 1e6:.1f} MB, at most {most / 1e6:g} MB are allowed"
+        raise PhotoError(f"photo: {what}; resize it", code="photo_too_large_stored")
+    if len(stored) > room:
+        raise NoRoom
+    return Blobs(folder).put(stored), len(stored), picture.shape[1], picture.shape[0]
 
 
 def trace_answer(photo: Path, body: bytes) -> bytes:

@@ -67,3 +67,9 @@ def usual_seconds(session: Session) -> float:
     ).all()
     known = sorted(seconds for seconds in took if seconds is not None)
     return known[len(known) // 2] if known else _FIRST_GUESS_S
+
+
+def stored_bytes(session: Session) -> int:
+    """Add up what photos take, the deleted that are not yet removed among them; the same pixels count once."""
+    blobs = select(func.max(Photo.bytes).label("bytes")).group_by(Photo.blob).subquery()
+    return session.scalar(select(func.sum(blobs.c.bytes))) or 0

@@ -480,6 +480,16 @@ export interface components {
         Limits: {
             /** Photo Bytes */
             photo_bytes: number;
+            /**
+             * Photo Stored Bytes
+             * @description of a photo as it is kept, a PNG without loss
+             */
+            photo_stored_bytes: number;
+            /**
+             * Photos Stored Bytes
+             * @description of all photos together as they are kept, the deleted for a day too
+             */
+            photos_stored_bytes: number;
             /** Photo Pixels */
             photo_pixels: number;
             /** Photo Side Min */
@@ -2386,6 +2396,17 @@ export interface operations {
                 headers: {
                     /** @description bytes FIRST-LAST/ALL */
                     "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
                     [name: string]: unknown;
                 };
                 content: {

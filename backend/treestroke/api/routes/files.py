@@ -1,21 +1,26 @@
 """A model's files."""
 
+import asyncio
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse
 
-from treestroke.api.deps import ModelId, ShelfOf
+from treestroke.api.deps import ModelId, ProjectsOf, ShelfOf
 from treestroke.api.errors import documented
-from treestroke.api.sending import file_answers, send_blob
+from treestroke.api.sending import file_answers, send_blob, send_file
 from treestroke.codec.project import VIEWS
 from treestroke.service import models
 from treestroke.service.jobs import GLB, PREVIEW
 from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.pool import Overloaded
 
 router = APIRouter(prefix="/v1/models/{id}", tags=["files"])
 _GLB, _PNG, _ZIP, _JSON = "model/gltf-binary", "image/png", "application/zip", "application/json"
 _OTHER = "application/octet-stream"
+_PACKING_SECONDS = 20.0
+"""A project that is not packed within this is asked for again later; it is packed all the same."""
 _KINDS = {
     ".glb": _GLB,
     ".zip": _ZIP,
@@ -65,11 +70,16 @@ def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     return _drawing(request, shelf, id, "strokes.json")
 
 
-@router.get("/project", response_class=FileResponse, responses={**file_answers(_ZIP), **documented(507)})
-def get_project(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
+@router.get("/project", response_class=FileResponse, responses={**file_answers(_ZIP), **documented(503, 507)})
+async def get_project(request: Request, shelf: ShelfOf, projects: ProjectsOf, id: ModelId) -> Response:
     """Download NAME.treestroke: all that the tree is made of, for the command line and the page."""
-    row, blob = models.project_of(shelf, id)
-    return send_blob(request, shelf, blob, _ZIP, f"{row.name or row.id}.treestroke")
+    row = (await run_in_threadpool(models.see, shelf.database, id)).row
+    promised = asyncio.shield(asyncio.wrap_future(projects.ask(row)))
+    try:
+        packed = await asyncio.wait_for(promised, _PACKING_SECONDS)
+    except TimeoutError:
+        raise Overloaded("the project is still being packed") from None
+    return send_file(request, packed.path, packed.sha256, _ZIP, f"{row.name or row.id}.treestroke")
 
 
 @router.get("/tree.{ending}", response_class=FileResponse, responses=_MANY)

@@ -31,7 +31,7 @@ async def live() -> Health:
 @router.get("/readyz", responses={503: {"model": Health}, **documented(403)})
 def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Health:
     """Tell whether requests can be taken, part by part; without workers or broker they are taken and wait."""
-    health = readiness(shelf, dispatcher.broker_takes)
+    health = readiness(shelf, dispatcher)
     if health.status == "down":
         response.status_code = 503
     return health
@@ -42,6 +42,8 @@ def limits(settings: SettingsOf) -> Limits:
     """Name everything that is bounded."""
     return Limits(
         photo_bytes=MAX_BYTES,
+        photo_stored_bytes=settings.photo_mb * 10**6,
+        photos_stored_bytes=settings.photos_mb * 10**6,
         photo_pixels=MAX_PIXELS,
         photo_side_min=MIN_SIDE,
         photo_side_max=MAX_SIDE,

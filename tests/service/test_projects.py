@@ -1,0 +1,140 @@
+import base64
+import hashlib
+import json
+import os
+import time
+import tracemalloc
+from collections.abc import Iterator
+from concurrent.futures import wait
+
+import pytest
+from tests.api import drawn, sketched
+from tests.rows import add_model
+
+from treestroke.codec.project import Project, read_project
+from treestroke.service import models, photos
+from treestroke.service.photos import Shelf
+from treestroke.service.pool import Overloaded
+from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
+from treestroke.store.tables import Model
+
+SECONDS = 30
+
+
+@pytest.fixture
+def projects(shelf: Shelf) -> Iterator[Projects]:
+    made = Projects(shelf.blobs.folder.parent, shelf.blobs)
+    yield made
+    made.close()
+
+
+def packed(projects: Projects, row: Model) -> Packed:
+    return projects.ask(row).result(SECONDS)
+
+
+def project_of(projects: Projects, row: Model) -> Project:
+    with packed(projects, row).path.open("rb") as file:
+        return read_project(file, "x")
+
+
+def model_of(shelf: Shelf, content: bytes, **values: object) -> Model:
+    """Write the row of a model whose photo has this content, whatever it is."""
+    blobs = {"photo_blob": shelf.blobs.put(content), "strokes_blob": shelf.blobs.put(b"{}")}
+    return add_model(shelf.database, **{**blobs, **values})
+
+
+def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: Projects) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded())
+    asked = models.read_wish(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
+    row = models.ask_for_model(shelf, asked, None).row
+    project = project_of(projects, row)
+    assert project.photo == shelf.blobs.get(photo.blob)
+    assert json.loads(project.strokes or b"") == {**drawn.STROKES, "erase": []}
+    assert project.settings == {**row.settings, "seed": 7}
+
+
+def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projects: Projects) -> None:
+    sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
+    fruit = base64.b64encode(sketched.berry()).decode()
+    asked = models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
+    row = models.ask_for_model(shelf, asked, None).row
+    assert list(row.drawings) == ["front.json", "side.png"]
+    project = project_of(projects, row)
+    assert (project.photo, project.strokes, project.leaf, project.fruit) == (None, None, None, sketched.berry())
+    assert json.loads(project.front or b"") == sketched.FRONT
+    assert (project.side or b"").startswith(b"\x89PNG")
+
+
+def test_models_of_the_same_parts_settings_and_seed_share_a_project_that_is_packed_once(
+    shelf: Shelf, projects: Projects
+) -> None:
+    first, same, other = (model_of(shelf, b"photo", seed=seed) for seed in (0, 0, 1))
+    made = packed(projects, first)
+    before = made.path.stat()
+    assert made.sha256 == hashlib.sha256(made.path.read_bytes()).hexdigest()
+    assert packed(projects, same) == made
+    assert (made.path.stat().st_mtime_ns, made.path.stat().st_ino) == (before.st_mtime_ns, before.st_ino)
+    assert packed(projects, other).sha256 != made.sha256
+
+
+def test_a_large_project_is_never_in_memory(shelf: Shelf, projects: Projects) -> None:
+    row = model_of(shelf, bytes(60_000_000))
+    tracemalloc.start()
+    made = packed(projects, row)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert made.size > 60_000_000
+    assert peak < 5_000_000
+
+
+def test_what_was_asked_for_longest_ago_goes_first(
+    shelf: Shelf, projects: Projects, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("treestroke.service.projects.MAX_KEPT_BYTES", 250_000)
+    rows = [model_of(shelf, bytes([at]) * 100_000) for at in range(3)]
+    first, second = (packed(projects, row) for row in rows[:2])
+    packed(projects, rows[0])
+    third = packed(projects, rows[2])
+    assert [one.path.exists() for one in (first, second, third)] == [True, False, True]
+    assert packed(projects, rows[1]).sha256 == second.sha256
+
+
+def test_what_is_gone_or_failed_is_packed_anew(shelf: Shelf, projects: Projects) -> None:
+    row = model_of(shelf, b"photo")
+    blob = shelf.blobs.path(row.parts["photo"])
+    blob.rename(blob.with_suffix(".away"))
+    with pytest.raises(FileNotFoundError):
+        packed(projects, row)
+    assert list((shelf.blobs.folder.parent / "projects").iterdir()) == []
+    blob.with_suffix(".away").rename(blob)
+    made = packed(projects, row)
+    made.path.unlink()
+    assert packed(projects, row) == made
+    assert made.path.is_file()
+
+
+def test_what_is_kept_goes_at_the_next_start(shelf: Shelf, projects: Projects) -> None:
+    made = packed(projects, model_of(shelf, b"photo"))
+    Projects(shelf.blobs.folder.parent, shelf.blobs).close()
+    assert not made.path.exists()
+
+
+def test_few_are_packed_at_once_more_wait_and_still_more_are_refused(shelf: Shelf, projects: Projects) -> None:
+    row = model_of(shelf, b"photo")
+    blob = shelf.blobs.path(row.parts["photo"])
+    blob.unlink()
+    os.mkfifo(blob)  # whoever opens it to read waits for somebody who writes
+    rows = [model_of(shelf, b"", seed=seed, photo_blob=row.parts["photo"]) for seed in range(WAITING + 1)]
+    promised = [projects.ask(row) for row in rows[:WAITING]]
+    try:
+        deadline = time.monotonic() + SECONDS
+        while sum(one.running() for one in promised) < AT_ONCE and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert [one.running() for one in promised] == [True] * AT_ONCE + [False] * (WAITING - AT_ONCE)
+        assert projects.ask(rows[0]) is promised[0]
+        with pytest.raises(Overloaded, match="too many projects"):
+            projects.ask(rows[WAITING])
+    finally:
+        while wait(promised, 0.01).not_done:
+            os.close(os.open(blob, os.O_RDWR | os.O_NONBLOCK))
+    assert all(isinstance(one.exception(), OSError) for one in promised)
