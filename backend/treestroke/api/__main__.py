@@ -19,8 +19,8 @@ class _Server(uvicorn.Server):
 
     def handle_exit(self, sig: int, frame: object) -> None:
         app = self.config.app
-        if closing := getattr(getattr(app, "state", None), "closing", None):
-            closing.set()
+        if watcher := getattr(getattr(app, "state", None), "watcher", None):
+            watcher.stop()
         super().handle_exit(sig, frame)  # type: ignore[arg-type]
 
 

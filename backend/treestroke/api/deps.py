@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Request
 
+from treestroke.api.following import Watcher
 from treestroke.codec.image import MAX_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
@@ -23,6 +24,11 @@ def _shelf(request: Request) -> Shelf:
 def _dispatcher(request: Request) -> Dispatcher:
     dispatcher: Dispatcher = request.app.state.dispatcher
     return dispatcher
+
+
+def _watcher(request: Request) -> Watcher:
+    watcher: Watcher = request.app.state.watcher
+    return watcher
 
 
 def media_type(request: Request) -> str:
@@ -64,4 +70,5 @@ ModelId = Annotated[str, _id("mdl")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
 ShelfOf = Annotated[Shelf, Depends(_shelf)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]
+WatcherOf = Annotated[Watcher, Depends(_watcher)]
 JsonBody = Annotated[bytes, Depends(_json_body)]

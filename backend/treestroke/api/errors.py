@@ -15,6 +15,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.routing import compile_path
 
+from treestroke.api.following import Crowded
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.models import KeyReused
@@ -98,6 +99,10 @@ def _busy(_: Request, __: Overloaded) -> JSONResponse:
     return problem(503, "overloaded", "too much is being traced at the moment; try again", headers=_RETRY)
 
 
+def _crowded(_: Request, __: Crowded) -> JSONResponse:
+    return problem(503, "overloaded", "too many models are followed at the moment; try again", headers=_RETRY)
+
+
 def _crashed(_: Request, error: Crashed) -> JSONResponse:
     log.error("tracer_replaced", why=str(error))
     detail = "this took too long or failed; try again, or with fewer strokes"
@@ -142,6 +147,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     NotFound: _missing,
     KeyReused: _reused,
     Overloaded: _busy,
+    Crowded: _crowded,
     Crashed: _crashed,
     OSError: _storage,
     OperationalError: _database,

@@ -523,6 +523,11 @@ export interface components {
             };
             /** Keep Days */
             keep_days: number;
+            /**
+             * Followers
+             * @description requests that follow models at once, by events or by Prefer: wait
+             */
+            followers: number;
         };
         /**
          * Model
@@ -2086,6 +2091,17 @@ export interface operations {
             /** @description Unprocessable Entity */
             422: {
                 headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
                     [name: string]: unknown;
                 };
                 content: {
