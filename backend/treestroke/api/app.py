@@ -11,7 +11,7 @@ from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
 
 from treestroke import __version__
-from treestroke.api.errors import add_handlers
+from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
 from treestroke.api.guard import Guard, Limited
 from treestroke.api.metrics import add_metrics
@@ -54,7 +54,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     app.state.settings, app.state.places = settings, places
     add_handlers(app)
     for routes in (photos, sketches, models, events, files, status):
-        app.include_router(routes.router)
+        app.include_router(routes.router, responses=documented(500, 503))
     add_metrics(app)
     add_page(app)
     app.add_middleware(Limited, limit_of=_limit_of)

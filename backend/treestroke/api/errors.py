@@ -10,7 +10,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from fastapi.routing import iter_route_contexts
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.routing import compile_path
@@ -18,6 +18,7 @@ from starlette.routing import compile_path
 from treestroke.api.following import Crowded
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
+from treestroke.service.failures import code_of, problem_of
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
 from treestroke.service.pool import Crashed, Overloaded
@@ -33,6 +34,15 @@ _CODES = {
     413: "body_too_large",
     415: "unsupported_media_type",
     503: "overloaded",
+}
+_STORAGE = {
+    "storage_full": 507,
+    "storage_read_only": 500,
+    "storage_broken": 500,
+    "file_missing": 500,
+    "too_many_files": 503,
+    "database_busy": 503,
+    "database_unavailable": 503,
 }
 log = structlog.get_logger()
 
@@ -109,16 +119,13 @@ def _crashed(_: Request, error: Crashed) -> JSONResponse:
     return problem(503, "tracing_stopped", detail, headers=_RETRY)
 
 
-def _storage(_: Request, error: OSError) -> JSONResponse:
-    log.error("storage_failed", error=str(error))
-    return problem(507, "storage_full", "the service cannot store this: its disk may be full; try again later")
-
-
-def _database(request: Request, error: OperationalError) -> JSONResponse:
-    if "full" in str(error.orig):
-        return _storage(request, OSError(str(error.orig)))
-    log.error("database_failed", error=str(error.orig))
-    return problem(503, "database_unavailable", "the database is busy; try again", headers=_RETRY)
+def _storage(request: Request, error: OSError | SQLAlchemyError) -> JSONResponse:
+    code = code_of(error)
+    status = _STORAGE.get(code)
+    if status is None:
+        return _ours(request, error)
+    log.error("storage_failed", code=code, error=str(getattr(error, "orig", error)))
+    return problem(status, code, problem_of(code)["detail"], headers=_RETRY if status == 503 else None)
 
 
 def _http(request: Request, error: HTTPException) -> JSONResponse:
@@ -150,7 +157,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     Crowded: _crowded,
     Crashed: _crashed,
     OSError: _storage,
-    OperationalError: _database,
+    SQLAlchemyError: _storage,
     HTTPException: _http,
     ClientDisconnect: _gone,
     Exception: _ours,
