@@ -352,6 +352,7 @@ class Limits(Wire):
     wait_seconds: float
     settings: dict[str, dict[str, Any]] = Field(description="each setting's default and what is allowed")
     keep_days: float
+    followers: int = Field(description="requests that follow models at once, by events or by Prefer: wait")
 
 
 class Version(Wire):

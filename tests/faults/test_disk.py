@@ -73,7 +73,7 @@ def test_a_full_disk_refuses_uploads_and_serves_nothing_half_made(tmp_path: Path
             service.finish([id], 4)
         disk.free()
         (row,) = service.finish([id])
-        assert row["status"] == "succeeded" or json.loads(row["error"])["code"] == "storage_error"
+        assert row["status"] == "succeeded" or json.loads(row["error"])["code"] == "storage_full"
         assert {row["status"] for row in service.finish(service.ask_for(2))} == {"succeeded"}
         service.check_invariants()
 

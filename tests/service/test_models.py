@@ -1,14 +1,19 @@
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
+from sqlalchemy import Engine, event
 from tests.api import drawn, sketched
+from tests.rows import add_model
 
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.service.wishes import Wish
+from treestroke.store.database import Database
 from treestroke.store.leases import claim, succeed
 from treestroke.store.tables import Model, Photo
 
@@ -104,3 +109,46 @@ def test_a_model_that_there_is_not_is_not_found(shelf: Shelf) -> None:
             ask(shelf.database, "mdl_0")
     with pytest.raises(NotFound):
         models.rename(shelf.database, "mdl_0", "x")
+
+
+@contextmanager
+def questions() -> Iterator[list[str]]:
+    """Collect what the database is asked."""
+    asked: list[str] = []
+
+    def note(_connection: object, _cursor: object, statement: str, *_: object) -> None:
+        asked.append(statement)
+
+    event.listen(Engine, "before_cursor_execute", note)
+    try:
+        yield asked
+    finally:
+        event.remove(Engine, "before_cursor_execute", note)
+
+
+def test_many_models_are_shown_with_as_few_questions_as_one(database: Database) -> None:
+    counts = []
+    for _ in range(2):
+        add_model(database, status="running")
+        rows = [add_model(database) for _ in range(10)]
+        with questions() as page:
+            models.list_models(database, None, 50)
+        with questions() as change:
+            models.see_changed(database, dict.fromkeys([row.id for row in rows]))
+        counts.append((len(page), len(change)))
+    assert counts[0] == counts[1]
+    assert max(counts[0]) < 10
+
+
+def test_only_what_changed_is_shown_anew(database: Database) -> None:
+    rows = [add_model(database) for _ in range(3)]
+    marks = {row.id: models.see(database, row.id).mark for row in rows}
+    assert models.see_changed(database, marks) == {}
+    models.rename(database, rows[0].id, "Oak")
+    models.cancel(database, rows[1].id)  # the third moves up
+    changed = models.see_changed(database, {**marks, "mdl_gone": None})
+    assert changed.keys() == {rows[0].id, rows[1].id, rows[2].id, "mdl_gone"}
+    assert changed["mdl_gone"] is None
+    third = changed[rows[2].id]
+    assert third is not None
+    assert third.queue_position == 2

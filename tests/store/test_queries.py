@@ -27,7 +27,11 @@ def test_places_in_the_queue_count_from_the_next_one(database: Database) -> None
     add_model(database, status="running")
     queued = [add_model(database) for _ in range(3)]
     with database.reading() as session:
-        assert [queries.queue_position(session, row) for row in queued] == [1, 2, 3]
+        assert queries.queue_positions(session, [queued[2].number, queued[1].number]) == {
+            queued[1].number: 2,
+            queued[2].number: 3,
+        }
+        assert queries.queue_positions(session, []) == {}
 
 
 def test_the_usual_time_is_the_median_of_late_and_a_guess_before(database: Database) -> None:

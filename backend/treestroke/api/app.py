@@ -1,6 +1,5 @@
 """The web application."""
 
-import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -12,7 +11,8 @@ from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
 
 from treestroke import __version__
-from treestroke.api.errors import add_handlers
+from treestroke.api.errors import add_handlers, documented
+from treestroke.api.following import Watcher
 from treestroke.api.guard import Guard, Limited
 from treestroke.api.metrics import add_metrics
 from treestroke.api.routes import events, files, models, photos, sketches, status
@@ -30,14 +30,18 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
+MAX_FOLLOWERS = 500
 _FORM_BYTES = 100_000
 """What a form may have around its file."""
 _SMALL_BYTES = 100_000
 _REF = "#/components/schemas/{model}"
 
 
-def make_app(settings: Settings) -> FastAPI:
-    """Make the application; database, queue and tracing processes are opened when it starts."""
+def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
+    """Make the application; database, queue and tracing processes are opened when it starts.
+
+    So many requests at once may follow models as there are ``places``.
+    """
     app = FastAPI(
         title="treestroke",
         version=__version__,
@@ -48,10 +52,10 @@ def make_app(settings: Settings) -> FastAPI:
         redirect_slashes=False,
         generate_unique_id_function=_operation_id,
     )
-    app.state.settings = settings
+    app.state.settings, app.state.places = settings, places
     add_handlers(app)
     for routes in (photos, sketches, models, events, files, status):
-        app.include_router(routes.router)
+        app.include_router(routes.router, responses=documented(500, 503))
     add_metrics(app)
     add_page(app)
     app.add_middleware(Limited, limit_of=_limit_of)
@@ -72,8 +76,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.shelf = Shelf(database, blobs, tracers, *limits)
     app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
-    app.state.closing = asyncio.Event()
     tracers.start()
+    app.state.watcher = Watcher(database, app.state.places)
     dispatcher.start()
     try:
         yield

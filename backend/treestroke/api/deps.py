@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Request
 
+from treestroke.api.following import Watcher
 from treestroke.codec.image import MAX_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
@@ -29,6 +30,11 @@ def _dispatcher(request: Request) -> Dispatcher:
 def _projects(request: Request) -> Projects:
     projects: Projects = request.app.state.projects
     return projects
+
+
+def _watcher(request: Request) -> Watcher:
+    watcher: Watcher = request.app.state.watcher
+    return watcher
 
 
 def media_type(request: Request) -> str:
@@ -71,4 +77,5 @@ SettingsOf = Annotated[Settings, Depends(_settings)]
 ShelfOf = Annotated[Shelf, Depends(_shelf)]
 ProjectsOf = Annotated[Projects, Depends(_projects)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]
+WatcherOf = Annotated[Watcher, Depends(_watcher)]
 JsonBody = Annotated[bytes, Depends(_json_body)]

@@ -10,13 +10,15 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from fastapi.routing import iter_route_contexts
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.routing import compile_path
 
+from treestroke.api.following import Crowded
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
+from treestroke.service.failures import code_of, problem_of
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
 from treestroke.service.pool import CannotStart, Crashed, Overloaded
@@ -33,6 +35,15 @@ _CODES = {
     413: "body_too_large",
     415: "unsupported_media_type",
     503: "overloaded",
+}
+_STORAGE = {
+    "storage_full": 507,
+    "storage_read_only": 500,
+    "storage_broken": 500,
+    "file_missing": 500,
+    "too_many_files": 503,
+    "database_busy": 503,
+    "database_unavailable": 503,
 }
 log = structlog.get_logger()
 
@@ -104,6 +115,10 @@ def _busy(_: Request, error: Overloaded) -> JSONResponse:
     return problem(503, "overloaded", f"{error}; try again", headers=_RETRY)
 
 
+def _crowded(_: Request, __: Crowded) -> JSONResponse:
+    return problem(503, "overloaded", "too many models are followed at the moment; try again", headers=_RETRY)
+
+
 def _crashed(_: Request, error: Crashed) -> JSONResponse:
     log.error("tracer_replaced", why=str(error))
     detail = "this took too long or failed; try again, or with fewer strokes"
@@ -116,16 +131,13 @@ def _cannot_start(_: Request, error: CannotStart) -> JSONResponse:
     return problem(503, "tracing_unavailable", detail, headers=_RETRY)
 
 
-def _storage(_: Request, error: OSError) -> JSONResponse:
-    log.error("storage_failed", error=str(error))
-    return problem(507, "storage_full", "the service cannot store this: its disk may be full; try again later")
-
-
-def _database(request: Request, error: OperationalError) -> JSONResponse:
-    if "full" in str(error.orig):
-        return _storage(request, OSError(str(error.orig)))
-    log.error("database_failed", error=str(error.orig))
-    return problem(503, "database_unavailable", "the database is busy; try again", headers=_RETRY)
+def _storage(request: Request, error: OSError | SQLAlchemyError) -> JSONResponse:
+    code = code_of(error)
+    status = _STORAGE.get(code)
+    if status is None:
+        return _ours(request, error)
+    log.error("storage_failed", code=code, error=str(getattr(error, "orig", error)))
+    return problem(status, code, problem_of(code)["detail"], headers=_RETRY if status == 503 else None)
 
 
 def _http(request: Request, error: HTTPException) -> JSONResponse:
@@ -155,10 +167,11 @@ _ANSWERS: dict[type[Exception], Any] = {
     KeyReused: _reused,
     NoRoom: _no_room,
     Overloaded: _busy,
+    Crowded: _crowded,
     Crashed: _crashed,
     CannotStart: _cannot_start,
     OSError: _storage,
-    OperationalError: _database,
+    SQLAlchemyError: _storage,
     HTTPException: _http,
     ClientDisconnect: _gone,
     Exception: _ours,

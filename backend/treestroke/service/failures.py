@@ -1,8 +1,12 @@
-"""Why a model failed, in words for the person who waits for it."""
+"""What went wrong through no fault of the input: its code, and words for the person who waits."""
 
+import errno
+import sqlite3
 from typing import Any
 
 import cv2
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import TimeoutError as NoConnection
 
 from treestroke.core.errors import TreestrokeError
 
@@ -10,8 +14,35 @@ _DETAILS = {
     "worker_lost": ("The process that grew the tree was lost three times. Try again; if it stays so, report it.", True),
     "time_limit": ("The tree took longer to grow than this service allows. Try fewer iterations.", False),
     "out_of_memory": ("The tree needs more memory than this service allows. Try a smaller photo.", False),
-    "storage_error": ("The service could not store the tree: its disk may be full. Try again later.", True),
     "engine_error": ("The tree could not be grown; this is our mistake, and it is in the log.", False),
+    "storage_full": ("The service's disk is full. Make room on it, then try again.", True),
+    "storage_read_only": ("The service may not write to its data folder. Give it back to its user.", True),
+    "storage_broken": ("The service's disk or database cannot be read or written. See `treestroke doctor`.", False),
+    "file_missing": ("A file that belongs here is missing on the service's disk. See `treestroke doctor`.", False),
+    "too_many_files": ("The service has as many files and connections open as it may. Try again.", True),
+    "database_busy": ("The database is busy. Try again.", True),
+    "database_unavailable": ("The database cannot be opened at the moment. Try again.", True),
+}
+_BY_ERRNO = {
+    errno.ENOSPC: "storage_full",
+    errno.EDQUOT: "storage_full",
+    errno.EROFS: "storage_read_only",
+    errno.EACCES: "storage_read_only",
+    errno.EPERM: "storage_read_only",
+    errno.EIO: "storage_broken",
+    errno.ENOENT: "file_missing",
+    errno.EMFILE: "too_many_files",
+    errno.ENFILE: "too_many_files",
+}
+_BY_SQLITE = {
+    sqlite3.SQLITE_FULL: "storage_full",
+    sqlite3.SQLITE_READONLY: "storage_read_only",
+    sqlite3.SQLITE_IOERR: "storage_broken",
+    sqlite3.SQLITE_CORRUPT: "storage_broken",
+    sqlite3.SQLITE_NOTADB: "storage_broken",
+    sqlite3.SQLITE_BUSY: "database_busy",
+    sqlite3.SQLITE_LOCKED: "database_busy",
+    sqlite3.SQLITE_CANTOPEN: "database_unavailable",
 }
 
 
@@ -19,6 +50,18 @@ def problem_of(code: str) -> dict[str, Any]:
     """Say a failure as plain values: ``code``, ``detail``, and whether it may help to try again."""
     detail, retryable = _DETAILS[code]
     return {"code": code, "detail": detail, "retryable": retryable}
+
+
+def code_of(error: Exception) -> str:
+    """Name what went wrong: what the system or the database says it was, or else a mistake of ours."""
+    if ran_out_of_memory(error):
+        return "out_of_memory"
+    if isinstance(error, NoConnection):
+        return "database_busy"
+    if isinstance(error, DBAPIError):
+        # The low byte is the kind, what is above it tells more.
+        return _BY_SQLITE.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF, "engine_error")
+    return _BY_ERRNO.get((isinstance(error, OSError) and error.errno) or 0, "engine_error")
 
 
 def problem_of_input(error: TreestrokeError) -> dict[str, Any]:

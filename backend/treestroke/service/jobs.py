@@ -18,7 +18,7 @@ from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.course import Course
 from treestroke.service.evidence import Evidence, make_of
-from treestroke.service.failures import problem_of, problem_of_input, ran_out_of_memory
+from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
 from treestroke.service.inputs import load_settings
 from treestroke.service.models import project_from
@@ -125,11 +125,8 @@ def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: st
         except SQLAlchemyError as error:
             # Nothing can be written down now; the lease runs out, and the job is taken up again.
             log.error("database_failed", error=str(error))
-        except OSError as error:
-            log.error("storage_failed", error=str(error))
-            _end(database, job, "failed", problem_of("storage_error"))
         except Exception as error:
-            code = "out_of_memory" if ran_out_of_memory(error) else "engine_error"
+            code = code_of(error)
             log.exception("job_broke", code=code)
             _end(database, job, "failed", problem_of(code))
 

@@ -5,8 +5,9 @@ import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
-from sqlalchemy import update
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.image import StoredPhoto
@@ -28,6 +29,14 @@ class KeyReused(Exception):
     """An Idempotency-Key came again with another request."""
 
 
+class Mark(NamedTuple):
+    """By what it is told whether a model looks as it did: its row's ``seq``, its place and its remaining seconds."""
+
+    seq: int
+    queue_position: int | None
+    eta_s: float | None
+
+
 @dataclass(frozen=True)
 class Seen:
     """A model as its readers see it: the row, its files, its place in the queue and its remaining seconds."""
@@ -36,6 +45,11 @@ class Seen:
     files: dict[str, File]
     queue_position: int | None
     eta_s: float | None
+
+    @property
+    def mark(self) -> Mark:
+        """What a viewer is shown changes only together with this."""
+        return Mark(self.row.seq, self.queue_position, self.eta_s)
 
 
 def read_wish(shelf: Shelf, body: bytes) -> Wish:
@@ -112,11 +126,22 @@ def see(database: Database, id: str, deleted: bool = False) -> Seen:
 
 def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[Seen], str | None]:
     """Give a page of models, newest first, and the cursor of the next page: decimal digits."""
-    before = None if cursor is None else int(cursor)
     with database.reading() as session:
-        rows = queries.newest(session, before, limit + 1)
-        page = [_seen(session, row) for row in rows[:limit]]
-    return page, str(rows[limit - 1].number) if len(rows) > limit else None
+        rows, following = queries.page(session, Model, cursor, limit)
+        return _all_seen(session, rows), following
+
+
+def see_changed(database: Database, marks: Mapping[str, Mark | None]) -> dict[str, Seen | None]:
+    """Look at many models at once; give those that no longer bear their mark, None for one that is gone for good."""
+    with database.reading() as session:
+        rows = session.execute(
+            select(Model.id, Model.number, Model.seq, Model.status, Model.progress).where(Model.id.in_(marks))
+        ).all()
+        waits = _waits(session, rows)
+        changed = [row.id for row in rows if Mark(row.seq, *waits[row.number]) != marks[row.id]]
+        found = session.scalars(select(Model).where(Model.id.in_(changed))).all() if changed else ()
+        gone = dict.fromkeys(marks.keys() - {row.id for row in rows})
+        return {**gone, **{seen.row.id: seen for seen in _all_seen(session, found)}}
 
 
 def rename(database: Database, id: str, name: str) -> Seen:
@@ -204,11 +229,26 @@ def _found(session: Session, id: str, deleted: bool = False) -> Model:
 
 
 def _seen(session: Session, row: Model) -> Seen:
-    position, eta_s = queries.queue_position(session, row), None
-    if row.status in ("queued", "running"):
-        usual_s = queries.usual_seconds(session)
-        eta_s = usual_s * (1.0 - row.progress + (position or 1) - 1)
-    return Seen(row, queries.files(session, row.id), position, eta_s)
+    (seen,) = _all_seen(session, [row])
+    return seen
+
+
+def _all_seen(session: Session, rows: Sequence[Model]) -> list[Seen]:
+    """Show rows with as few questions for many as for one."""
+    files, waits = queries.files(session, [row.id for row in rows]), _waits(session, rows)
+    return [Seen(row, files[row.id], *waits[row.number]) for row in rows]
+
+
+def _waits(session: Session, rows: Sequence[Any]) -> dict[int, tuple[int | None, float | None]]:
+    """Say for each row, by number, its place in the queue and the seconds until it is finished."""
+    places = queries.queue_positions(session, [row.number for row in rows if row.status == "queued"])
+    unfinished = [row for row in rows if row.status not in leases.TERMINAL]
+    usual_s = queries.usual_seconds(session) if unfinished else 0.0
+    waits: dict[int, tuple[int | None, float | None]] = {row.number: (None, None) for row in rows}
+    for row in unfinished:
+        place = places.get(row.number)
+        waits[row.number] = place, usual_s * (1.0 - row.progress + (place or 1) - 1)
+    return waits
 
 
 def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str], fingerprint: str) -> Model:
@@ -242,7 +282,7 @@ def _answer_from_twin(session: Session, row: Model) -> None:
         return
     row.status, row.progress, row.finished = "succeeded", 1.0, time.time()
     row.report, row.preview_seq = twin.report, 1
-    for name, file in queries.files(session, twin.id).items():
+    for name, file in queries.files(session, [twin.id])[twin.id].items():
         session.add(File(model=row.id, name=name, blob=file.blob, bytes=file.bytes))
 
 

@@ -1,13 +1,15 @@
 """Questions to the tables that more than one use case asks."""
 
 import secrets
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
+from typing import TypeVar
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from treestroke.store.tables import File, Model, Photo
 
+Listed = TypeVar("Listed", Model, Photo)
 _RECENT = 20
 """Finished models whose time tells how long the next will take."""
 _FIRST_GUESS_S = 5.0
@@ -30,15 +32,19 @@ def model(session: Session, id: str, deleted: bool = False) -> Model | None:
     return found if found is not None and (deleted or found.deleted is None) else None
 
 
-def files(session: Session, model: str) -> dict[str, File]:
-    """Give a model's files by name."""
-    return {file.name: file for file in session.scalars(select(File).where(File.model == model))}
+def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
+    """Give the files of models, by model and name."""
+    found: dict[str, dict[str, File]] = {model: {} for model in models}
+    for file in session.scalars(select(File).where(File.model.in_(found))):
+        found[file.model][file.name] = file
+    return found
 
 
-def newest(session: Session, before: int | None, limit: int) -> Sequence[Model]:
-    """Give models, newest first, from the one before a number on."""
-    wanted = select(Model).where(Model.deleted.is_(None)).order_by(Model.number.desc()).limit(limit)
-    return session.scalars(wanted if before is None else wanted.where(Model.number < before)).all()
+def page(session: Session, table: type[Listed], cursor: str | None, limit: int) -> tuple[Sequence[Listed], str | None]:
+    """Give a page of models or photos, newest first, and the cursor of the next page: decimal digits."""
+    wanted = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
+    rows = session.scalars(wanted if cursor is None else wanted.where(table.number < int(cursor))).all()
+    return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
 
 
 def twin(session: Session, fingerprint: str) -> Model | None:
@@ -48,13 +54,17 @@ def twin(session: Session, fingerprint: str) -> Model | None:
     ).first()
 
 
-def queue_position(session: Session, job: Model) -> int | None:
-    """Count the queued jobs up to this one, 1 for the next; None where it does not queue."""
-    if job.status != "queued":
-        return None
-    return session.scalar(
-        select(func.count()).select_from(Model).where(Model.status == "queued", Model.number <= job.number)
+def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int]:
+    """Count the queued jobs up to each of these that queues, by number: 1 for the next."""
+    if not numbers:
+        return {}
+    places = (
+        select(Model.number, func.row_number().over(order_by=Model.number).label("place"))
+        .where(Model.status == "queued", Model.number <= max(numbers))
+        .subquery()
     )
+    wanted = select(places.c.number, places.c.place).where(places.c.number.in_(numbers))
+    return dict(session.execute(wanted).all())
 
 
 def usual_seconds(session: Session) -> float:

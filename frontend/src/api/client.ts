@@ -5,7 +5,7 @@ import type { components } from './schema'
 type Schemas = components['schemas']
 
 /** Refusals that only ask to come again. */
-const BUSY = ['overloaded', 'database_unavailable']
+const BUSY = ['overloaded', 'database_busy', 'database_unavailable', 'too_many_files']
 
 /** The service refused: `detail` is a sentence for the user, `pointer` the field at fault, such as /branches/0. */
 export class Refused extends Error {

@@ -3,7 +3,7 @@
 import asyncio
 import json
 import re
-import time
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -13,8 +13,18 @@ from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
 from treestroke import schemas
-from treestroke.api.deps import DispatcherOf, JsonBody, ModelId, ShelfOf, check_length, leads_to, media_type
+from treestroke.api.deps import (
+    DispatcherOf,
+    JsonBody,
+    ModelId,
+    ShelfOf,
+    WatcherOf,
+    check_length,
+    leads_to,
+    media_type,
+)
 from treestroke.api.errors import documented
+from treestroke.api.following import Crowded, Watcher
 from treestroke.api.views import model_view
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
@@ -28,7 +38,6 @@ from treestroke.store.tables import Photo
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 MAX_WAIT_SECONDS = 60.0
-_LOOK_SECONDS = 0.1
 _WAIT = re.compile(r"(?:^|[,;\s])wait=(\d{1,4})(?:$|[,;\s])")
 _LOCATION = {
     "Location": {"schema": {"type": "string", "pattern": "^/v1/models/mdl_[0-9a-f]{24}$"}, "description": "the model"},
@@ -142,6 +151,7 @@ async def _text(field: UploadFile | str) -> bytes:
 async def ask_for_model(
     shelf: ShelfOf,
     dispatcher: DispatcherOf,
+    watcher: WatcherOf,
     request: Annotated[_Request, Depends(_request)],
     idempotency_key: Annotated[str | None, Header(min_length=1, max_length=255, pattern=r"^[\x21-\x7e]+$")] = None,
     prefer: Annotated[str | None, Header(description="wait=SECONDS answers when the model is finished")] = None,
@@ -151,7 +161,7 @@ async def ask_for_model(
     dispatcher.wake()
     wanted = _WAIT.search(prefer or "")
     if wanted:
-        seen = await _finished(shelf, seen, min(float(wanted[1]), MAX_WAIT_SECONDS))
+        seen = await _finished(watcher, seen, min(float(wanted[1]), MAX_WAIT_SECONDS))
     headers = {"Location": f"/v1/models/{seen.row.id}"}
     if wanted:
         headers["Preference-Applied"] = f"wait={wanted[1]}"
@@ -159,11 +169,12 @@ async def ask_for_model(
     return JSONResponse(model_view(seen).model_dump(), status, headers)
 
 
-async def _finished(shelf: Shelf, seen: Seen, seconds: float) -> Seen:
-    deadline = time.monotonic() + seconds
-    while seen.row.status not in TERMINAL and time.monotonic() < deadline:
-        await asyncio.sleep(_LOOK_SECONDS)
-        seen = await run_in_threadpool(models.see, shelf.database, seen.row.id)
+async def _finished(watcher: Watcher, seen: Seen, seconds: float) -> Seen:
+    """Wait for a model as long as may be; not at all where too many wait."""
+    with suppress(Crowded, TimeoutError), watcher.follow(seen) as follower:
+        async with asyncio.timeout(seconds):
+            while seen.row.status not in TERMINAL and (news := await follower.news()) is not None:
+                seen = news
     return seen
 
 

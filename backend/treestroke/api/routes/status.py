@@ -5,7 +5,7 @@ from dataclasses import fields
 from fastapi import APIRouter, Response
 
 from treestroke import __version__
-from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf
+from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf, WatcherOf
 from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
@@ -38,7 +38,7 @@ def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Healt
 
 
 @router.get("/v1/limits", responses=documented(403))
-def limits(settings: SettingsOf) -> Limits:
+def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
     """Name everything that is bounded."""
     return Limits(
         photo_bytes=MAX_BYTES,
@@ -67,6 +67,7 @@ def limits(settings: SettingsOf) -> Limits:
             for entry in fields(ModelSettings)
         },
         keep_days=settings.keep_days,
+        followers=watcher.places,
     )
 
 

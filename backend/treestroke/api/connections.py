@@ -1,0 +1,155 @@
+"""Connections: how many may be open, how long they may be silent, and which make room for others."""
+
+import asyncio
+import resource
+from operator import attrgetter
+from typing import Any
+
+import h11
+from fastapi.responses import JSONResponse
+from uvicorn.protocols.http.h11_impl import STATUS_PHRASES, H11Protocol
+
+from treestroke.api.errors import problem
+
+MOST = 1000
+FEWEST = 8
+ACCEPTED = 8
+"""Connections that are taken from the listening socket at once."""
+HEAD_SECONDS = 10.0
+STALLED_SECONDS = 120.0
+"""A client that reads nothing of its answer for so long has gone, or means harm."""
+_OWN_FILES = 30 + 2 * ACCEPTED
+"""Descriptors of the process itself: log, loop, listening socket, fork server, and what is about to be closed."""
+_DATABASE_FILES = 15 * 3
+"""Of SQLAlchemy's pool at its largest: database, WAL and its index."""
+_TRACER_FILES = 4
+_CONNECTION_FILES = 2
+"""Its socket, and a file that is being sent or received."""
+
+
+def most_connections(tracers: int) -> int:
+    """Say how many connections may be open, and raise this process's limit of descriptors as far as that is of use."""
+    own = _OWN_FILES + _DATABASE_FILES + _TRACER_FILES * tracers
+    wanted = own + _CONNECTION_FILES * MOST
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft != resource.RLIM_INFINITY and soft < wanted:
+        soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+    free = wanted if soft == resource.RLIM_INFINITY else soft
+    return max(min((free - own) // _CONNECTION_FILES, MOST), FEWEST)
+
+
+class Connection(H11Protocol):
+    """A connection that ends where a request's head does not come in time, or where nobody reads the answer.
+
+    Where ``most`` are open already, the one that has sent no whole request for the longest time makes room.
+    """
+
+    def __init__(
+        self, *, most: int, head_s: float = HEAD_SECONDS, stalled_s: float = STALLED_SECONDS, **given: Any
+    ) -> None:
+        super().__init__(**given)
+        self._most, self._head_s, self._stalled_s = most, head_s, stalled_s
+        self._since = self.loop.time()
+        self._due: asyncio.TimerHandle | None = None
+        self._stalled: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Begin to wait for a request."""
+        super().connection_made(transport)
+        self._expect_head()
+        if len(self.connections) > self._most:
+            min(self.connections, key=attrgetter("worth")).make_room()  # type: ignore[union-attr]
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """End what waits."""
+        super().connection_lost(exc)
+        for timer in (self._due, self._stalled):
+            if timer is not None:
+                timer.cancel()
+
+    def handle_events(self) -> None:
+        """Take what came, and see whether it is a whole head."""
+        super().handle_events()
+        self._expect_head()
+
+    def on_response_complete(self) -> None:
+        """Wait for the next request, or for the rest of one that was answered before it was whole."""
+        self._since = self.loop.time()
+        super().on_response_complete()
+        self._expect_head()
+
+    def pause_writing(self) -> None:
+        """Give the client some time to read."""
+        super().pause_writing()
+        self._expect_reading()
+
+    def resume_writing(self) -> None:
+        """Go on: the client reads."""
+        super().resume_writing()
+        if self._stalled is not None:
+            self._stalled.cancel()
+
+    def send_400_response(self, msg: str) -> None:  # noqa: ARG002 - uvicorn's words
+        """Refuse what is no HTTP."""
+        self._refuse(problem(400, "bad_request", "this is no valid HTTP request; send it anew"))
+
+    @property
+    def answering(self) -> bool:
+        """Whether a request is under way, or its answer on its way."""
+        return self.cycle is not None and not (
+            self.cycle.response_complete and not self.transport.get_write_buffer_size()
+        )
+
+    @property
+    def worth(self) -> tuple[bool, bool, float]:
+        """What it would cost to close this one: least for the one that has been silent for the longest time."""
+        return self.answering and not self.cycle.more_body, self.answering, self._since
+
+    def make_room(self) -> None:
+        """Close, so that another connection can be open."""
+        self.connections.discard(self)
+        if self._due is not None:
+            busy = "too many connections are open at the moment; try again"
+            self._refuse(problem(503, "overloaded", busy, headers={"Retry-After": "1"}))
+        else:
+            self.transport.abort()
+
+    def _expect_head(self) -> None:
+        """Let the head of a request be due, unless one is being answered or nothing has come of the next one."""
+        resting = self.cycle is not None and self.conn.their_state is h11.IDLE and not self.conn.trailing_data[0]
+        if self.answering or resting:
+            if self._due is not None:
+                self._due.cancel()
+            self._due = None
+        elif self._due is None:
+            self._due = self.loop.call_later(self._head_s, self._give_up)
+
+    def _expect_reading(self) -> None:
+        unread = self.transport.get_write_buffer_size()
+        self._stalled = self.loop.call_later(self._stalled_s, self._look_after_reader, unread)
+
+    def _look_after_reader(self, unread: int) -> None:
+        """End a connection from which nothing was read meanwhile."""
+        if self.transport.get_write_buffer_size() < unread:
+            self._expect_reading()
+        else:
+            self.transport.abort()
+
+    def _give_up(self) -> None:
+        if self.conn.trailing_data[0]:
+            self._refuse(problem(408, "request_too_slow", "the request's head comes too slowly; send it again"))
+        else:
+            self.transport.close()
+
+    def _refuse(self, answer: JSONResponse) -> None:
+        """Answer instead of the application, where no other answer has begun, and close."""
+        if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
+            head = h11.Response(
+                status_code=answer.status_code,
+                headers=[*answer.raw_headers, (b"connection", b"close")],
+                reason=STATUS_PHRASES[answer.status_code],
+            )
+            for event in (head, h11.Data(data=bytes(answer.body)), h11.EndOfMessage()):
+                self.transport.write(self.conn.send(event) or b"")
+        self.transport.close()

@@ -1,0 +1,98 @@
+import asyncio
+from collections.abc import Awaitable, Callable
+from contextlib import ExitStack
+
+import pytest
+from tests.rows import add_model
+
+from treestroke.api.following import Crowded, Follower, Watcher
+from treestroke.service import models
+from treestroke.service.models import Seen
+from treestroke.store.database import Database
+
+SECONDS = 10.0
+"""What news may take on a busy machine."""
+
+
+def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable[None]]) -> None:
+    """Run a story in which models are followed."""
+
+    async def run() -> None:
+        await asyncio.wait_for(story(Watcher(database, places)), 3 * SECONDS)
+
+    asyncio.run(run())
+
+
+async def news(follower: Follower) -> Seen | None:
+    return await asyncio.wait_for(follower.news(), SECONDS)
+
+
+def added(database: Database) -> Seen:
+    return models.see(database, add_model(database).id)
+
+
+def test_a_change_wakes_those_who_follow_that_model_and_nobody_else(database: Database) -> None:
+    first, second = added(database), added(database)
+
+    async def story(watcher: Watcher) -> None:
+        with ExitStack() as places:
+            one, same, other = (places.enter_context(watcher.follow(seen)) for seen in (first, first, second))
+            models.rename(database, first.row.id, "Oak")
+            for told in [await news(one), await news(same)]:
+                assert told is not None
+                assert told.row.name == "Oak"
+            with pytest.raises(TimeoutError):
+                await asyncio.wait_for(other.news(), 0.6)
+
+    follow(database, 3, story)
+
+
+def test_who_queues_is_told_a_new_place_and_who_comes_late_what_changed_since_it_looked(database: Database) -> None:
+    first, second = added(database), added(database)
+    assert second.queue_position == 2
+
+    async def story(watcher: Watcher) -> None:
+        with watcher.follow(second) as early:
+            models.cancel(database, first.row.id)
+            told = await news(early)
+            with watcher.follow(second) as late:  # it looked before the other left the queue
+                assert [one and one.queue_position for one in (told, await news(late))] == [1, 1]
+
+    follow(database, 2, story)
+
+
+def test_a_place_is_free_again_when_its_request_is_over(database: Database) -> None:
+    seen = added(database)
+
+    async def story(watcher: Watcher) -> None:
+        for _ in range(2):
+            with watcher.follow(seen), pytest.raises(Crowded), watcher.follow(seen):
+                pass
+
+    follow(database, 1, story)
+
+
+def test_whoever_follows_is_told_the_end_when_the_service_stops(database: Database) -> None:
+    seen = added(database)
+
+    async def story(watcher: Watcher) -> None:
+        with watcher.follow(seen) as before:
+            await asyncio.sleep(0)
+            watcher.stop()
+            assert await news(before) is None
+        with watcher.follow(seen) as after:
+            assert await news(after) is None
+
+    follow(database, 1, story)
+
+
+def test_whoever_follows_a_model_that_is_removed_is_told_the_end(database: Database) -> None:
+    seen = added(database)
+
+    async def story(watcher: Watcher) -> None:
+        with watcher.follow(seen) as follower:
+            with database.writing() as session:
+                session.delete(session.merge(seen.row))
+            assert await news(follower) is None
+
+    follow(database, 1, story)
