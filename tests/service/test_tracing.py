@@ -15,8 +15,8 @@ FRONT, SIDE = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SID
 
 @pytest.fixture
 def photo(tmp_path: Path) -> Path:
-    blob, width, height = tracing.keep_photo(tmp_path, drawn.encoded())
-    assert (width, height) == (drawn.WIDTH, drawn.HEIGHT)
+    blob, width, height, mended = tracing.keep_photo(tmp_path, drawn.encoded())
+    assert (width, height, mended) == (drawn.WIDTH, drawn.HEIGHT, [])
     return Blobs(tmp_path).path(blob)
 
 

@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 _UNIX, _READABLE = 3, 0o644
-_COMPRESSED_ALREADY = (".jpg", ".png", ".webp")
+_COMPRESSED_ALREADY = (".jpg", ".png", ".webp", ".heic", ".avif")
 
 
 def zipped(members: Mapping[str, bytes]) -> bytes:

@@ -12,6 +12,7 @@ from typing import Any
 from treestroke.codec.archive import zipped
 from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, StoredPhoto
 from treestroke.codec.json_text import read_json
+from treestroke.codec.photo_kinds import ending_of
 from treestroke.core.errors import SettingsError, TreestrokeError
 from treestroke.core.stroke_rules import Place
 
@@ -20,7 +21,6 @@ MAX_TEXT_BYTES = 64_000_000
 
 VIEWS = ("front", "side")
 _PNG = b"\x89PNG"
-_ENDINGS = {b"\xff\xd8": "jpg", b"RIFF": "webp"}
 _PICTURES = ("leaf", "fruit")
 _NAMES = {
     **{f"{part}.json": part for part in ("strokes", "settings", *VIEWS)},
@@ -118,9 +118,8 @@ def read_project(data: bytes, name: str) -> Project:
 def write_project(project: Project) -> bytes:
     """Write a project file that `read_project` reads back; equal projects give equal bytes."""
     photo, front, side = project.photo or b"", project.front or b"", project.side or b""
-    ending = next((ending for start, ending in _ENDINGS.items() if photo.startswith(start)), "png")
     members = {
-        f"photo.{ending}": project.photo,
+        f"photo.{ending_of(photo)}": project.photo,
         "strokes.json": project.strokes,
         f"front.{sketch_ending(front)}": project.front,
         f"side.{sketch_ending(side)}": project.side,

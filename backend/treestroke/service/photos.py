@@ -55,10 +55,11 @@ def take_in(shelf: Shelf, content: bytes) -> Photo:
     """
     sha256 = hashlib.sha256(content).hexdigest()
     try:
-        blob, width, height = shelf.tracers(sha256, tracing.keep_photo, shelf.blobs.folder.parent, content)
+        blob, width, height, mended = shelf.tracers(sha256, tracing.keep_photo, shelf.blobs.folder.parent, content)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
-    return Photo(id=new_id("pho"), sha256=sha256, width=width, height=height, blob=blob, created=time.time())
+    seen = {"width": width, "height": height, "blob": blob, "warnings": mended}
+    return Photo(id=new_id("pho"), sha256=sha256, created=time.time(), **seen)
 
 
 def get_photo(shelf: Shelf, id: str) -> Photo:
@@ -100,5 +101,5 @@ def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
     Overloaded, Crashed
         The tracing processes have too much to do, or one died over this.
     """
-    blob = get_photo(shelf, id).blob
-    return shelf.tracers(blob, tracing.trace_answer, shelf.blobs.path(blob), body)
+    row = get_photo(shelf, id)
+    return shelf.tracers(row.blob, tracing.trace_answer, shelf.blobs.path(row.blob), body, row.warnings)

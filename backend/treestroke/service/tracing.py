@@ -5,8 +5,8 @@ Each process remembers the photos that it saw last, with their foliage, so that 
 
 import json
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
@@ -18,7 +18,7 @@ from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import see_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
-from treestroke.core.strokes import Sketch
+from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.service.bodies import check_keys, inside, read_object, take_rev_and_grow
 from treestroke.service.sketch import trace_sketches
 from treestroke.service.trace import Trace, trace
@@ -41,20 +41,24 @@ class Known:
 _known: OrderedDict[Path, Known] = OrderedDict()
 
 
-def keep_photo(folder: Path, content: bytes) -> tuple[str, int, int]:
-    """Decode an uploaded photo and store its upright pixels; give the blob, the width and the height.
+def keep_photo(folder: Path, content: bytes) -> tuple[str, int, int, list[dict[str, str]]]:
+    """Decode an uploaded photo and store its upright pixels; give the blob, width, height and what was mended.
 
     Raises
     ------
     PhotoError
         As `decode_photo`.
     """
-    picture = decode_photo(content, "photo")
-    return Blobs(folder).put(encode_stored(picture)), picture.shape[1], picture.shape[0]
+    mended: list[StrokeWarning] = []
+    picture = decode_photo(content, "photo", warn=mended.append)
+    blob = Blobs(folder).put(encode_stored(picture))
+    return blob, picture.shape[1], picture.shape[0], [asdict(warning) for warning in mended]
 
 
-def trace_answer(photo: Path, body: bytes) -> bytes:
+def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] = ()) -> bytes:
     """Trace a stored photo by a request's body; give the answer as JSON.
+
+    What was ``mended`` in the photo comes before the other warnings.
 
     Raises
     ------
@@ -66,7 +70,8 @@ def trace_answer(photo: Path, body: bytes) -> bytes:
     side = _within(("side",), sketch_from, request.pop("side")) if "side" in request else None
     known = _recall(photo)
     known.last = trace(known.picture, strokes_from(request), known.last, grow, side)
-    return _answer(rev, known.last.answer())
+    answer = known.last.answer()
+    return _answer(rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 
 
 def sketch_answer(body: bytes) -> bytes:

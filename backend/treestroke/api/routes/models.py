@@ -16,6 +16,7 @@ from treestroke import schemas
 from treestroke.api.deps import DispatcherOf, JsonBody, ModelId, ShelfOf, check_length, leads_to, media_type
 from treestroke.api.errors import documented
 from treestroke.api.views import model_view
+from treestroke.codec.photo_kinds import TAKEN
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import models, photos
@@ -54,7 +55,7 @@ _ASK: dict[str, Any] = {
                 "schema": {
                     "type": "object",
                     "properties": {
-                        "photo": {**_BINARY, "description": "JPEG, PNG or WebP"},
+                        "photo": {**_BINARY, "description": TAKEN},
                         "strokes": {**_TEXT, "description": "Strokes, as JSON; with a photo"},
                         "front": {**_SKETCH, "description": "Sketch of the front, in place of strokes: JSON or PNG"},
                         "side": {**_SKETCH, "description": "Sketch of the left side: JSON or PNG"},
