@@ -1,4 +1,6 @@
 import io
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -333,6 +335,16 @@ def test_pillow_is_as_its_user_left_it() -> None:
     cut(saved(elm(), "JPEG"), 2)
     decode_photo(saved(Image.fromarray(UPRIGHT), "HEIF"), "photo")
     assert (dict(Image.OPEN), ImageFile.LOAD_TRUNCATED_IMAGES) == before
+
+
+def test_who_needs_no_heic_does_not_wait_for_its_decoder() -> None:
+    code = f"""
+import sys
+from treestroke.codec.image import decode_photo
+decode_photo(open({str(ELM)!r}, "rb").read(), "photo")
+sys.exit("pillow_heif" in sys.modules)
+"""
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 @pytest.mark.parametrize("kind", ["HEIF", "AVIF", "TIFF"])

@@ -6,8 +6,6 @@ import struct
 import warnings
 from collections.abc import Mapping
 
-from PIL.TiffImagePlugin import ImageFileDirectory_v2
-
 TAKEN = "JPEG, PNG, WebP, HEIC, AVIF or TIFF"
 MEDIA_TYPES = ("image/jpeg", "image/png", "image/webp", "image/heic", "image/heif", "image/avif", "image/tiff")
 NAMES: Mapping[str, str] = {
@@ -100,6 +98,8 @@ def _is_raw(data: bytes) -> bool:
     """Tell whether a TIFF is a camera's raw file, whose first page is a sensor's pixels or a small preview."""
     if data[8:10] == b"CR":
         return True
+    from PIL.TiffImagePlugin import ImageFileDirectory_v2  # it takes a while to import, and few need it
+
     try:
         tags = ImageFileDirectory_v2(data[:16] if data[2:3] == b"+" or data[3:4] == b"+" else data[:8])
         file = io.BytesIO(data)

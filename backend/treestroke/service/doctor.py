@@ -27,7 +27,7 @@ _BROKER_SECONDS = 2
 _WATCH_SECONDS = 3.0
 """A worker that lives beats within this."""
 _SERVE = "`treestroke serve`"
-_PARTS = ("cv2", "maxflow", "PIL", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
+_PARTS = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
 
 
 @dataclass(frozen=True)
