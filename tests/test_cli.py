@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 from tests.api import drawn, sketched
+from tests.api.corpora import saved
 
 import treestroke
 from treestroke.cli import main
@@ -147,7 +148,7 @@ def test_a_photo_that_cannot_be_read_is_refused(run, maple_photo: Path, photo: s
         (Image.new("L", (16_400, 64)), "png"),
         (Image.new("1", (8_000, 6_300)), "png"),
         (Image.new("RGB", (200, 200)), "gif"),
-        (Image.new("RGB", (200, 200)), "tiff"),
+        (Image.new("RGB", (16_400, 200)), "tiff"),
     ],
 )
 def test_a_photo_out_of_bounds_is_refused(run, tmp_path: Path, image: Image.Image, ending: str) -> None:
@@ -160,6 +161,53 @@ def test_a_photo_cut_short_is_refused(run, tmp_path: Path, maple_photo: Path) ->
     short.write_bytes(maple_photo.read_bytes()[:50_000])
     code, lines, left = run(photo=short)
     assert (code, len(lines), left) == (2, 1, [])
+
+
+def test_a_photo_that_lacks_its_last_bytes_gives_its_tree_and_a_line_that_says_so(
+    run, tmp_path: Path, maple_photo: Path
+) -> None:
+    short, report = (tmp_path.parent / f"{tmp_path.name}.{ending}" for ending in ("jpg", "json"))
+    short.write_bytes(maple_photo.read_bytes()[:-2])
+    code, (line,), left = run("--report", str(report), photo=short)
+    assert (code, left) == (0, ["tree.glb"])
+    tree = (tmp_path / "tree.glb").read_bytes()
+    (warning,) = json.loads(report.read_text())["warnings"]
+    assert (warning["code"], warning["stroke"]) == ("photo_cut_short", "photo")
+    assert line == f"treestroke: {warning['detail']}"
+    assert run(photo=maple_photo)[0] == 0
+    assert (tmp_path / "tree.glb").read_bytes() == tree
+
+
+def test_trace_tells_of_a_photo_that_lacks_its_last_bytes(
+    tmp_path: Path, maple_photo: Path, maple_strokes: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    short = tmp_path / "short.jpg"
+    short.write_bytes(maple_photo.read_bytes()[:-2])
+    assert main(["trace", str(short), "--strokes", str(maple_strokes)]) == 0
+    told = capsys.readouterr()
+    assert [one["code"] for one in json.loads(told.out)["warnings"]] == ["photo_cut_short"]
+    assert "cut short" in told.err
+
+
+@pytest.mark.parametrize("ending", ["heic", "avif", "tiff"])
+def test_a_photo_of_a_phone_or_a_scanner_becomes_a_tree(run, tmp_path: Path, maple_photo: Path, ending: str) -> None:
+    photo = tmp_path.parent / f"{tmp_path.name}.{ending}"
+    photo.write_bytes(saved(Image.open(maple_photo), "HEIF" if ending == "heic" else ending.upper()))
+    code, lines, left = run(photo=photo)
+    assert (code, lines, left) == (0, [], ["tree.glb"])
+
+
+def test_a_damaged_tiff_is_one_line_whatever_its_library_prints(tmp_path: Path, maple_strokes: Path) -> None:
+    photo = tmp_path / "tree.tif"
+    image = Image.effect_noise((200, 200), 90)
+    damaged = bytearray(saved(image, "TIFF", compression="tiff_lzw"))
+    damaged[3000:9000] = b"\x55" * 6000
+    photo.write_bytes(damaged)
+    command = [sys.executable, "-m", "treestroke", "trace", str(photo), "--strokes", str(maple_strokes)]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    (line,) = ended.stderr.splitlines()
+    assert line.startswith(f"treestroke: {photo}: the photo is damaged or cut short")
 
 
 LINE = [[340, 580], [345, 300]]

@@ -6,7 +6,8 @@ import os
 import sys
 import traceback
 import warnings
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import fields, replace
 from pathlib import Path
 from types import TracebackType
@@ -22,8 +23,8 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_ASSUMED = "side_assumed"
-"""Code of the one warning that is said aloud: nobody drew what it speaks of."""
+_ALOUD = ("side_assumed", "photo_cut_short")
+"""Codes of the warnings that are said aloud: nobody drew what they speak of."""
 
 
 class UsageError(TreestrokeError):
@@ -76,7 +77,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         with warnings.catch_warnings():
             if not options.debug:
                 warnings.simplefilter("ignore")
-            options.command(options)
+            with _own_words() if options.reads and not options.debug else nullcontext():
+                options.command(options)
     except TreestrokeError as error:
         return _fail(BAD_INPUT, str(error), "--debug" in given)
     except MachineFault as error:
@@ -95,7 +97,9 @@ def _parser() -> Parser:
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
     model = commands.add_parser("model", help="make a GLB of a photo", allow_abbrev=False)
-    model.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP; or a NAME.treestroke project")
+    model.add_argument(
+        "photo", metavar="PHOTO", help="JPEG, PNG, WebP, HEIC, AVIF or TIFF; or a NAME.treestroke project"
+    )
     model.add_argument("--strokes", metavar="STROKES.json", help="needed with a photo")
     model.add_argument("--side", metavar="SIDE", help="sketch of the tree's left side: stroke JSON or PNG")
     sketch = commands.add_parser("sketch", help="make a GLB of sketches", allow_abbrev=False)
@@ -106,7 +110,7 @@ def _parser() -> Parser:
         maker.set_defaults(first=first)
         _add_making(maker)
     trace = commands.add_parser("trace", help="find foliage and branches", allow_abbrev=False)
-    trace.add_argument("photo", metavar="PHOTO", help="JPEG, PNG or WebP")
+    trace.add_argument("photo", metavar="PHOTO", help="JPEG, PNG, WebP, HEIC, AVIF or TIFF")
     trace.add_argument("--strokes", metavar="STROKES.json", required=True)
     trace.add_argument("--out", metavar="TRACE.json", type=Path, help="standard output where absent")
     trace.add_argument(
@@ -128,7 +132,7 @@ def _parser() -> Parser:
         (doctor, _doctor),
     ):
         command.add_argument("--debug", action="store_true", help="show the trace of an error")
-        command.set_defaults(command=action)
+        command.set_defaults(command=action, reads=action in (_make, _trace))
     return parser
 
 
@@ -175,8 +179,12 @@ def _make(options: argparse.Namespace) -> None:
     further = {options.out.with_name(name): content for name, content in list(result.files.items())[1:]}
     _check_further(options, further)
     write_whole({path: makers[name]() for name, path in outputs.items()} | further)
-    for warning in result.report["warnings"]:
-        if warning["code"] == _ASSUMED:
+    _say_aloud(result.report["warnings"])
+
+
+def _say_aloud(warnings: Sequence[Mapping[str, str]]) -> None:
+    for warning in warnings:
+        if warning["code"] in _ALOUD:
             print(f"treestroke: {warning['detail']}", file=sys.stderr)
 
 
@@ -201,7 +209,8 @@ def _trace(options: argparse.Namespace) -> None:
     from treestroke.store.files import write_whole
 
     result = trace(options.photo, options.strokes)
-    answer = json.dumps(result.answer())
+    found = result.answer()
+    answer = json.dumps(found)
     makers: dict[str, Callable[[], bytes]] = {
         "out": lambda: answer.encode() + b"\n",
         "overlay": lambda: encode_png(result.overlay()),
@@ -209,6 +218,7 @@ def _trace(options: argparse.Namespace) -> None:
     write_whole({path: makers[name]() for name, path in outputs.items()})
     if options.out is None:
         print(answer)
+    _say_aloud(found["warnings"])
 
 
 def _serve(options: argparse.Namespace) -> None:
@@ -317,6 +327,22 @@ def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Pat
             raise UsageError(f"--{name} {path}: another file of this command has this name; choose one of its own")
         taken.add(place)
     return outputs
+
+
+@contextmanager
+def _own_words() -> Iterator[None]:
+    """Keep what libraries in C print of a damaged picture from standard error: one line of ours says it."""
+    shown, kept = sys.stderr, os.dup(2)
+    try:
+        with open(os.devnull, "wb") as nowhere, os.fdopen(os.dup(kept), "w", 1, errors="backslashreplace") as ours:
+            if shown is sys.__stderr__:
+                sys.stderr = ours
+            os.dup2(nowhere.fileno(), 2)
+            yield
+    finally:
+        sys.stderr = shown
+        os.dup2(kept, 2)
+        os.close(kept)
 
 
 def _fault(error: OSError | MemoryError) -> str:

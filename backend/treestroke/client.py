@@ -68,7 +68,7 @@ class Client:
         self._http.close()
 
     def upload(self, photo: str | os.PathLike[str] | bytes) -> Photo:
-        """Upload a photo: a path, or encoded bytes (JPEG, PNG or WebP).
+        """Upload a photo: a path, or encoded bytes (JPEG, PNG, WebP, HEIC, AVIF or TIFF).
 
         Raises
         ------

@@ -155,6 +155,7 @@ class Photo(Wire):
                 "sha256": "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
                 "created": "2026-05-04T09:30:00.000Z",
                 "image": "/v1/photos/pho_5f0c8e1d2b3a49c6d7e8f901/image",
+                "warnings": [],
             }
         }
     )
@@ -165,6 +166,7 @@ class Photo(Wire):
     sha256: str = Field(description="of the uploaded bytes")
     created: str
     image: str = Field(description="the stored picture: PNG, upright, sRGB, without metadata")
+    warnings: list[StrokeWarning] = Field(default_factory=list, description="what was mended in reading it")
 
 
 class ModelSettings(Wire):

@@ -65,10 +65,10 @@ class Strokes(Wire):
 
 
 class StrokeWarning(Wire):
-    """Something in the strokes that was mended."""
+    """Something in the strokes, or in the photo, that was mended."""
 
     code: str
-    stroke: str
+    stroke: str = Field(description="pointer to the stroke, such as branches/1; photo where it is the photo itself")
     detail: str
 
 

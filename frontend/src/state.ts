@@ -24,6 +24,8 @@ export interface Ground {
   readonly file: Blob | null
   /** Where the upright picture can be shown from. */
   readonly url: string | null
+  /** What was mended in reading the picture, in words for the user. */
+  readonly mended?: string
   /** The picture is out of sight for now. */
   readonly hidden?: true
 }

@@ -19,7 +19,8 @@ export const text = {
     },
     choose: 'Choose a photo',
     otherWays: 'or drop one anywhere, or paste it',
-    takes: 'JPEG, PNG or WebP of one tree, or a saved .treestroke project. It goes to this treestroke only.',
+    takes:
+      'JPEG, PNG, WebP, HEIC, AVIF or TIFF of one tree, or a saved .treestroke project. It goes to this treestroke only.',
     illustration: 'A line around a tree’s leaves and a line up its trunk; between them its branches grow.',
     examples: 'Or begin with one of these',
     examplesHint: 'Already drawn: one click grows the tree.',
@@ -31,7 +32,7 @@ export const text = {
     undo: 'Undo',
     grown: 'Trees you have grown',
     drop: 'Let go to open it',
-    notThis: 'Drop a photo (JPEG, PNG or WebP) or a .treestroke project.',
+    notThis: 'Drop a photo (JPEG, PNG, WebP, HEIC, AVIF or TIFF) or a .treestroke project.',
     pasted: 'Pasted photo',
     reading: 'Reading the picture …',
   },

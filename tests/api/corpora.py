@@ -7,12 +7,13 @@ import zlib
 from collections.abc import Iterable
 
 import numpy as np
+import pillow_heif
 from PIL import Image, ImageCms
 from tests.api import drawn
 
 TAIL = b"<html><script>alert(1)</script></html>"
 PRIVATE = (b"GPS", b"Canon", b"secret", b"http", b"Exif", b"ICC", b"tEXt", b"eXIf", TAIL)
-_ORIENTATION, _GPS = 0x0112, 0x8825
+_ORIENTATION, _GPS, _XMP = 0x0112, 0x8825, 700
 _TURNS = {
     1: None,
     2: Image.Transpose.FLIP_LEFT_RIGHT,
@@ -34,7 +35,13 @@ def picture() -> Image.Image:
 def saved(image: Image.Image, kind: str, **options: object) -> bytes:
     """Encode a picture."""
     out = io.BytesIO()
-    image.save(out, kind, **options)
+    if kind != "HEIF":
+        image.save(out, kind, **options)
+        return out.getvalue()
+    exif = options.get("exif")
+    if isinstance(exif, Image.Exif):
+        options["exif"] = exif.tobytes()
+    pillow_heif.from_pillow(image).save(out, chroma=444, **options)
     return out.getvalue()
 
 
@@ -47,15 +54,19 @@ def turned(orientation: int) -> bytes:
     return saved(image, "PNG", exif=exif)
 
 
-def talkative() -> bytes:
-    """Save a JPEG that tells where, when and with what it was taken, and has a tail of another kind."""
+def talkative(kind: str = "JPEG") -> bytes:
+    """Save a photo that tells where, when and with what it was taken, and has a tail of another kind."""
     exif = Image.Exif()
     exif[0x010F], exif[_ORIENTATION] = "Canon", 1
     exif[_GPS] = {1: "N", 2: (52.0, 31.0, 12.0), 3: "E", 4: (13.0, 24.0, 36.0)}
     profile = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
-    note = b"a secret comment"
-    content = saved(picture(), "JPEG", quality=95, exif=exif, icc_profile=profile, comment=note, xmp=b"<x>secret</x>")
-    return content + polyglot_tail()
+    notes = {"comment": b"a secret comment"} if kind == "JPEG" else {}
+    xmp = {} if kind == "TIFF" else {"xmp": b"<x>secret</x>"}
+    if kind == "TIFF":
+        exif[_XMP] = b"<x>secret</x>"
+    return (
+        saved(picture(), kind, quality=95, exif=exif.tobytes(), icc_profile=profile, **notes, **xmp) + polyglot_tail()
+    )
 
 
 def polyglot_tail() -> bytes:
@@ -115,7 +126,7 @@ def foreign() -> dict[str, bytes]:
         "eps": saved(image, "EPS"),
         "svg": svg,
         "pdf": saved(image, "PDF"),
-        "tiff": saved(image, "TIFF"),
+        "raw": saved(image, "TIFF", tiffinfo={50706: b"\1\4\0\0"}),
         "psd": b"8BPS\0\x01" + bytes(6) + struct.pack(">HIIHH", 3, 240, 200, 8, 3) + bytes(200),
         "jp2": saved(image, "JPEG2000"),
         "gif": saved(image, "GIF"),
@@ -136,7 +147,7 @@ def animated() -> dict[str, bytes]:
 
 
 def phones() -> dict[str, bytes]:
-    """Give the beginnings of what phones save by default."""
+    """Give the beginnings of what phones save by default, without the rest."""
     brands = {"HEIC": b"heic", "HEIC image": b"mif1", "AVIF": b"avif"}
     return {
         name: struct.pack(">I", 24) + b"ftyp" + brand + bytes(4) + brand + b"miaf" + bytes(500)

@@ -31,6 +31,11 @@ for kind, content in (
     ("image/jpeg", PHOTO),
     ("image/png", saved(PICTURE, "PNG")),
     ("image/webp", saved(PICTURE, "WEBP")),
+    ("image/heic", saved(PICTURE, "HEIF")),
+    ("image/heif", saved(PICTURE, "HEIF")),
+    ("image/avif", saved(PICTURE, "AVIF")),
+    ("image/tiff", saved(PICTURE, "TIFF")),
+    ("image/*", PHOTO),
     ("application/octet-stream", PHOTO),
 ):
     schemathesis.openapi.media_type(kind, strategies.just(content))

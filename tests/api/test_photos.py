@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 from tests.api import drawn
 from tests.api.conftest import Service
+from tests.api.corpora import picture, saved
 
 from treestroke.codec.image import decode_photo
 
@@ -26,7 +27,13 @@ def test_a_photo_in_a_form_is_stored(client: httpx.Client) -> None:
     assert client.get(answer.headers["location"]).json() == photo
 
 
-@pytest.mark.parametrize("kind", ["image/jpeg", "image/png", "image/webp", "application/octet-stream", None])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        *("image/jpeg", "image/png", "image/webp", "image/heic", "image/avif", "image/tiff", "image/x-of-tomorrow"),
+        *("image/jpg", "image/pjpeg", "Image/JPG; name=tree.jpg", "application/octet-stream", None),
+    ],
+)
 def test_a_photo_may_be_the_whole_body_whatever_picture_type_it_is_sent_as(
     client: httpx.Client, kind: str | None
 ) -> None:
@@ -34,9 +41,9 @@ def test_a_photo_may_be_the_whole_body_whatever_picture_type_it_is_sent_as(
     assert answer.status_code == 201
 
 
-@pytest.mark.parametrize("kind", ["JPEG", "PNG", "WEBP"])
+@pytest.mark.parametrize("kind", ["JPEG", "PNG", "WEBP", "HEIF", "AVIF", "TIFF"])
 def test_the_stored_picture_is_the_decoded_upload_pixel_by_pixel(service: Service, kind: str) -> None:
-    content = drawn.encoded(kind)
+    content = saved(picture(), kind)
     stored = image(service.client, service.add_photo(content))
     assert np.array_equal(stored, decode_photo(content, "photo"))
 
@@ -68,8 +75,43 @@ def test_a_form_without_the_photo_says_which_field_it_needs(client: httpx.Client
 
 
 def test_a_body_of_another_type_is_refused(client: httpx.Client) -> None:
-    answer = client.post("/v1/photos", json={"file": 1})
-    assert (answer.status_code, answer.json()["code"]) == (415, "unsupported_media_type")
+    for kind in ("application/json", "application/pdf", "text/html"):
+        answer = client.post("/v1/photos", content=drawn.encoded(), headers={"Content-Type": kind})
+        assert (answer.status_code, answer.json()["code"]) == (415, "unsupported_media_type")
+        assert "image/jpeg" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "media_type", "what"),
+    [("GIF", "image/gif", "a GIF picture"), ("BMP", "image/bmp", "a BMP picture"), ("JPEG2000", "image/jp2", "2000")],
+)
+def test_a_picture_of_another_kind_is_refused_by_name_however_it_is_sent(
+    client: httpx.Client, kind: str, media_type: str, what: str
+) -> None:
+    content = saved(picture(), kind)
+    raw = client.post("/v1/photos", content=content, headers={"Content-Type": media_type})
+    form = client.post("/v1/photos", files={"file": ("tree", content, media_type)})
+    wish = client.post("/v1/models", **drawn.form(content))
+    assert (raw.status_code, raw.json()["code"]) == (422, "format_not_allowed")
+    assert what in raw.json()["detail"]
+    assert raw.json() == form.json() == wish.json()
+
+
+def test_what_was_mended_in_a_photo_is_told_wherever_it_is_used(client: httpx.Client) -> None:
+    whole = drawn.encoded("JPEG", seed=31)
+    photo = client.post("/v1/photos", content=whole[:-2]).json()
+    warnings = photo["warnings"]
+    assert [(one["code"], one["stroke"]) for one in warnings] == [("photo_cut_short", "photo")]
+    assert client.get(f"/v1/photos/{photo['id']}").json()["warnings"] == warnings
+    assert client.post(f"/v1/photos/{photo['id']}/trace", json=drawn.STROKES).json()["warnings"] == warnings
+    wait = {"Prefer": "wait=60"}
+    made = client.post("/v1/models", json=drawn.wish(photo["id"]), headers=wait).json()
+    brought = client.post("/v1/models", **drawn.form(whole[:-2]), headers=wait).json()
+    of_whole = client.post("/v1/models", **drawn.form(whole), headers=wait).json()
+    assert made["report"]["warnings"] == warnings
+    assert brought["report"]["warnings"] == warnings
+    assert of_whole["report"]["warnings"] == []  # though its pixels are the same
+    assert client.post("/v1/photos", content=whole).json()["warnings"] == []
 
 
 @pytest.mark.parametrize("name", ["../../x", "a\r\nX-Evil: 1", "\u202egpj.exe", "🌳", "a\0b", "n" * 4096, ".."])

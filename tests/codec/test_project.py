@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from tests.api import sketched
+from tests.api.corpora import saved
 
 import treestroke
 from treestroke.cli import main
@@ -185,11 +186,12 @@ def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
-@pytest.mark.parametrize(("kind", "ending"), [("JPEG", "jpg"), ("PNG", "png"), ("WEBP", "webp")])
+@pytest.mark.parametrize(
+    ("kind", "ending"), [("JPEG", "jpg"), ("PNG", "png"), ("WEBP", "webp"), ("HEIF", "heic"), ("AVIF", "avif")]
+)
 def test_a_photo_is_named_by_its_content_and_not_compressed_again(kind: str, ending: str) -> None:
-    out = io.BytesIO()
-    Image.new("RGB", (64, 64)).save(out, kind)
-    with zipfile.ZipFile(io.BytesIO(written(Project(out.getvalue(), b"S", {})))) as archive:
+    content = saved(Image.new("RGB", (64, 64)), kind)
+    with zipfile.ZipFile(io.BytesIO(written(Project(content, b"S", {})))) as archive:
         photo = archive.infolist()[0]
     assert (photo.filename, photo.compress_type) == (f"photo.{ending}", zipfile.ZIP_STORED)
 

@@ -16,10 +16,10 @@ FRONT, SIDE = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SID
 
 @pytest.fixture
 def photo(tmp_path: Path) -> Path:
-    blob, size, width, height = tracing.keep_photo(tmp_path, drawn.encoded(), MB, MB)
-    assert (width, height) == (drawn.WIDTH, drawn.HEIGHT)
-    assert Blobs(tmp_path).path(blob).stat().st_size == size
-    return Blobs(tmp_path).path(blob)
+    kept = tracing.keep_photo(tmp_path, drawn.encoded(), MB, MB)
+    assert (kept["width"], kept["height"], kept["warnings"]) == (drawn.WIDTH, drawn.HEIGHT, [])
+    assert Blobs(tmp_path).path(kept["blob"]).stat().st_size == kept["bytes"]
+    return Blobs(tmp_path).path(kept["blob"])
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_one_more_stroke_is_answered_from_what_is_known(photo: Path, monkeypatch
 def test_the_photos_that_were_used_longest_ago_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tracing, "_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT)
     monkeypatch.setattr(tracing, "_known", type(tracing._known)())
-    blobs = [tracing.keep_photo(tmp_path, drawn.encoded(seed=seed), MB, MB)[0] for seed in range(3)]
+    blobs = [tracing.keep_photo(tmp_path, drawn.encoded(seed=seed), MB, MB)["blob"] for seed in range(3)]
     photos = [Blobs(tmp_path).path(blob) for blob in blobs]
     for at in (0, 1, 0, 2):
         tracing.check_wish(photos[at], STROKES)

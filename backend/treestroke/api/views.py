@@ -6,6 +6,7 @@ from typing import Any
 from treestroke import schemas
 from treestroke.service.jobs import GROWTH
 from treestroke.service.models import Seen
+from treestroke.shapes import StrokeWarning
 from treestroke.store.tables import Photo
 
 
@@ -18,6 +19,7 @@ def photo_view(row: Photo) -> schemas.Photo:
         sha256=row.sha256,
         created=_time(row.created),
         image=f"/v1/photos/{row.id}/image",
+        warnings=[StrokeWarning(**warning) for warning in row.warnings],
     )
 
 

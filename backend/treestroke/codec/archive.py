@@ -10,7 +10,7 @@ from typing import BinaryIO
 
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 _UNIX, _READABLE = 3, 0o644
-_COMPRESSED_ALREADY = (".jpg", ".png", ".webp")
+_COMPRESSED_ALREADY = (".jpg", ".png", ".webp", ".heic", ".avif")
 _PIECE = 1_000_000
 """Bytes that are copied at a time."""
 

@@ -1,21 +1,25 @@
 """Photos: bytes in, upright sRGB pixels out."""
 
 import io
-import re
 import struct
 import warnings
 import zlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
+from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, lost
+from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.progress import Report, silent
+from treestroke.core.strokes import StrokeWarning
 
 Picture = NDArray[np.uint8]
+Warn = Callable[[StrokeWarning], object]
+"""Called with each thing about a photo that was mended in reading it."""
 
 MAX_BYTES = 25_000_000
 """Of an upload."""
@@ -28,12 +32,15 @@ PHOTO_HEAD = 24
 
 MAX_LEAF_BYTES = 4_000_000
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
-_FORMATS = ("JPEG", "PNG", "WEBP")
-_BEGINNING = re.compile(rb"\xff\xd8\xff|\x89PNG\r\n\x1a\n|RIFF....WEBP", re.DOTALL)
-_PHONE_BRANDS = {"AVIF": (b"avif", b"avis"), "HEIC": (b"heic", b"heix", b"hevc", b"hevx", b"heim", b"heis", b"mif1")}
-"""Brands in the ftyp box (ISO 14496-12, 4.3) of the photos that phones write."""
-_DAMAGED = (OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, struct.error, zlib.error)
-"""What Pillow's decoders raise on files that break their format."""
+MAX_LOST = 0.002
+"""Share of a photo's pixels that a file cut short may lack: less than half a row of blocks of 3000 rows of pixels."""
+_DAMAGED = (
+    *(OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError),
+    *(OverflowError, struct.error, zlib.error),
+)
+"""What decoders raise on files that break their format."""
+_NOT_READ = {"F": "floating-point", "I": "32-bit", "I;16S": "signed", "LAB": "Lab"}
+"""Kinds of pixels, by Pillow's modes, that have no one meaning as sRGB."""
 _TOLD = 0.05
 """Share of a file's bytes after which its reading is told again."""
 _ORIENTATION = 0x0112
@@ -77,12 +84,16 @@ class StoredPhoto(bytes):
     """An encoded photo that was let in before: the limit on uploads does not hold for it."""
 
 
-def decode_photo(data: bytes, name: str, report: Report = silent) -> Picture:
-    """Decode a JPEG, PNG or WebP photo to (h, w, 3) uint8 sRGB, upright by EXIF, alpha over white.
+def unheard(warning: StrokeWarning) -> None:
+    """Take no notice of a warning."""
+
+
+def decode_photo(data: bytes, name: str, report: Report = silent, warn: Warn = unheard) -> Picture:
+    """Decode a JPEG, PNG, WebP, HEIC, AVIF or TIFF photo to (h, w, 3) uint8 sRGB, upright, alpha over white.
 
     An ICC profile is honoured (a broken one is ignored); 16 bits a channel become 8; ``name`` appears in messages.
     The size is judged from the header, before any pixel is decoded. ``report("decode", fraction)`` is called as the
-    bytes are read.
+    bytes are read, ``warn`` where a JPEG lacks its last bytes, but no part of the picture that could be seen.
 
     Raises
     ------
@@ -96,7 +107,7 @@ def decode_photo(data: bytes, name: str, report: Report = silent) -> Picture:
     # Pillow speaks of odd metadata by warnings, which say nothing about the pixels.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return _decoded(data, name, report)
+        return _decoded(data, name, report, warn)
 
 
 def decode_stored(data: bytes, report: Report = silent) -> Picture:
@@ -112,7 +123,7 @@ def decode_stored(data: bytes, report: Report = silent) -> Picture:
 
 def most_stored_bytes(head: bytes) -> int:
     """Say how many bytes a stored photo of these first bytes may have: as an upload, or as a PNG's pixels need."""
-    if len(head) < PHOTO_HEAD or not _BEGINNING.match(head) or head[12:16] != b"IHDR":
+    if len(head) < PHOTO_HEAD or kind_of(head) != "PNG" or head[12:16] != b"IHDR":
         return MAX_BYTES
     width, height = (int.from_bytes(head[at : at + 4], "big") for at in (16, 20))
     return max(MAX_BYTES, min(3 * width * height * 101 // 100, MAX_STORED_BYTES))
@@ -235,45 +246,89 @@ class _Watched(io.BytesIO):
         return found
 
 
-def _decoded(data: bytes, name: str, report: Report) -> Picture:
-    image = _opened(data, name, report)
+def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
+    kind = kind_of(data)
+    if kind is None:
+        raise PhotoError(f"{name}: {refusal_of(data)}", code="format_not_allowed")
+    ending = ending_of(data) if kind == "JPEG" else None
+    image = _opened(data if ending is None or ending.marked else ending.completed(), kind, name, report)
     check_size(image.width, image.height, name)
     try:
-        # A JPEG may carry further pictures (depth, gain map) behind the photo; those are no frames of it.
-        if image.format != "MPO" and getattr(image, "n_frames", 1) > 1:
-            what = f"the photo has {getattr(image, 'n_frames', 2)} frames; save one of them by itself"
-            raise PhotoError(f"{name}: {what}", code="photo_animated")
+        _check_one_frame(image, kind, data, name)
         image.load()
+        check_size(image.width, image.height, name)
+        if ending is not None and (not ending.marked or ends_flat(image)):
+            _judge_cut(image, ending, name, warn)
     except _DAMAGED as error:
         raise PhotoError(
             f"{name}: the photo is damaged or cut short ({_brief(error)}); save or copy it anew"
         ) from error
+    if image.mode in _NOT_READ:
+        what = f"the photo has {_NOT_READ[image.mode]} pixels; save it as RGB or grey, of 8 or 16 bits a channel"
+        raise PhotoError(f"{name}: {what}", code="format_not_allowed")
     return _pixels(image, report)
 
 
-def _opened(data: bytes, name: str, report: Report) -> Image.Image:
+def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
+    """Read a photo's header."""
     try:
-        return Image.open(_Watched(data, report), formats=_FORMATS)
+        if kind == "HEIF":
+            # It takes a while to import, and few need it. Pillow is not told of it: whoever calls may have another.
+            from pillow_heif import HeifImageFile
+
+            return HeifImageFile(_Watched(data, report))  # type: ignore[no-untyped-call]
+        return Image.open(_Watched(data, report), formats=(kind,))
     except Image.DecompressionBombError as error:
         raise PhotoError(
             f"{name}: the photo has more than {MAX_PIXELS / 1e6:.0f} megapixels, which is not allowed; resize it",
             code="photo_too_many_pixels",
         ) from error
     except _DAMAGED as error:
-        if phone := _phone_format(data):
-            what = f"this is no JPEG, PNG or WebP photo but {phone}; export it as JPEG"
-        else:
-            what = "this is no JPEG, PNG or WebP photo that can be read; save it as one"
-        code = "photo_unreadable" if _BEGINNING.match(data) else "format_not_allowed"
-        raise PhotoError(f"{name}: {what}", code=code) from error
+        what = f"this {NAMES[kind]} is damaged, or of a sort that is not read; copy it anew, or save it as JPEG"
+        raise PhotoError(f"{name}: {what}") from error
 
 
-def _phone_format(data: bytes) -> str:
-    """Name the format that phones save photos in and that is none of ours; "" for any other."""
-    if data[4:8] != b"ftyp":
-        return ""
-    brands = {data[start : start + 4] for start in (8, *range(16, min(int.from_bytes(data[:4], "big"), 128), 4))}
-    return next((name for name, known in _PHONE_BRANDS.items() if brands.intersection(known)), "")
+def _check_one_frame(image: Image.Image, kind: str, data: bytes, name: str) -> None:
+    """Refuse moving pictures and documents of several pages.
+
+    JPEG and HEIC may carry further pictures (depth, gain map, a burst's others) beside the photo; those are no frames.
+    """
+    several = ""
+    if kind == "TIFF":
+        several = "several pages" if _has_second_page(image) else ""
+    elif kind == "HEIF":
+        several = "several frames" if is_sequence(data) else ""
+    elif kind != "JPEG" and getattr(image, "n_frames", 1) > 1:
+        several = f"{getattr(image, 'n_frames', 2)} frames"
+    if several:
+        raise PhotoError(f"{name}: the photo has {several}; save one of them by itself", code="photo_animated")
+
+
+def _has_second_page(image: Image.Image) -> bool:
+    """Look for a second page; all are not counted, there may be millions."""
+    try:
+        image.seek(1)
+    except EOFError:
+        return False
+    return True
+
+
+def _judge_cut(image: Image.Image, ending: Ending, name: str, warn: Warn) -> None:
+    """Refuse a JPEG that lacks part of its picture; warn of one that lacks next to nothing."""
+    with Image.open(io.BytesIO(ending.made_up()), formats=("JPEG",)) as made_up:
+        share, first = lost(image, made_up)
+    if ending.is_coarse and not ending.marked:
+        missing = "the finer detail of the picture"
+    else:
+        missing = f"{max(1, round(100 * max(share, 1 - first / image.height)))} % of the picture"
+    if share > MAX_LOST or (ending.is_coarse and not ending.marked):
+        raise PhotoError(f"{name}: the photo is cut short: {missing} is missing; save or copy it anew")
+    if share > 0 or not ending.marked:
+        what = (
+            "nothing of its picture" if share < MAX_LOST / 100 else f"no more than {100 * share:.2f} % of its picture"
+        )
+        detail = f"the photo's file is cut short, but {what} is missing; if you can, save or copy it anew"
+        warn(StrokeWarning("photo_cut_short", "photo", detail))
 
 
 def _pixels(image: Image.Image, report: Report) -> Picture:
@@ -292,6 +347,9 @@ def _pixels(image: Image.Image, report: Report) -> Picture:
 
 
 def _orientation(image: Image.Image) -> int:
+    """Read how a picture lies; HEIC's own turns are done already, and its EXIF does not count."""
+    if image.format == "HEIF":
+        return 1
     try:
         return int(image.getexif().get(_ORIENTATION, 1))
     except _DAMAGED:

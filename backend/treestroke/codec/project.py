@@ -13,6 +13,7 @@ from typing import Any, BinaryIO, cast
 from treestroke.codec.archive import zip_into
 from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
 from treestroke.codec.json_text import read_json
+from treestroke.codec.photo_kinds import ending_of
 from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.errors import SettingsError, TreestrokeError
 from treestroke.core.stroke_rules import Place
@@ -23,7 +24,8 @@ MAX_SETTINGS_BYTES = 100_000
 
 VIEWS = ("front", "side")
 _PNG = b"\x89PNG"
-_ENDINGS = {b"\xff\xd8": "jpg", b"RIFF": "webp"}
+_BEGINNING = 128
+"""Bytes by which the kind of a photo or a sketch is told."""
 _PICTURES = ("leaf", "fruit")
 _NAMES = {
     **{f"{part}.json": part for part in ("strokes", "settings", *VIEWS)},
@@ -130,9 +132,9 @@ def write_project(out: BinaryIO, parts: Mapping[str, BinaryIO], settings: Mappin
 
 def _ending(part: str, content: BinaryIO) -> str:
     """Say what the file of a part ends in, by its first bytes."""
-    beginning = content.read(len(_PNG))
+    beginning = content.read(_BEGINNING)
     if part in ("photo", *_PICTURES):
-        return next((ending for start, ending in _ENDINGS.items() if beginning.startswith(start)), "png")
+        return ending_of(beginning)
     return sketch_ending(beginning)
 
 

@@ -91,7 +91,10 @@ def _same_length(one: Length | None, other: Length | None) -> bool:
 
 @dataclass(frozen=True)
 class StrokeWarning:
-    """Something mended: ``code`` for programs, ``stroke`` (a pointer such as ``branches/1``), ``detail`` for people."""
+    """Something mended: ``code`` for programs, ``stroke`` (a pointer such as ``branches/1``), ``detail`` for people.
+
+    Where it was the photo, ``stroke`` is ``photo``.
+    """
 
     code: str
     stroke: str

@@ -33,7 +33,7 @@ _WEB_SECONDS = 5.0
 _WATCH_SECONDS = 3.0
 """A worker that lives beats within this."""
 _SERVE = "`treestroke serve`"
-_PARTS = ("cv2", "maxflow", "PIL", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
+_PARTS = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
 _REDIS_PARTS = ("kombu.transport.redis",)
 """What a worker imports, by name alone, once it queues on a Redis."""
 _ONLY_THERE = ("dispatcher", "tracers")

@@ -12,10 +12,12 @@ from treestroke.codec.image import (
     MAX_BYTES,
     MAX_LEAF_BYTES,
     Picture,
+    Warn,
     check_size,
     decode_fruit,
     decode_leaf,
     decode_photo,
+    unheard,
 )
 from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
@@ -65,10 +67,10 @@ def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeEr
         return file.read(limit + 1)
 
 
-def load_photo(photo: PhotoLike, report: Report = silent) -> Picture:
+def load_photo(photo: PhotoLike, report: Report = silent, warn: Warn = unheard) -> Picture:
     """Bring a photo (path, encoded bytes, or upright sRGB pixels (h, w, 3) uint8) to pixels.
 
-    ``report("decode", fraction)`` is called as encoded ones are read.
+    ``report("decode", fraction)`` is called as encoded ones are read, ``warn`` with what was mended in them.
 
     Raises
     ------
@@ -82,8 +84,8 @@ def load_photo(photo: PhotoLike, report: Report = silent) -> Picture:
         check_size(photo.shape[1], photo.shape[0], "photo")
         return np.ascontiguousarray(photo)
     if isinstance(photo, bytes):
-        return decode_photo(photo, "photo", report)
-    return decode_photo(read_input(photo, MAX_BYTES, PhotoError), os.fspath(photo), report)
+        return decode_photo(photo, "photo", report, warn)
+    return decode_photo(read_input(photo, MAX_BYTES, PhotoError), os.fspath(photo), report, warn)
 
 
 def load_strokes(strokes: StrokesLike) -> Strokes:

@@ -22,6 +22,7 @@ from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
 from treestroke.service.inputs import load_settings
 from treestroke.service.models import project_from
+from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import add_file, beat, claim, end, succeed
@@ -144,7 +145,7 @@ def _make(
         with database.writing() as session:
             add_file(session, job, GROWTH, blob, len(content), **first)
 
-    made = make_of(given, job.settings, job.seed, pulse.report, show)
+    made = make_of(given, job.settings, job.seed, pulse.report, show).of_mended(_mended_in_photo(database, job))
     pulse.report("preview", 0.0)
     trees = _packed(made.bundles)
     contents = {**trees, PREVIEW: encode_png(made.preview())}
@@ -152,6 +153,13 @@ def _make(
     files = {name: (blobs.put(content), len(content)) for name, content in contents.items()}
     pulse.report("preview", 1.0)
     return {**made.report, "files": {name: len(content) for name, content in trees.items()}}, files
+
+
+def _mended_in_photo(database: Database, job: Model) -> list[dict[str, Any]]:
+    """Look up what was mended in reading the photo, of which only the pixels are stored."""
+    with database.reading() as session:
+        row = None if job.photo is None else queries.photo(session, job.photo, deleted=True)
+        return [] if row is None else row.warnings
 
 
 def _packed(bundles: Mapping[str, Bundle]) -> dict[str, bytes]:

@@ -1,7 +1,7 @@
 """Trees grown, written to files and reported on, whatever they were seen in."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import cv2
@@ -54,6 +54,10 @@ class Model:
     def files(self) -> dict[str, bytes]:
         """Each file's bytes by its name, the GLB first."""
         return {name: content for bundle in self.bundles.values() for name, content in bundle.items()}
+
+    def of_mended(self, mended: Iterable[Mapping[str, str]]) -> "Model":
+        """Give the same with what was mended in reading its photo before the report's other warnings."""
+        return replace(self, report={**self.report, "warnings": [*mended, *self.report["warnings"]]})
 
     def preview(self) -> NDArray[np.uint8]:
         """Draw the front view at the photo's framing beside a 3/4 view, (h, w, 3) sRGB."""

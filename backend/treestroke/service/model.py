@@ -1,5 +1,7 @@
 """Model a tree: photo and strokes in, perhaps with a sketch of its left side, GLB out."""
 
+from dataclasses import asdict
+
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, unseen
 from treestroke.core.pipeline.growing import see
@@ -7,6 +9,7 @@ from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import check_seed
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
+from treestroke.core.strokes import StrokeWarning
 from treestroke.service.clock import Stopwatch
 from treestroke.service.files import check_files
 from treestroke.service.inputs import (
@@ -59,11 +62,12 @@ def model(
     pictures = OwnPictures(load_leaf(leaf), load_fruit(fruit))
     require_trunk(given)
     check_files(chosen)
-    watch = Stopwatch(report)
+    watch, mended = Stopwatch(report), list[StrokeWarning]()
     with one_thread():
         with watch.stage("decode"):
-            picture = load_photo(photo, watch)
+            picture = load_photo(photo, watch, mended.append)
         seen = see(picture, given, None, watch, beside)
-        return make(
+        made = make(
             lambda rng, show: model_photo(seen, chosen, rng, watch, show, pictures), chosen, seed, watch, on_grown, name
         )
+    return made.of_mended(asdict(warning) for warning in mended)

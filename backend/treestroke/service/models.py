@@ -92,7 +92,8 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
     place = None if blob is None else shelf.blobs.path(blob)
     shelf.tracers(blob or "", tracing.check_wish, place, wish.parts, wish.within)
     parts = {part: shelf.blobs.put(content) for part, content in wish.parts.items()}
-    fingerprint = _digest([blob, parts, wish.settings, wish.seed, ENGINE])
+    mended = [] if photo is None else photo.warnings
+    fingerprint = _digest([blob, parts, wish.settings, wish.seed, ENGINE, *mended])
     used = _digest([fingerprint, wish.name, None if photo is None else photo.sha256])
     with shelf.database.writing() as session:
         first = session.get(Replay, key) if key else None

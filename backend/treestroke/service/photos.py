@@ -65,11 +65,10 @@ def take_in(shelf: Shelf, content: bytes) -> Photo:
         room = shelf.photos_bytes - stored_bytes(session)
     folder, most = shelf.blobs.folder.parent, shelf.photo_bytes
     try:
-        blob, size, width, height = shelf.tracers(sha256, tracing.keep_photo, folder, content, most, room)
+        kept = shelf.tracers(sha256, tracing.keep_photo, folder, content, most, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
-    now = time.time()
-    return Photo(id=new_id("pho"), sha256=sha256, width=width, height=height, blob=blob, bytes=size, created=now)
+    return Photo(id=new_id("pho"), sha256=sha256, created=time.time(), **kept)
 
 
 def get_photo(shelf: Shelf, id: str) -> Photo:
@@ -111,5 +110,5 @@ def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
     Overloaded, Crashed
         The tracing processes have too much to do, or one died over this.
     """
-    blob = get_photo(shelf, id).blob
-    return shelf.tracers(blob, tracing.trace_answer, shelf.blobs.path(blob), body)
+    row = get_photo(shelf, id)
+    return shelf.tracers(row.blob, tracing.trace_answer, shelf.blobs.path(row.blob), body, row.warnings)

@@ -12,6 +12,7 @@ from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.pipeline.sketching import SeenSketches, grow_sketches, model_sketches, see_sketches
 from treestroke.core.progress import Report, silent
+from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.drawing import Drawing
 from treestroke.service.clock import Stopwatch
 from treestroke.service.files import check_files
@@ -96,13 +97,13 @@ def sketch(
     chosen, seed = load_settings(settings), check_seed(seed)
     pictures = OwnPictures(load_leaf(leaf), load_fruit(fruit))
     check_files(chosen)
-    watch = Stopwatch(report)
+    watch, mended = Stopwatch(report), list[StrokeWarning]()
     with one_thread():
         with watch.stage("decode"):
             drawn, beside = load_sketch(front, "front"), None if side is None else load_sketch(side, "side")
-            picture = None if photo is None else load_photo(photo, watch)
+            picture = None if photo is None else load_photo(photo, watch, mended.append)
         seen = see_sketches(drawn, beside, picture, watch)
-        return make(
+        made = make(
             lambda rng, show: model_sketches(seen, chosen, rng, watch, show, pictures),
             chosen,
             seed,
@@ -110,6 +111,7 @@ def sketch(
             on_grown,
             name,
         )
+    return made.of_mended(asdict(warning) for warning in mended)
 
 
 def _plain(drawing: Drawing) -> dict[str, Any]:

@@ -39,7 +39,7 @@ class Trace:
     stroke
         (n,) index of the stroke that each joint lies under, -1 where it was found by itself.
     warnings
-        What was mended in the strokes.
+        What was mended in the photo and in the strokes.
     grow
         Whether a grown tree was asked for.
     grown
@@ -97,8 +97,8 @@ def trace(
     PhotoError, StrokesError
         The photo or the strokes cannot be used; the message says what, where and how to mend it.
     """
-    given = load_strokes(strokes)
-    picture = load_photo(photo)
+    given, mended = load_strokes(strokes), list[StrokeWarning]()
+    picture = load_photo(photo, warn=mended.append)
     last = after if after is not None and same_stroke(after.given.crown, given.crown) else None
     with one_thread():
         if last is not None and same_strokes(last.given, given):
@@ -108,5 +108,5 @@ def trace(
         found = beside(found, None if side is None else load_sketch(side, "side"))
         grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(found.foliage) if last is None else last.rings
-    what = found.foliage, rings, given, found, found.skeleton, found.stroke, found.warnings
+    what = found.foliage, rings, given, found, found.skeleton, found.stroke, (*mended, *found.warnings)
     return Trace(picture, *what, grow=grow, grown=grown)

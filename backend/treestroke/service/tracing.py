@@ -5,8 +5,8 @@ Each process remembers the photos that it saw last, with their foliage, so that 
 
 import json
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
@@ -18,7 +18,7 @@ from treestroke.core.errors import PhotoError, TreestrokeError
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import see_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
-from treestroke.core.strokes import Sketch
+from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.service.bodies import check_keys, inside, read_object, take_rev_and_grow
 from treestroke.service.sketch import trace_sketches
 from treestroke.service.trace import Trace, trace
@@ -45,8 +45,8 @@ class NoRoom(Exception):
     """All photos together would take more than they may."""
 
 
-def keep_photo(folder: Path, content: bytes, most: int, room: int) -> tuple[str, int, int, int]:
-    """Decode an uploaded photo and store its upright pixels; give the blob, its bytes, the width and the height.
+def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
+    """Decode an uploaded photo and store its upright pixels; give what its row says of them.
 
     Raises
     ------
@@ -55,18 +55,23 @@ def keep_photo(folder: Path, content: bytes, most: int, room: int) -> tuple[str,
     NoRoom
         It would take more than ``room`` bytes.
     """
-    picture = decode_photo(content, "photo")
+    mended: list[StrokeWarning] = []
+    picture = decode_photo(content, "photo", warn=mended.append)
     stored = encode_stored(picture)
     if len(stored) > most:
         what = f"kept as PNG it takes {len(stored) / 1e6:.1f} MB, at most {most / 1e6:g} MB are allowed"
         raise PhotoError(f"photo: {what}; resize it", code="photo_too_large_stored")
     if len(stored) > room:
         raise NoRoom
-    return Blobs(folder).put(stored), len(stored), picture.shape[1], picture.shape[0]
+    height, width, _ = picture.shape
+    kept = {"blob": Blobs(folder).put(stored), "bytes": len(stored), "width": width, "height": height}
+    return {**kept, "warnings": [asdict(warning) for warning in mended]}
 
 
-def trace_answer(photo: Path, body: bytes) -> bytes:
+def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] = ()) -> bytes:
     """Trace a stored photo by a request's body; give the answer as JSON.
+
+    What was ``mended`` in the photo comes before the other warnings.
 
     Raises
     ------
@@ -78,7 +83,8 @@ def trace_answer(photo: Path, body: bytes) -> bytes:
     side = _within(("side",), sketch_from, request.pop("side")) if "side" in request else None
     known = _recall(photo)
     known.last = trace(known.picture, strokes_from(request), known.last, grow, side)
-    return _answer(rev, known.last.answer())
+    answer = known.last.answer()
+    return _answer(rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 
 
 def sketch_answer(body: bytes) -> bytes:

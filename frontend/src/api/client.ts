@@ -59,6 +59,10 @@ export class Client {
     return ask('GET', `/v1/photos/${id}`)
   }
 
+  deletePhoto(id: string): Promise<void> {
+    return ask('DELETE', `/v1/photos/${id}`)
+  }
+
   /** Find foliage and visible branches; with `grow` the whole tree's skeleton too, as deep as its left side. */
   trace(photo: string, strokes: Strokes, grow: boolean, side?: Sketches['side']): Promise<TraceAnswer> {
     return ask('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow, ...(side && { side }) }))

@@ -15,7 +15,7 @@ export interface paths {
         put?: never;
         /**
          * Add Photo
-         * @description Upload a photo: JPEG, PNG or WebP, one frame.
+         * @description Upload a photo: JPEG, PNG, WebP, HEIC, AVIF or TIFF, one frame.
          */
         post: operations["add_photo"];
         delete?: never;
@@ -643,6 +643,11 @@ export interface components {
              * @description the stored picture: PNG, upright, sRGB, without metadata
              */
             image: string;
+            /**
+             * Warnings
+             * @description what was mended in reading it
+             */
+            warnings?: components["schemas"]["StrokeWarning"][];
         };
         /**
          * PhotoFrame
@@ -686,12 +691,15 @@ export interface components {
         };
         /**
          * StrokeWarning
-         * @description Something in the strokes that was mended.
+         * @description Something in the strokes, or in the photo, that was mended.
          */
         StrokeWarning: {
             /** Code */
             code: string;
-            /** Stroke */
+            /**
+             * Stroke
+             * @description pointer to the stroke, such as branches/1; photo where it is the photo itself
+             */
             stroke: string;
             /** Detail */
             detail: string;
@@ -1136,6 +1144,11 @@ export interface operations {
                 "image/jpeg": string;
                 "image/png": string;
                 "image/webp": string;
+                "image/heic": string;
+                "image/heif": string;
+                "image/avif": string;
+                "image/tiff": string;
+                "image/*": string;
                 "application/octet-stream": string;
             };
         };
@@ -1744,7 +1757,7 @@ export interface operations {
                 "multipart/form-data": {
                     /**
                      * Format: binary
-                     * @description JPEG, PNG or WebP
+                     * @description JPEG, PNG, WebP, HEIC, AVIF or TIFF
                      */
                     photo?: string;
                     /** @description Strokes, as JSON; with a photo */

@@ -3,9 +3,8 @@ import { advance, throughout } from '../history'
 import { fittedTo, groundOf, isDrawn, openSheets, paper, sheetOfSize } from '../sheets'
 import type { Ground, State, Store } from '../state'
 import { NO_STROKES, onSheet, type SheetName, withSheet } from '../strokes'
-import { text } from '../text'
-import { uploaded } from './photos'
-import { faultOf, Unusable } from './sentences'
+import { drawable, uploaded } from './photos'
+import { faultOf } from './sentences'
 import type { SketchFile } from './sketches'
 
 /** Lays sheets out, and pictures under what is drawn on them. */
@@ -46,8 +45,10 @@ export class Desk {
     const before = groundOf(this.store.state, sheet)
     try {
       const ground = sheet === 'front' ? await this.#upload(file) : await this.#guide(file)
-      if (before && groundOf(this.store.state, sheet) === before)
+      if (before && groundOf(this.store.state, sheet) === before) {
         this.store.set(relaid(this.store.state, sheet, ground))
+        if (ground.mended) this.store.set({ remark: { of: this.store.strokes, text: ground.mended } })
+      }
       this.store.fault('photo', null)
     } catch (error) {
       this.store.fault('photo', faultOf(error))
@@ -73,10 +74,12 @@ export class Desk {
     return uploaded(file, this.client, this.store.state.limits)
   }
 
-  async #guide(file: Blob): Promise<Ground> {
-    const size = await this.sizeOf(file).catch(() => {
-      throw new Unusable(text.welcome.notThis)
-    })
+  /** Keep a picture in the browser; one that it cannot show (HEIC, in most) the service turns into one that it can. */
+  async #guide(chosen: Blob): Promise<Ground> {
+    const { limits } = this.store.state
+    const known = await this.sizeOf(chosen).catch(() => null)
+    const file = known ? chosen : await drawable(chosen, this.client, limits)
+    const size = known ?? (await this.sizeOf(file))
     return { ...sheetOfSize(size), file, url: URL.createObjectURL(file) }
   }
 }

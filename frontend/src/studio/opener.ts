@@ -219,7 +219,7 @@ export class Opener {
     const tool = history.present.crown || source === 'sketch' ? 'branch' : 'crown'
     const opened = { source, photo, side, name, history, settings, seed, leaf, fruit, tool } as const
     this.store.set({ ...EMPTY, limits, online, opening: true, ...opened })
-    this.#remark(drawing.remark)
+    this.#remark(drawing.remark ?? photo.mended)
   }
 
   #remark(said = ''): void {

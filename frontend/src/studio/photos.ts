@@ -1,14 +1,47 @@
 import type { Client } from '../api/client'
 import type { Limits, Photo } from '../state'
 import { text } from '../text'
-import { Unusable } from './sentences'
+import { sentenceOf, Unusable } from './sentences'
+
+/** Types of the photos that the service reads, by the endings of their files; the usual ending of each comes first. */
+export const TYPES: Readonly<Record<string, string>> = {
+  jpg: 'image/jpeg',
+  jpeg: 'image/jpeg',
+  png: 'image/png',
+  webp: 'image/webp',
+  heic: 'image/heic',
+  heif: 'image/heif',
+  hif: 'image/heif',
+  avif: 'image/avif',
+  tif: 'image/tiff',
+  tiff: 'image/tiff',
+}
+
+/** Tell whether a file may be a photo; the service judges any picture, and names those that it does not read. */
+export function isPicture(file: File): boolean {
+  return typeOf(file).startsWith('image/')
+}
+
+/** Name a file's type; by its ending where the browser knows none, as of HEIC in most. */
+export function typeOf(file: File): string {
+  return file.type || TYPES[file.name.slice(file.name.lastIndexOf('.') + 1).toLowerCase()] || ''
+}
 
 /** Send a photo to the service. */
-export async function uploaded(file: Blob, client: Client, limits: Limits | null): Promise<Photo> {
-  const most = limits?.photo_bytes ?? Number.POSITIVE_INFINITY
-  if (file.size > most) throw new Unusable(text.faults.photoTooLarge(file.size / 1e6, most / 1e6))
-  const { id, width, height, image } = await client.addPhoto(file)
-  return { id, width, height, file, url: await pictureOf(file, { width, height }, image) }
+export async function uploaded(chosen: Blob, client: Client, limits: Limits | null): Promise<Photo> {
+  const file = typed(chosen)
+  const { id, width, height, image, warnings } = await sent(file, client, limits)
+  const mended = warnings?.map(({ detail }) => sentenceOf(detail)).join(' ')
+  const url = await pictureOf(file, { width, height }, image)
+  return { id, width, height, file, url, ...(mended && { mended }) }
+}
+
+/** Have the service turn a photo that the browser cannot show into one that it can; the service does not keep it. */
+export async function drawable(file: Blob, client: Client, limits: Limits | null): Promise<Blob> {
+  const { id, image } = await sent(file, client, limits)
+  const picture = await client.getFile(image)
+  await client.deletePhoto(id)
+  return picture
 }
 
 /** Give an address that shows the upright picture: the file itself where the browser sees it as the service does. */
@@ -18,4 +51,15 @@ export async function pictureOf(file: Blob, size: { width: number; height: numbe
   const alike = picture?.width === size.width && picture.height === size.height
   picture?.close()
   return alike ? URL.createObjectURL(file) : stored
+}
+
+async function sent(file: Blob, client: Client, limits: Limits | null) {
+  const most = limits?.photo_bytes ?? Number.POSITIVE_INFINITY
+  if (file.size > most) throw new Unusable(text.faults.photoTooLarge(file.size / 1e6, most / 1e6))
+  return client.addPhoto(file)
+}
+
+/** Give a photo that came without a type the one that its name tells. */
+function typed(file: Blob): Blob {
+  return file.type === '' && file instanceof File ? new File([file], file.name, { type: typeOf(file) }) : file
 }

@@ -3,6 +3,7 @@ import { isDrawn } from '../sheets'
 import { DEFAULT_SETTINGS, type Settings } from '../state'
 import { fromWire, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
 import { text } from '../text'
+import { TYPES } from './photos'
 import { Unusable } from './sentences'
 import { type Drawn, paired, type SketchFile, sketchFrom, sketchToWire } from './sketches'
 
@@ -20,7 +21,6 @@ export interface Project extends Drawn {
 const ENDING = '.treestroke'
 const PICTURES = { leaf: 'leaf.png', fruit: 'fruit.png' } as const
 const SHEETS = ['front', 'side'] as const
-const TYPES: Readonly<Record<string, string>> = { jpg: 'image/jpeg', png: 'image/png', webp: 'image/webp' }
 
 export function isProject(file: File): boolean {
   return file.name.endsWith(ENDING) || file.type === 'application/zip'

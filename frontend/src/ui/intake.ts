@@ -1,12 +1,13 @@
 import { isPaper } from '../sheets'
 import { isEmpty, type SheetName } from '../strokes'
+import { isPicture, TYPES, typeOf } from '../studio/photos'
 import { isProject } from '../studio/project'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { el } from './dom'
 import { dropVeil, type Way } from './dropVeil'
 
-const PHOTOS = 'image/jpeg,image/png,image/webp'
+const PHOTOS = [...new Set(Object.values(TYPES)), ...Object.keys(TYPES).map(ending => `.${ending}`)].join()
 const PROJECTS = '.treestroke'
 const SKETCHES = 'image/png,application/json,.json'
 
@@ -41,28 +42,34 @@ export function takeFiles(studio: Studio): void {
   addEventListener('dragover', event => {
     if (!event.dataTransfer?.types.includes('Files')) return
     event.preventDefault()
-    veil.show(waysOf(studio, event), event)
+    veil.show(
+      waysOf(
+        studio,
+        event,
+        [...event.dataTransfer.items].map(({ type }) => type),
+      ),
+      event,
+    )
   })
   addEventListener('drop', event => {
     event.preventDefault()
     veil.hide()
     const files = [...(event.dataTransfer?.files ?? [])]
-    const picture = files.find(file => isPhoto(file) || isStrokes(file))
-    const way = picture && veil.wayAt(waysOf(studio, event), event)
+    const picture = files.find(file => isPicture(file) || isStrokes(file))
+    const way = picture && veil.wayAt(waysOf(studio, event, files.map(typeOf)), event)
     if (way?.take) way.take(picture!)
     else openOne(studio, files)
   })
   addEventListener('paste', event => {
-    const picture = [...(event.clipboardData?.files ?? [])].find(isPhoto)
+    const picture = [...(event.clipboardData?.files ?? [])].find(isPicture)
     if (picture) openFile(studio, named(picture))
   })
 }
 
-/** List what can become of what is dragged: a PNG may be a photo or a drawing, which only the user knows. */
-function waysOf(studio: Studio, event: DragEvent): readonly Way[] {
+/** List what can become of what is dragged, by its types: a PNG may be a photo or a drawing, which only the user knows. */
+function waysOf(studio: Studio, event: DragEvent, kinds: readonly string[]): readonly Way[] {
   const { drop } = text.sheets
   const [part, sheet] = sheetUnder(studio, event)
-  const kinds = [...(event.dataTransfer?.items ?? [])].map(({ type }) => type)
   const drawing: Way = sheet
     ? { words: drop.drawing, over: part, take: file => void studio.opener.openOn(sheet, file) }
     : { words: drop.drawing, take: file => openSketch(studio, file) }
@@ -88,18 +95,13 @@ function fromDisk(accept: string, take: (file: File) => void): void {
 }
 
 function openOne(studio: Studio, files: readonly File[]): void {
-  const file = files.find(one => isPhoto(one) || isProject(one))
+  const file = files.find(one => isPicture(one) || isProject(one))
   if (file) openFile(studio, file)
   else if (files.length) studio.store.fault('photo', { text: text.welcome.notThis })
 }
 
 function openFile(studio: Studio, file: File): void {
   if (mayLeave(studio)) void studio.opener.openFile(file)
-}
-
-/** Let the service judge any picture; it names the formats that it takes. */
-function isPhoto(file: File): boolean {
-  return file.type.startsWith('image/')
 }
 
 function isStrokes(file: File): boolean {

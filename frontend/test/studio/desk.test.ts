@@ -62,12 +62,36 @@ test('a picture under the front is sent, since it lends the tree its colours', a
   expect(store.state.photo).toEqual({ id: null, ...WIDE, file: null, url: null })
 })
 
-test('what is no picture leaves the sheet as it was, and is said', async () => {
+test('what is no picture leaves the sheet as it was, and is said as the service says it', async () => {
+  service(() => problem(422, 'format_not_allowed', 'photo: this is a PDF document; export its picture'))
   const { store } = begin()
   const desk = new Desk(store, new Client(), () => Promise.reject(new Error('no picture')))
   await desk.lay('side', PICTURE)
   expect(store.state.side).toEqual(paper())
-  expect(store.state.faults.photo?.text).toContain('Drop a photo')
+  expect(store.state.faults.photo?.text).toBe('This is a PDF document; export its picture.')
+})
+
+test('a picture that the browser cannot show lies under the side as the service shows it, which keeps nothing', async () => {
+  const png = new Blob(['dots'], { type: 'image/png' })
+  const calls = service(({ method, path }) => {
+    if (method === 'DELETE') return new Response(null, { status: 204 })
+    if (path.endsWith('/image')) return new Response(png)
+    return Response.json({ id: 'pho_9', ...WIDE, image: '/v1/photos/pho_9/image' }, { status: 201 })
+  })
+  const { store } = begin()
+  const desk = new Desk(store, new Client(), async file => (file.type === 'image/png' ? WIDE : Promise.reject(file)))
+  await desk.lay('side', new File(['a photo'], 'oak.heic'))
+  expect(store.state.side).toMatchObject({ ...WIDE, id: null })
+  expect(await store.state.side?.file?.text()).toBe('dots')
+  expect(calls.map(({ method, path }) => `${method} ${path}`).at(-1)).toBe('DELETE /v1/photos/pho_9')
+})
+
+test('what was mended in a picture under the front is said until something is drawn', async () => {
+  const warnings = [{ code: 'photo_cut_short', stroke: 'photo', detail: 'the file is cut short' }]
+  service(() => Response.json({ id: 'pho_9', ...WIDE, image: '/image', warnings }, { status: 201 }))
+  const { store, desk } = begin()
+  await desk.lay('front', new Blob(['a photo'], { type: 'image/heic' }))
+  expect(store.state.remark).toEqual({ of: store.strokes, text: 'The file is cut short.' })
 })
 
 test('a brush is taken up with the branch, and its width goes with each stroke on paper', () => {

@@ -52,6 +52,29 @@ test('a picture that the browser sees otherwise is shown as the service has it',
   expect(store.state.photo?.url).toBe(PHOTO.image)
 })
 
+test.each(['oak.HEIC', 'oak.tif', 'oak.avif'])(
+  '%s is sent whatever the browser knows of it, and shown as the service has it',
+  async name => {
+    service(serve)
+    const { store, opener } = new Studio()
+    await opener.openFile(new File(['a photo'], name))
+    expect(store.state.photo?.url).toBe(PHOTO.image)
+    expect(store.state.photo?.file?.type).toMatch(/^image\/(heic|tiff|avif)$/)
+  },
+)
+
+test('what was mended in a photo is said as it opens', async () => {
+  const detail = "the photo's file is cut short, but nothing of its picture is missing; copy it anew"
+  const warnings = [{ code: 'photo_cut_short', stroke: 'photo', detail }]
+  service(call => (call.path === '/v1/photos' ? Response.json({ ...PHOTO, warnings }, { status: 201 }) : serve(call)))
+  const { store, opener } = new Studio()
+  await opener.openFile(jpeg())
+  expect(store.state.remark).toEqual({
+    of: store.strokes,
+    text: "The photo's file is cut short, but nothing of its picture is missing; copy it anew.",
+  })
+})
+
 test('a file that is no photo leaves the drawing as it was', async () => {
   let good = true
   service(call => (good ? serve(call) : problem(422, 'photo_unreadable', 'photo: it is no picture; save it as JPEG')))

@@ -30,6 +30,12 @@ test('a project is read as it was written', async () => {
   expect(Buffer.from(await read.photo!.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
 })
 
+test.each(['image/heic', 'image/avif', 'image/tiff'])('a photo of type %s keeps it', async type => {
+  const photo = new Blob(['dots'], { type })
+  const written = await writeProject({ photo, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf: null })
+  expect((await opened(written)).photo?.type).toBe(type)
+})
+
 test('a project without a crown is kept and read, too', async () => {
   const strokes = { crown: null, branches: [{ points: TRUNK }], erase: [], scale: null }
   const read = await opened(

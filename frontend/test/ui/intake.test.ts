@@ -59,6 +59,14 @@ test('a picture that can be no drawing is a photo wherever it is dropped', () =>
   expect([openFile.mock.calls, lay.mock.calls]).toEqual([[[jpeg]], [['side', jpeg]]])
 })
 
+test('a photo that the browser has no type for is laid under the sheet that it is dropped on', () => {
+  const heic = new File(['dots'], 'oak.HEIC')
+  drop(heic, document.body, 10)
+  store.set({ source: 'sketch', photo: paper(), side: paper() })
+  drop(heic, side, 390)
+  expect([openFile.mock.calls, lay.mock.calls]).toEqual([[[heic]], [['side', heic]]])
+})
+
 test('strokes are a drawing wherever they are dropped, and what is neither is said', () => {
   const strokes = new File(['{}'], 'oak.json', { type: 'application/json' })
   drop(strokes, document.body, 10)

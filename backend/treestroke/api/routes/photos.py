@@ -10,12 +10,13 @@ from treestroke.api.deps import JsonBody, PhotoId, ShelfOf, check_length, leads_
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
+from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.schemas import Photo, TraceAnswer
 from treestroke.service import photos
 from treestroke.shapes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/photos", tags=["photos"])
-_RAW = ("image/jpeg", "image/png", "image/webp", "application/octet-stream")
+_RAW = (*MEDIA_TYPES, "image/*", "application/octet-stream")
 _BINARY = {"type": "string", "format": "binary"}
 _UPLOAD: dict[str, Any] = {
     "requestBody": {
@@ -49,9 +50,11 @@ _LOCATION = {"schema": {"type": "string", "pattern": "^/v1/photos/pho_[0-9a-f]{2
 
 async def _photo_bytes(request: Request) -> bytes:
     """Read an upload: the field ``file`` of a form, or the whole body."""
-    if media_type(request) != "multipart/form-data":
-        if media_type(request) not in (*_RAW, ""):
-            raise HTTPException(415, f"send a form with the field file, or {', '.join(_RAW)}")
+    kind = media_type(request)
+    if kind != "multipart/form-data":
+        # Any picture is looked at: what is refused is refused by what it is, not by what it is called.
+        if not kind.startswith("image/") and kind not in (*_RAW, ""):
+            raise HTTPException(415, f"send a form with the field file, or the photo itself as {' or '.join(_RAW)}")
         return await request.body()
     async with request.form(max_files=1, max_fields=0) as form:
         file = form.get("file")
@@ -74,7 +77,7 @@ async def _photo_bytes(request: Request) -> bytes:
     openapi_extra=_UPLOAD,
 )
 def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> Photo:
-    """Upload a photo: JPEG, PNG or WebP, one frame."""
+    """Upload a photo: JPEG, PNG, WebP, HEIC, AVIF or TIFF, one frame."""
     check_length(content)
     row = photos.add_photo(shelf, content)
     response.headers["Location"] = f"/v1/photos/{row.id}"

@@ -9,6 +9,7 @@ from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf, WatcherOf
 from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
+from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
@@ -47,7 +48,7 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
         photo_pixels=MAX_PIXELS,
         photo_side_min=MIN_SIDE,
         photo_side_max=MAX_SIDE,
-        photo_formats=["image/jpeg", "image/png", "image/webp"],
+        photo_formats=list(MEDIA_TYPES),
         strokes=MAX_STROKES,
         points=MAX_POINTS,
         json_bytes=MAX_TEXT_BYTES,
