@@ -20,6 +20,7 @@ from treestroke.schemas import Fault, Problem
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
 from treestroke.service.pool import Crashed, Overloaded
+from treestroke.store.blobs import Damaged
 
 MEDIA_TYPE = "application/problem+json"
 _RETRY = {"Retry-After": "1"}
@@ -109,6 +110,12 @@ def _storage(_: Request, error: OSError) -> JSONResponse:
     return problem(507, "storage_full", "the service cannot store this: its disk may be full; try again later")
 
 
+def _damaged(_: Request, error: Damaged) -> JSONResponse:
+    log.error("file_damaged", file=str(error))
+    detail = "a file that the service kept is damaged or gone; upload the photo or ask for the model again"
+    return problem(500, "file_damaged", f"{detail}, and have `treestroke doctor` say what else is")
+
+
 def _database(request: Request, error: OperationalError) -> JSONResponse:
     if "full" in str(error.orig):
         return _storage(request, OSError(str(error.orig)))
@@ -143,6 +150,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     KeyReused: _reused,
     Overloaded: _busy,
     Crashed: _crashed,
+    Damaged: _damaged,
     OSError: _storage,
     OperationalError: _database,
     HTTPException: _http,

@@ -20,7 +20,7 @@ def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]
     content: dict[str, Any] = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
     whole = {"content": {kind: {"schema": {"$ref": f"#/components/schemas/{schema}"}}}} if schema else content
     length = {"Content-Range": {"schema": {"type": "string"}, "description": "bytes FIRST-LAST/ALL"}}
-    problems = documented(403, 404, 416)
+    problems = documented(403, 404, 416, 500)
     problems[416]["headers"] = length
     return {
         200: {**whole, "description": "The file", "headers": _TAG_HEADER},
@@ -31,8 +31,14 @@ def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]
 
 
 def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: str | None = None) -> Response:
-    """Send a blob; its name is its ETag. One range is honoured, whatever else Range says is passed over."""
-    path, tag = shelf.blobs.path(blob), f'"{blob}"'
+    """Send a blob; its name is its ETag. One range is honoured, whatever else Range says is passed over.
+
+    Raises
+    ------
+    Damaged
+        The file is not what it was: neither it nor its ETag is told.
+    """
+    path, tag = shelf.blobs.check(blob), f'"{blob}"'
     headers = {"ETag": tag, "Cache-Control": "private, no-cache"}
     if _names(request.headers.get("if-none-match", ""), tag):
         return Response(status_code=304, headers=headers)

@@ -11,6 +11,10 @@ _DETAILS = {
     "time_limit": ("The tree took longer to grow than this service allows. Try fewer iterations.", False),
     "out_of_memory": ("The tree needs more memory than this service allows. Try a smaller photo.", False),
     "storage_error": ("The service could not store the tree: its disk may be full. Try again later.", True),
+    "input_damaged": (
+        "A stored file that the tree is made of is damaged or gone. Upload the photo again, and ask for a new model.",
+        False,
+    ),
     "engine_error": ("The tree could not be grown; this is our mistake, and it is in the log.", False),
 }
 

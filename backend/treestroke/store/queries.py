@@ -3,10 +3,10 @@
 import secrets
 from collections.abc import Sequence
 
-from sqlalchemy import func, select
+from sqlalchemy import func, select, union
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import File, Model, Photo
+from treestroke.store.tables import REFERENCES, File, Model, Photo
 
 _RECENT = 20
 """Finished models whose time tells how long the next will take."""
@@ -41,11 +41,16 @@ def newest(session: Session, before: int | None, limit: int) -> Sequence[Model]:
     return session.scalars(wanted if before is None else wanted.where(Model.number < before)).all()
 
 
-def twin(session: Session, fingerprint: str) -> Model | None:
-    """Find a finished model of the same photo, strokes, settings, seed and engine."""
-    return session.scalars(
-        select(Model).where(Model.fingerprint == fingerprint, Model.status == "succeeded").limit(1)
-    ).first()
+def twin(session: Session, fingerprint: str, engine: str) -> Model | None:
+    """Find a model that this engine has finished of the same photo, drawings, settings and seed."""
+    same = Model.fingerprint == fingerprint, Model.engine == engine, Model.status == "succeeded"
+    return session.scalars(select(Model).where(*same).limit(1)).first()
+
+
+def referenced(session: Session, beginning: str = "") -> set[str]:
+    """Give the blobs that a row refers to, of those whose names begin so: two digits for a folder's, 64 for one."""
+    end = f"{beginning}g"  # behind all hexadecimal digits
+    return set(session.scalars(union(*(select(one).where(one >= beginning, one < end) for one in REFERENCES))))
 
 
 def queue_position(session: Session, job: Model) -> int | None:
@@ -58,11 +63,11 @@ def queue_position(session: Session, job: Model) -> int | None:
 
 
 def usual_seconds(session: Session) -> float:
-    """Say how long a model took of late."""
+    """Say how long a model took of late; one that was answered from a twin was never started."""
     took = session.scalars(
         select(Model.finished - Model.started)
         .where(Model.status == "succeeded", Model.started.is_not(None))
-        .order_by(Model.number.desc())
+        .order_by(Model.started.desc())
         .limit(_RECENT)
     ).all()
     known = sorted(seconds for seconds in took if seconds is not None)
