@@ -68,6 +68,7 @@ bench: $(STAMP) page
 	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \
 	    --benchmark-sort=fullname
 	@$(BIN)/python -m tests.benchmarks.service_times
+	@$(BIN)/python -m tests.benchmarks.store_times
 	@$(BIN)/python -m tests.benchmarks.page_times
 	@$(BIN)/python -m tests.benchmarks.files_table
 	@$(BIN)/python -m tests.benchmarks.growth_ratio

@@ -27,12 +27,13 @@ def test_a_job_whose_process_dies_is_grown_again(service: Service) -> None:
 
 
 def test_a_job_whose_worker_dies_with_its_child_is_grown_again(service: Service) -> None:
-    id = service.ask()
+    id, expired = service.ask(), len(service.logged("attempt_lost"))
     service.wait_running(id)
     for process in service.workers() + service.growers():
         process.hit()
     (row,) = service.finish([id], AGAIN_SECONDS)
     assert (row["status"], row["attempt"]) == ("succeeded", 2)
+    assert len(service.logged("attempt_lost")) == expired  # the next run gave it back before its lease ran out
 
 
 def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: Service) -> None:

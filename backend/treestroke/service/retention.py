@@ -26,7 +26,7 @@ STRAY_SECONDS = 3600.0
 """A file that no row names may belong to one that is about to be written; after this it does not."""
 UNWATCHED_SECONDS = 12 * 3600.0
 """The most that counts of the time in which no process watched: a clock that jumped meanwhile cannot make it a day."""
-_STEP_ROWS = 100
+_STEP_ROWS = 50
 _PAUSE_SECONDS = 0.02
 """Between two steps others write."""
 _DAY = 86_400.0

@@ -34,7 +34,8 @@ def own_folder(folder: Path) -> None:
         why = f"it also holds {sorted(strange)[0]!r}" if strange else "it belongs to another user"
         raise Unusable(
             f"{folder}: others on this machine may look into it ({stat.filemode(found.st_mode)}), and {why}; "
-            f"`chmod 700` it, or name a folder in it by --data: {folder / 'treestroke'}"
+            f"name a folder of its own, such as --data {folder / 'treestroke'}; or, where all of it is the service's, "
+            f"`chmod 700 {folder}`"
         )
     folder.chmod(0o700)
 
