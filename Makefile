@@ -69,6 +69,7 @@ bench: $(STAMP) page
 	    --benchmark-sort=fullname
 	@$(BIN)/python -m tests.benchmarks.service_times
 	@$(BIN)/python -m tests.benchmarks.stream_times
+	@$(BIN)/python -m tests.benchmarks.store_times
 	@$(BIN)/python -m tests.benchmarks.page_times
 	@$(BIN)/python -m tests.benchmarks.files_table
 	@$(BIN)/python -m tests.benchmarks.growth_ratio

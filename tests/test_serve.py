@@ -9,6 +9,7 @@ from tests.running import serving
 
 from treestroke.cli import main
 from treestroke.serve import Child
+from treestroke.store.database import Database
 
 
 def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -18,13 +19,49 @@ def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureF
     assert (tmp_path / "data").stat().st_mode & 0o077 == 0
 
 
+def test_a_data_folder_that_was_open_is_closed_before_it_is_served(tmp_path: Path) -> None:
+    data = tmp_path / "data"
+    data.mkdir(0o755)
+    with serving(data):
+        assert [path for path in (data, *data.rglob("*")) if path.stat().st_mode & 0o077] == []
+
+
+@pytest.mark.parametrize("command", ["serve", "worker"])
+def test_a_folder_of_other_things_is_not_served(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    tmp_path.chmod(0o755)
+    (tmp_path / "letter.txt").write_bytes(b"")
+    assert main([command, "--data", str(tmp_path), *(["--port", "0"] if command == "serve" else [])]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"treestroke: {tmp_path}: others on this machine may look into it")
+    assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
+
+
+@pytest.mark.parametrize("command", ["serve", "worker", "doctor"])
+def test_a_newer_database_is_one_line_and_nothing_is_started(
+    database: Database, capfd: pytest.CaptureFixture[str], command: str
+) -> None:
+    folder = database.path.parent
+    folder.chmod(0o700)
+    with database.writing() as session:
+        session.connection().exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
+    database.close()
+    assert main([command, "--data", str(folder), *(["--port", "0"] if command == "serve" else [])]) == 1
+    told = capfd.readouterr()
+    lines = [line for line in told.err.splitlines() if not line.startswith("{")]
+    assert len(lines) == 1, told.err
+    assert "a newer treestroke made this database" in (told.out if command == "doctor" else lines[0])
+    assert not (folder / "tmp").exists()
+
+
 def test_a_process_that_gives_up_at_once_is_started_ever_more_slowly(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     clock = [1000.0]
     monkeypatch.setattr("treestroke.serve.time.monotonic", lambda: clock[0])
     child = Child("no.such.module", {"PATH": ""})
-    starts = []
+    starts: list[float] = []
     for _ in range(200):
         before = child._process
         child.look()

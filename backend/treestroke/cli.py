@@ -17,6 +17,7 @@ from treestroke import __version__
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
+from treestroke.store.versions import Unusable
 
 if TYPE_CHECKING:
     from treestroke.service.evidence import Evidence
@@ -81,7 +82,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 options.command(options)
     except TreestrokeError as error:
         return _fail(BAD_INPUT, str(error), "--debug" in given)
-    except MachineFault as error:
+    except (MachineFault, Unusable) as error:
         return _fail(OUR_FAULT, str(error), "--debug" in given)
     except (OSError, MemoryError) as error:
         return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in given)

@@ -1,19 +1,21 @@
-"""Processes that end with the one that started them, however that one ends."""
+"""Processes that end with the one that started them, however that one ends, and what that one tells them."""
 
 import os
 import signal
 import threading
 import time
 
-VARIABLE = "LIFELINE"
+LIFELINE = "LIFELINE"
 """Set where the parent holds this process's standard input open as long as it lives."""
+RUN, RUN_BEFORE = "LIFELINE_RUN", "LIFELINE_RUN_BEFORE"
+"""Set by a parent that starts a process again and again: the name of this run, and of the one that ended before it."""
 
 _LOOK_SECONDS = 0.5
 
 
 def hold_lifeline() -> None:
     """Stop this process, as by SIGTERM, when its parent is gone."""
-    if os.environ.pop(VARIABLE, None):
+    if os.environ.pop(LIFELINE, None):
         threading.Thread(target=_wait, name="lifeline", daemon=True).start()
 
 

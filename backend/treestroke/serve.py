@@ -3,6 +3,7 @@
 import errno
 import fcntl
 import os
+import secrets
 import shutil
 import signal
 import socket
@@ -16,8 +17,10 @@ from pathlib import Path
 from types import FrameType
 
 from treestroke.core.errors import SettingsError
-from treestroke.lifeline import VARIABLE as LIFELINE
+from treestroke.lifeline import LIFELINE, RUN, RUN_BEFORE
 from treestroke.settings import Settings
+from treestroke.store.folder import LOCK, own_folder
+from treestroke.store.versions import check_version
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 STOP_SECONDS = 10.0
@@ -29,12 +32,16 @@ _START_SECONDS = 60.0
 
 
 class Child:
-    """One process that is started again whenever it ends."""
+    """One process that is started again whenever it ends.
+
+    Each run has a name, and is told that of the one before it, which is surely over.
+    """
 
     def __init__(self, module: str, environment: dict[str, str], sockets: tuple[int, ...] = ()) -> None:
         self.module = module
         self._environment, self._sockets = environment, sockets
         self._process: subprocess.Popen[bytes] | None = None
+        self._run = ""
         self._failures = 0
         self._next = self._started = 0.0
 
@@ -49,11 +56,12 @@ class Child:
             self._process = None
             print(f"treestroke: {self.module} ended ({code}) and is started again", file=sys.stderr, flush=True)
         if self._process is None and now >= self._next:
+            before, self._run = self._run, secrets.token_hex(12)
             command = [sys.executable, "-m", self.module]
             # Standard output is the launcher's own, for its one line; what the processes have to say is on stderr.
             self._process = subprocess.Popen(
                 command,
-                env=self._environment,
+                env={**self._environment, RUN: self._run, RUN_BEFORE: before},
                 pass_fds=self._sockets,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
@@ -85,6 +93,8 @@ def serve(settings: Settings) -> int:
     ------
     SettingsError
         The address is not this machine's own: without keys nobody else may reach it. Or the port is taken.
+    Unusable
+        The data folder is open to others and not plainly ours, or holds the database of a newer program.
     OSError
         The data folder cannot be written.
     """
@@ -95,7 +105,9 @@ def serve(settings: Settings) -> int:
         )
     folder = settings.folder
     with _listen(settings) as listener:
-        _own(folder)
+        own_folder(folder)
+        _hold(folder)
+        check_version(folder)
         _clear(folder / "tmp")
         environment = {
             **os.environ,
@@ -141,10 +153,9 @@ def _listen(settings: Settings) -> socket.socket:
         ) from None
 
 
-def _own(folder: Path) -> None:
-    """Keep the data folder to this user and to this process, as long as it lives."""
-    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    lock = os.open(folder / "lock", os.O_CREAT | os.O_RDWR, 0o600)  # held until this process ends
+def _hold(folder: Path) -> None:
+    """Keep the data folder to this process, as long as it lives."""
+    lock = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o600)  # held until this process ends
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

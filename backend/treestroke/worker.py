@@ -20,18 +20,21 @@ from celery.worker.request import Request
 from sqlalchemy import select
 from sqlalchemy.exc import SQLAlchemyError
 
-from treestroke.lifeline import end_with, hold_lifeline
+from treestroke.lifeline import RUN, RUN_BEFORE, end_with, hold_lifeline
 from treestroke.logs import start_logging
 from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
-from treestroke.service.dispatch import bury_dead, holds_jobs, say_alive, say_gone
+from treestroke.service.dispatch import holds_jobs, say_alive, say_gone
+from treestroke.service.engine import engine
 from treestroke.service.failures import problem_of
 from treestroke.service.jobs import grow_model
 from treestroke.service.pool import limit_memory
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.folder import own_folder
 from treestroke.store.leases import end, lose
 from treestroke.store.tables import Model
+from treestroke.store.versions import check_version
 
 NICENESS = 10
 """Growing gives way to tracing, which somebody waits for with the pen in hand."""
@@ -45,19 +48,27 @@ log = structlog.get_logger()
 
 
 def main() -> int:
-    """Run a worker until it is told to stop."""
+    """Run a worker until it is told to stop.
+
+    Raises
+    ------
+    Unusable
+        The data folder is open to others and not plainly ours, or holds the database of a newer program.
+    """
     settings = read_settings()
     start_logging()
     hold_lifeline()
+    own_folder(settings.folder)
     database = Database(settings.folder)
     os.register_at_fork(before=_unforked.acquire, after_in_parent=_unforked.release, after_in_child=_unforked.release)
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
         return 1
-    host = socket.gethostname()
-    with _briefly(database):
-        bury_dead(database, host, _lives)
-    name = f"{host}/{os.getpid()}/{secrets.token_hex(4)}"
+    name = os.environ.pop(RUN, "") or secrets.token_hex(12)
+    if before := os.environ.pop(RUN_BEFORE, ""):
+        with _briefly(database):
+            say_gone(database, before, problem_of("worker_lost"))
+    grown_by = engine()  # before any child is forked: it is that of the code which all of them have loaded
     app = make_worker(settings, database, name)
     signals.setup_logging.connect(_keep_logging, weak=False)
     # Running as root is the container's or the person's choice; messages are JSON and hold an id.
@@ -69,14 +80,14 @@ def main() -> int:
     @signals.worker_ready.connect(weak=False)
     def _begin(**_: object) -> None:
         beats.start()
-        log.info("worker_ready", worker=name, slots=slots)
+        log.info("worker_ready", worker=name, slots=slots, engine=grown_by, process=os.getpid())
 
     @signals.worker_shutting_down.connect(weak=False)
     def _end(**_: object) -> None:
         threading.Thread(target=_leave, args=(database, name), name="leaving", daemon=True).start()
 
     app.Worker(
-        hostname=f"treestroke@{host}",
+        hostname=f"treestroke@{socket.gethostname()}",
         pool_cls="prefork",
         concurrency=slots,
         without_gossip=True,
@@ -88,18 +99,6 @@ def main() -> int:
     say_gone(database, name)
     log.info("worker_stopped", worker=name)
     return 0
-
-
-def _lives(process: int) -> bool:
-    """Tell whether a process of this number runs, other than this one, which is new."""
-    if process == os.getpid():
-        return False
-    with suppress(PermissionError):  # it is somebody else's, and runs
-        try:
-            os.kill(process, 0)
-        except ProcessLookupError:
-            return False
-    return True
 
 
 @contextmanager
@@ -208,6 +207,7 @@ def _wait_for_tables(database: Database) -> bool:
     deadline = time.monotonic() + _SCHEMA_SECONDS
     while time.monotonic() < deadline:
         with _briefly(database):
+            check_version(database.path.parent)
             if database.path.exists() and database.current():
                 return True
         time.sleep(0.2)

@@ -138,6 +138,29 @@ def test_a_download_without_a_name_is_named_after_the_id(service: Service, photo
     assert told == f'attachment; filename="{model["id"]}.glb"'
 
 
+@pytest.mark.parametrize("harm", ["flip", "remove"])
+@pytest.mark.parametrize("asked", ["", "Range", "If-None-Match"])
+def test_a_damaged_file_is_an_error_and_not_its_old_tag(
+    service: Service, made: dict[str, Any], harm: str, asked: str
+) -> None:
+    place = made["files"]["tree.glb"]
+    sha256 = service.client.get(place).headers["etag"].strip('"')
+    path = service.data / "blobs" / sha256[:2] / sha256
+    whole = path.read_bytes()
+    path.unlink()
+    if harm == "flip":
+        path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    headers = {"Range": "bytes=0-3", "If-None-Match": f'"{sha256}"'}
+    try:
+        answer = service.client.get(place, headers={asked: headers[asked]} if asked else {})
+    finally:
+        path.write_bytes(whole)
+    assert (answer.status_code, answer.json()["code"]) == (500, "file_damaged")
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert "etag" not in answer.headers
+    assert service.client.get(place).content == whole
+
+
 def test_the_pictures_open_and_the_strokes_are_those_that_were_sent(client: httpx.Client, made: dict[str, Any]) -> None:
     preview = Image.open(io.BytesIO(client.get(made["files"]["preview.png"]).content))
     assert preview.width > preview.height

@@ -119,7 +119,8 @@ def strike(service: Service, chance: random.Random, later: list[threading.Timer]
     whole, act = kind.endswith("worker"), kind.split()[0]
     victims = [worker, *children] if whole else children[:1]
     running = [row for row in service.history.rows() if row["status"] == "running"]
-    hit = {(row["id"], row["attempt"]) for row in running if f"/{worker.pid}/" in str(row["worker"])}
+    name = service.name_of(worker)
+    hit = {(row["id"], row["attempt"]) for row in running if row["worker"] == name}
     for victim in victims:
         victim.hit(signal.SIGKILL if act == "kill" else signal.SIGSTOP)
     if act == "stop":

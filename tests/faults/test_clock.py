@@ -21,7 +21,7 @@ def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
 ) -> None:
     queued = add_model(database)
     with database.writing() as session:
-        assert claim(session, queued.id, "token", "worker") is not None
+        assert claim(session, queued.id, "token", "worker", "engine") is not None
     say_alive(database, "worker", 1)
     dispatcher = Dispatcher(database, Blobs(tmp_path), lambda id: None, 0)
     real = time.time

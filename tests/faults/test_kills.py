@@ -1,10 +1,17 @@
 """Processes that die in the middle of a job: `kill -9`, each in its turn."""
 
+import socket
 from concurrent.futures import ThreadPoolExecutor
 
 import httpx
+from sqlalchemy import delete
 from tests.faults.harness import Service
 from tests.faults.processes import wait_for
+from tests.rows import add_model
+
+from treestroke.service.dispatch import say_alive
+from treestroke.store.database import Database
+from treestroke.store.tables import Model, Worker
 
 AGAIN_SECONDS = 30
 """A lost job is ready again within this, beside its own time."""
@@ -20,12 +27,30 @@ def test_a_job_whose_process_dies_is_grown_again(service: Service) -> None:
 
 
 def test_a_job_whose_worker_dies_with_its_child_is_grown_again(service: Service) -> None:
-    id = service.ask()
+    id, expired = service.ask(), len(service.logged("attempt_lost"))
     service.wait_running(id)
     for process in service.workers() + service.growers():
         process.hit()
     (row,) = service.finish([id], AGAIN_SECONDS)
     assert (row["status"], row["attempt"]) == ("succeeded", 2)
+    assert len(service.logged("attempt_lost")) == expired  # the next run gave it back before its lease ran out
+
+
+def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: Service) -> None:
+    """As where two containers have one name: the other's process 1 is nobody's here, and lives all the same."""
+    service.finish()
+    database, name = Database(service.data), f"{socket.gethostname()}/{2**22 - 1}/abcd"
+    say_alive(database, name, 1)
+    held = add_model(database, status="running", attempt=1, worker=name, claim="token", settings={})
+    (here,) = service.workers()
+    here.hit()
+    wait_for(lambda: [one for one in service.workers() if one.pid != here.pid and service.name_of(one)], 20, "another")
+    row = service.row(held.id)
+    assert (row["status"], row["worker"], row["attempt"]) == ("running", name, 1)
+    with database.writing() as session:
+        session.execute(delete(Model).where(Model.id == held.id))
+        session.execute(delete(Worker).where(Worker.id == name))
+    database.close()
 
 
 def test_a_worker_that_dies_leaves_no_process_behind(service: Service) -> None:

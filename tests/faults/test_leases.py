@@ -31,5 +31,5 @@ def test_a_worker_that_comes_back_after_its_lease_changes_nothing(broker_url: st
 
 def group_of(service: Service, row: Row) -> list[Process]:
     """Give the worker that has a job, and its child."""
-    worker = next(one for one in service.workers() if f"/{one.pid}/" in row["worker"])
+    worker = next(one for one in service.workers() if service.name_of(one) == row["worker"])
     return [worker, *service.growers(worker)]

@@ -1,4 +1,4 @@
-"""Workers that are gone, as another one of their host finds them, and the dispatcher's own thread."""
+"""Workers that are gone, as whoever started them says."""
 
 import threading
 import time
@@ -8,7 +8,8 @@ import pytest
 from sqlalchemy import text
 from tests.rows import add_model, find
 
-from treestroke.service.dispatch import Dispatcher, bury_dead, say_alive
+from treestroke.service.dispatch import Dispatcher, say_alive, say_gone
+from treestroke.service.failures import problem_of
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import Worker
@@ -19,25 +20,19 @@ def held_by(database: Database, worker: str, attempt: int = 1) -> str:
     return add_model(database, status="running", attempt=attempt, worker=worker, claim="token").id
 
 
-def test_jobs_of_dead_workers_of_this_host_queue_again_at_once(database: Database) -> None:
-    dead, alive, elsewhere = (held_by(database, name) for name in ("here/7/a", "here/8/b", "there/7/c"))
-    bury_dead(database, "here", lambda process: process == 8)
-    assert [find(database, id).status for id in (dead, alive, elsewhere)] == ["queued", "running", "running"]
+def test_jobs_of_a_run_that_is_over_queue_again_at_once_and_nobody_else_s(database: Database) -> None:
+    over, other = held_by(database, "run-1"), held_by(database, "run-2")
+    say_gone(database, "run-1", problem_of("worker_lost"))
+    assert [find(database, id).status for id in (over, other)] == ["queued", "running"]
     with database.reading() as session:
-        assert {worker.id for worker in session.query(Worker)} == {"here/8/b", "there/7/c"}
+        assert [worker.id for worker in session.query(Worker)] == ["run-2"]
 
 
 def test_a_job_whose_workers_died_three_times_fails(database: Database) -> None:
-    id = held_by(database, "here/7/a", attempt=3)
-    bury_dead(database, "here", lambda _: False)
+    id = held_by(database, "run-1", attempt=3)
+    say_gone(database, "run-1", problem_of("worker_lost"))
     row = find(database, id)
     assert (row.status, row.error and row.error["code"]) == ("failed", "worker_lost")
-
-
-def test_a_host_s_name_may_have_strokes_of_its_own(database: Database) -> None:
-    id = held_by(database, "a/b/7/x")
-    bury_dead(database, "a/b", lambda _: False)
-    assert find(database, id).status == "queued"
 
 
 @pytest.fixture
@@ -55,7 +50,7 @@ def dispatcher(database: Database, sent: list[str]) -> Iterator[Dispatcher]:
 def test_a_row_that_cannot_be_read_keeps_no_other_job_from_its_worker(
     database: Database, dispatcher: Dispatcher, sent: list[str]
 ) -> None:
-    broken = held_by(database, "here/7/a")
+    broken = held_by(database, "run-1")
     with database.writing() as session:
         session.execute(text("UPDATE models SET settings = '{' WHERE id = :id"), {"id": broken})
     waiting = add_model(database).id

@@ -28,7 +28,7 @@ from treestroke.store.tables import Photo
 def folder(tmp_path: Path) -> Path:
     """A data folder with a database and one photo in it."""
     place = tmp_path / "data"
-    place.mkdir()
+    place.mkdir(0o700)
     database = Database(place)
     database.migrate()
     blob = Blobs(place).put(b"photo")
@@ -66,8 +66,8 @@ def test_all_is_well(folder: Path) -> None:
         "packages", "growth engine", "tracers", "data folder", "disk", "web process", "queue", "database", "files",
         "workers",
     ]  # fmt: skip
-    assert {part: one.found for part, one in found.items() if not one.well} == {}
-    assert found["files"].found == "all 1 there"
+    assert ill(folder) == {}
+    assert found["files"].found == "all 1 whole"
 
 
 @pytest.mark.parametrize(("broker_url", "missing"), [("", ""), ("redis://127.0.0.1/0", "missing: packaging")])
@@ -208,13 +208,27 @@ def test_a_database_of_another_version_is_ill(folder: Path) -> None:
     with closing(sqlite3.connect(folder / "treestroke.sqlite3")) as connection:
         connection.execute("UPDATE alembic_version SET version_num = 'later'")
         connection.commit()
-    assert ill(folder) == {"database": "of another version"}
+    found = findings(folder)["database"]
+    assert "a newer treestroke made this database (its version is later" in found.found
+    assert "install that treestroke again" in found.mend
+    with closing(sqlite3.connect(folder / "treestroke.sqlite3")) as connection:
+        connection.execute("UPDATE alembic_version SET version_num = '0004'")
+        connection.commit()
+    assert ill(folder) == {"database": "of an older version"}
 
 
-def test_a_file_that_is_gone_is_ill(folder: Path) -> None:
+def test_files_that_are_damaged_or_gone_are_ill_and_named(folder: Path) -> None:
     (blob,) = (path for path in (folder / "blobs").rglob("*") if path.is_file())
+    blob.write_bytes(b"phoso")
+    assert ill(folder) == {"files": f"1 of 1 bad: {blob.name}: damaged"}
     blob.unlink()
-    assert ill(folder) == {"files": f"1 of 1 missing, such as {blob.name[:12]}"}
+    assert ill(folder) == {"files": f"1 of 1 bad: {blob.name}: missing"}
+
+
+def test_a_folder_that_others_may_look_into_is_ill(folder: Path) -> None:
+    folder.chmod(0o755)
+    found = findings(folder)["data folder"]
+    assert (found.well, found.mend) == (False, f"chmod 700 {folder}")
 
 
 def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
@@ -234,6 +248,6 @@ def test_the_command_says_what_mends_it_and_leaves_with_1(
     shutil.rmtree(folder / "blobs")
     assert main(["doctor", "--data", str(folder)]) == 1
     told = capsys.readouterr()
-    assert "ILL  files          1 of 1 missing" in told.out
-    assert f"                    mend: restore {folder / 'blobs'} from a copy" in told.out
-    assert told.err == "treestroke: 1 of 10 parts are ill\n"
+    assert "ILL  files          1 of 1 bad: " in told.out
+    assert f"                    mend: restore them from a copy of {folder / 'blobs'}" in told.out
+    assert told.err == "treestroke: 1 of 8 parts are ill\n"

@@ -10,9 +10,11 @@ from tests.rows import add_model
 
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
+from treestroke.service.engine import engine
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.service.wishes import Wish
+from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import claim, succeed
 from treestroke.store.tables import Model, Photo
@@ -22,10 +24,10 @@ def wish(shelf: Shelf, photo: str, **others: Any) -> Wish:
     return models.read_wish(shelf, json.dumps(drawn.wish(photo, **others)).encode())
 
 
-def finished(shelf: Shelf, id: str, glb: bytes) -> None:
+def finished(shelf: Shelf, id: str, glb: bytes, by: str = "") -> None:
     """Publish a model as its worker does."""
     with shelf.database.writing() as session:
-        job = claim(session, id, "t", "w")
+        job = claim(session, id, "t", "w", by or engine())
         assert job is not None
         assert succeed(session, job, {"score": {}}, {"tree.glb": (shelf.blobs.put(glb), len(glb))})
 
@@ -44,6 +46,45 @@ def test_a_model_is_answered_from_one_of_the_same_input_alone(shelf: Shelf) -> N
     assert [models.ask_for_model(shelf, one, None).row.status for one in again] == ["succeeded"] * 2
     other = [wish(shelf, first_photo, seed=1), wish(shelf, first_photo, settings={}), wish(shelf, other_photo)]
     assert [models.ask_for_model(shelf, one, None).row.status for one in other] == ["queued"] * 3
+
+
+def test_a_model_that_another_engine_grew_is_grown_anew(shelf: Shelf) -> None:
+    """As in a data folder that outlives an upgrade, or where a worker is of another version than the web process."""
+    photo = photos.add_photo(shelf, drawn.encoded()).id
+    first = models.ask_for_model(shelf, wish(shelf, photo), "key").row
+    assert first.engine == engine()
+    finished(shelf, first.id, b"tree", by="treestroke 0.1.0+other")
+    assert models.see(shelf.database, first.id).row.engine == "treestroke 0.1.0+other"
+    assert models.ask_for_model(shelf, wish(shelf, photo), None).row.status == "queued"
+    # What is sent again is the same request, whoever grew it.
+    assert models.ask_for_model(shelf, wish(shelf, photo), "key").row.id == first.id
+
+
+@pytest.mark.parametrize("harm", ["flip", "remove"])
+def test_a_model_whose_files_are_damaged_is_no_answer_and_growing_it_anew_mends_it(shelf: Shelf, harm: str) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded()).id
+    first = models.ask_for_model(shelf, wish(shelf, photo), None).row
+    finished(shelf, first.id, b"tree")
+    blob = models.see(shelf.database, first.id).files["tree.glb"].blob
+    place = shelf.blobs.path(blob)
+    place.write_bytes(b"tref") if harm == "flip" else place.unlink()
+    second = models.ask_for_model(shelf, wish(shelf, photo), None).row
+    assert second.status == "queued"
+    finished(shelf, second.id, b"tree")
+    assert models.ask_for_model(shelf, wish(shelf, photo), None).row.status == "succeeded"
+    assert shelf.blobs.get(blob) == b"tree"
+
+
+def test_a_request_with_a_damaged_photo_is_refused_and_uploading_it_again_mends_it(shelf: Shelf) -> None:
+    photo = photos.add_photo(shelf, drawn.encoded(seed=7))
+    shelf.blobs.path(photo.blob).write_bytes(b"no photo")
+    with pytest.raises(Damaged):
+        models.ask_for_model(shelf, wish(shelf, photo.id), None)
+    with pytest.raises(Damaged):
+        photos.trace_photo(shelf, photo.id, json.dumps(drawn.STROKES).encode())
+    assert count(shelf, Model) == 0
+    assert photos.add_photo(shelf, drawn.encoded(seed=7)).blob == photo.blob
+    assert models.ask_for_model(shelf, wish(shelf, photo.id), None).row.status == "queued"
 
 
 def test_a_model_of_a_deleted_twin_keeps_the_files(shelf: Shelf) -> None:

@@ -1,172 +1,303 @@
-import os
+import threading
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from sqlalchemy import func, select, update
+from sqlalchemy.orm import Session
+from tests.plans import planned, scans
 from tests.rows import add_model
 
-from treestroke.service import models
+from treestroke.service import models, retention
 from treestroke.service.photos import NotFound
-from treestroke.service.retention import Swept, referenced, sweep
+from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import File, Model, Photo, Replay
+from treestroke.store.queries import photo as photo_by_id
+from treestroke.store.queries import referenced
+from treestroke.store.tables import File, Model, Photo, Replay, Stray
 
-DAY = 86_400.0
+HOUR, DAY = 3600.0, 86_400.0
+NOTHING = Swept(0, 0, 0)
+
+
+class Clocks:
+    """The clock on the wall, and that of the process, which alone never jumps."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.wall, self.running = time.time(), 0.0
+        monkeypatch.setattr(retention.time, "time", lambda: self.wall)
+
+    def pass_(self, seconds: float) -> None:
+        self.wall += seconds
+        self.running += seconds
 
 
 class Kept:
-    """A store with rows of any age."""
+    """A store whose process sweeps it now and then."""
 
-    def __init__(self, folder: Path) -> None:
-        self.database, self.blobs = Database(folder), Blobs(folder)
+    def __init__(self, folder: Path, clocks: Clocks) -> None:
+        self.database, self.blobs, self.clocks = Database(folder), Blobs(folder), clocks
         self.database.migrate()
+        self.restart()
 
-    def blob(self, content: bytes) -> str:
-        name = self.blobs.put(content)
-        then = time.time() - 2 * 3600
-        os.utime(self.blobs.path(name), (then, then))
-        return name
+    def restart(self, keep_days: float = 0) -> None:
+        clocks = self.clocks
+        self._sweeper = Sweeper(self.database, self.blobs, keep_days, threading.Event(), lambda: clocks.running)
 
-    def photo(self, id: str, age_days: float = 0, deleted_days: float | None = None) -> Photo:
-        now = time.time()
-        row = Photo(
-            id=id,
-            sha256="",
-            width=1,
-            height=1,
-            blob=self.blob(id.encode()),
-            created=now - age_days * DAY,
-            deleted=None if deleted_days is None else now - deleted_days * DAY,
-        )
+    def sweep(self) -> Swept:
+        return self._sweeper.sweep()
+
+    def sweep_for(self, seconds: float) -> Swept:
+        """Let time pass, with a sweep every hour; give what went in all."""
+        went = [self.sweep()]
+        for _ in range(round(seconds / HOUR)):
+            self.clocks.pass_(HOUR)
+            went.append(self.sweep())
+        return Swept(*(sum(getattr(one, name) for one in went) for name in ("models", "photos", "blobs")))
+
+    def photo(self, id: str) -> Photo:
+        row = Photo(id=id, sha256="", width=1, height=1, blob=self.blobs.put(id.encode()), created=self.clocks.wall)
         with self.database.writing() as session:
             session.add(row)
         return row
 
-    def model(self, age_days: float = 0, deleted_days: float | None = None, status: str = "succeeded") -> Model:
-        now = time.time()
-        row = add_model(
-            self.database,
-            status=status,
-            photo_blob=self.blob(b"photo"),
-            strokes_blob=self.blob(b"strokes"),
-            created=now - age_days * DAY,
-            deleted=None if deleted_days is None else now - deleted_days * DAY,
-        )
-        tree = self.blob(b"tree of " + row.id.encode())
+    def model(self, status: str = "succeeded", **parts: str) -> Model:
+        blobs = {"photo_blob": self.blobs.put(b"photo"), "strokes_blob": self.blobs.put(b"strokes")}
+        row = add_model(self.database, status=status, created=self.clocks.wall, **{**blobs, **parts})
+        tree = self.blobs.put(b"tree of " + row.id.encode())
         with self.database.writing() as session:
             session.add(File(model=row.id, name="tree.glb", blob=tree, bytes=4))
         return row
 
-    def count(self, table: type[Model] | type[Photo] | type[File] | type[Replay]) -> int:
+    def delete(self, row: Model) -> None:
+        models.delete(self.database, row.id)
+
+    def count(self, table: type[Model] | type[Photo] | type[File] | type[Replay] | type[Stray]) -> int:
         with self.database.reading() as session:
             return session.scalar(select(func.count()).select_from(table)) or 0
 
-    def sweep(self, keep_days: float = 0, young_s: float = 3600) -> Swept:
-        return sweep(self.database, self.blobs, keep_days, young_s)
+    def files(self) -> set[str]:
+        return {path.name for _, paths in self.blobs.places() for path in paths}
+
+    def named(self) -> set[str]:
+        with self.database.reading() as session:
+            return referenced(session)
 
 
 @pytest.fixture
-def kept(tmp_path: Path) -> Iterator[Kept]:
-    opened = Kept(tmp_path)
+def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
+    opened = Kept(tmp_path, Clocks(monkeypatch))
     yield opened
     opened.database.close()
 
 
-def test_what_is_not_deleted_stays_for_ever(kept: Kept) -> None:
-    kept.model(age_days=9999)
-    kept.photo("pho_1", age_days=9999)
-    assert kept.sweep() == Swept(0, 0, 0)
+def test_what_is_not_deleted_stays(kept: Kept) -> None:
+    kept.model()
+    kept.photo("pho_1")
+    assert kept.sweep_for(30 * HOUR) == NOTHING
     assert (kept.count(Model), kept.count(Photo), kept.count(File)) == (1, 1, 1)
 
 
 def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
-    row = kept.model(deleted_days=1.01)
-    assert kept.sweep() == Swept(1, 0, 3)
-    assert (kept.count(Model), kept.count(File)) == (0, 0)
+    row = kept.model()
+    kept.delete(row)
+    assert kept.sweep_for(23 * HOUR) == NOTHING
+    assert models.restore(kept.database, row.id).files["tree.glb"]
+    kept.delete(row)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 3)
+    assert (kept.count(Model), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
     with pytest.raises(NotFound):
         models.restore(kept.database, row.id)
 
 
+@pytest.mark.parametrize("jump", [25 * HOUR, -25 * HOUR, 400 * DAY])
+@pytest.mark.parametrize("again", [False, True])
+def test_a_clock_that_jumps_purges_nothing_that_was_just_written_or_deleted(
+    kept: Kept, jump: float, again: bool
+) -> None:
+    kept.restart(keep_days=1)
+    kept.sweep()
+    kept.delete(kept.model())
+    kept.model()
+    photo, name = kept.photo("pho_1"), kept.blobs.put(b"about to be named")
+    kept.clocks.wall += jump
+    for _ in range(3):
+        if again:
+            kept.restart(keep_days=1)  # the first sweep of a process knows the wall's clock alone
+        assert (kept.sweep().models, kept.count(Model), kept.count(Photo)) == (0, 2, 1)
+        with kept.database.reading() as session:
+            assert photo_by_id(session, photo.id) is not None
+        assert kept.blobs.get(name)
+
+
+def test_no_one_stretch_in_which_nobody_watched_counts_as_a_day(kept: Kept) -> None:
+    kept.delete(kept.model())
+    kept.sweep()
+    went = []
+    for _ in range(3):
+        kept.clocks.wall += 100 * DAY
+        kept.restart()
+        went.append(kept.sweep().models)
+    assert went == [0, 1, 0]
+    assert UNWATCHED_SECONDS * 2 == DAY
+
+
 @pytest.mark.parametrize("part", ["front", "side", "leaf", "fruit"])
 def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str) -> None:
-    row, blob = kept.model(), kept.blob(part.encode())
-    with kept.database.writing() as session:
-        session.execute(update(Model).values({f"{part}_blob": blob, "photo": None, "photo_blob": None}))
-    assert blob in referenced(kept.database)
-    assert kept.sweep().blobs == 1  # the photo's
-    with kept.database.writing() as session:
-        session.execute(update(Model).where(Model.id == row.id).values(deleted=time.time() - 1.01 * DAY))
-    assert kept.sweep() == Swept(1, 0, 3)
+    blob = kept.blobs.put(part.encode())
+    row = kept.model(**{f"{part}_blob": blob})
+    assert blob in kept.named()
+    assert kept.sweep_for(2 * HOUR) == NOTHING
+    kept.delete(row)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 4)
     assert not kept.blobs.path(blob).exists()
 
 
-def test_a_deleted_model_is_restored_with_its_files_before(kept: Kept) -> None:
-    row = kept.model(deleted_days=0.99)
-    assert kept.sweep() == Swept(0, 0, 0)
-    seen = models.restore(kept.database, row.id)
-    assert kept.blobs.get(seen.files["tree.glb"].blob)
-    assert seen.row.deleted is None
-
-
-def test_a_model_that_is_restored_in_time_outlives_the_day(kept: Kept) -> None:
-    row = kept.model(deleted_days=0.99)
-    models.restore(kept.database, row.id)
-    with kept.database.writing() as session:
-        session.execute(update(Model).values(created=0.0))
-    assert kept.sweep() == Swept(0, 0, 0)
-
-
 def test_a_file_that_two_models_share_stays_with_the_other(kept: Kept) -> None:
-    gone, stays = kept.model(deleted_days=2), kept.model()
+    gone, stays = kept.model(), kept.model()
     with kept.database.writing() as session:
         shared = session.get_one(File, (gone.id, "tree.glb")).blob
         session.get_one(File, (stays.id, "tree.glb")).blob = shared
-    kept.sweep()
+    kept.delete(gone)
+    kept.sweep_for(26 * HOUR)
     assert kept.blobs.path(shared).exists()
-    assert shared in referenced(kept.database)
+    assert shared in kept.named() == kept.files()
 
 
 def test_a_deleted_photo_goes_after_a_day_and_its_models_keep_their_copy(kept: Kept) -> None:
-    photo, model = kept.photo("pho_1", deleted_days=1.01), kept.model()
-    assert kept.sweep() == Swept(0, 1, 1)
+    photo, model = kept.photo("pho_1"), kept.model()
+    with kept.database.writing() as session:
+        session.execute(update(Photo).values(deleted=kept.clocks.wall))
+    assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 1)
     assert not kept.blobs.path(photo.blob).exists()
-    assert kept.blobs.path(model.photo_blob).exists()
+    assert kept.blobs.path(model.photo_blob or "").exists()
 
 
 def test_a_deleted_model_that_still_grows_is_left_to_its_worker(kept: Kept) -> None:
-    kept.model(deleted_days=2, status="running")
-    assert kept.sweep() == Swept(0, 0, 0)
+    kept.delete(kept.model(status="running"))
+    assert kept.sweep_for(26 * HOUR) == NOTHING
 
 
 def test_what_is_older_than_the_days_is_deleted_and_goes_a_day_later(kept: Kept) -> None:
-    old, young, growing = kept.model(age_days=8), kept.model(age_days=6), kept.model(age_days=8, status="running")
-    kept.photo("pho_1", age_days=8)
-    assert kept.sweep(keep_days=7) == Swept(0, 0, 0)
+    kept.restart(keep_days=2)
+    old, growing, photo = kept.model(), kept.model(status="running"), kept.photo("pho_1")
+    assert kept.sweep_for(47 * HOUR) == NOTHING
+    young = kept.model()
+    assert models.see(kept.database, old.id)
+    assert kept.sweep_for(2 * HOUR) == NOTHING
     with pytest.raises(NotFound):
         models.see(kept.database, old.id)
     for row in (young, growing):
         assert models.see(kept.database, row.id).row.id == row.id
-    with kept.database.writing() as session:
-        for table in (Model, Photo):
-            session.execute(update(table).where(table.deleted.is_not(None)).values(deleted=time.time() - 1.01 * DAY))
-    assert kept.sweep(keep_days=7) == Swept(1, 1, 2)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 2)
+    assert not kept.blobs.path(photo.blob).exists()
     assert kept.count(Model) == 2
 
 
+def test_a_model_that_is_restored_is_kept_for_as_long_again(kept: Kept) -> None:
+    kept.restart(keep_days=1)
+    row = kept.model()
+    kept.sweep_for(26 * HOUR)
+    models.restore(kept.database, row.id)
+    kept.sweep_for(20 * HOUR)
+    assert models.see(kept.database, row.id)
+
+
 def test_keys_are_forgotten_after_a_day(kept: Kept) -> None:
-    with kept.database.writing() as session:
-        for key, age in (("old", 1.01), ("young", 0.99)):
-            session.add(Replay(key=key, fingerprint="", model="", created=time.time() - age * DAY))
-    kept.sweep()
+    def use(key: str) -> None:
+        with kept.database.writing() as session:
+            session.add(Replay(key=key, fingerprint="", model="", created=kept.clocks.wall))
+
+    use("old")
+    kept.sweep_for(20 * HOUR)
+    use("young")
+    kept.sweep_for(5 * HOUR)
     with kept.database.reading() as session:
         assert session.scalars(select(Replay.key)).all() == ["young"]
 
 
-def test_a_blob_that_no_row_names_yet_stays_while_it_is_young(kept: Kept) -> None:
+def test_a_file_that_no_row_names_goes_an_hour_after_it_was_seen(kept: Kept) -> None:
     name = kept.blobs.put(b"about to be named")
-    assert kept.sweep() == Swept(0, 0, 0)
-    assert kept.sweep(young_s=-1).blobs == 1
-    assert not kept.blobs.path(name).exists()
+    half = kept.blobs.path(name).with_name(".treestroke-0011")
+    half.write_bytes(b"half")
+    assert kept.sweep() == NOTHING
+    kept.clocks.pass_(HOUR - 1)
+    kept.restart()  # what was seen is remembered
+    assert kept.sweep() == NOTHING == kept.sweep()
+    kept.blobs.put(b"about to be named")  # somebody wants it
+    kept.clocks.pass_(2)
+    assert kept.sweep().blobs == 1
+    assert kept.files() == {name}
+    kept.clocks.pass_(HOUR)
+    assert kept.sweep().blobs == 1
+    assert (kept.files(), kept.count(Stray)) == (set(), 0)
+
+
+def test_a_stray_that_a_row_names_at_the_last_moment_stays(kept: Kept, monkeypatch: pytest.MonkeyPatch) -> None:
+    name = kept.blobs.put(b"strokes")
+    kept.sweep()
+    kept.clocks.pass_(HOUR)
+    remove = kept.blobs.remove
+    asked = []
+
+    def seen(path: Path, state: str) -> bool:
+        asked.append(path)
+        return remove(path, state)
+
+    states = retention._states
+
+    def named_meanwhile(paths: Iterator[Path]) -> dict[Path, str]:
+        found = states(paths)
+        add_model(kept.database, strokes_blob=name)
+        return found
+
+    monkeypatch.setattr(kept.blobs, "remove", seen)
+    monkeypatch.setattr(retention, "_states", named_meanwhile)
+    assert kept.sweep().blobs == 0
+    assert asked == []
+    assert kept.blobs.get(name) == b"strokes"
+
+
+def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(retention, "_STEP_ROWS", 10)
+    for _ in range(35):
+        kept.delete(kept.model())
+    kept.sweep()
+    left: list[int] = []
+    writing = kept.database.writing
+
+    @contextmanager
+    def watched() -> Iterator[Session]:
+        left.append(kept.count(Model))
+        with writing() as session:
+            yield session
+
+    monkeypatch.setattr(kept.database, "writing", watched)
+    kept.clocks.pass_(DAY)
+    assert kept.sweep().models == 35
+    assert sorted(set(left), reverse=True) == [35, 25, 15, 5, 0]
+
+
+def test_a_sweep_reads_no_whole_table(kept: Kept) -> None:
+    kept.restart(keep_days=1)
+    kept.delete(kept.model())
+    kept.model()
+    kept.photo("pho_1")
+    kept.sweep()
+    kept.clocks.pass_(2 * DAY)
+    with planned() as steps:
+        kept.sweep()
+    assert scans(steps) == []
+    assert any("ix_models_deleted" in step for step in steps)
+
+
+def test_a_sweep_that_is_told_to_stop_stops(kept: Kept, tmp_path: Path) -> None:
+    kept.delete(kept.model())
+    kept.sweep()
+    kept.clocks.pass_(2 * DAY)
+    over = threading.Event()
+    over.set()
+    assert Sweeper(kept.database, kept.blobs, 0, over).sweep() == NOTHING

@@ -2,26 +2,17 @@ import hashlib
 import os
 import threading
 import time
+import tracemalloc
 from pathlib import Path
 
 import pytest
 
-from treestroke.store.blobs import Blobs
-
-HOUR = 3600.0
+from treestroke.store.blobs import Blobs, Damaged, state_of
 
 
 @pytest.fixture
 def blobs(tmp_path: Path) -> Blobs:
     return Blobs(tmp_path)
-
-
-def aged(blobs: Blobs, content: bytes) -> str:
-    """Store bytes as if it had been two hours ago."""
-    name = blobs.put(content)
-    then = time.time() - 2 * HOUR
-    os.utime(blobs.path(name), (then, then))
-    return name
 
 
 def left(blobs: Blobs) -> set[str]:
@@ -49,59 +40,93 @@ def test_many_may_store_the_same_bytes_at_once(blobs: Blobs) -> None:
     assert left(blobs) == {hashlib.sha256(bytes(100_000)).hexdigest()}
 
 
-def test_a_sweep_removes_the_old_that_nobody_refers_to(blobs: Blobs) -> None:
-    old, kept, young = aged(blobs, b"old"), aged(blobs, b"kept"), blobs.put(b"young")
-    assert blobs.sweep({kept}, HOUR) == 1
-    assert left(blobs) == {kept, young}
-    assert old not in left(blobs)
+def flip(path: Path) -> None:
+    """Turn one bit of a file, as a disk does that goes bad."""
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
 
 
-def test_a_sweep_of_nothing_removes_nothing(tmp_path: Path) -> None:
-    assert Blobs(tmp_path / "never").sweep(set(), 0) == 0
+def test_a_damaged_blob_is_not_read(blobs: Blobs) -> None:
+    name = blobs.put(b"tree")
+    flip(blobs.path(name))
+    for read in (blobs.get, blobs.check):
+        with pytest.raises(Damaged, match=f"{name}: damaged"):
+            read(name)
+    blobs.path(name).unlink()
+    for read in (blobs.get, blobs.check):
+        with pytest.raises(Damaged, match=f"{name}: missing"):
+            read(name)
 
 
-def test_storing_a_blob_again_makes_it_young(blobs: Blobs) -> None:
-    name = aged(blobs, b"tree")
-    blobs.put(b"tree")
-    assert blobs.sweep(set(), HOUR) == 0
+def test_storing_a_damaged_blob_again_mends_it(blobs: Blobs) -> None:
+    name = blobs.put(b"tree")
+    flip(blobs.path(name))
+    assert blobs.put(b"tree") == name
     assert blobs.get(name) == b"tree"
 
 
-def test_what_interrupted_writers_and_sweepers_left_goes_too(blobs: Blobs) -> None:
-    name = aged(blobs, b"tree")
-    then = time.time() - 2 * HOUR
-    for stray in (".treestroke-0011", ".swept-0011"):
-        path = blobs.path(name).with_name(stray)
-        path.write_bytes(b"half")
-        os.utime(path, (then, then))
-    assert blobs.sweep({name}, HOUR) == 2
-    assert left(blobs) == {name}
+def test_a_blob_that_was_checked_is_checked_again_once_it_was_written_to(blobs: Blobs) -> None:
+    name = blobs.put(bytes(100_000))
+    path, settled = blobs.path(name), time.time() + 1.1
+    while time.time() < settled:
+        time.sleep(0.05)
+    assert blobs.check(name) == blobs.check(name) == path
+    times = path.stat()
+    flip(path)
+    os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
+    with pytest.raises(Damaged):
+        blobs.check(name)
 
 
-def test_a_blob_that_is_written_again_while_it_is_swept_survives(blobs: Blobs) -> None:
+def test_checking_takes_no_more_memory_than_a_piece(blobs: Blobs) -> None:
+    name = blobs.put(bytes(32 * 2**20))
+    tracemalloc.start()
+    try:
+        blobs.check(name)
+        assert tracemalloc.get_traced_memory()[1] < 2**20
+    finally:
+        tracemalloc.stop()
+
+
+def test_places_are_all_files_folder_by_folder(blobs: Blobs) -> None:
+    assert list(blobs.places()) == []
+    names = [blobs.put(b"%d" % at) for at in range(20)]
+    half = blobs.path(names[0]).with_name(".treestroke-0011")
+    half.write_bytes(b"half")
+    found = dict(blobs.places())
+    assert {path for files in found.values() for path in files} == {half, *map(blobs.path, names)}
+    assert all(path.parent.name == folder for folder, files in found.items() for path in files)
+
+
+def test_a_file_is_removed_in_the_state_it_was_seen_in_alone(blobs: Blobs) -> None:
+    path = blobs.path(blobs.put(b"tree"))
+    before = state_of(path)
+    blobs.put(b"tree")
+    assert not blobs.remove(path, before)
+    assert blobs.remove(path, state_of(path))
+    assert not blobs.remove(path, before)
+    assert left(blobs) == set()
+
+
+def test_a_blob_that_is_written_again_while_it_is_removed_survives(blobs: Blobs) -> None:
+    """Sweepers hold states that were true a moment ago, as after an hour: of each file the first that was seen."""
     contents = [b"%d" % at for at in range(20)]
-    names = [aged(blobs, content) for content in contents]
+    stale = {blobs.path(name): state_of(blobs.path(name)) for name in map(blobs.put, contents)}
     over = threading.Event()
 
     def sweep() -> None:
         while not over.is_set():
-            blobs.sweep(set(), HOUR)
+            for path, state in stale.items():
+                blobs.remove(path, state)
 
     sweepers = [threading.Thread(target=sweep) for _ in range(3)]
     for sweeper in sweepers:
         sweeper.start()
     for _ in range(5):
-        for content, name in zip(contents, names, strict=True):
+        for content in contents:
             blobs.put(content)
-            then = time.time() - 2 * HOUR
-            if content != contents[-1]:
-                try:
-                    os.utime(blobs.path(name), (then, then))
-                except FileNotFoundError:
-                    raise AssertionError("a young blob was swept") from None
-    for content in contents:
-        blobs.put(content)
     over.set()
     for sweeper in sweepers:
         sweeper.join()
-    assert {blobs.get(name) for name in names} == set(contents)
+    assert {blobs.get(path.name) for path in stale} == set(contents)

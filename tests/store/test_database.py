@@ -18,7 +18,7 @@ from tests.rows import add_model, find
 from tests.running import BACKEND
 
 from treestroke.store.database import Database
-from treestroke.store.tables import File, Model, Table, Worker
+from treestroke.store.tables import File, Model, Photo, Replay, Table, Worker
 
 
 def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
@@ -57,14 +57,44 @@ def test_the_migrations_make_the_tables_that_the_program_knows(database: Databas
     engine.dispose()
 
 
-def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) -> None:
-    database, settings = Database(tmp_path), Config()
+def test_a_folder_of_the_program_before_is_brought_up_to_date_with_all_its_rows(tmp_path: Path) -> None:
+    database = Database(tmp_path)
+    at_revision(database, "0004")
+    with closing(sqlite3.connect(database.path)) as plain:
+        plain.execute(
+            "INSERT INTO models (id, name, settings, seed, engine, fingerprint, status, phase_fraction, progress, seq,"
+            " attempt, beat, created, deleted) VALUES"
+            " ('mdl_1', 'Oak', '{}', 7, 'treestroke 0.1.0', 'f', 'succeeded', 0, 1, 1, 1, 0, 5.0, 6.0)"
+        )
+        plain.execute(
+            "INSERT INTO photos (id, sha256, width, height, blob, created) VALUES ('pho_1', 's', 2, 3, 'b', 5.0)"
+        )
+        plain.execute("INSERT INTO replays (key, fingerprint, model, created) VALUES ('k', 'f', 'mdl_1', 5.0)")
+        plain.commit()
+    database.migrate()
+    assert database.current()
+    row = find(database, "mdl_1")
+    assert (row.name, row.deleted, row.seen) == ("Oak", 6.0, None)
+    with database.reading() as session:
+        assert [(photo.id, photo.width, photo.seen) for photo in session.scalars(select(Photo))] == [("pho_1", 2, None)]
+        assert [(replay.key, replay.seen) for replay in session.scalars(select(Replay))] == [("k", None)]
+    database.close()
+
+
+def at_revision(database: Database, revision: str) -> None:
+    """Make the tables as an older program had them."""
+    settings = Config()
     settings.set_main_option("script_location", "treestroke.store:migrations")
     engine = create_engine(f"sqlite:///{database.path}")
     with engine.connect() as connection:
         settings.attributes["connection"] = connection
-        command.upgrade(settings, "0002")
+        command.upgrade(settings, revision)
     engine.dispose()
+
+
+def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) -> None:
+    database = Database(tmp_path)
+    at_revision(database, "0002")
     assert not database.current()
     with closing(sqlite3.connect(database.path)) as plain:
         columns = (
@@ -139,6 +169,58 @@ def test_a_reader_does_not_wait_for_a_writer(database: Database) -> None:
         began = time.monotonic()
         assert find(database, row.id).id == row.id
         assert time.monotonic() - began < 1
+
+
+def test_readers_do_not_wait_for_twenty_writers(database: Database) -> None:
+    """Each of them once held one of the connections that readers need."""
+    row, barrier = add_model(database), threading.Barrier(21)
+
+    def write(at: int) -> None:
+        barrier.wait()
+        with database.writing() as session:
+            session.add(Worker(id=str(at), slots=1, beat=1))
+
+    writers = [threading.Thread(target=write, args=(at,)) for at in range(20)]
+    with database.writing():
+        for writer in writers:
+            writer.start()
+        barrier.wait()
+        time.sleep(0.2)  # by now they stand in line
+        for _ in range(30):
+            assert find(database, row.id).id == row.id
+        with database.reading() as session:
+            assert session.scalars(select(Worker)).all() == []  # nobody has written: all of them still wait
+    for writer in writers:
+        writer.join()
+    with database.reading() as session:
+        assert len(session.scalars(select(Worker)).all()) == 20
+
+
+def test_many_readers_and_writers_have_few_files_open(database: Database) -> None:
+    row, before = add_model(database), len(os.listdir("/proc/self/fd"))
+    most = [before]
+
+    def ask() -> None:
+        for _ in range(4):
+            find(database, row.id)
+            with database.writing() as session:
+                session.get_one(Model, row.number).seq += 1
+            most.append(len(os.listdir("/proc/self/fd")))
+
+    threads = [threading.Thread(target=ask) for _ in range(40)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert find(database, row.id).seq == 1 + 40 * 4
+    assert max(most) - before < 30
+
+
+def test_a_writer_that_waits_too_long_says_so(database: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("treestroke.store.database._BUSY_SECONDS", 0.05)
+    with database.writing(), pytest.raises(OperationalError, match="database is locked"), database.writing():
+        pass
+    add_model(database)  # and the next one has its turn
 
 
 def test_a_writer_has_the_database_from_its_first_word_on(database: Database) -> None:

@@ -18,7 +18,7 @@ GLB = {"tree.glb": ("c" * 64, 7)}
 
 def claimed(database: Database, id: str, token: str = "t", worker: str = "w") -> Model | None:
     with database.writing() as session:
-        return leases.claim(session, id, token, worker)
+        return leases.claim(session, id, token, worker, "engine of w")
 
 
 def changed(database: Database, change: Callable[..., Any], *arguments: Any, **values: Any) -> Any:
@@ -52,6 +52,7 @@ def test_a_claim_begins_an_attempt_afresh(database: Database) -> None:
     job = claimed(database, row.id, "token", "worker")
     assert job is not None
     assert (job.status, job.attempt, job.claim, job.worker) == ("running", 2, "token", "worker")
+    assert job.engine == "engine of w"  # which may be another than that of the web process
     assert (job.phase, job.phase_fraction, job.progress) == (None, 0.0, 0.0)
     assert (job.beat, job.seq, job.started is None) == (row.beat + 1, row.seq + 1, False)
 

@@ -28,6 +28,7 @@ from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.folder import own_folder
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
@@ -67,7 +68,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
-    settings.folder.mkdir(parents=True, exist_ok=True)
+    own_folder(settings.folder)
     database, blobs = Database(settings.folder), Blobs(settings.folder)
     database.migrate()
     tracers = Tracers(settings.tracers, settings.trace_seconds, settings.memory_mb)

@@ -23,6 +23,7 @@ from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
 from treestroke.service.pool import CannotStart, Crashed, Overloaded
 from treestroke.service.tracing import NoRoom
+from treestroke.store.blobs import Damaged
 
 MEDIA_TYPE = "application/problem+json"
 _RETRY = {"Retry-After": "1"}
@@ -140,6 +141,12 @@ def _storage(request: Request, error: OSError | SQLAlchemyError) -> JSONResponse
     return problem(status, code, problem_of(code)["detail"], headers=_RETRY if status == 503 else None)
 
 
+def _damaged(_: Request, error: Damaged) -> JSONResponse:
+    log.error("file_damaged", file=str(error))
+    detail = "a file that the service kept is damaged or gone; upload the photo or ask for the model again"
+    return problem(500, "file_damaged", f"{detail}, and have `treestroke doctor` say what else is")
+
+
 def _http(request: Request, error: HTTPException) -> JSONResponse:
     headers, detail = dict(error.headers or {}), str(error.detail)
     if error.status_code == 405:
@@ -170,6 +177,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     Crowded: _crowded,
     Crashed: _crashed,
     CannotStart: _cannot_start,
+    Damaged: _damaged,
     OSError: _storage,
     SQLAlchemyError: _storage,
     HTTPException: _http,

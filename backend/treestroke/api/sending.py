@@ -21,7 +21,7 @@ def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]
     content: dict[str, Any] = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
     whole = {"content": {kind: {"schema": {"$ref": f"#/components/schemas/{schema}"}}}} if schema else content
     length = {"Content-Range": {"schema": {"type": "string"}, "description": "bytes FIRST-LAST/ALL"}}
-    problems = documented(403, 404, 416)
+    problems = documented(403, 404, 416, 500)
     problems[416]["headers"] = length
     return {
         200: {**whole, "description": "The file", "headers": _TAG_HEADER},
@@ -32,8 +32,14 @@ def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]
 
 
 def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: str | None = None) -> Response:
-    """Send a blob, which is named by its SHA-256, as `send_file` does."""
-    return send_file(request, shelf.blobs.path(blob), blob, kind, download)
+    """Send a blob, which is named by its SHA-256, as `send_file` does.
+
+    Raises
+    ------
+    Damaged
+        The file is not what it was: neither it nor its ETag is told.
+    """
+    return send_file(request, shelf.blobs.check(blob), blob, kind, download)
 
 
 def send_file(request: Request, path: Path, sha256: str, kind: str, download: str | None = None) -> Response:

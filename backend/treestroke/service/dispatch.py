@@ -16,7 +16,7 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke.service.failures import problem_of
-from treestroke.service.retention import sweep
+from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import lose
@@ -58,19 +58,21 @@ class Dispatcher:
     """A thread beside the web server; it holds nothing that another cannot find again in the database."""
 
     def __init__(self, database: Database, blobs: Blobs, send: Callable[[str], None], keep_days: float) -> None:
-        self._database, self._blobs = database, blobs
-        self._send, self._keep_days = send, keep_days
+        self._database, self._send = database, send
         self._jobs, self._workers = Watch[tuple[str, int]](), Watch[str]()
         self._sent: dict[str, float] = {}
         self._wake, self._stopped = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
-        self._quiet_until = self._sweep_at = 0.0
         self._well_at = time.monotonic()
+        self._sweeper = Sweeper(database, blobs, keep_days, self._stopped)
+        self._sweeping = threading.Thread(target=self._sweep, name="sweeper", daemon=True)
+        self._quiet_until = 0.0
         self.broker_takes = True
 
     def start(self) -> None:
         """Begin."""
         self._thread.start()
+        self._sweeping.start()
 
     @property
     def state(self) -> str:
@@ -90,12 +92,13 @@ class Dispatcher:
         """End; jobs that wait stay rows and are found by the next one."""
         self._stopped.set()
         self._wake.set()
-        self._thread.join(timeout=_TICK_SECONDS)
+        for thread in (self._thread, self._sweeping):
+            thread.join(timeout=_TICK_SECONDS)
 
     def _run(self) -> None:
         while not self._stopped.is_set():
             # Each has its turn, whatever became of the others.
-            done = [_tried(step) for step in (self.recover, self.dispatch, self.sweep)]
+            done = [_tried(step) for step in (self.recover, self.dispatch)]
             if all(done):
                 self._well_at = time.monotonic()
             else:
@@ -139,12 +142,14 @@ class Dispatcher:
                 return
 
     def sweep(self) -> None:
-        """Remove, now and then, what is to go."""
-        if time.monotonic() < self._sweep_at:
-            return
-        self._sweep_at = time.monotonic() + _SWEEP_SECONDS
-        swept = sweep(self._database, self._blobs, self._keep_days)
-        log.info("swept", **asdict(swept))
+        """Remove what is to go."""
+        log.info("swept", **asdict(self._sweeper.sweep()))
+
+    def _sweep(self) -> None:
+        """Sweep now and then, beside the dispatching: it may take a while."""
+        while not self._stopped.is_set():
+            _tried(self.sweep)
+            self._stopped.wait(_SWEEP_SECONDS)
 
     def _tell(self, id: str, now: float) -> bool:
         try:
@@ -160,13 +165,13 @@ class Dispatcher:
 
 
 def _tried(step: Callable[[], None]) -> bool:
-    """Take one of the dispatcher's steps; nothing that fails in it ends the thread, without which no job is grown."""
+    """Take one of the dispatcher's steps; nothing that fails in it ends its thread."""
     try:
         step()
     except (SQLAlchemyError, OSError) as error:
-        log.error("dispatch_failed", error=str(error))
+        log.error(f"{step.__name__}_failed", error=str(error))
     except Exception:
-        log.exception("dispatch_failed")
+        log.exception(f"{step.__name__}_failed")
     else:
         return True
     return False
@@ -197,21 +202,12 @@ def say_gone(database: Database, worker: str, error: dict[str, Any] | None = Non
             lose(session, job, error)
 
 
-def bury_dead(database: Database, host: str, lives: Callable[[int], bool]) -> None:
-    """Find the workers of this host whose process, by its number, is gone, and give their jobs back at once."""
-    with database.reading() as session:
-        names = session.scalars(select(Worker.id)).all()
-    for name in names:
-        at, process, _ = name.rsplit("/", 2)
-        if at == host and not lives(int(process)):
-            say_gone(database, name, problem_of("worker_lost"))
-
-
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
     """Give the queue's figures by name, each with what it means."""
     with database.reading() as session:
         counts = dict(session.execute(select(Model.status, func.count()).group_by(Model.status)).tuples().all())
-        oldest = session.scalar(select(func.min(Model.created)).where(Model.status == "queued"))
+        queued = select(Model.created).where(Model.status == "queued").order_by(Model.number).limit(1)
+        oldest = session.scalar(queued)
         slots = session.scalar(select(func.sum(Worker.slots))) or 0
     return {
         "models_queued": ("Models that wait.", counts.get("queued", 0)),

@@ -21,17 +21,21 @@ from treestroke.schemas import Health
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.pool import CannotStart, Crashed, Tracers
-from treestroke.service.retention import referenced
 from treestroke.settings import Settings
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
+from treestroke.store.folder import open_to_others
+from treestroke.store.queries import referenced
 from treestroke.store.tables import Model, Worker
+from treestroke.store.versions import Unusable, check_version
 
 _LEAST_FREE_BYTES = 500_000_000
 _BROKER_SECONDS = 2
 _WEB_SECONDS = 5.0
 _WATCH_SECONDS = 3.0
 """A worker that lives beats within this."""
+_NAMED = 20
+"""Bad files that are told by name."""
 _SERVE = "`treestroke serve`"
 _PARTS = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
 _REDIS_PARTS = ("kombu.transport.redis",)
@@ -130,6 +134,8 @@ def _folder(settings: Settings) -> Finding:
             probe.write(b"well")
     except OSError as error:
         return Finding("data folder", False, f"{there}: {error.strerror}", mend)
+    if there == folder and open_to_others(folder):
+        return Finding("data folder", False, f"{folder}: other users may look into it", f"chmod 700 {folder}")
     return Finding("data folder", True, str(folder) if there == folder else f"{folder}: none yet; {_SERVE} makes it")
 
 
@@ -216,9 +222,13 @@ def _soundness(_: Settings, database: Database) -> Finding:
         said = session.execute(text("PRAGMA quick_check(1)")).scalar()
     if said != "ok":
         return _unsound(database, " ".join(str(said).split()))
+    try:
+        check_version(database.path.parent)
+    except Unusable as error:
+        what, _sign, mend = str(error).partition("; ")
+        return Finding("database", False, what, mend)
     if not database.current():
-        mend = f"start {_SERVE}, which brings an older one up to date; for a newer one install a newer treestroke"
-        return Finding("database", False, "of another version", mend)
+        return Finding("database", False, "of an older version", f"start {_SERVE}, which brings it up to date")
     return Finding("database", True, "sound")
 
 
@@ -227,13 +237,26 @@ def _unsound(database: Database, why: str) -> Finding:
 
 
 def _files(settings: Settings, database: Database) -> Finding:
-    blobs = Blobs(settings.folder)
-    named = referenced(database)
-    missing = sorted(name for name in named if not blobs.path(name).is_file())
-    if missing:
-        mend = f"restore {blobs.folder} from a copy; what needs these files cannot be downloaded or grown"
-        return Finding("files", False, f"{len(missing)} of {len(named)} missing, such as {missing[0][:12]}", mend)
-    return Finding("files", True, f"all {len(named)} there")
+    """Read every file that a row refers to, a few at a time, and compare it with its name."""
+    blobs, count, bad = Blobs(settings.folder), 0, list[str]()
+    for beginning in (f"{number:02x}" for number in range(256)):
+        with database.reading() as session:
+            named = referenced(session, beginning)
+        count += len(named)
+        bad += [str(error) for error in (_damage(blobs, name) for name in sorted(named)) if error is not None]
+    if bad:
+        more = f", and {len(bad) - _NAMED} more" if len(bad) > _NAMED else ""
+        mend = f"restore them from a copy of {blobs.folder}; or upload the photos, or ask for the models, again"
+        return Finding("files", False, f"{len(bad)} of {count} bad: {', '.join(bad[:_NAMED])}{more}", mend)
+    return Finding("files", True, f"all {count} whole")
+
+
+def _damage(blobs: Blobs, name: str) -> Damaged | None:
+    try:
+        blobs.check(name)
+    except Damaged as error:
+        return error
+    return None
 
 
 def _workers(_: Settings, database: Database) -> Finding:

@@ -14,6 +14,10 @@ _DETAILS = {
     "worker_lost": ("The process that grew the tree was lost three times. Try again; if it stays so, report it.", True),
     "time_limit": ("The tree took longer to grow than this service allows. Try fewer iterations.", False),
     "out_of_memory": ("The tree needs more memory than this service allows. Try a smaller photo.", False),
+    "input_damaged": (
+        "A stored file that the tree is made of is damaged or gone. Upload the photo again, and ask for a new model.",
+        False,
+    ),
     "engine_error": ("The tree could not be grown; this is our mistake, and it is in the log.", False),
     "storage_full": ("The service's disk is full. Make room on it, then try again.", True),
     "storage_read_only": ("The service may not write to its data folder. Give it back to its user.", True),

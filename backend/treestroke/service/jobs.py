@@ -17,13 +17,14 @@ from treestroke.codec.skeleton import plain_grown
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.course import Course
+from treestroke.service.engine import engine
 from treestroke.service.evidence import Evidence, make_of
 from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
 from treestroke.service.inputs import load_settings
 from treestroke.service.models import project_from
 from treestroke.store import queries
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import add_file, beat, claim, end, succeed
 from treestroke.store.tables import Model
@@ -105,7 +106,7 @@ class Pulse:
 def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: str, seconds: float) -> None:
     """Grow the model that a hint names, unless somebody else does or did, and publish it whole or not at all."""
     with database.writing() as session:
-        job = claim(session, id, token, worker)
+        job = claim(session, id, token, worker, engine())
     if job is None:
         log.info("hint_ignored", job=id)
         return
@@ -123,6 +124,9 @@ def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: st
             _end(database, job, "failed", problem_of("time_limit"))
         except TreestrokeError as error:
             _end(database, job, "failed", problem_of_input(error))
+        except Damaged as error:
+            log.error("file_damaged", file=str(error))
+            _end(database, job, "failed", problem_of("input_damaged"))
         except SQLAlchemyError as error:
             # Nothing can be written down now; the lease runs out, and the job is taken up again.
             log.error("database_failed", error=str(error))

@@ -16,9 +16,11 @@ from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
 from treestroke.core.survey.measures import Measures
 from treestroke.service.clock import Stopwatch
+from treestroke.service.engine import engine
 from treestroke.service.files import Bundle, tree_files
 
-ENGINE = f"treestroke {__version__}"
+GENERATOR = f"treestroke {__version__}"
+"""As the files name what made them: without the engine's digest, so that the same tree has the same bytes."""
 SCORED_HEIGHT = 400
 STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "levels", "write")
 
@@ -73,7 +75,7 @@ def make(grow: Grow, settings: ModelSettings, seed: int, watch: Stopwatch, on_gr
     bundles: dict[str, Bundle] = {}
     for at, one in enumerate(_seeds(seed, settings.variants)):
         trees.append(grow(np.random.default_rng(one), unseen if trees else on_grown))
-        bundles |= tree_files(trees[-1], settings, name if at == 0 else f"{name}.v{at + 1}", ENGINE, watch)
+        bundles |= tree_files(trees[-1], settings, name if at == 0 else f"{name}.v{at + 1}", GENERATOR, watch)
     return Model(bundles, _report(trees, bundles, settings, seed, watch), trees[0])
 
 
@@ -89,7 +91,7 @@ def _report(
     scores = [{"silhouette_iou": _silhouette_iou(one), **one.score} for one in trees]
     counts = [_counts(one) for one in trees]
     return {
-        "engine": ENGINE,
+        "engine": engine(),
         "seed": seed,
         "settings": {**plain_settings(settings), "foliage": tree.foliage_kind},
         "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},

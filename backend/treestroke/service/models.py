@@ -7,22 +7,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+import structlog
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.image import StoredPhoto
 from treestroke.codec.project import VIEWS, Project, sketch_ending
 from treestroke.service import tracing, wishes
-from treestroke.service.making import ENGINE
+from treestroke.service.engine import engine
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.service.wishes import Wish, check_name
 from treestroke.store import leases, queries
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
 from treestroke.store.tables import File, Model, Photo, Replay
 
 MAX_PAGE = 100
 RESTORABLE_SECONDS = 24 * 3600.0
+log = structlog.get_logger()
 
 
 class KeyReused(Exception):
@@ -84,6 +86,8 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
     ------
     NotFound, TreestrokeError, KeyReused
         There is no such photo; something in the request cannot be used; the key was used for something else.
+    Damaged
+        The photo's file is damaged.
     OSError
         The disk is full.
     """
@@ -92,25 +96,22 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | No
     place = None if blob is None else shelf.blobs.path(blob)
     shelf.tracers(blob or "", tracing.check_wish, place, wish.parts, wish.within)
     parts = {part: shelf.blobs.put(content) for part, content in wish.parts.items()}
-    mended = [] if photo is None else photo.warnings
-    fingerprint = _digest([blob, parts, wish.settings, wish.seed, ENGINE, *mended])
-    used = _digest([fingerprint, wish.name, None if photo is None else photo.sha256])
+    row = _new_row(photo, wish, parts)
+    used = _digest([row.fingerprint, wish.name, None if photo is None else photo.sha256])
+    twin = _twin(shelf, row)
     with shelf.database.writing() as session:
         first = session.get(Replay, key) if key else None
-        if first is not None:
-            if first.fingerprint != used:
-                raise KeyReused
-            found = queries.model(session, first.model, deleted=True)
-            if found is not None:
-                return _seen(session, found)
-        row = _new_row(photo, wish, parts, fingerprint)
-        session.add_all([row, brought] if brought else [row])
-        session.flush()
-        _answer_from_twin(session, row)
-        if key:
-            session.merge(Replay(key=key, fingerprint=used, model=row.id, created=time.time()))
-        session.flush()
-        return _seen(session, row)
+        if first is not None and first.fingerprint != used:
+            raise KeyReused
+        made = None if first is None else queries.model(session, first.model, deleted=True)
+        if made is None:
+            session.add_all([row, brought] if brought else [row])
+            if twin is not None:
+                _answer_from(session, twin, row)
+            if key:
+                session.merge(Replay(key=key, fingerprint=used, model=row.id, created=time.time(), seen=None))
+    # What readers are told besides needs no lock.
+    return see(shelf.database, (made or row).id, deleted=True)
 
 
 def see(database: Database, id: str, deleted: bool = False) -> Seen:
@@ -155,10 +156,9 @@ def rename(database: Database, id: str, name: str) -> Seen:
     """
     check_name(name)
     with database.writing() as session:
-        row = _found(session, id)
+        _found(session, id)
         session.execute(update(Model).where(Model.id == id).values(name=name, seq=Model.seq + 1))
-        session.refresh(row)
-        return _seen(session, row)
+    return see(database, id)
 
 
 def cancel(database: Database, id: str) -> Seen:
@@ -170,10 +170,9 @@ def cancel(database: Database, id: str) -> Seen:
         There is none.
     """
     with database.writing() as session:
-        row = _found(session, id)
+        _found(session, id)
         leases.cancel(session, id)
-        session.refresh(row)
-        return _seen(session, row)
+    return see(database, id, deleted=True)
 
 
 def delete(database: Database, id: str) -> None:
@@ -187,7 +186,7 @@ def delete(database: Database, id: str) -> None:
     with database.writing() as session:
         _found(session, id)
         leases.cancel(session, id)
-        session.execute(update(Model).where(Model.id == id).values(deleted=time.time()))
+        session.execute(update(Model).where(Model.id == id).values(deleted=time.time(), seen=None))
 
 
 def restore(database: Database, id: str) -> Seen:
@@ -200,9 +199,9 @@ def restore(database: Database, id: str) -> Seen:
     """
     with database.writing() as session:
         row = _found(session, id, deleted=True)
-        session.execute(update(Model).where(Model.id == id).values(deleted=None))
-        session.refresh(row)
-        return _seen(session, row)
+        if row.deleted is not None:
+            row.deleted = row.seen = None
+    return see(database, id)
 
 
 def project_from(blobs: Blobs, row: Model) -> Project:
@@ -252,19 +251,20 @@ def _waits(session: Session, rows: Sequence[Any]) -> dict[int, tuple[int | None,
     return waits
 
 
-def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str], fingerprint: str) -> Model:
+def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str]) -> Model:
+    blob, mended = (None, []) if photo is None else (photo.blob, photo.warnings)
     endings = {view: sketch_ending(wish.parts[view]) for view in VIEWS if view in parts}
     return Model(
         id=queries.new_id("mdl"),
         name=wish.name,
         photo=None if photo is None else photo.id,
-        photo_blob=None if photo is None else photo.blob,
+        photo_blob=blob,
         **{f"{part}_blob": blob for part, blob in parts.items()},
         **{f"{view}_ending": ending for view, ending in endings.items()},
         settings=wish.settings,
         seed=wish.seed,
-        engine=ENGINE,
-        fingerprint=fingerprint,
+        engine=engine(),
+        fingerprint=_digest([blob, parts, wish.settings, wish.seed, *mended]),
         status="queued",
         phase_fraction=0.0,
         progress=0.0,
@@ -276,15 +276,27 @@ def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str], fingerpr
     )
 
 
-def _answer_from_twin(session: Session, row: Model) -> None:
-    """Take the files of a model that was made of the same input: they would come out the same."""
-    twin = queries.twin(session, row.fingerprint)
-    if twin is None:
-        return
-    row.status, row.progress, row.finished = "succeeded", 1.0, time.time()
-    row.report, row.preview_seq = twin.report, 1
-    for name, file in queries.files(session, [twin.id])[twin.id].items():
-        session.add(File(model=row.id, name=name, blob=file.blob, bytes=file.bytes))
+def _twin(shelf: Shelf, row: Model) -> Model | None:
+    """Find a model that was made of the same input, by the same engine; one whose files are damaged is made anew."""
+    with shelf.database.reading() as session:
+        twin = queries.twin(session, row.fingerprint, row.engine)
+        files = {} if twin is None else queries.files(session, [twin.id])[twin.id]
+    try:
+        for file in files.values():
+            shelf.blobs.check(file.blob)
+    except Damaged as error:
+        log.error("file_damaged", file=str(error))
+        return None
+    return twin
+
+
+def _answer_from(session: Session, twin: Model, row: Model) -> None:
+    """Take the files of a twin, unless it is gone by now: they would come out the same."""
+    files = queries.files(session, [twin.id])[twin.id]
+    if files:
+        row.status, row.progress, row.finished = "succeeded", 1.0, time.time()
+        row.report, row.preview_seq = twin.report, 1
+        session.add_all(File(model=row.id, name=name, blob=one.blob, bytes=one.bytes) for name, one in files.items())
 
 
 def _digest(value: object) -> str:

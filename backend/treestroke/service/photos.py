@@ -95,7 +95,7 @@ def delete_photo(shelf: Shelf, id: str) -> None:
         There is none.
     """
     with shelf.database.writing() as session:
-        gone = update(Photo).where(Photo.id == id, Photo.deleted.is_(None)).values(deleted=time.time())
+        gone = update(Photo).where(Photo.id == id, Photo.deleted.is_(None)).values(deleted=time.time(), seen=None)
         if session.scalars(gone.returning(Photo.id)).first() is None:
             raise NotFound("photo")
 

@@ -22,7 +22,7 @@ from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.service.bodies import check_keys, inside, read_object, take_rev_and_grow
 from treestroke.service.sketch import trace_sketches
 from treestroke.service.trace import Trace, trace
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, read_blob
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -127,7 +127,7 @@ def _draw_up(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:
 
 def _recall(photo: Path) -> Known:
     """Remember a photo, or read it, and forget those that were used longest ago."""
-    known = _known.pop(photo, None) or Known(decode_stored(photo.read_bytes()))
+    known = _known.pop(photo, None) or Known(decode_stored(read_blob(photo)))
     _known[photo] = known
     while len(_known) > 1 and sum(one.picture.size // 3 for one in _known.values()) > _KEPT_PIXELS:
         _known.popitem(last=False)

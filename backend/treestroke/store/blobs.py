@@ -3,12 +3,22 @@
 import hashlib
 import os
 import secrets
+import threading
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
 from treestroke.store.files import write_whole
+
+_REMEMBERED = 1024
+"""Files that are known to be sound as long as their times stay what they are."""
+_SETTLED_NS = 10**9
+"""After a file was written: a second change at the same moment would not show in its times."""
+
+
+class Damaged(Exception):
+    """A stored file is not there, or does not hold what its name says."""
 
 
 class Blobs:
@@ -16,11 +26,14 @@ class Blobs:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "blobs"
+        self._sound: dict[str, tuple[int, ...]] = {}
+        self._lock = threading.Lock()
 
     def put(self, content: bytes) -> str:
         """Store bytes and give their SHA-256; when this returns they survive a power cut.
 
-        They are written anew even where they stand already: that makes them young, and `sweep` leaves the young alone.
+        They are written anew even where they stand already: what was damaged is sound again, and a sweep that took
+        the file for a stray sees that somebody wants it.
 
         Raises
         ------
@@ -38,31 +51,86 @@ class Blobs:
         return self.folder / sha256[:2] / sha256
 
     def get(self, sha256: str) -> bytes:
-        """Read a blob."""
-        return self.path(sha256).read_bytes()
+        """Read a blob.
 
-    def sweep(self, kept: Collection[str], older_than_s: float) -> int:
-        """Remove the blobs, and what an interrupted writer left, that are not kept and not young; give their number.
-
-        A blob that is written again at this moment survives: it is moved aside first, and back where it is young.
+        Raises
+        ------
+        Damaged
+            As `read_blob`.
         """
-        limit = time.time() - older_than_s
-        removed = 0
-        for path in self._strays(kept):
-            aside = path.with_name(f".swept-{secrets.token_hex(8)}")
-            with suppress(FileNotFoundError):
-                if path.stat().st_mtime > limit:
-                    continue
-                path.rename(aside)
-                if aside.stat().st_mtime > limit:
-                    os.replace(aside, path)
-                    continue
-                aside.unlink()
-                removed += 1
-        return removed
+        return read_blob(self.path(sha256))
 
-    def _strays(self, kept: Collection[str]) -> Iterator[Path]:
-        for folder in list(self.folder.iterdir()) if self.folder.is_dir() else ():
-            for path in list(folder.iterdir()):
-                if path.name not in kept:
-                    yield path
+    def check(self, sha256: str) -> Path:
+        """Give a blob's place once what it holds is known to be whole; it is read, in pieces, after every change.
+
+        Raises
+        ------
+        Damaged
+            The blob is missing, or holds other bytes than its name says.
+        """
+        path = self.path(sha256)
+        try:
+            now = path.stat()
+            state = (now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns)
+            if self._sound.get(sha256) == state:
+                return path
+            with path.open("rb") as file:
+                found = hashlib.file_digest(file, "sha256").hexdigest()
+        except FileNotFoundError as error:
+            raise Damaged(f"{path.name}: missing") from error
+        if found != sha256:
+            raise Damaged(f"{path.name}: damaged")
+        if time.time_ns() - now.st_ctime_ns > _SETTLED_NS:
+            self._remember(sha256, state)
+        return path
+
+    def places(self) -> Iterator[tuple[str, list[Path]]]:
+        """Give all files folder by folder, half-written ones too; a folder's name begins its blobs' names."""
+        for folder in sorted(self.folder.iterdir()) if self.folder.is_dir() else ():
+            yield folder.name, list(folder.iterdir())
+
+    def remove(self, path: Path, state: str) -> bool:
+        """Remove a file whose `state_of` is this one; one that is written again at this moment survives.
+
+        It is moved aside first, and back where it is another one.
+        """
+        aside = path.with_name(f".swept-{secrets.token_hex(8)}")
+        with suppress(FileNotFoundError):
+            if state_of(path) != state:
+                return False
+            path.rename(aside)
+            if state_of(aside) != state:
+                os.replace(aside, path)
+                return False
+            aside.unlink()
+            return True
+        return False
+
+    def _remember(self, sha256: str, state: tuple[int, ...]) -> None:
+        with self._lock:
+            self._sound[sha256] = state
+            if len(self._sound) > _REMEMBERED:
+                del self._sound[next(iter(self._sound))]
+
+
+def state_of(path: Path) -> str:
+    """Name a file's present state, which stays when it is renamed and changes when it is written anew."""
+    now = path.stat()
+    return f"{now.st_ino}.{now.st_mtime_ns}"
+
+
+def read_blob(path: Path) -> bytes:
+    """Read the blob at a place and compare it with its name.
+
+    Raises
+    ------
+    Damaged
+        It is missing, or holds other bytes than its name says.
+    """
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise Damaged(f"{path.name}: missing") from error
+    if hashlib.sha256(content).hexdigest() != path.name:
+        raise Damaged(f"{path.name}: damaged")
+    return content

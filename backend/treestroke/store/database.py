@@ -1,5 +1,7 @@
 """The database: opened, migrated, and used in short transactions."""
 
+import sqlite3
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,11 +12,16 @@ from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
+
+from treestroke.store.versions import DATABASE
 
 _WRITES, _STATES = "treestroke_writes", "treestroke_states"
 _BUSY_SECONDS = 10
 """How long a writer waits for another."""
+_READERS = 10
+"""Connections that are kept for reading: each has two files open."""
 
 
 class Database:
@@ -24,23 +31,26 @@ class Database:
     """
 
     def __init__(self, folder: Path) -> None:
-        self.path = folder / "treestroke.sqlite3"
-        self._engine = _engine(self.path)
+        self.path = folder / DATABASE
+        self._readers, self._writer = _engine(self.path, _READERS), _engine(self.path, 1)
+        self._turn = threading.Lock()
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """Open a session that sees one state of the database and changes nothing."""
-        with Session(self._engine, expire_on_commit=False) as session:
+        with Session(self._readers, expire_on_commit=False) as session:
             yield session
 
     @contextmanager
     def writing(self) -> Iterator[Session]:
-        """Open a session that is the only writer from its first statement on, and commit it at the end."""
-        with (
-            self._engine.connect().execution_options(**{_WRITES: True}) as connection,
-            Session(connection, expire_on_commit=False) as session,
-            session.begin(),
-        ):
+        """Open a session that is the only writer from its first statement on, and commit it at the end.
+
+        Raises
+        ------
+        OperationalError
+            Others write for longer than a writer waits.
+        """
+        with self._write_by(_WRITES) as session, session.begin():
             yield session
 
     @contextmanager
@@ -50,18 +60,29 @@ class Database:
         The one lock that all writers share is then held inside SQLite alone. A process that stands still, or that is
         busy in a library with Python's lock held, would keep everybody else from writing between two statements.
         """
-        with (
-            self._engine.connect().execution_options(**{_STATES: True}) as connection,
-            Session(connection, expire_on_commit=False) as session,
-        ):
+        with self._write_by(_STATES) as session:
             yield session
+
+    @contextmanager
+    def _write_by(self, option: str) -> Iterator[Session]:
+        """Open a session on the one connection that writes; who waits for it holds none that others could read by."""
+        if not self._turn.acquire(timeout=_BUSY_SECONDS):
+            raise OperationalError("BEGIN IMMEDIATE", None, sqlite3.OperationalError("database is locked"))
+        try:
+            with (
+                self._writer.connect().execution_options(**{option: True}) as connection,
+                Session(connection, expire_on_commit=False) as session,
+            ):
+                yield session
+        finally:
+            self._turn.release()
 
     def migrate(self) -> None:
         """Bring the tables to the newest form, from nothing or from any older one.
 
         A table that is made anew is dropped for a moment: rows that refer to its rows must not go with them.
         """
-        engine = _engine(self.path, foreign_keys=False)
+        engine = _engine(self.path, 1, foreign_keys=False)
         try:
             with engine.connect().execution_options(**{_WRITES: True}) as connection:
                 settings = _migrations()
@@ -72,13 +93,14 @@ class Database:
 
     def current(self) -> bool:
         """Tell whether the tables have the form that this program knows."""
-        with self._engine.connect() as connection:
+        with self._readers.connect() as connection:
             found = MigrationContext.configure(connection).get_current_revision()
         return found == ScriptDirectory.from_config(_migrations()).get_current_head()
 
     def close(self) -> None:
         """Close all connections."""
-        self._engine.dispose()
+        self._readers.dispose()
+        self._writer.dispose()
 
 
 def _migrations() -> Config:
@@ -87,8 +109,13 @@ def _migrations() -> Config:
     return settings
 
 
-def _engine(path: Path, foreign_keys: bool = True) -> Engine:
-    engine = create_engine(f"sqlite:///{path}", connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False})
+def _engine(path: Path, connections: int, foreign_keys: bool = True) -> Engine:
+    engine = create_engine(
+        f"sqlite:///{path}",
+        pool_size=connections,
+        max_overflow=0,
+        connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False},
+    )
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: Any, _: object) -> None:

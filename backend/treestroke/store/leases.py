@@ -12,12 +12,16 @@ from sqlalchemy.orm import Session
 from treestroke.store.tables import File, Model
 
 MAX_ATTEMPTS = 3
+UNFINISHED = ("queued", "running")
 TERMINAL = ("succeeded", "failed", "canceled")
 Ending = Literal["succeeded", "failed", "canceled"]
 
 
-def claim(session: Session, model: str, token: str, worker: str) -> Model | None:
-    """Take a queued job for one more attempt; None where somebody was first or nothing is left to do."""
+def claim(session: Session, model: str, token: str, worker: str, engine: str) -> Model | None:
+    """Take a queued job for one more attempt; None where somebody was first or nothing is left to do.
+
+    From now on the row names the ``engine`` that grows it, whichever it was asked of.
+    """
     return session.scalars(
         update(Model)
         .where(Model.id == model, Model.status == "queued")
@@ -28,6 +32,7 @@ def claim(session: Session, model: str, token: str, worker: str) -> Model | None
             seq=Model.seq + 1,
             claim=token,
             worker=worker,
+            engine=engine,
             phase=None,
             phase_fraction=0.0,
             progress=0.0,

@@ -4,10 +4,10 @@ import secrets
 from collections.abc import Collection, Iterable, Sequence
 from typing import TypeVar
 
-from sqlalchemy import func, select
+from sqlalchemy import func, select, union
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import File, Model, Photo
+from treestroke.store.tables import REFERENCES, File, Model, Photo
 
 Listed = TypeVar("Listed", Model, Photo)
 _RECENT = 20
@@ -47,11 +47,16 @@ def page(session: Session, table: type[Listed], cursor: str | None, limit: int) 
     return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
 
 
-def twin(session: Session, fingerprint: str) -> Model | None:
-    """Find a finished model of the same photo, strokes, settings, seed and engine."""
-    return session.scalars(
-        select(Model).where(Model.fingerprint == fingerprint, Model.status == "succeeded").limit(1)
-    ).first()
+def twin(session: Session, fingerprint: str, engine: str) -> Model | None:
+    """Find a model that this engine has finished of the same photo, drawings, settings and seed."""
+    same = Model.fingerprint == fingerprint, Model.engine == engine, Model.status == "succeeded"
+    return session.scalars(select(Model).where(*same).limit(1)).first()
+
+
+def referenced(session: Session, beginning: str = "") -> set[str]:
+    """Give the blobs that a row refers to, of those whose names begin so: two digits for a folder's, 64 for one."""
+    end = f"{beginning}g"  # behind all hexadecimal digits
+    return set(session.scalars(union(*(select(one).where(one >= beginning, one < end) for one in REFERENCES))))
 
 
 def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int]:
@@ -68,11 +73,11 @@ def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int
 
 
 def usual_seconds(session: Session) -> float:
-    """Say how long a model took of late."""
+    """Say how long a model took of late; one that was answered from a twin was never started."""
     took = session.scalars(
         select(Model.finished - Model.started)
         .where(Model.status == "succeeded", Model.started.is_not(None))
-        .order_by(Model.number.desc())
+        .order_by(Model.started.desc())
         .limit(_RECENT)
     ).all()
     known = sorted(seconds for seconds in took if seconds is not None)

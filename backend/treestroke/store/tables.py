@@ -26,7 +26,17 @@ class Table(DeclarativeBase):
     }
 
 
-class Photo(Table):
+class Aged:
+    """A row whose age counts.
+
+    ``seen`` is when a sweep first saw the row as it is now, kept or deleted, by the store's own clock (`StoreClock`);
+    None until then.
+    """
+
+    seen: Mapped[float | None]
+
+
+class Photo(Aged, Table):
     """An uploaded photo: upright sRGB pixels in a blob, without metadata."""
 
     __tablename__ = "photos"
@@ -46,7 +56,7 @@ class Photo(Table):
     deleted: Mapped[float | None]
 
 
-class Model(Table):
+class Model(Aged, Table):
     """A tree that was asked for, is being made, or is made. This row is the job; a queue message is a hint to it.
 
     ``attempt`` is the fence: what works on the job says which attempt it is, and nothing of another attempt is
@@ -71,7 +81,9 @@ class Model(Table):
     settings: Mapped[dict[str, Any]]
     seed: Mapped[int] = mapped_column(BigInteger)
     engine: Mapped[str] = mapped_column(String(40))
-    fingerprint: Mapped[str] = mapped_column(String(64), index=True)
+    """Of the worker that grew it, or grows it; until then of the web process."""
+    fingerprint: Mapped[str] = mapped_column(String(64))
+    """Of photo, drawings, settings and seed: what the tree is made of."""
     status: Mapped[str] = mapped_column(String(12))
     phase: Mapped[str | None] = mapped_column(String(12))
     phase_fraction: Mapped[float]
@@ -114,7 +126,7 @@ class File(Table):
     bytes: Mapped[int]
 
 
-class Replay(Table):
+class Replay(Aged, Table):
     """An Idempotency-Key: what it was used for, and what it gave."""
 
     __tablename__ = "replays"
@@ -135,4 +147,41 @@ class Worker(Table):
     beat: Mapped[int]
 
 
+class StoreClock(Table):
+    """The one row of the clock that ages are told by: it counts the seconds in which sweeps watched the store."""
+
+    __tablename__ = "store_clock"
+
+    id: Mapped[int] = mapped_column(primary_key=True)
+    age_s: Mapped[float]
+    wall: Mapped[float]
+    """The clock on the wall when ``age_s`` was written."""
+
+
+class Stray(Table):
+    """A file among the blobs that no row referred to when a sweep saw it."""
+
+    __tablename__ = "strays"
+
+    folder: Mapped[str] = mapped_column(String(2), primary_key=True)
+    name: Mapped[str] = mapped_column(String(80), primary_key=True)
+    state: Mapped[str] = mapped_column(String(60))
+    """Changes when the file is written anew."""
+    seen: Mapped[float]
+    """By the store's own clock, and in this state."""
+
+
+REFERENCES = (Photo.blob, *(getattr(Model, f"{part}_blob") for part in PARTS), File.blob)
+"""Every column that names a blob."""
+
 Index("ix_models_queue", Model.status, Model.number)
+Index("ix_models_twins", Model.fingerprint, Model.engine, Model.status)
+Index("ix_models_times", Model.status, Model.started, Model.finished)
+for _table in (Model, Photo):
+    Index(f"ix_{_table.__tablename__}_seen", _table.seen)
+    Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
+Index("ix_replays_seen", Replay.seen)
+Index("ix_photos_blob", Photo.blob)
+Index("ix_files_blob", File.blob)
+for _column in REFERENCES[1:-1]:
+    Index(f"ix_models_{_column.key}", _column, sqlite_where=_column.is_not(None))

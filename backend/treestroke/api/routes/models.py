@@ -145,7 +145,7 @@ async def _text(field: UploadFile | str) -> bytes:
     responses={
         200: {"model": Model, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
         202: {"model": Model, "headers": _LOCATION, "links": _LINKS},
-        **documented(400, 403, 404, 408, 413, 415, 422, 503, 507),
+        **documented(400, 403, 404, 408, 413, 415, 422, 500, 503, 507),
     },
     openapi_extra=_ASK,
 )

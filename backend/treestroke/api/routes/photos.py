@@ -105,7 +105,7 @@ def delete_photo(shelf: ShelfOf, id: PhotoId) -> None:
 @router.post(
     "/{id}/trace",
     response_model=TraceAnswer,
-    responses=documented(400, 403, 404, 408, 413, 415, 422, 503),
+    responses=documented(400, 403, 404, 408, 413, 415, 422, 500, 503),
     openapi_extra=_TRACE,
 )
 def trace_photo(shelf: ShelfOf, id: PhotoId, body: JsonBody) -> Response:

@@ -16,8 +16,8 @@ from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Se
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
+from treestroke.service.engine import engine
 from treestroke.service.files import files_on_offer
-from treestroke.service.making import ENGINE
 from treestroke.service.wishes import MAX_NAME
 
 router = APIRouter(tags=["service"])
@@ -75,7 +75,7 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
 @router.get("/v1/version", responses=documented(403))
 def version() -> Version:
     """Say which treestroke this is."""
-    return Version(version=__version__, engine=ENGINE, api="v1")
+    return Version(version=__version__, engine=engine(), api="v1")
 
 
 def _allowed(allowed: Allowed) -> dict[str, object]:

@@ -1,0 +1,39 @@
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from alembic.script import ScriptDirectory
+
+from treestroke.store.database import Database, _migrations
+from treestroke.store.versions import Unusable, check_version, known_revisions
+
+
+def test_the_known_versions_are_those_of_the_migrations() -> None:
+    scripts = ScriptDirectory.from_config(_migrations())
+    assert known_revisions() == {script.revision for script in scripts.walk_revisions()}
+    assert max(known_revisions()) == scripts.get_current_head()
+
+
+def test_no_database_a_bare_one_and_one_of_ours_are_well(tmp_path: Path) -> None:
+    check_version(tmp_path)
+    with closing(sqlite3.connect(tmp_path / "treestroke.sqlite3")) as bare:
+        bare.execute("CREATE TABLE other (id)")
+    check_version(tmp_path)
+    database = Database(tmp_path)
+    database.migrate()
+    check_version(tmp_path)
+    database.close()
+
+
+def test_a_newer_database_is_refused_in_one_line_that_says_how_to_mend_it(database: Database) -> None:
+    with database.writing() as session:
+        session.connection().exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
+    with pytest.raises(Unusable, match=r"^\S+: a newer treestroke made this database .*9999.*; install .*$"):
+        check_version(database.path.parent)
+
+
+def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "treestroke.sqlite3").write_bytes(b"no database at all" * 1000)
+    with pytest.raises(Unusable, match=r"cannot be read \(file is not a database\); restore it from a copy"):
+        check_version(tmp_path)
