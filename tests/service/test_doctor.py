@@ -250,4 +250,4 @@ def test_the_command_says_what_mends_it_and_leaves_with_1(
     told = capsys.readouterr()
     assert "ILL  files          1 of 1 bad: " in told.out
     assert f"                    mend: restore them from a copy of {folder / 'blobs'}" in told.out
-    assert told.err == "treestroke: 1 of 8 parts are ill\n"
+    assert told.err == "treestroke: 1 of 10 parts are ill\n"

@@ -122,7 +122,7 @@ def test_a_stale_attempt_changes_nothing(database: Database, name: str) -> None:
     row = find(database, now.id)
     assert (row.status, row.attempt, row.beat, row.seq, row.claim) == ("running", 2, now.beat, now.seq, "u")
     with database.reading() as session:
-        assert files(session, now.id) == {}
+        assert files(session, [now.id])[now.id] == {}
 
 
 @pytest.mark.parametrize("name", STALE)
@@ -148,7 +148,7 @@ def test_a_success_publishes_report_and_files_together(database: Database) -> No
     assert (row.status, row.progress, row.report) == ("succeeded", 1.0, {"report": 1})
     assert (row.claim, row.worker, row.phase, row.finished is None) == (None, None, None, False)
     with database.reading() as session:
-        assert {name: (one.blob, one.bytes) for name, one in files(session, job.id).items()} == GLB
+        assert {name: (one.blob, one.bytes) for name, one in files(session, [job.id])[job.id].items()} == GLB
 
 
 def test_a_file_is_added_while_a_job_is_under_way_and_may_be_replaced(database: Database) -> None:
@@ -157,7 +157,7 @@ def test_a_file_is_added_while_a_job_is_under_way_and_may_be_replaced(database: 
         assert changed(database, leases.add_file, job, "growth.json", "d" * 64, size, preview_seq=9)
     assert find(database, job.id).preview_seq == 9
     with database.reading() as session:
-        assert files(session, job.id)["growth.json"].bytes == 6
+        assert files(session, [job.id])[job.id]["growth.json"].bytes == 6
 
 
 def test_a_lost_job_queues_again_until_its_attempts_are_used_up(database: Database) -> None:
@@ -207,7 +207,7 @@ def test_a_job_that_is_to_be_stopped_cannot_succeed(database: Database) -> None:
     assert changed(database, leases.succeed, job, {}, GLB) is False
     assert changed(database, leases.end, job, "canceled", None) is True
     with database.reading() as session:
-        assert files(session, job.id) == {}
+        assert files(session, [job.id])[job.id] == {}
 
 
 def test_a_cancel_after_the_success_comes_too_late(database: Database) -> None:
@@ -236,5 +236,5 @@ def test_cancel_and_success_at_once_end_in_one_of_both(database: Database, round
     other.close()
     row = find(database, job.id)
     with database.reading() as session:
-        assert (row.status, set(files(session, job.id))) in (("succeeded", set(GLB)), ("canceled", set()))
+        assert (row.status, set(files(session, [job.id])[job.id])) in (("succeeded", set(GLB)), ("canceled", set()))
     assert results == [True]

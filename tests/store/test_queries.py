@@ -3,7 +3,7 @@ from tests.rows import add_model
 
 from treestroke.store import queries
 from treestroke.store.database import Database
-from treestroke.store.tables import File, Photo
+from treestroke.store.tables import File, Model, Photo
 
 
 def test_ids_say_their_kind_and_cannot_be_guessed() -> None:
@@ -76,11 +76,11 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
     with planned() as steps, database.reading() as session:
         queries.twin(session, row.fingerprint, row.engine)
         queries.usual_seconds(session)
-        queries.queue_position(session, row)
-        queries.newest(session, 10, 20)
+        queries.queue_positions(session, [row.number])
+        queries.page(session, Model, "10", 20)
         queries.model(session, row.id)
         queries.photo(session, "pho_1")
-        queries.files(session, row.id)
+        queries.files(session, [row.id])
         queries.referenced(session, "ab")
     assert len(steps) > 7
     assert scans(steps) == []
@@ -90,5 +90,5 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
 
 def test_the_newest_are_read_from_the_end(database: Database) -> None:
     with planned() as steps, database.reading() as session:
-        queries.newest(session, None, 20)
+        queries.page(session, Model, None, 20)
     assert steps == ["SCAN models"]  # from its end, and no more than there are on a page: nothing is sorted

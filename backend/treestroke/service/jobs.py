@@ -149,7 +149,7 @@ def _make(
         with database.writing() as session:
             add_file(session, job, GROWTH, blob, len(content), **first)
 
-    made = make_of(given, job.settings, job.seed, pulse.report, show).of_mended(_mended_in_photo(database, job))
+    made = make_of(given, job.settings, job.seed, pulse.report, show).with_warnings(_mended_in_photo(database, job))
     pulse.report("preview", 0.0)
     trees = _packed(made.bundles)
     contents = {**trees, PREVIEW: encode_png(made.preview())}

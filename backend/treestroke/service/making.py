@@ -57,9 +57,9 @@ class Model:
         """Each file's bytes by its name, the GLB first."""
         return {name: content for bundle in self.bundles.values() for name, content in bundle.items()}
 
-    def of_mended(self, mended: Iterable[Mapping[str, str]]) -> "Model":
-        """Give the same with what was mended in reading its photo before the report's other warnings."""
-        return replace(self, report={**self.report, "warnings": [*mended, *self.report["warnings"]]})
+    def with_warnings(self, warnings: Iterable[Mapping[str, str]]) -> "Model":
+        """Give the same with further warnings before the report's own."""
+        return replace(self, report={**self.report, "warnings": [*warnings, *self.report["warnings"]]})
 
     def preview(self) -> NDArray[np.uint8]:
         """Draw the front view at the photo's framing beside a 3/4 view, (h, w, 3) sRGB."""

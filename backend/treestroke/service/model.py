@@ -70,4 +70,4 @@ def model(
         made = make(
             lambda rng, show: model_photo(seen, chosen, rng, watch, show, pictures), chosen, seed, watch, on_grown, name
         )
-    return made.of_mended(asdict(warning) for warning in mended)
+    return made.with_warnings(asdict(warning) for warning in mended)

@@ -111,7 +111,7 @@ def sketch(
             on_grown,
             name,
         )
-    return made.of_mended(asdict(warning) for warning in mended)
+    return made.with_warnings(asdict(warning) for warning in mended)
 
 
 def _plain(drawing: Drawing) -> dict[str, Any]:
