@@ -5,6 +5,7 @@ import struct
 import warnings
 import zlib
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -16,6 +17,9 @@ from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
+
+if TYPE_CHECKING:
+    from _typeshed import WriteableBuffer
 
 Picture = NDArray[np.uint8]
 Warn = Callable[[StrokeWarning], object]
@@ -230,20 +234,36 @@ def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[Fru
     return np.ascontiguousarray(picture)
 
 
-class _Watched(io.BytesIO):
-    """Bytes that tell how far they were read."""
+class _Watched(io.RawIOBase):
+    """Bytes, not copied, as a file that tells how far it was read."""
 
     def __init__(self, data: bytes, report: Report) -> None:
-        super().__init__(data)
-        self._size, self._furthest, self._report = len(data), 0, report
+        self._data, self._at, self._furthest, self._report = memoryview(data), 0, 0, report
 
-    def read(self, size: int | None = -1) -> bytes:
+    def readable(self) -> bool:
+        """Say that it can be read."""
+        return True
+
+    def seekable(self) -> bool:
+        """Say that it can be read from anywhere."""
+        return True
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Go to a place, as in any file."""
+        start = {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: len(self._data)}[whence]
+        self._at = max(start + offset, 0)
+        return self._at
+
+    def readinto(self, buffer: "WriteableBuffer") -> int:
         """Read, as any file does; tell of each further share of `_TOLD`."""
-        found = super().read(size)
-        if self.tell() > self._furthest + _TOLD * self._size:
-            self._furthest = self.tell()
-            self._report("decode", _READ * self._furthest / self._size)
-        return found
+        room = memoryview(buffer)
+        found = self._data[self._at : self._at + len(room)]
+        room[: len(found)] = found
+        self._at += len(found)
+        if self._at > self._furthest + _TOLD * len(self._data):
+            self._furthest = self._at
+            self._report("decode", _READ * self._furthest / len(self._data))
+        return len(found)
 
 
 def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
@@ -272,12 +292,13 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
 def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
     """Read a photo's header."""
     try:
+        file = io.BufferedReader(_Watched(data, report))
         if kind == "HEIF":
             # It takes a while to import, and few need it. Pillow is not told of it: whoever calls may have another.
             from pillow_heif import HeifImageFile
 
-            return HeifImageFile(_Watched(data, report))  # type: ignore[no-untyped-call]
-        return Image.open(_Watched(data, report), formats=(kind,))
+            return HeifImageFile(file)  # type: ignore[no-untyped-call]
+        return Image.open(file, formats=(kind,))
     except Image.DecompressionBombError as error:
         raise PhotoError(
             f"{name}: the photo has more than {MAX_PIXELS / 1e6:.0f} megapixels, which is not allowed; resize it",
