@@ -167,6 +167,13 @@ class Photo(Wire):
     image: str = Field(description="the stored picture: PNG, upright, sRGB, without metadata")
 
 
+class PhotoPage(Wire):
+    """Photos, newest first; ``next`` is the cursor of the next page."""
+
+    photos: list[Photo]
+    next: str | None
+
+
 class ModelSettings(Wire):
     """Settings of a model; what is absent takes its default."""
 
