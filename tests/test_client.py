@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from tests.api import sketched
+from tests.api import drawn, sketched
 from tests.running import BACKEND, serving
 
 from treestroke import client as client_module
@@ -128,6 +128,15 @@ def test_a_photo_is_uploaded_from_a_path_and_from_bytes(client: Client, photo: P
     client.delete_photo(again)
     with pytest.raises(ServiceError, match="there is no such photo"):
         client.photo(again)
+
+
+def test_photos_are_given_over_pages(client: Client, photo: Photo) -> None:
+    added = [client.upload(drawn.encoded()) for _ in range(25)]
+    given = list(client.photos())
+    assert given[:25] == added[::-1]
+    assert photo in given
+    for one in added:
+        client.delete_photo(one)
 
 
 def test_strokes_are_a_path_a_mapping_or_values(client: Client, photo: Photo) -> None:

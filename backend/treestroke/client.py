@@ -17,7 +17,7 @@ from urllib.parse import quote
 import httpx
 
 from treestroke.answers import Again, Event, ServiceError, checked, events_of, read, unreachable
-from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, SketchTraceAnswer, TraceAnswer
+from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, PhotoPage, SketchTraceAnswer, TraceAnswer
 from treestroke.shapes import Sketch, Strokes
 
 __all__ = ["Client", "PictureLike", "ServiceError", "SketchLike", "StrokesLike"]
@@ -28,6 +28,7 @@ PictureLike = str | os.PathLike[str] | bytes
 SketchLike = Sketch | Mapping[str, Any] | str | os.PathLike[str]
 """A sketch, the same as a plain mapping, or the path of its JSON file or of a PNG."""
 Done = TypeVar("Done")
+Page = TypeVar("Page", ModelPage, PhotoPage)
 
 _PAUSES_S = (0.2, 0.4, 0.8, 1.6, 3.2)
 """Between tries; a service that restarts is back within them."""
@@ -84,6 +85,11 @@ class Client:
     def photo(self, photo: Photo | str) -> Photo:
         """Look a photo up."""
         return read(Photo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
+
+    def photos(self) -> Iterator[Photo]:
+        """Give all photos, newest first, page by page as they are taken."""
+        for page in self._pages(PhotoPage, "/v1/photos"):
+            yield from page.photos
 
     def delete_photo(self, photo: Photo | str) -> None:
         """Delete a photo; models that were made of it keep their own copy."""
@@ -193,13 +199,8 @@ class Client:
 
     def models(self) -> Iterator[Model]:
         """Give all models, newest first, page by page as they are taken."""
-        cursor: dict[str, str] = {}
-        while True:
-            page = read(ModelPage, self._ask("GET", "/v1/models", params=cursor).content)
+        for page in self._pages(ModelPage, "/v1/models"):
             yield from page.models
-            if page.next is None:
-                return
-            cursor = {"cursor": page.next}
 
     def wait(
         self,
@@ -281,6 +282,15 @@ class Client:
     def restore(self, model: Model | str) -> Model:
         """Take a model's deletion back."""
         return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
+
+    def _pages(self, kind: type[Page], path: str) -> Iterator[Page]:
+        cursor: dict[str, str] = {}
+        while True:
+            page = read(kind, self._ask("GET", path, params=cursor).content)
+            yield page
+            if page.next is None:
+                return
+            cursor = {"cursor": page.next}
 
     def _wish(self, body: Mapping[str, Any], key: str | None) -> Model:
         headers = {"Idempotency-Key": key or secrets.token_hex(16)}

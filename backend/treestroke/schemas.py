@@ -169,6 +169,13 @@ class Photo(Wire):
     warnings: list[StrokeWarning] = Field(default_factory=list, description="what was mended in reading it")
 
 
+class PhotoPage(Wire):
+    """Photos, newest first; ``next`` is the cursor of the next page."""
+
+    photos: list[Photo]
+    next: str | None
+
+
 class ModelSettings(Wire):
     """Settings of a model; what is absent takes its default."""
 

@@ -3,6 +3,7 @@ import json
 import socket
 import time
 from collections.abc import AsyncIterator, Iterator
+from contextlib import suppress
 from typing import Any
 
 import httpx
@@ -28,6 +29,12 @@ CALLS = [
     ("PUT", "/v1/models/x"),
     ("OPTIONS", "/v1/models"),
     ("GET", "/nothing"),
+]
+WRITES = [
+    ("POST", "/v1/models", 400),
+    ("PATCH", "/v1/models/x", 400),
+    ("DELETE", "/v1/photos/x", 404),
+    ("PUT", "/v1/models/x", 405),
 ]
 
 
@@ -60,6 +67,23 @@ def test_its_own_page_is_answered(service: Service, name: str) -> None:
     host = f"{name}:{service.port}"
     for origin in ({}, {"Origin": f"http:{'//'}{host}"}):
         assert service.client.get("/livez", headers={"Host": host, **origin}).status_code == 200
+
+
+@pytest.mark.parametrize("site", ["cross-site", "same-site", "nonsense"])
+def test_what_another_page_writes_is_refused_even_without_its_origin(service: Service, site: str) -> None:
+    before, headers = service.stored(), {"Sec-Fetch-Site": site}
+    for method, path, _ in WRITES:
+        answer = service.client.request(method, path, headers=headers)
+        assert (answer.status_code, answer.json()["code"]) == (403, "foreign_origin"), path
+    assert service.client.post("/v1/photos", files={"file": drawn.encoded()}, headers=headers).status_code == 403
+    assert service.client.get("/", headers=headers).status_code == service.client.get("/").status_code
+    assert service.stored() == before
+
+
+@pytest.mark.parametrize("site", ["same-origin", "none"])
+def test_its_own_page_and_its_user_may_write(client: httpx.Client, site: str) -> None:
+    for method, path, status in WRITES:
+        assert client.request(method, path, headers={"Sec-Fetch-Site": site}).status_code == status, path
 
 
 def test_nothing_is_done_for_a_foreign_page(service: Service) -> None:
@@ -153,6 +177,60 @@ def test_a_body_that_is_longer_than_it_says_is_cut_there(service: Service) -> No
 def test_a_length_that_is_none_is_refused(service: Service, length: str) -> None:
     head = _head(service, "/v1/photos", "Content-Type: image/png", f"Content-Length: {length}")
     assert _spoken(service, head, close=True)[:12] in (b"HTTP/1.1 400", b"HTTP/1.1 413")
+
+
+SMUGGLED = b"GET /v1/smuggled HTTP/1.1\r\nHost: x\r\n\r\n"
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        ["Content-Length: 5", "Transfer-Encoding: chunked"],
+        ["Transfer-Encoding: chunked", "Content-Length: 0"],
+        ["Content-Length: 5", "Content-Length: 6"],
+        ["Content-Length: 5, 6"],
+        ["Content-Length: +5"],
+        ["Content-Length: 0x5"],
+        ["Transfer-Encoding: chunked", "Transfer-Encoding: chunked"],
+        ["Transfer-Encoding: chunked, identity"],
+        ["Transfer-Encoding: xchunked"],
+        ["Transfer-Encoding : chunked"],
+        ["Transfer-Encoding\t: chunked"],
+        ["X: 1\rTransfer-Encoding: chunked", "Content-Length: 5"],
+        ["Host: 127.0.0.1"],
+    ],
+)
+def test_a_request_whose_end_is_ambiguous_is_refused_and_nothing_after_it_is_read(
+    service: Service, headers: list[str]
+) -> None:
+    head = _head(service, "/v1/photos", "Content-Type: image/png", *headers)
+    said = _said(service, head + b"0\r\n\r\n" + SMUGGLED)
+    assert said.startswith(b"HTTP/1.1 400 ")
+    assert said.count(b"HTTP/1.1 ") == 1
+    assert b"application/problem+json" in said
+
+
+def test_a_chunked_body_of_an_old_client_is_refused(service: Service) -> None:
+    head = _head(service, "/v1/photos", "Transfer-Encoding: chunked").replace(b"HTTP/1.1", b"HTTP/1.0")
+    assert _said(service, head + b"0\r\n\r\n").startswith(b"HTTP/1.1 400 ")
+
+
+@pytest.mark.parametrize("size", [b"0x1", b"+1", b"-1", b" 1", b"1\n", b"", b"1;a\nb", b"g"])
+def test_a_chunk_of_no_size_is_refused(service: Service, size: bytes) -> None:
+    head = _head(service, "/v1/models", "Content-Type: application/json", "Transfer-Encoding: chunked")
+    said = _said(service, head + size + b"\r\n1\r\n0\r\n\r\n" + SMUGGLED)
+    assert said.startswith(b"HTTP/1.1 400 ")
+    assert said.count(b"HTTP/1.1 ") == 1
+
+
+def _said(service: Service, request: bytes) -> bytes:
+    """Send a request; give all that comes until the service closes."""
+    said = b""
+    with socket.create_connection(("127.0.0.1", service.port), timeout=10) as line, suppress(ConnectionResetError):
+        line.sendall(request)
+        while part := line.recv(65536):
+            said += part
+    return said
 
 
 def test_slow_bodies_hold_nobody_up(service: Service) -> None:

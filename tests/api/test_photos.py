@@ -121,3 +121,23 @@ def test_the_name_of_an_uploaded_file_does_not_matter(service: Service, name: st
     assert answer.status_code == 201
     assert "x-evil" not in answer.headers
     assert name not in [path.name for path in service.data.parent.rglob("*")]
+
+
+def test_photos_are_listed_newest_first_page_by_page_without_the_deleted(service: Service) -> None:
+    client = service.client
+    added = [service.add_photo(drawn.encoded(seed=seed)) for seed in range(40, 45)]
+    client.delete(f"/v1/photos/{added.pop(2)}")
+    first = client.get("/v1/photos", params={"limit": 2}).json()
+    assert [photo["id"] for photo in first["photos"]] == [added[3], added[2]]
+    assert first["photos"][0] == client.get(f"/v1/photos/{added[3]}").json()
+    service.add_photo(drawn.encoded(seed=45))  # what comes meanwhile shifts nothing
+    second = client.get("/v1/photos", params={"limit": 2, "cursor": first["next"]}).json()
+    assert [photo["id"] for photo in second["photos"]] == [added[1], added[0]]
+    rest = client.get("/v1/photos", params={"limit": 100, "cursor": second["next"] or "0"}).json()
+    assert rest["next"] is None
+    assert not {photo["id"] for photo in rest["photos"]} & set(added)
+
+
+@pytest.mark.parametrize("query", [{"limit": 0}, {"limit": 101}, {"cursor": "x"}, {"cursor": "-1"}])
+def test_a_page_that_cannot_be_is_refused(client: httpx.Client, query: dict[str, str]) -> None:
+    assert client.get("/v1/photos", params=query).status_code == 422

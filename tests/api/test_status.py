@@ -81,19 +81,56 @@ def test_what_there_is_not_says_where_to_look(client: httpx.Client) -> None:
 @pytest.mark.parametrize(
     ("path", "methods"),
     [
-        ("/v1/models", "GET, POST"),
-        ("/v1/models/x", "DELETE, GET, PATCH"),
-        ("/v1/photos", "POST"),
-        ("/v1/photos/x", "DELETE, GET"),
-        ("/livez", "GET"),
-        ("/", "GET, HEAD"),
+        ("/v1/models", "GET, HEAD, OPTIONS, POST"),
+        ("/v1/models/x", "DELETE, GET, HEAD, OPTIONS, PATCH"),
+        ("/v1/models/x/cancel", "OPTIONS, POST"),
+        ("/v1/photos", "GET, HEAD, OPTIONS, POST"),
+        ("/v1/photos/x", "DELETE, GET, HEAD, OPTIONS"),
+        ("/livez", "GET, HEAD, OPTIONS"),
+        ("/metrics", "GET, HEAD, OPTIONS"),
+        ("/openapi.json", "GET, HEAD, OPTIONS"),
+        ("/", "GET, HEAD, OPTIONS"),
+        ("/favicon.ico", "GET, HEAD, OPTIONS"),
+        ("/page/assets/x.js", "GET, HEAD, OPTIONS"),
     ],
 )
 def test_another_method_is_told_which_ones_there_are(client: httpx.Client, path: str, methods: str) -> None:
-    for method in ("PUT", "TRACE", "OPTIONS", "FOO"):
+    for method in ("PUT", "TRACE", "QUERY", "FOO"):
         answer = client.request(method, path)
         assert (answer.status_code, answer.headers["allow"]) == (405, methods)
         assert methods in answer.json()["detail"]
+    answer = client.options(path)
+    assert (answer.status_code, answer.headers["allow"], answer.content) == (204, methods, b"")
+
+
+def test_there_is_nothing_to_ask_where_there_is_nothing(client: httpx.Client) -> None:
+    assert client.options("/nothing").status_code == client.head("/nothing").status_code == 404
+
+
+def test_an_invented_method_is_refused_and_makes_no_series(client: httpx.Client) -> None:
+    series = client.get("/metrics").text.count("\nhttp_")
+    for number in range(20):
+        assert client.request(f"FOO{number}", "/v1/models").headers["allow"] == "GET, HEAD, OPTIONS, POST"
+        assert client.request(f"FOO{number}", f"/v1/{number}").status_code == 404
+        client.get(f"/nothing/{number}")
+    told = client.get("/metrics").text
+    assert "FOO" not in told
+    assert told.count("\nhttp_") - series < 20
+
+
+def test_head_is_get_without_the_body(
+    client: httpx.Client, document: dict[str, Any], made: dict[str, Any], photo: str
+) -> None:
+    named = {"view": "front", "ending": "glb"}
+    paths = [path for path, one in document["paths"].items() if "get" in one and not path.endswith("/events")]
+    for template in [*paths, "/", "/favicon.ico", "/nothing", "/page/nothing"]:
+        path = template.format(id=photo if "photos" in template else made["id"], **named)
+        with client.stream("GET", path) as whole:  # the answer may be gigabytes
+            head = client.head(path, headers={"Range": "bytes=0-1"})
+            assert head.status_code == whole.status_code, path
+            moments = {"date": "", "last-modified": ""}
+            assert {**head.headers, **moments} == {**whole.headers, **moments}, path
+            assert head.content == b""
 
 
 def test_the_document_s_settings_are_the_table(document: dict[str, Any]) -> None:
@@ -116,6 +153,7 @@ def test_the_document_s_settings_are_the_table(document: dict[str, Any]) -> None
 def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, Any]) -> None:
     assert {one["operationId"] for one in operations(document).values()} == {
         "add_photo",
+        "list_photos",
         "get_photo",
         "delete_photo",
         "get_image",

@@ -58,6 +58,9 @@ def test_streams_beyond_the_bound_are_told_to_come_again(crowded: Crowded) -> No
         photo = client.post("/v1/photos", content=drawn.encoded()).json()["id"]
         place = client.post("/v1/models", json=drawn.wish(photo)).headers["location"]
         followers = client.get("/v1/limits").json()["followers"]
+        for _ in range(followers + 1):  # HEAD is answered at once, and takes no place
+            head = client.head(f"{place}/events")
+            assert (head.status_code, head.headers["content-type"][:17]) == (200, "text/event-stream")
         streams = [crowded.line(f"GET {place}/events HTTP/1.1\r\nHost: HOST\r\n\r\n") for _ in range(followers)]
         assert {stream.recv(12) for stream in streams} == {b"HTTP/1.1 200"}
         refused = client.get(f"{place}/events")

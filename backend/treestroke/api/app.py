@@ -13,7 +13,7 @@ from starlette.types import Scope
 from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
-from treestroke.api.guard import Guard, Limited
+from treestroke.api.guard import Guard, Limited, Methods
 from treestroke.api.metrics import add_metrics
 from treestroke.api.routes import events, files, models, photos, sketches, status
 from treestroke.api.routes.page import add_page
@@ -60,6 +60,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     add_metrics(app)
     add_page(app)
     app.add_middleware(Limited, limit_of=_limit_of)
+    app.add_middleware(Methods)
     app.add_middleware(Guard, hosts=HOSTS)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]
     return app

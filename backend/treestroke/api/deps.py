@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from fastapi import Depends, HTTPException, Path, Request
+from fastapi import Depends, HTTPException, Path, Query, Request
 
 from treestroke.api.following import Watcher
 from treestroke.codec.image import MAX_BYTES
@@ -10,6 +10,8 @@ from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.projects import Projects
 from treestroke.settings import Settings
+
+MAX_PAGE = 100
 
 
 def _settings(request: Request) -> Settings:
@@ -71,6 +73,8 @@ def leads_to(*operations: str) -> dict[str, Any]:
     return {name: {"operationId": name, "parameters": {"id": "$response.body#/id"}} for name in operations}
 
 
+Cursor = Annotated[str | None, Query(pattern="^[0-9]{1,18}$", description="``next`` of the page before")]
+Limit = Annotated[int, Query(ge=1, le=MAX_PAGE)]
 PhotoId = Annotated[str, _id("pho")]
 ModelId = Annotated[str, _id("mdl")]
 SettingsOf = Annotated[Settings, Depends(_settings)]

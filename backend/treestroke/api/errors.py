@@ -13,7 +13,7 @@ from fastapi.routing import iter_route_contexts
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
-from starlette.routing import compile_path
+from starlette.routing import Mount, compile_path
 
 from treestroke.api.following import Crowded
 from treestroke.core.errors import TreestrokeError
@@ -148,13 +148,10 @@ def _damaged(_: Request, error: Damaged) -> JSONResponse:
 
 
 def _http(request: Request, error: HTTPException) -> JSONResponse:
-    headers, detail = dict(error.headers or {}), str(error.detail)
-    if error.status_code == 405:
-        headers["Allow"] = ", ".join(_allowed(request))
-        detail = f"{request.method} does nothing here; what does is {headers['Allow']}"
-    elif detail == HTTPStatus.NOT_FOUND.phrase:
-        detail = "there is nothing at this address; /openapi.json names what there is"
-    return problem(error.status_code, _CODES.get(error.status_code, "error"), detail, headers=headers)
+    if error.status_code == 405 or error.detail == HTTPStatus.NOT_FOUND.phrase:
+        return nothing_there(request.method, allowed_methods(request.app, request.scope["path"]))
+    code = _CODES.get(error.status_code, "error")
+    return problem(error.status_code, code, str(error.detail), headers=dict(error.headers or {}))
 
 
 def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
@@ -186,10 +183,22 @@ _ANSWERS: dict[type[Exception], Any] = {
 }
 
 
-def _allowed(request: Request) -> list[str]:
-    """Collect the methods of all routes at a request's path."""
+def nothing_there(method: str, allowed: Sequence[str]) -> JSONResponse:
+    """Answer a method that does nothing at an address where others are ``allowed``, or none."""
+    if not allowed:
+        nothing = "there is nothing at this address; /openapi.json names what there is"
+        return problem(404, _CODES[404], nothing)
+    names = ", ".join(allowed)
+    return problem(405, _CODES[405], f"{method} does nothing here; what does is {names}", headers={"Allow": names})
+
+
+def allowed_methods(app: FastAPI, path: str) -> list[str]:
+    """Collect the methods of all routes at a path; none where there is nothing."""
     methods: set[str] = set()
-    for route in iter_route_contexts(request.app.routes):
-        if route.path and re.fullmatch(compile_path(route.path)[0], request.scope["path"]):
+    for route in iter_route_contexts(app.routes):
+        if isinstance(route.original_route, Mount) and path.startswith(f"{route.path}/"):
+            methods.add("GET")
+        elif route.path and re.fullmatch(compile_path(route.path)[0], path):
             methods |= set(route.methods or ())
-    return sorted(methods)
+    methods |= {"HEAD"} if "GET" in methods else set()
+    return sorted(methods | {"OPTIONS"}) if methods else []

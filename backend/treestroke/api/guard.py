@@ -3,13 +3,16 @@
 import asyncio
 import time
 from collections.abc import Callable
+from functools import partial
 from urllib.parse import urlsplit
 
+from fastapi import Response
+from fastapi.responses import JSONResponse
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from treestroke.api.errors import problem
+from treestroke.api.errors import allowed_methods, nothing_there, problem
 
 HELD_BYTES = 400_000_000
 """Of the bodies of all requests together; whoever comes beyond it is to come again."""
@@ -21,6 +24,10 @@ POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob: data:; object-src 'none'; "
     "base-uri 'none'; frame-ancestors 'none'"
 )
+_READS = ("GET", "HEAD", "OPTIONS")
+_PASSED = ("GET", "POST", "PUT", "PATCH", "DELETE", "TRACE")
+_OWN_SITES = ("same-origin", "none")
+"""What a browser says of a request by the service's own page, or by its user."""
 _HEADERS = {
     "x-content-type-options": "nosniff",
     "referrer-policy": "no-referrer",
@@ -31,7 +38,7 @@ _HEADERS = {
 
 
 class Guard:
-    """Refuses requests that name another host or come from another site, and sets the safe headers.
+    """Refuses what is ambiguous, names another host or comes from another site, and sets the safe headers.
 
     A page elsewhere that a browser has open reaches 127.0.0.1 as its user does; it is told by its Origin, or, where a
     name of its own was pointed here, by the Host.
@@ -54,18 +61,43 @@ class Guard:
                 headers.setdefault("cache-control", "no-store")
             await send(message)
 
-        headers = Headers(scope=scope)
+        await (self._refusal(scope, Headers(scope=scope)) or self._app)(scope, receive, safe)
+
+    def _refusal(self, scope: Scope, headers: Headers) -> JSONResponse | None:
         host, origin = headers.get("host", ""), headers.get("origin")
+        if "transfer-encoding" in headers and ("content-length" in headers or scope["http_version"] == "1.0"):
+            twice = "the request says twice how long its body is; send Content-Length or Transfer-Encoding"
+            return problem(400, "bad_request", twice, headers={"Connection": "close"})
         if _name(f"//{host}") not in self._hosts:
-            await problem(
-                403, "foreign_host", "this service answers on this machine only; open it as 127.0.0.1 or localhost"
-            )(scope, receive, safe)
-        elif origin is not None and not (origin.split("://")[-1] == host and _name(origin) in self._hosts):
-            await problem(403, "foreign_origin", "this page is not of this service; open the service's own page")(
-                scope, receive, safe
-            )
+            here = "this service answers on this machine only; open it as 127.0.0.1 or localhost"
+            return problem(403, "foreign_host", here)
+        foreign = origin is not None and not (origin.split("://")[-1] == host and _name(origin) in self._hosts)
+        # A form may be sent without an origin; browsers add where it came from. Another port of a host is "same-site".
+        if foreign or (scope["method"] not in _READS and headers.get("sec-fetch-site", "none") not in _OWN_SITES):
+            return problem(403, "foreign_origin", "this page is not of this service; open the service's own page")
+        return None
+
+
+class Methods:
+    """Answers HEAD as GET without its body, and OPTIONS by what may be asked.
+
+    Any other method that nobody knows is refused here, before it is counted: each would be a series of its own.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass a request on, or answer it."""
+        if scope["type"] != "http" or scope["method"] in _PASSED:
+            await self._app(scope, receive, send)
+        elif scope["method"] == "HEAD":
+            await self._app(_as_get(scope), receive, partial(_send_head, send))
         else:
-            await self._app(scope, receive, safe)
+            allowed = allowed_methods(scope["app"], scope["path"])
+            told = Response(status_code=204, headers={"Allow": ", ".join(allowed)})
+            asked = scope["method"] == "OPTIONS" and allowed
+            await (told if asked else nothing_there(scope["method"], allowed))(scope, receive, send)
 
 
 class Limited:
@@ -117,6 +149,19 @@ class Limited:
             await self._app(scope, counted, send)
         finally:
             self._free += got
+
+
+def _as_get(scope: Scope) -> Scope:
+    """Ask for what GET would answer with; a part can be asked for by GET alone."""
+    headers = [(name, value) for name, value in scope["headers"] if name != b"range"]
+    return {**scope, "method": "GET", "headers": headers}
+
+
+async def _send_head(send: Send, message: Message) -> None:
+    """Send the head of an answer and end it there: the application is told that the client has gone."""
+    if message["type"] == "http.response.start":
+        await send(message)
+        await send({"type": "http.response.body"})
 
 
 def _too_large(limit: int) -> str:

@@ -22,7 +22,6 @@ from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
 from treestroke.store.tables import File, Model, Photo, Replay
 
-MAX_PAGE = 100
 RESTORABLE_SECONDS = 24 * 3600.0
 log = structlog.get_logger()
 

@@ -2,6 +2,7 @@
 
 import hashlib
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import update
@@ -12,7 +13,7 @@ from treestroke.service.pool import Crashed, Tracers
 from treestroke.settings import PHOTO_MB, PHOTOS_MB
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.queries import new_id, stored_bytes
+from treestroke.store.queries import new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
 from treestroke.store.tables import Photo
 
@@ -84,6 +85,12 @@ def get_photo(shelf: Shelf, id: str) -> Photo:
     if found is None:
         raise NotFound("photo")
     return found
+
+
+def list_photos(shelf: Shelf, cursor: str | None, limit: int) -> tuple[Sequence[Photo], str | None]:
+    """Give a page of photos, newest first, and the cursor of the next page: decimal digits."""
+    with shelf.database.reading() as session:
+        return page(session, Photo, cursor, limit)
 
 
 def delete_photo(shelf: Shelf, id: str) -> None:

@@ -11,7 +11,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        get?: never;
+        /**
+         * List Photos
+         * @description List photos, newest first.
+         */
+        get: operations["list_photos"];
         put?: never;
         /**
          * Add Photo
@@ -667,6 +671,16 @@ export interface components {
             ];
         };
         /**
+         * PhotoPage
+         * @description Photos, newest first; ``next`` is the cursor of the next page.
+         */
+        PhotoPage: {
+            /** Photos */
+            photos: components["schemas"]["Photo"][];
+            /** Next */
+            next: string | null;
+        };
+        /**
          * SketchTraceAnswer
          * @description What sketches show.
          */
@@ -1128,6 +1142,68 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    list_photos: {
+        parameters: {
+            query?: {
+                /** @description ``next`` of the page before */
+                cursor?: string | null;
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PhotoPage"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     add_photo: {
         parameters: {
             query?: never;

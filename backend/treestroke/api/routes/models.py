@@ -7,15 +7,17 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, HTTPException, Query, Request, Response
+from fastapi import APIRouter, Depends, Header, HTTPException, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
 from treestroke import schemas
 from treestroke.api.deps import (
+    Cursor,
     DispatcherOf,
     JsonBody,
+    Limit,
     ModelId,
     ShelfOf,
     WatcherOf,
@@ -30,7 +32,7 @@ from treestroke.codec.photo_kinds import TAKEN
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import models, photos
-from treestroke.service.models import MAX_PAGE, Seen
+from treestroke.service.models import Seen
 from treestroke.service.photos import Shelf
 from treestroke.service.wishes import MAX_NAME, Wish, read_name
 from treestroke.shapes import STROKES_EXAMPLE
@@ -180,11 +182,7 @@ async def _finished(watcher: Watcher, seen: Seen, seconds: float) -> Seen:
 
 
 @router.get("", responses={200: {"links": _NEXT}, **documented(403, 422)})
-def list_models(
-    shelf: ShelfOf,
-    cursor: Annotated[str | None, Query(pattern="^[0-9]{1,18}$", description="``next`` of the page before")] = None,
-    limit: Annotated[int, Query(ge=1, le=MAX_PAGE)] = 20,
-) -> ModelPage:
+def list_models(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
     """List models, newest first."""
     page, following = models.list_models(shelf.database, cursor, limit)
     return ModelPage(models=[model_view(seen) for seen in page], next=following)

@@ -66,7 +66,7 @@ def add_page(app: FastAPI, folder: Path = PAGE) -> None:
     """Serve the page at ``/`` and its files below ``/page``."""
     built = BuiltPage(folder)
 
-    @app.api_route("/", methods=["GET", "HEAD"], include_in_schema=False)
+    @app.get("/", include_in_schema=False)
     async def page(request: Request) -> Response:
         if not built.index.is_file():
             return PlainTextResponse(_NOT_BUILT, 404)
@@ -74,7 +74,7 @@ def add_page(app: FastAPI, folder: Path = PAGE) -> None:
         response.headers["content-security-policy"] = _POLICY
         return response
 
-    @app.api_route("/favicon.ico", methods=["GET", "HEAD"], include_in_schema=False)
+    @app.get("/favicon.ico", include_in_schema=False)
     def icon() -> Response:
         if not built.icon.is_file():
             return Response(status_code=204)

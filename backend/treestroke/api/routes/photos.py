@@ -6,12 +6,12 @@ from fastapi import APIRouter, Depends, HTTPException, Request, Response
 from fastapi.responses import FileResponse
 from starlette.datastructures import UploadFile
 
-from treestroke.api.deps import JsonBody, PhotoId, ShelfOf, check_length, leads_to, media_type
+from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ShelfOf, check_length, leads_to, media_type
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
 from treestroke.codec.photo_kinds import MEDIA_TYPES
-from treestroke.schemas import Photo, TraceAnswer
+from treestroke.schemas import Photo, PhotoPage, TraceAnswer
 from treestroke.service import photos
 from treestroke.shapes import STROKES_EXAMPLE
 
@@ -45,6 +45,7 @@ _TRACE: dict[str, Any] = {
         },
     }
 }
+_NEXT = {"next_page": {"operationId": "list_photos", "parameters": {"cursor": "$response.body#/next"}}}
 _LOCATION = {"schema": {"type": "string", "pattern": "^/v1/photos/pho_[0-9a-f]{24}$"}, "description": "the photo"}
 
 
@@ -82,6 +83,13 @@ def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], 
     row = photos.add_photo(shelf, content)
     response.headers["Location"] = f"/v1/photos/{row.id}"
     return photo_view(row)
+
+
+@router.get("", responses={200: {"links": _NEXT}, **documented(403, 422)})
+def list_photos(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> PhotoPage:
+    """List photos, newest first."""
+    page, following = photos.list_photos(shelf, cursor, limit)
+    return PhotoPage(photos=[photo_view(row) for row in page], next=following)
 
 
 @router.get("/{id}", responses=documented(403, 404))
