@@ -148,8 +148,10 @@ def _damaged(_: Request, error: Damaged) -> JSONResponse:
 
 
 def _http(request: Request, error: HTTPException) -> JSONResponse:
-    if error.status_code == 405 or error.detail == HTTPStatus.NOT_FOUND.phrase:
+    if error.status_code == 405:
         return nothing_there(request.method, allowed_methods(request.app, request.scope["path"]))
+    if error.detail == HTTPStatus.NOT_FOUND.phrase:
+        return nothing_there(request.method, ())
     code = _CODES.get(error.status_code, "error")
     return problem(error.status_code, code, str(error.detail), headers=dict(error.headers or {}))
 
