@@ -262,7 +262,7 @@ class Model(Wire):
                 "files": {"strokes.json": "/v1/models/mdl_0a1b2c3d4e5f60718293a4b5/strokes.json"},
                 "settings": {"height": 14.0},
                 "seed": 1,
-                "engine": "treestroke 0.1.0",
+                "engine": "treestroke 0.1.0+1a2b3c4d5e6f",
                 "created": "2026-05-04T09:31:00.000Z",
                 "started": "2026-05-04T09:31:01.000Z",
                 "finished": None,

@@ -39,10 +39,10 @@ def test_a_job_whose_worker_dies_with_its_child_is_grown_again(service: Service)
 def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: Service) -> None:
     """As where two containers have one name: the other's process 1 is nobody's here, and lives all the same."""
     service.finish()
+    here = wait_for(service.workers, 20, "a worker")[0]
     database, name = Database(service.data), f"{socket.gethostname()}/{2**22 - 1}/abcd"
     say_alive(database, name, 1)
     held = add_model(database, status="running", attempt=1, worker=name, claim="token", settings={})
-    (here,) = service.workers()
     here.hit()
     wait_for(lambda: [one for one in service.workers() if one.pid != here.pid and service.name_of(one)], 20, "another")
     row = service.row(held.id)
