@@ -16,6 +16,7 @@ from treestroke.service import models, photos
 from treestroke.service.photos import Shelf
 from treestroke.service.pool import Overloaded
 from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
+from treestroke.store.blobs import Damaged
 from treestroke.store.tables import Model
 
 SECONDS = 30
@@ -103,7 +104,7 @@ def test_what_is_gone_or_failed_is_packed_anew(shelf: Shelf, projects: Projects)
     row = model_of(shelf, b"photo")
     blob = shelf.blobs.path(row.parts["photo"])
     blob.rename(blob.with_suffix(".away"))
-    with pytest.raises(FileNotFoundError):
+    with pytest.raises(Damaged):
         packed(projects, row)
     assert list((shelf.blobs.folder.parent / "projects").iterdir()) == []
     blob.with_suffix(".away").rename(blob)

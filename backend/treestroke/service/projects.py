@@ -12,7 +12,7 @@ from pathlib import Path
 
 from treestroke.codec.project import write_project
 from treestroke.service.pool import Overloaded
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.tables import Model
 
 AT_ONCE = 2
@@ -45,7 +45,7 @@ class Projects:
     def ask(self, row: Model) -> Future[Packed]:
         """Promise a model's project file; one of the same parts, settings and seed is packed once.
 
-        Where it cannot be packed the promise ends in an OSError.
+        Where it cannot be packed the promise ends in an OSError, or in Damaged where a part of it is.
 
         Raises
         ------
@@ -72,13 +72,13 @@ class Projects:
         try:
             with ExitStack() as opened:
                 out = opened.enter_context(path.open("w+b"))
-                blobs = {part: self._blobs.path(blob) for part, blob in row.parts.items()}
+                blobs = {part: self._blobs.check(blob) for part, blob in row.parts.items()}
                 parts = {part: opened.enter_context(blob.open("rb")) for part, blob in blobs.items()}
                 write_project(out, parts, {**row.settings, "seed": row.seed})
                 size = out.tell()
                 out.seek(0)
                 sha256 = hashlib.file_digest(out, "sha256").hexdigest()
-        except OSError:
+        except (OSError, Damaged):
             path.unlink(missing_ok=True)
             raise
         self._make_room(size)

@@ -180,6 +180,7 @@ Index("ix_models_times", Model.status, Model.started, Model.finished)
 for _table in (Model, Photo):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
+Index("ix_photos_stored", Photo.blob, Photo.bytes)
 Index("ix_replays_seen", Replay.seen)
 Index("ix_photos_blob", Photo.blob)
 Index("ix_files_blob", File.blob)

@@ -35,6 +35,7 @@ def upgrade() -> None:
         op.create_index(f"ix_{table}_deleted", table, ["seen"], sqlite_where=sa.text("deleted IS NOT NULL"))
     op.create_index("ix_replays_seen", "replays", ["seen"])
     op.create_index("ix_photos_blob", "photos", ["blob"])
+    op.create_index("ix_photos_stored", "photos", ["blob", "bytes"])
     op.create_index("ix_files_blob", "files", ["blob"])
     for part in _PARTS:
         op.create_index(
