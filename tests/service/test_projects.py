@@ -138,4 +138,4 @@ def test_few_are_packed_at_once_more_wait_and_still_more_are_refused(shelf: Shel
     finally:
         while wait(promised, 0.01).not_done:
             os.close(os.open(blob, os.O_RDWR | os.O_NONBLOCK))
-    assert all(isinstance(one.exception(), OSError) for one in promised)
+    assert all(isinstance(one.exception(), Damaged) for one in promised)
