@@ -1,5 +1,7 @@
 import json
+import sqlite3
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -105,6 +107,16 @@ def test_a_model_that_was_made_before_has_a_preview_too(service: Service, made: 
     twin = service.make(**drawn.wish(made["photo"], name="Twin"))
     told = {id: list(events(service.client, f"/v1/models/{id}")) for id in (made["id"], twin["id"])}
     assert told[twin["id"]][1].data == told[made["id"]][1].data
+
+
+def test_a_preview_whose_file_is_damaged_is_left_out(service: Service, photo: str) -> None:
+    model = service.make(**drawn.wish(photo, seed=33))["id"]
+    with closing(sqlite3.connect(service.data / "treestroke.sqlite3")) as database:
+        growth = "SELECT blob FROM files WHERE model = ? AND name = 'growth.json'"
+        blob = database.execute(growth, (model,)).fetchone()[0]
+    (service.data / "blobs" / blob[:2] / blob).write_bytes(b"{}")
+    told = list(events(service.client, f"/v1/models/{model}"))
+    assert [event.name for event in told] == ["snapshot", "succeeded"]
 
 
 def test_a_canceled_model_ends_its_stream(client: httpx.Client, photo: str) -> None:

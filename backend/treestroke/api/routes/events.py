@@ -3,6 +3,7 @@
 from collections.abc import AsyncIterator
 from typing import Annotated
 
+import structlog
 from fastapi import APIRouter, Depends, Header
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
@@ -14,8 +15,11 @@ from treestroke.api.views import model_view
 from treestroke.service import models
 from treestroke.service.jobs import GROWTH
 from treestroke.service.models import Seen
+from treestroke.service.photos import Shelf
+from treestroke.store.blobs import Damaged
 from treestroke.store.leases import TERMINAL
 
+log = structlog.get_logger()
 router = APIRouter(prefix="/v1/models", tags=["models"])
 _RETRY_MS = 2000
 
@@ -29,6 +33,15 @@ async def _follower(watcher: WatcherOf, seen: Annotated[Seen, Depends(_seen)]) -
     """Take a place before the stream begins, while the answer can still be 503; it is free when the request is over."""
     with watcher.follow(seen) as follower:
         yield follower
+
+
+def _growth(shelf: Shelf, seen: Seen) -> str | None:
+    """Read the grown skeleton; None where its file is damaged, of which a stream under way cannot make an error."""
+    try:
+        return shelf.blobs.get(seen.files[GROWTH].blob).decode()
+    except Damaged as error:
+        log.error("file_damaged", file=str(error))
+        return None
 
 
 @router.get("/{id}/events", response_class=EventSourceResponse, responses=documented(403, 404, 422, 503))
@@ -49,9 +62,9 @@ async def follow_model(
     while True:
         row = latest.row
         if row.preview_seq and row.preview_seq > told and GROWTH in latest.files:
-            growth = await run_in_threadpool(shelf.blobs.get, latest.files[GROWTH].blob)
             told = row.preview_seq
-            yield ServerSentEvent(event="preview", raw_data=growth.decode(), id=str(told))
+            if growth := await run_in_threadpool(_growth, shelf, latest):
+                yield ServerSentEvent(event="preview", raw_data=growth, id=str(told))
         if row.status in TERMINAL:
             yield ServerSentEvent(event=row.status, data=model_view(latest), id=str(row.seq))
             return
