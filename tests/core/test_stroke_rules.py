@@ -118,6 +118,15 @@ def test_a_second_stem_beside_the_root_is_not_joined() -> None:
     assert len(mended.strokes.branches[1].points) == 2
 
 
+@pytest.mark.parametrize(
+    ("start", "points"), [(286, [[204, 290], [204, 286]]), (290, [[204, 290]]), (292, [[204, 292]])]
+)
+def test_a_second_stem_stands_on_the_ground(start: int, points: list[list[float]]) -> None:
+    mended = mend(branches=(TRUNK, [[204, start], [240, 150]]))
+    assert mended.warnings == ()
+    assert mended.strokes.branches[1].points.tolist() == [*points, [240, 150]]
+
+
 def test_a_crown_that_crosses_itself_is_kept_with_a_warning() -> None:
     eight = [[100, 40], [300, 160], [300, 40], [100, 160]]
     mended = mend(crown=eight, branches=([[150, 290], [150, 150]],))

@@ -32,8 +32,8 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     """Check strokes against a photo of the given size, px, and mend what can be mended.
 
     Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
-    nearest of them by one more point at its start, with a warning; a crown that crosses itself is kept (fill it
-    with `fill_outline`), with a warning.
+    nearest of them by one more point at its start, with a warning; a second stem starts on the ground; a crown that
+    crosses itself is kept (fill it with `fill_outline`), with a warning.
 
     Raises
     ------
@@ -182,12 +182,20 @@ def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], 
         found = [_nearest(earlier.points, start) for earlier in branches]
         parent = int(np.argmin([gap[0] for _, gap in found]))
         joint, gap = found[parent][0][0], float(found[parent][1][0])
-        if gap > reach and np.hypot(*(start[0] - root)) > stem_reach:
+        if np.hypot(*(start[0] - root)) <= stem_reach:
+            stroke = _on_the_ground(stroke, float(root[1]))
+        elif gap > reach:
             stroke = replace(stroke, points=np.vstack([joint, stroke.points]))
             detail = f"it starts {gap:.0f} px from every earlier branch and was joined to branches/{parent}"
             warnings.append(StrokeWarning("branch_joined", f"branches/{index}", detail))
         branches.append(stroke)
     return tuple(branches), tuple(warnings)
+
+
+def _on_the_ground(stem: Stroke, ground: float) -> Stroke:
+    """Let a second stem that starts above the root's height, px, begin straight below."""
+    x, y = stem.points[0]
+    return stem if y >= ground else replace(stem, points=np.vstack([[x, ground], stem.points]))
 
 
 def _nearest(line: Floats, points: Floats) -> tuple[Floats, Floats]:

@@ -8,6 +8,7 @@ from scipy.spatial import cKDTree
 from treestroke.core.leaf.atlas import tile_alphas
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
+from treestroke.core.skeleton.traverse import child_counts
 
 HEIGHT = 10.0
 
@@ -32,6 +33,15 @@ def leaves(scene) -> Leaves:
     return place(scene)
 
 
+def without_buds(leaves: Leaves, mask: np.ndarray, camera) -> Leaves:
+    """Leave out the tiny cards that end a twig where no other fits."""
+    return leaves.select(np.linalg.norm(leaves.ups, axis=1) > 0.002 * width_of(mask, camera))
+
+
+def width_of(mask: np.ndarray, camera) -> float:
+    return float(np.ptp(np.flatnonzero(mask.any(axis=0))) + 1) * camera.metres_per_pixel
+
+
 def shown(leaves, atlas, camera) -> np.ndarray:
     """Draw the cards' opaque texels, 24 x 24 a tile, at twice the photo's resolution; halve by majority."""
     canvas = np.zeros((2 * camera.height, 2 * camera.width), np.uint8)
@@ -47,7 +57,7 @@ def shown(leaves, atlas, camera) -> np.ndarray:
 
 
 def test_every_centre_projects_into_the_foliage(leaves, mask, camera):
-    pixels = np.floor(camera.pixels_from_world(leaves.centres)).astype(int)
+    pixels = np.floor(camera.pixels_from_world(without_buds(leaves, mask, camera).centres)).astype(int)
     assert mask[pixels[:, 1], pixels[:, 0]].all()
 
 
@@ -60,7 +70,7 @@ def test_the_foliage_is_covered_and_little_else(leaves, mask, atlas, camera):
 def test_wood_that_is_seen_has_leaves_behind_it_and_none_before(scene, camera):
     front = front_of(scene[1])
     front[:, 145:155][scene[1][:, 145:155]] = 0.0
-    placed = place(scene, front=front)
+    placed = without_buds(place(scene, front=front), scene[1], camera)
     column = camera.pixels_from_world(placed.centres)[:, 0]
     beside = (column > 146) & (column < 154)
     assert beside.sum() > 50
@@ -78,8 +88,7 @@ def test_rights_and_ups_are_at_right_angles(leaves):
 
 
 def test_most_sides_are_1_5_to_3_per_cent_of_the_crowns_width(leaves, mask, camera):
-    width = (np.ptp(np.flatnonzero(mask.any(axis=0))) + 1) * camera.metres_per_pixel
-    share = 2 * np.linalg.norm(leaves.ups, axis=1) / width
+    share = 2 * np.linalg.norm(leaves.ups, axis=1) / width_of(mask, camera)
     assert share.max() <= 0.03
     assert (share >= 0.015).mean() >= 0.75
 
@@ -136,7 +145,25 @@ def test_an_empty_mask_bears_nothing(tree, mask, envelope, photo, atlas):
 @pytest.mark.parametrize("density", [0.3, 3.0])
 def test_cards_stay_within_the_budget(scene, size, density):
     leaves = place(scene, LeafParams(size=size, density=density, max_cards=3000))
-    assert 0 < len(leaves) <= 3000
+    assert 0 < len(leaves) <= 3000 + (child_counts(scene[0]) == 0).sum()
+
+
+@pytest.mark.parametrize(
+    "params", [LeafParams(), LeafParams(kind="needles"), LeafParams(density=0.3), LeafParams(density=0.01)]
+)
+def test_every_twig_ends_in_a_leaf_or_a_bud(scene, params):
+    tree, leaves = scene[0], place(scene, params)
+    tips = np.flatnonzero(child_counts(tree) == 0)
+    own = [leaves.select(leaves.joints == tip) for tip in tips]
+    half = [np.linalg.norm(cards.ups, axis=1) for cards in own]
+    away = [np.linalg.norm(cards.centres - tree.points[tip], axis=1) for cards, tip in zip(own, tips, strict=True)]
+    assert all((distance <= 1.7 * side).any() for distance, side in zip(away, half, strict=True))
+
+
+def test_the_fewer_the_leaves_the_more_twigs_end_in_a_bud(scene, mask, camera):
+    few, many = place(scene, LeafParams(density=0.1)), place(scene)
+    buds = [len(leaves) - len(without_buds(leaves, mask, camera)) for leaves in (few, many)]
+    assert buds[0] > 1.5 * buds[1]
 
 
 def test_density_scales_the_number_of_cards(scene, leaves):
@@ -159,6 +186,6 @@ def test_no_card_s_centre_lies_outside_a_side_that_was_drawn(scene, camera, off)
     tree, mask, envelope, photo, atlas = scene
     side = np.roll(cv2.ellipse(np.zeros((400, 300), np.uint8), (150, 150), (60, 120), 0, 0, 360, 1, -1) > 0, off, 1)
     slim = envelope.with_side(side, camera)
-    centres = place((tree, mask, slim, photo, atlas)).centres
+    centres = without_buds(place((tree, mask, slim, photo, atlas)), mask, camera).centres
     assert slim.shown_from_side(centres).all()
     assert np.percentile(centres[:, 2], [1, 99]) == pytest.approx([(off - 60) / 36, min(off + 60, 117) / 36], abs=0.35)

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.leaf.leaves import Floats, Indices
+from treestroke.core.leaf.leaves import Floats, Indices, Leaves
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.skeleton.traverse import child_counts
 
 THIN = 0.25
 """Branches thinner than this share of the thickest bear leaves."""
@@ -16,6 +17,12 @@ SCATTER = 0.016
 """How far a spray's foot may stand off its branch, as a share of the tree's height (side twigs that are not drawn)."""
 DROOP = 0.25
 """Weight of gravity in a spray's direction."""
+AT_END = 0.25
+"""Of half a card's side: a card this near to a twig's end hides it."""
+ON_END = (-0.3, 0.9)
+"""How far beyond a twig's end the middle of a spray on it lies, in halves of the spray's side."""
+TURN = 0.25
+"""Standard deviation by which a spray at a twig's end turns aside from the twig."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +70,22 @@ def seats_along(skeleton: Skeleton, bearing: Floats, count: int, rng: np.random.
     return Seats(end + share * (start - end), unit(end - start, UP), joints)
 
 
+def bare_tips(skeleton: Skeleton, leaves: Leaves) -> Seats:
+    """Give a place at the end of each twig whose last piece bears no card that reaches its end."""
+    tips = np.flatnonzero((child_counts(skeleton) == 0) & (skeleton.parents >= 0))
+    way = skeleton.points[leaves.joints] - leaves.centres
+    half = np.linalg.norm(leaves.ups, axis=1, keepdims=True)
+    square = np.maximum(half**2, 1e-12)
+    across, along = (
+        np.clip((way * side).sum(axis=1, keepdims=True) / square, -1.0, 1.0) * side
+        for side in (leaves.rights, leaves.ups)
+    )
+    reaching = np.linalg.norm(way - across - along, axis=1) <= AT_END * half[:, 0]
+    tips = np.setdiff1d(tips, leaves.joints[reaching])
+    end, start = skeleton.points[tips], skeleton.points[skeleton.parents[tips]]
+    return Seats(end, unit(end - start, UP), tips)
+
+
 @dataclass(frozen=True, eq=False)
 class Poses:
     """Cards without colour: centres, half-extent vectors rights and ups (n, 3), metres, and lift (n,), -1 to 1."""
@@ -86,6 +109,15 @@ def pose_on_branches(
     axis = unit(axis, UP)
     centres = seats.points + offset * around + 0.8 * half_sizes[:, None] * axis
     return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng), around[:, 1])
+
+
+def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np.random.Generator) -> Poses:
+    """Set a spray on the end of each twig, going on as the twig does, more or less, and facing out and up."""
+    axis = seats.directions + rng.normal(0, TURN, seats.directions.shape)
+    axis[:, 1] -= 0.5 * DROOP
+    axis = unit(axis, UP)
+    centres = seats.points + rng.uniform(*ON_END, (len(seats), 1)) * half_sizes[:, None] * axis
+    return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng), axis[:, 1])
 
 
 def pose_over(

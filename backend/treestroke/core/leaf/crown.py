@@ -56,12 +56,16 @@ class Crown:
         """Draw half sides of cards (count,), metres."""
         return self.side * rng.uniform(*SIDES, count) / 2
 
-    def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> tuple[Leaves, NDArray[np.bool_]]:
-        """Colour the cards that stay inside the foliage and the crown, and tell which of them do (n,)."""
+    def coloured(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> Leaves:
+        """Give cards their tiles and their light."""
         tiles, flips = self.colouring.tiles(poses.centres, rng), rng.random(len(seats)) < 0.5
         light = shades(poses.centres, poses.lift, self.envelope) + rng.normal(0, FLICKER, len(seats))
         light = np.clip(light, DARKEST, 1.0)
-        leaves = Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
+        return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
+
+    def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> tuple[Leaves, NDArray[np.bool_]]:
+        """Colour the cards that stay inside the foliage and the crown, and tell which of them do (n,)."""
+        leaves = self.coloured(poses, seats, rng)
         kept = self._fitting(leaves)
         return leaves.select(kept), kept
 

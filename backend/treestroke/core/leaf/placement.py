@@ -5,18 +5,26 @@ project inside the foliage stay. Ours are sprays of several leaves, so that 25,0
 shrunk at its outline; what stays uncovered gets further cards from the nearest branch.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.leaf.arrangement import Seats, pose_on_branches, seats_along
+from treestroke.core.leaf.arrangement import (
+    Poses,
+    Seats,
+    bare_tips,
+    pose_at_tips,
+    pose_on_branches,
+    seats_along,
+)
 from treestroke.core.leaf.atlas import Atlas, Kind
 from treestroke.core.leaf.crown import Crown, crown_of
 from treestroke.core.leaf.gaps import cover_gaps
 from treestroke.core.leaf.grid import foliage_grid
-from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.leaf.leaves import Floats, Indices, Leaves, join_leaves, no_leaves
 from treestroke.core.leaf.mass import bearing
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -27,6 +35,8 @@ RESERVE = 0.25
 """Share of the cards that is kept for what the first ones leave uncovered."""
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
 """Sizes at which a card that would leave the foliage is tried again, each time turned anew."""
+BUD = 0.1
+"""Size of a bud, against a card's."""
 LEAST_SIZE = 0.3
 """Least factor on a card's side."""
 
@@ -42,7 +52,7 @@ class LeafParams:
     density
         Factor on the number of cards, 0 to 3; 0 bears none, under 1 leaves part of the foliage uncovered.
     max_cards
-        Most cards, whatever size and density.
+        Most cards, whatever size and density, besides those that twigs' ends bear.
     kind
         What the twigs bear; ``bare`` bears nothing.
     """
@@ -76,7 +86,8 @@ def place_leaves(
     The skeleton is in metres, envelope the crown's solid; front (h, w) is infinite in the foliage of the photo
     (h, w, 3), the wood's world Z where wood is seen, else minus infinite. Every card's centre projects into the
     foliage, or onto wood that it lies behind, and its leaves at most by a few per cent outside; nearly all cards stand
-    nearer to a branch than 4.5 % of the tree's height. A bare tree, density 0 or no foliage gives none.
+    nearer to a branch than 4.5 % of the tree's height. Each twig's end bears a card, or a bud (a tiny card) where that
+    would lie outside, or density under 1 leaves none. A bare tree, density 0 or no foliage gives none.
     """
     if params.kind == "bare" or params.density == 0 or params.max_cards == 0 or not np.isposinf(front).any():
         return no_leaves()
@@ -85,22 +96,47 @@ def place_leaves(
     wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     weights = bearing(skeleton, grid, envelope, crown.height, even=params.kind == "needles")
-    leaves = _on_branches(seats_along(skeleton, weights, count, rng), crown, rng)
+    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, rng)
+    leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)
-    patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(leaves), rng)
+    patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(along), rng)
     report("leaf", 1.0)
     return join_leaves([leaves, *patches])
 
 
+def _at_tips(seats: Seats, density: float, crown: Crown, rng: np.random.Generator) -> Leaves:
+    """End each twig in a card, in a share of them by the density; where it would leave the foliage, in a bud."""
+
+    def pose(seats: Seats, half_sizes: Floats) -> Poses:
+        return pose_at_tips(seats, half_sizes, crown.middle, rng)
+
+    leafy = rng.random(len(seats)) < density
+    sprays, left = _fitted(seats.at(leafy), pose, crown, rng)
+    bare = ~leafy
+    bare[np.flatnonzero(leafy)[left]] = True
+    buds = seats.at(bare)
+    return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
+
+
 def _on_branches(seats: Seats, crown: Crown, rng: np.random.Generator) -> Leaves:
-    """Hang a card on each seat; those that would leave the foliage are turned and shrunk a few times."""
+    """Hang a card on each seat, unless it would leave the foliage."""
+
+    def pose(seats: Seats, half_sizes: Floats) -> Poses:
+        return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
+
+    return _fitted(seats, pose, crown, rng)[0]
+
+
+def _fitted(
+    seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: Crown, rng: np.random.Generator
+) -> tuple[Leaves, Indices]:
+    """Set a card on each seat; those that would leave the foliage are turned and shrunk a few times, then left."""
     found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
     for scale in SHRINKING:
         if len(order) == 0:
             break
         tried = seats.at(order)
-        poses = pose_on_branches(tried, scale * full[order], crown.height, crown.middle, rng)
-        leaves, kept = crown.dressed(poses, tried, rng)
+        leaves, kept = crown.dressed(pose(tried, scale * full[order]), tried, rng)
         found.append(leaves)
         order = order[~kept]
-    return join_leaves(found)
+    return join_leaves(found), order

@@ -87,11 +87,11 @@ def chains_of(skeleton: Skeleton, thinnest: float) -> Chains:
     return _spaced(whole, 1e-3 * thinnest)
 
 
-def thinned(chains: Chains, tolerance: Floats) -> Chains:
-    """Drop joints that the chord of their neighbours misses by less than ``tolerance`` (m,), metres.
+def thinned(chains: Chains, tolerance: Floats) -> Indices:
+    """List the joints, ascending, without those that the chord of their neighbours misses by less than ``tolerance``.
 
-    Forks count four times, for other limbs start there. What a drop moves is charged to its neighbours,
-    so that errors do not add up beyond the tolerance. The ends stay.
+    The tolerance (m,) is in metres. Forks count four times, for other limbs start there. What a drop moves is charged
+    to its neighbours, so that errors do not add up beyond the tolerance. The ends stay.
     """
     keep = np.arange(len(chains.limb))
     charged = np.zeros(len(keep))
@@ -108,7 +108,7 @@ def thinned(chains: Chains, tolerance: Floats) -> Chains:
         np.maximum.at(charged, keep[out - 1], missed[np.isin(middle, out)])
         np.maximum.at(charged, keep[out + 1], missed[np.isin(middle, out)])
         keep = np.delete(keep, out)
-    return subset(chains, keep)
+    return keep
 
 
 def missed_without(points: Floats, radii: Floats, limb: Indices) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Hold, Mesh
-from treestroke.core.mesh.chains import Chains, chains_of, missed_without, thinned
+from treestroke.core.mesh.chains import Chains, chains_of, missed_without, subset, thinned
 from treestroke.core.mesh.sheath import Grid
 from treestroke.core.mesh.stations import stations_of
 from treestroke.core.mesh.tubes import THINNEST, TubeParams, wrapping
@@ -97,7 +97,8 @@ def _fitted(skeleton: Skeleton, params: CoarseParams, whatever: bool) -> Mesh | 
     height = max(float(np.ptp(skeleton.points, axis=0).max()), 1e-6)
     pixel = height / params.height_px
     chains = chains_of(skeleton, THINNEST * height)
-    rings = stations_of(thinned(chains, np.full(len(chains.limb), _FINEST_PX * pixel)), 1.0, _BLUNT_PX * pixel, np.inf)
+    needed = subset(chains, thinned(chains, np.full(len(chains.limb), _FINEST_PX * pixel)))
+    rings = stations_of(needed, 1.0, _BLUNT_PX * pixel, np.inf)
     shape = rings.radii * (1.0 + _FLARE * rings.swell)
     missed = missed_without(rings.points, shape, rings.limb) * np.clip(rings.radii / pixel, _FAINT, 0.5)
     # A stem's first ring closes it: the second is its foot.

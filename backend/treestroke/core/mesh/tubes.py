@@ -6,10 +6,11 @@ import numpy as np
 
 from treestroke.core.geometry.frames import rotation_minimizing_normals
 from treestroke.core.geometry.mesh import Hold, Mesh
-from treestroke.core.mesh.chains import Chains, chains_of, thinned
+from treestroke.core.mesh.chains import Chains, chains_of, subset, thinned
 from treestroke.core.mesh.sheath import Grid, smooth_normals, texture_coordinates
 from treestroke.core.mesh.stations import Stations, stations_of
 from treestroke.core.mesh.swelling import collar, flare, merged_normals, nearness_to_bearer
+from treestroke.core.mesh.touching import missed_forks, without_hidden
 from treestroke.core.skeleton.skeleton import Indices, Skeleton
 
 _LEAST_DETAIL = 0.003  # where every limb is a cone or two; less saves no more triangles
@@ -82,7 +83,7 @@ def tubes(skeleton: Skeleton, params: TubeParams = TubeParams()) -> Mesh:
     if skeleton.points.shape[1] != 3:
         raise ValueError(f"tubes need a 3D skeleton, got {skeleton.points.shape[1]} coordinates")
     height = max(float(np.ptp(skeleton.points, axis=0).max()), 1e-6)
-    chains = chains_of(skeleton, THINNEST * height)
+    chains = without_hidden(chains_of(skeleton, THINNEST * height))
     detail = 1.0
     while detail > _LEAST_DETAIL:
         rings = _rings(chains, height, detail)
@@ -95,9 +96,14 @@ def tubes(skeleton: Skeleton, params: TubeParams = TubeParams()) -> Mesh:
 
 
 def _rings(chains: Chains, height: float, detail: float) -> Stations:
-    """Place rings at this much detail."""
-    tolerance = np.maximum(0.08 * chains.radii, _MISSED * height) / detail**2
-    return stations_of(thinned(chains, tolerance), detail, _BLUNT * height, _COLLARED * height / detail)
+    """Place rings at this much detail, and no less than hides where limbs start."""
+    left = thinned(chains, np.maximum(0.08 * chains.radii, _MISSED * height) / detail**2)
+    while True:
+        rings = stations_of(subset(chains, left), detail, _BLUNT * height, _COLLARED * height / detail)
+        missed = missed_forks(chains, left, rings)
+        if not len(missed):
+            return rings
+        left = np.union1d(left, missed)
 
 
 def _sides(chains: Chains, height: float, detail: float, most: int) -> Indices:

@@ -12,6 +12,7 @@ from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import Subtree, choose_library
 from treestroke.core.grow.params import GrowthParams, growth_for
 from treestroke.core.grow.replacement import grow
+from treestroke.core.grow.trimming import trimmed
 from treestroke.core.leaf.seasons import LEAFY
 from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
@@ -135,6 +136,7 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
     library = choose_library(settings.library, kind, lifted.tree)
     grown = _filled(lifted.tree, crown, bulged, library, growth_for(kind, settings.iterations), rng, report)
     leafy = foliage.mask if shows_leaves else frayed(crown, rng)
+    grown = grown if kind == "bare" else trimmed(grown, leafy | wood, camera)
     front = _front(foliage, traced, lifted, leafy, shows_leaves)
     stem = np.flatnonzero(traced.stroke == 0)
     radii = np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)

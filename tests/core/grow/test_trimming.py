@@ -1,0 +1,32 @@
+import numpy as np
+from tests.builders import fork
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.grow.grown import Grown
+from treestroke.core.grow.trimming import trimmed
+from treestroke.core.skeleton.skeleton import Skeleton
+
+CAMERA = Camera(300, 400, 0.01, (150.0, 390.0))
+
+
+def cut(tree: Skeleton, born: list[int], left: int, right: int) -> Grown:
+    """Trim a tree by foliage between two columns, px."""
+    foliage = np.zeros((400, 300), dtype=bool)
+    foliage[:, left:right] = True
+    return trimmed(Grown(tree, np.array(born), np.zeros((0, 3), np.int64)), foliage, CAMERA)
+
+
+def test_ends_that_grew_out_of_the_foliage_go() -> None:
+    tree = fork(angle_rad=0.7)
+    left = cut(tree, [0, 0, 0, 1, 1, 1, 1], 140, 210)
+    assert left.skeleton.points.tolist() == tree.points[:6].tolist()
+    assert left.skeleton.parents.tolist() == [-1, 0, 1, 2, 3, 2]
+    assert left.born.tolist() == [0, 0, 0, 1, 1, 1]
+
+
+def test_what_comes_back_into_the_foliage_stays() -> None:
+    assert len(cut(fork(angle_rad=0.7), [0, 0, 0, 1, 1, 1, 1], 240, 260).skeleton) == 5
+
+
+def test_what_was_seen_stays() -> None:
+    assert len(cut(fork(angle_rad=0.7), [0] * 7, 0, 1).skeleton) == 7
