@@ -208,17 +208,3 @@ def test_the_report_is_the_command_lines(client: httpx.Client, made: dict[str, A
     needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
     assert set(made["report"]) == needed | {"measures", "variants", "files"}
     assert made["report"]["counts"]["bytes"] == len(client.get(made["files"]["tree.glb"]).content)
-
-
-def test_a_file_that_is_missing_on_the_disk_is_no_full_disk(service: Service) -> None:
-    model = service.make(**drawn.wish(service.add_photo(drawn.encoded(seed=77)), seed=77))
-    tag = service.client.get(model["files"]["tree.glb"]).headers["etag"].strip('"')
-    blob = service.data / "blobs" / tag[:2] / tag
-    content = blob.read_bytes()
-    blob.unlink()
-    answer = service.client.get(model["files"]["tree.glb"])
-    assert (answer.status_code, answer.json()["code"]) == (500, "file_missing")
-    assert "treestroke doctor" in answer.json()["detail"]
-    assert '"code": "file_missing"' in (service.data.parent / "data.log").read_text()
-    blob.write_bytes(content)
-    assert service.client.get(model["files"]["tree.glb"]).status_code == 200
