@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_ALOUD = ("side_assumed", "photo_cut_short")
-"""Codes of the warnings that are said aloud: nobody drew what they speak of."""
+_ALOUD = ("side_assumed", "photo_cut_short", "trunk_level", "outside_photo", "crown_unclear")
+"""Codes of the warnings that are said aloud: nobody drew what they speak of, or it may be no tree."""
 
 
 class UsageError(TreestrokeError):

@@ -171,3 +171,13 @@ function line(value: unknown): Line {
     return [x, y] as Point
   })
 }
+
+/** Find the stroke that a JSON pointer leads to: /crown, /strokes/erase/0, /branches/2/points, /sketches/side/crown. */
+export function strokeAt(pointer: string | null): StrokeRef | null {
+  const found = pointer?.match(
+    /^(?:\/(?:strokes|sketches))?(?:\/(front|side))?\/(crown|branches|erase|scale)(?:\/(\d+))?/,
+  )
+  if (!found) return null
+  const kind = found[2] === 'branches' ? 'branch' : (found[2] as StrokeKind)
+  return { kind, index: Number(found[3] ?? 0), ...(found[1] === 'side' && { sheet: 'side' }) }
+}

@@ -156,6 +156,14 @@ export const text = {
       crown_crosses_itself: 'The crown line crosses itself; everything inside it was taken.',
       branch_joined: (stroke: string) => `${stroke} was joined to the nearest branch.`,
     },
+    /** Warnings that a stroke may mean no tree, by their codes. */
+    doubts: {
+      trunk_level: 'The trunk lies level or runs down. Draw it from the root up, on the photo as it stands upright.',
+      outside_photo: (stroke: string) =>
+        `Much of the ${stroke.toLowerCase()} lies outside the photo. Draw it on this photo, as it stands upright.`,
+      crown_unclear:
+        'Inside the crown it looks as around it. Draw it around the leaves, or take a photo where they stand out.',
+    },
   },
   notices: {
     close: 'Close this message',

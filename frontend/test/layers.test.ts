@@ -9,7 +9,7 @@ const LAYERS = [
   ['main'],
   ['ui'],
   ['sketch', 'preview', 'studio'],
-  ['api', 'text', 'tracedBranch'],
+  ['api', 'text', 'tracedBranch', 'doubts'],
   ['sheets'],
   ['state'],
   ['plane'],

@@ -5,6 +5,7 @@ import {
   lineOf,
   NO_STROKES,
   onSheet,
+  strokeAt,
   strokeRefs,
   toWire,
   withoutStroke,
@@ -139,4 +140,19 @@ test('a side’s strokes are named, found, and left out by themselves', () => {
   expect(withoutStroke(both, ref).side).toEqual({ crown: CROWN, branches: [] })
   expect(withoutStroke(both, { kind: 'branch', index: 0 }).side).toBe(both.side)
   expect(isEmpty(withSheet(NO_STROKES, 'side', front))).toBe(false)
+})
+
+test.each([
+  ['/crown', { kind: 'crown', index: 0 }],
+  ['/branches/2', { kind: 'branch', index: 2 }],
+  ['/branches/2/points/7', { kind: 'branch', index: 2 }],
+  ['/strokes/erase/1', { kind: 'erase', index: 1 }],
+  ['/strokes/scale/metres', { kind: 'scale', index: 0 }],
+  ['/front/branches/2', { kind: 'branch', index: 2 }],
+  ['/side/crown', { kind: 'crown', index: 0, sheet: 'side' }],
+  ['/sketches/side/branches/1/points/3', { kind: 'branch', index: 1, sheet: 'side' }],
+  ['/settings/height', null],
+  [null, null],
+])('the pointer %s leads to %o', (pointer, stroke) => {
+  expect(strokeAt(pointer)).toEqual(stroke)
 })

@@ -1,15 +1,20 @@
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.conftest import DATA
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import mend_strokes, require_trunk
 from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes
+from treestroke.service.inputs import load_photo, load_strokes
 
 WIDTH, HEIGHT = 400, 300
 CROWN = [[100, 40], [300, 40], [300, 160], [100, 160]]
 TRUNK = [[200, 290], [200, 150]]
+DOUBTS = {"trunk_level", "outside_photo"}
 
 
 def mend(crown: object = CROWN, branches: object = (TRUNK,), erase: object = ()) -> MendedStrokes:
@@ -125,6 +130,61 @@ def test_a_second_stem_stands_on_the_ground(start: int, points: list[list[float]
     mended = mend(branches=(TRUNK, [[204, start], [240, 150]]))
     assert mended.warnings == ()
     assert mended.strokes.branches[1].points.tolist() == [*points, [240, 150]]
+
+
+@pytest.mark.parametrize(
+    "trunk",
+    [[[110, 100], [290, 95]], [[200, 60], [205, 150]], [[120, 140], [160, 130], [280, 150]]],
+    ids=["level", "downward", "nearly level"],
+)
+def test_a_trunk_that_does_not_rise_is_warned_of(trunk: list[list[float]]) -> None:
+    (warning,) = mend(branches=(trunk,)).warnings
+    assert (warning.code, warning.stroke) == ("trunk_level", "branches/0")
+    assert "root up the trunk" in warning.detail
+
+
+@pytest.mark.parametrize(
+    "trunk",
+    [[[120, 290], [280, 150]], [[60, 290], [200, 130], [320, 290]], [[200, 290], [120, 270], [260, 200], [150, 140]]],
+    ids=["leaning", "arched", "winding"],
+)
+def test_a_trunk_may_lean_arch_and_wind(trunk: list[list[float]]) -> None:
+    assert mend(branches=(trunk,)).warnings == ()
+
+
+def test_strokes_of_the_photo_before_it_was_turned_are_warned_of() -> None:
+    strokes = Strokes(
+        Stroke(np.array([[40, 100], [200, 100], [200, 300], [40, 300]], float)),
+        (Stroke(np.array([[30, 395], [150, 200]], float)),),
+    )
+    warnings = mend_strokes(strokes, 400, 220).warnings
+    outside = [("outside_photo", "crown"), ("outside_photo", "branches/0")]
+    assert [(one.code, one.stroke) for one in warnings] == [*outside, ("trunk_level", "branches/0")]
+    assert all("before it was turned upright" in one.detail for one in warnings[:2])
+
+
+@pytest.mark.parametrize("strokes", sorted(DATA.glob("*.strokes.json")), ids=lambda path: path.name)
+def test_strokes_of_real_trees_are_warned_of_only_where_the_photo_was_turned(strokes: Path) -> None:
+    height, width = load_photo(DATA / f"{strokes.name.split('.')[0]}.jpg").shape[:2]
+    given = load_strokes(strokes)
+
+    def codes(turn: Callable[[np.ndarray], np.ndarray]) -> set[str]:
+        crown, *branches = (Stroke(turn(one.points)) for one in (given.crown, *given.branches))
+        return {one.code for one in mend_strokes(Strokes(crown, tuple(branches)), width, height).warnings}
+
+    assert not codes(lambda points: points) & DOUBTS
+    assert codes(lambda points: np.column_stack([points[:, 1], width - points[:, 0]])) & DOUBTS
+    assert codes(lambda points: np.column_stack([height - points[:, 1], points[:, 0]])) & DOUBTS
+    assert codes(lambda points: (width, height) - points) & DOUBTS
+
+
+def test_a_stroke_from_far_beyond_is_told_at_once() -> None:
+    far = [[-1e308, 40], *([[1e308, 40], [-1e308, 50]] * 4_000), [1e308, 160], [200, 160]]
+    assert {one.code for one in mend(crown=far).warnings} >= {"outside_photo"}
+
+
+def test_a_crown_that_is_cut_by_the_photo_s_edge_is_not_warned_of() -> None:
+    assert mend(crown=[[100, -15], [300, -15], [300, 160], [100, 160]]).warnings == ()
 
 
 def test_a_crown_that_crosses_itself_is_kept_with_a_warning() -> None:

@@ -40,7 +40,7 @@ def grow_again(visitor: Visitor, service: Service) -> dict[str, Any]:
     visitor.until(lambda: len(service.models()) > count)
     visitor.until(lambda: service.models()[0]["status"] not in ("queued", "running"))
     visitor.wait_for_preview("model")
-    expect(visitor.page.get_by_text("match with the photo").first).to_be_visible()
+    expect(visitor.page.get_by_text("match with the foliage and branches").first).to_be_visible()
     model: dict[str, Any] = service.client.get(f"/v1/models/{service.models()[0]['id']}").json()
     assert model["status"] == "succeeded", model["error"]
     return model

@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.conftest import DATA
 
 import treestroke
 from treestroke.service.making import STAGES, Model
@@ -18,7 +19,7 @@ def maple(maple_photo: Path, maple_strokes: Path) -> Model:
 def test_the_report_has_the_contract_s_fields(maple: Model) -> None:
     report = maple.report
     needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
-    assert set(report) == needed | {"measures", "variants", "files"}
+    assert set(report) == needed | {"measures", "variants", "files", "reading"}
     assert set(report["seconds"]) == set(STAGES) - {"levels"}
     assert set(report["counts"]) == {"iterations", "branches", "leaves", "triangles", "bytes"}
     assert set(report["score"]) == {"silhouette_iou", "attractors_reached", "depth_over_width"}
@@ -31,6 +32,30 @@ def test_every_stage_took_some_time(maple: Model) -> None:
 
 def test_auto_foliage_is_named(maple: Model) -> None:
     assert maple.report["settings"]["foliage"] == "leaves"
+
+
+def test_the_report_says_what_the_score_is_measured_against(maple: Model) -> None:
+    reading = maple.report["reading"]
+    assert reading["against"] == "the foliage and branches as they were read in the photo"
+    assert reading["kind_sureness"] > 0.8
+    assert list(reading["doubts"]) == []
+
+
+@pytest.mark.parametrize(("settings", "doubts"), [({}, ["kind_unsure"]), ({"foliage": "bare"}, [])])
+def test_a_tree_that_may_be_bare_or_not_is_doubted_unless_it_was_said(settings: dict, doubts: list[str]) -> None:
+    photo, strokes = (DATA / f"bigleaf_maple_bare.{end}" for end in ("jpg", "strokes.json"))
+    report = treestroke.model(photo, strokes, {"iterations": 0, **settings}).report
+    assert report["settings"]["foliage"] == "bare"
+    assert list(report["reading"]["doubts"]) == doubts
+
+
+def test_strokes_that_may_mean_no_tree_are_warned_of_and_doubted(maple_photo: Path, maple_strokes: Path) -> None:
+    strokes = json.loads(maple_strokes.read_text())
+    (x, y), wide = np.mean(strokes["crown"]["points"], axis=0), np.ptp(strokes["crown"]["points"], axis=0)[0]
+    strokes["branches"] = [{"points": [[x - 0.3 * wide, y], [x + 0.3 * wide, y]]}]
+    report = treestroke.model(maple_photo, strokes, {"iterations": 0}).report
+    assert [(one["code"], one["stroke"]) for one in report["warnings"]] == [("trunk_level", "branches/0")]
+    assert list(report["reading"]["doubts"]) == ["trunk_level"]
 
 
 def test_the_same_input_gives_the_same_bytes_however_it_is_handed_in(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Floats
-from treestroke.core.geometry.polyline import resample
+from treestroke.core.geometry.polyline import arc_lengths, place_at, resample
 from treestroke.core.imaging.outline import filled_and_crossing
 from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes, StrokeWarning
 
@@ -23,6 +23,12 @@ TREE_HEIGHTS = (0.1, 150.0)
 """Metres, the least and the greatest height of a tree."""
 STEM_SHARE = 0.03
 """Of the tree's height: a later stroke that starts this near the root is a stem of its own."""
+LEAST_RISE = 0.4
+"""Of the furthest that a trunk goes from its root: how high it climbs (those of 28 photos 0.89 and more). Below it the
+stroke is level, or that of a photo that was turned."""
+MOST_OUTSIDE, LOOSE, OUTSIDE_PLACES = 0.15, 0.05, 500
+"""Share of a stroke, judged at so many places, that may lie outside the photo by more than a share of its long side: a
+hand around a tree that the edge cuts stays nearer."""
 Place = tuple[str | int, ...]
 """Keys from the strokes as a whole to one of their parts."""
 CROSSING = StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken")
@@ -54,13 +60,47 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
     crown, crossing = filled_and_crossing(inside.crown.points * coarse, *size)
     check_crown(crown)
-    warnings = (CROSSING,) if crossing else ()
+    warnings = ((CROSSING,) if crossing else ()) + _outside(strokes, width, height)
     if not inside.branches:
         return MendedStrokes(inside, warnings)
     _check_trunk(inside, crown, coarse, max(width, height))
     _check_scale(inside)
     branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
-    return MendedStrokes(replace(inside, branches=branches), warnings + joined)
+    return MendedStrokes(replace(inside, branches=branches), warnings + _level(inside.branches[0]) + joined)
+
+
+def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, ...]:
+    """Warn of crown and trunk where much of them lies outside the photo: they may have been drawn on another one."""
+    drawn = [("crown", strokes.crown), *(("branches/0", one) for one in strokes.branches[:1])]
+    turned = bool((np.vstack([one.points for _, one in drawn]) <= (height, width)).all())
+    how = "it would fit the photo as it was before it was turned upright" if turned else "it may be another photo's"
+    warnings = []
+    for place, stroke in drawn:
+        share = _share_outside(stroke.points, width, height)
+        if share > MOST_OUTSIDE:
+            what = f"{share:.0%} of it lies well outside the photo and was moved to its edge"
+            detail = f"{what}; {how}: draw it on this one, as it stands upright"
+            warnings.append(StrokeWarning("outside_photo", place, detail))
+    return tuple(warnings)
+
+
+def _share_outside(points: Floats, width: int, height: int) -> float:
+    """Give the share of a line (n, 2), px, that lies well outside the photo; far away is no further than nearby."""
+    side = float(max(width, height))
+    near = np.clip(np.asarray(points, dtype=np.float64), -side, 2 * side)
+    places = place_at(near, np.linspace(0.0, arc_lengths(near)[-1], OUTSIDE_PLACES))
+    beyond = np.abs(places - np.clip(places, 0.0, (width, height))).max(axis=1)
+    return float((beyond > LOOSE * side).mean())
+
+
+def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:
+    """Warn of a trunk that never rises much above its root, for as far as it goes; one may lean, arch and hang."""
+    way = trunk.points - trunk.points[0]
+    if -float(way[:, 1].min()) >= LEAST_RISE * float(np.hypot(*way.T).max()):
+        return ()
+    what = "it lies level or runs down from its first point, the root"
+    detail = f"{what}; draw it from the root up the trunk, on the photo as it stands upright"
+    return (StrokeWarning("trunk_level", "branches/0", detail),)
 
 
 def require_trunk(strokes: Strokes) -> None:

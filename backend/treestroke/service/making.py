@@ -97,6 +97,7 @@ def _report(
         "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},
         "counts": {**counts[0], "bytes": next(iter(files.values()))},
         "score": scores[0],
+        "reading": asdict(tree.reading),
         "measures": _plain_measures(tree.measures),
         "variants": [
             {"seed": one, "counts": count, "score": score}

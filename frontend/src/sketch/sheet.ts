@@ -1,3 +1,4 @@
+import { doubtIn } from '../doubts'
 import { brushWidth, commonLevels, type Extent, groundOf, isPaper, type Levels, strayLevels } from '../sheets'
 import type { Ground, Selection, State, Tool, TraceAnswer } from '../state'
 import { type Line, onSheet, type SheetName, type StrokeRef, type Strokes } from '../strokes'
@@ -9,7 +10,7 @@ export interface SheetSight {
   readonly isPaper: boolean
   readonly strokes: Strokes
   readonly selection: Selection | null
-  /** The stroke at fault. */
+  /** The stroke at fault, or in doubt. */
   readonly fault: StrokeRef | null
   readonly tool: Tool
   /** How wide branches are drawn, px; null where the tool says nothing of it. */
@@ -34,7 +35,7 @@ export function sightOf(state: State, sheet: SheetName): SheetSight {
     isPaper: onPaper,
     strokes,
     selection: local(selection, sheet),
-    fault: local(faults.strokes?.stroke ?? null, sheet),
+    fault: local(faults.strokes?.stroke ?? doubtIn(state)?.stroke ?? null, sheet),
     tool: onPaper && state.tool === 'scale' ? 'select' : state.tool,
     brush: onPaper && ground ? brushWidth(state, ground) : null,
     traced: onPaper || !strokes.crown ? null : (traced?.answer ?? null),

@@ -1,6 +1,6 @@
 import { Refused, Unreachable } from '../api/client'
 import type { Fault } from '../state'
-import type { StrokeKind, StrokeRef } from '../strokes'
+import { strokeAt } from '../strokes'
 import { text } from '../text'
 
 /** Says what is wrong and what to do; thrown where the page itself finds the fault. */
@@ -13,16 +13,6 @@ export function faultOf(error: unknown): Fault {
   if (!(error instanceof Refused)) throw error
   const stroke = strokeAt(error.pointer)
   return { text: wording(error.code) ?? sentenceOf(error.message), ...(stroke && { stroke }) }
-}
-
-/** Find the stroke that a JSON pointer leads to: /crown, /strokes/erase/0, /branches/2/points, /sketches/side/crown. */
-export function strokeAt(pointer: string | null): StrokeRef | null {
-  const found = pointer?.match(
-    /^(?:\/(?:strokes|sketches))?(?:\/(front|side))?\/(crown|branches|erase|scale)(?:\/(\d+))?/,
-  )
-  if (!found) return null
-  const kind = found[2] === 'branches' ? 'branch' : (found[2] as StrokeKind)
-  return { kind, index: Number(found[3] ?? 0), ...(found[1] === 'side' && { sheet: 'side' }) }
 }
 
 function wording(code: string): string | undefined {

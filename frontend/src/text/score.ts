@@ -4,7 +4,15 @@ import { sheetsText } from './sheets'
 export const scoreText = {
   details: 'Details',
   title: 'How well it turned out',
-  match: (percent: string) => `${percent} match with the photo`,
+  match: (percent: string) => `${percent} match with the foliage and branches as they were read`,
+  doubtful: (percent: string) => `${percent} match with a reading that is in doubt`,
+  /** What makes the reading of a photo doubtful, by the service's codes. */
+  doubts: {
+    trunk_level: 'The trunk’s stroke lies level or runs down.',
+    outside_photo: 'Strokes lie outside the photo.',
+    crown_unclear: 'Inside the crown it looks as around it.',
+    kind_unsure: 'It is hard to see whether it bears leaves: choose Leaves or Bare for Foliage in the settings.',
+  } as Readonly<Record<string, string>>,
   /** By the least silhouette fit that each needs, the best first. */
   words: [
     [0.9, 'A very close likeness.'],
@@ -14,7 +22,10 @@ export const scoreText = {
   ] as readonly (readonly [number, string])[],
   rows: {
     ...sheetsText.score.rows,
-    silhouette: ['Silhouette', 'How much of its outline agrees with the photo, or with the crown in the sketch.'],
+    silhouette: [
+      'Silhouette',
+      'How much of its outline agrees with what was read in the photo, or with the crown in the sketch.',
+    ],
     reached: ['Leaves reached', 'Leafy places of the photo that a twig grew to.'],
     depth: ['Depth', 'As deep as wide is 1, which is usual for a tree that stands free.'],
     branches: ['Branches', 'All of them, down to the finest twigs.'],

@@ -13,6 +13,7 @@ type Row = keyof typeof text.score.rows
 interface Report {
   readonly seconds?: Readonly<Record<string, number>>
   readonly counts?: Readonly<Record<string, number>>
+  readonly reading?: { readonly doubts: readonly string[] }
 }
 
 const { score: sketched } = text.sheets
@@ -46,14 +47,15 @@ export function figuresOfModel({ score, report }: Model): Figure[] {
 }
 
 /** Say in one line how well the model fits the photo, or goes where it was sketched. */
-export function matchOf({ score }: Model): string {
+export function matchOf({ score, report }: Model): string {
   const { front_covered: front, side_covered: side } = score ?? {}
   if (front !== undefined) {
     const said = percent.format(front)
     return side === undefined ? sketched.match(said) : sketched.matchBoth(said, percent.format(side))
   }
   const fit = score?.silhouette_iou
-  return fit === undefined ? text.grow.standing.grown : text.score.match(percent.format(fit))
+  if (fit === undefined) return text.grow.standing.grown
+  return text.score[doubtsOf(report).length ? 'doubtful' : 'match'](percent.format(fit))
 }
 
 /** Say in a few words what the model is made of. */
@@ -63,12 +65,18 @@ export function makingOf(model: Model): string {
   return [triangles && text.score.triangles(triangles), figure('size')].filter(Boolean).join(' · ')
 }
 
-/** Judge the fit, for somebody who has seen no other. */
-export function judgementOf({ score }: Model): string {
+/** Judge the fit, for somebody who has seen no other; where the reading is in doubt, say why instead. */
+export function judgementOf({ score, report }: Model): string {
+  const doubts = doubtsOf(report)
+  if (doubts.length) return doubts.map(code => text.score.doubts[code] ?? '').join(' ')
   const drawn = [score?.front_covered, score?.side_covered].filter(one => one !== undefined)
   if (drawn.length) return sketched.words.find(([least]) => Math.min(...drawn) >= least)?.[1] ?? ''
   const fit = score?.silhouette_iou ?? 0
   return text.score.words.find(([least]) => fit >= least)?.[1] ?? ''
+}
+
+function doubtsOf(report: Model['report']): readonly string[] {
+  return ((report ?? {}) as Report).reading?.doubts ?? []
 }
 
 /** Write a number of bytes. */

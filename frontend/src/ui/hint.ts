@@ -1,8 +1,8 @@
 import { isOver } from '../api/follow'
+import { doubtIn, remarksOn, type StrokeRemark } from '../doubts'
 import type { PointerKind } from '../sketch/gesture'
-import type { State, StrokeWarning } from '../state'
+import type { State } from '../state'
 import { lineOf, type StrokeRef } from '../strokes'
-import { strokeAt } from '../studio/sentences'
 import { text } from '../text'
 import { strokeName } from './strokeNames'
 
@@ -28,29 +28,29 @@ export function hintOf(state: State, pointer: PointerKind): Hint {
   return note && !next.deletes ? { tone: 'note', text: note, how: next.text } : next
 }
 
-/** Say what was mended in what is drawn, as it was read or in the stroke that was drawn last. */
+/** Say what was mended in what is drawn, as it was read or in the stroke that was drawn last, and what is in doubt. */
 function noteOf(state: State): string | null {
   const { remark, history } = state
   if (remark?.of === history.present) return remark.text
-  const warning = newWarning(state)
-  return warning ? warningText(warning) : null
+  const said = doubtIn(state) ?? newRemark(state)
+  return said ? remarkText(said) : null
 }
 
-/** Find a warning about the stroke that was drawn last; older ones have been read. */
-function newWarning({ traced, history }: State): StrokeWarning | undefined {
-  const before = history.past.at(-1)
-  if (!before || traced?.of !== history.present) return undefined
-  return traced.answer.warnings.find(({ stroke }) => {
-    const ref = strokeAt(`/${stroke}`)
-    return ref && lineOf(history.present, ref) !== lineOf(before, ref)
-  })
+/** Find a remark on the stroke that was drawn last; older ones have been read. */
+function newRemark(state: State): StrokeRemark | undefined {
+  const { present, past } = state.history
+  const before = past.at(-1)
+  return before && remarksOn(state).find(({ stroke }) => stroke && lineOf(present, stroke) !== lineOf(before, stroke))
 }
 
-function warningText({ code, stroke, detail }: StrokeWarning): string {
-  const ref = strokeAt(`/${stroke}`)
-  const known = (text.hints.warnings as Readonly<Record<string, string | ((stroke: string) => string)>>)[code]
+/** Put a remark of the service into the page's words. */
+export function remarkText({ warning: { code, stroke: place, detail }, stroke }: StrokeRemark): string {
+  const words: Readonly<Record<string, string | ((stroke: string) => string)>> = {
+    ...text.hints.warnings,
+    ...text.hints.doubts,
+  }
+  const [known, name] = [words[code], stroke ? strokeName(stroke) : place]
   if (typeof known === 'string') return known
-  const name = ref ? strokeName(ref) : stroke
   return known ? known(name) : `${name}: ${detail}`
 }
 

@@ -1,8 +1,10 @@
+import { remarksOn } from '../doubts'
 import type { State } from '../state'
 import { type StrokeRef, strokeRefs } from '../strokes'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el, icon } from './dom'
+import { remarkText } from './hint'
 import { ICONS } from './icons'
 import { popover } from './popover'
 import { strokeName } from './strokeNames'
@@ -33,11 +35,17 @@ export function strokeList(studio: Studio): HTMLElement[] {
     state => state.selection,
     () => show(store.state),
   )
+  store.watch(
+    state => state.traced,
+    () => show(store.state),
+  )
   return [opener, panel]
 }
 
-function row(ref: StrokeRef, { selection, history }: State, { sketchbook }: Studio): HTMLElement {
+function row(ref: StrokeRef, state: State, { sketchbook }: Studio): HTMLElement {
+  const { selection, history } = state
   const name = strokeName(ref)
+  const said = remarksOn(state).filter(({ stroke }) => stroke && same(stroke, ref))
   const { scale } = history.present
   const shown = ref.kind === 'scale' && scale ? text.strokes.scaleOf(text.metres(scale.metres)) : name
   const chosen = selection?.kind === ref.kind && 'index' in selection && selection.index === ref.index
@@ -54,7 +62,12 @@ function row(ref: StrokeRef, { selection, history }: State, { sketchbook }: Stud
       shown,
     ),
     button({ class: 'button square', 'aria-label': text.strokes.delete(name) }, remove, icon(ICONS.remove)),
+    ...said.map(remark => el('p', { class: 'stroke-remark' }, remarkText(remark))),
   )
+}
+
+function same(one: StrokeRef, other: StrokeRef): boolean {
+  return one.kind === other.kind && one.index === other.index && one.sheet === other.sheet
 }
 
 /** Keep the focus near where it was when the rows change beneath it. */

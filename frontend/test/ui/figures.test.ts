@@ -26,7 +26,7 @@ test('figures that the service does not give are left out', () => {
 })
 
 test('one line says how well it fits and what it is made of', () => {
-  expect(matchOf(grown)).toBe('92% match with the photo')
+  expect(matchOf(grown)).toBe('92% match with the foliage and branches as they were read')
   expect(makingOf(grown)).toBe('122,971 triangles · 5.2 MB')
   expect(makingOf(model())).toBe('')
   expect(sizeOf(640_400)).toBe('640 kB')
@@ -36,6 +36,15 @@ test('the judgement falls with the fit', () => {
   const judged = [0.95, 0.85, 0.7, 0.3].map(silhouette_iou => judgementOf(model({ score: { silhouette_iou } })))
   expect(new Set(judged).size).toBe(4)
   expect(judged[0]).toContain('very close')
+})
+
+test('a doubtful reading is not praised, but explained', () => {
+  const reading = { against: 'the foliage', kind_sureness: 0.1, doubts: ['crown_unclear', 'kind_unsure'] }
+  const doubted = model({ score: { silhouette_iou: 0.96 }, report: { reading } })
+  expect(matchOf(doubted)).toBe('96% match with a reading that is in doubt')
+  expect(judgementOf(doubted)).toContain('Inside the crown it looks as around it.')
+  expect(judgementOf(doubted)).toContain('whether it bears leaves')
+  expect(judgementOf(doubted)).not.toContain('likeness')
 })
 
 test('a sketched tree is told by how much of the strokes is in it', () => {

@@ -42,7 +42,10 @@ test('the end is always said, once', () => {
   at(100, { model: done })
   at(200, { tree: new ArrayBuffer(1) })
   at(300, { online: true })
-  expect(said).toEqual(['Growing branches', 'The tree is grown. 93% match with the photo. A very close likeness.'])
+  expect(said).toEqual([
+    'Growing branches',
+    'The tree is grown. 93% match with the foliage and branches as they were read. A very close likeness.',
+  ])
 })
 
 test('a failure is said in its own words, and a cancel as such', () => {

@@ -75,6 +75,15 @@ test('a warning that the page does not know is said in the service’s words', (
   expect(said({ tool: 'branch', history, traced: traced(two, unknown) })).toBe('Branch 2: it is odd')
 })
 
+test('a doubt about a stroke is said until it is drawn anew, whatever was drawn since', () => {
+  const level = { code: 'trunk_level', stroke: 'branches/0', detail: 'it lies level' }
+  const outside = { code: 'outside_photo', stroke: 'crown', detail: '40% of it lies outside' }
+  const history = advance(begin(trunk), two)
+  expect(said({ tool: 'branch', history, traced: traced(two, JOINED, level) })).toBe(text.hints.doubts.trunk_level)
+  expect(said({ tool: 'branch', history, traced: traced(two, outside) })).toContain('Much of the crown lies outside')
+  expect(said({ tool: 'branch', history, traced: traced(trunk, level) })).toBe(text.hints.waiting)
+})
+
 test('what is selected can be deleted from the line', () => {
   const selection = { kind: 'crown', index: 0 } as const
   expect(hintOf(state({ history: begin(two), selection }), 'mouse')).toMatchObject({

@@ -8,7 +8,7 @@ from tests.pictures import disc, leaves_on_sky, ring, wood_mask, wood_photo
 
 from treestroke.codec.image import decode_photo
 from treestroke.core.segment.foliage import segment_foliage
-from treestroke.core.segment.kind import Kind, foliage_kind, foliage_look
+from treestroke.core.segment.kind import UNSURE, Kind, foliage_kind, foliage_look
 from treestroke.service.inputs import load_strokes
 
 DULL, VIVID = (50, 62, 40), (90, 150, 40)
@@ -17,7 +17,7 @@ SHORT_TRUNK = np.array([[150.0, 290.0], [150.0, 230.0]])
 
 
 def kind_of(photo: np.ndarray, mask: np.ndarray, crown: np.ndarray, trunk: np.ndarray) -> Kind:
-    return foliage_kind(foliage_look(photo, mask, crown), mask, trunk)
+    return foliage_kind(foliage_look(photo, mask, crown)[0], mask, trunk)
 
 
 def spire(half_width: float = 55.0) -> np.ndarray:
@@ -91,3 +91,21 @@ def test_each_photo_s_kind_is_seen(name: str, kind: str) -> None:
     strokes = load_strokes(folder / f"{name}.strokes.json")
     found = segment_foliage(photo, strokes.crown.points)
     assert kind_of(photo, found.mask, found.region, strokes.branches[0].points) == kind
+
+
+def test_the_judgement_is_as_sure_as_its_cues_are_clear() -> None:
+    _, sure = foliage_look(leaves_on_sky(disc(300, 110), VIVID), disc(300, 110), disc(300, 120))
+    _, bluish = foliage_look(leaves_on_sky(disc(300, 110), (60, 70, 110)), disc(300, 110), disc(300, 120))
+    _, bare = foliage_look(wood_photo(fan()), fan(), disc(300, 125))
+    assert sure > 0.8
+    assert bluish == 0.0
+    assert bare > UNSURE
+
+
+@pytest.mark.parametrize(
+    ("name", "unsure"), [("bigleaf_maple_bare", True), ("beech_round", False), ("elm_house", False)]
+)
+def test_a_photo_near_the_limit_is_unsure(name: str, unsure: bool) -> None:
+    photo = decode_photo((DATA / f"{name}.jpg").read_bytes(), name)
+    foliage = segment_foliage(photo, load_strokes(DATA / f"{name}.strokes.json").crown.points)
+    assert (foliage.sureness < UNSURE) == unsure

@@ -15,7 +15,7 @@ from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.fruit import fruit_among
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
-from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
+from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sight import Mask
 from treestroke.core.progress import Report, silent
@@ -58,6 +58,7 @@ class TreeModel:
     branches: int
     measures: Measures
     score: dict[str, float]
+    reading: Reading
     warnings: tuple[StrokeWarning, ...]
 
 
@@ -104,6 +105,7 @@ def finish(
         branches=_branch_count(tree.grown.skeleton),
         measures=_measures(tree, sprays, atlas),
         score={**tree.score, "depth_over_width": _depth_over_width(bark, leaf)},
+        reading=tree.reading,
         warnings=tree.warnings,
     )
 

@@ -17,19 +17,19 @@ from treestroke.core.leaf.seasons import LEAFY
 from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, LEAFED_SHARE, closed, drawn, drawn_depth, frayed
-from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Stature
+from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Reading, Stature
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, deepened, draw_side, side_of, with_depth
 from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo, Sight, look
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
-from treestroke.core.segment.kind import Kind, foliage_kind
+from treestroke.core.segment.kind import UNSURE, Kind, foliage_kind
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children
-from treestroke.core.strokes import Sketch, Strokes
+from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
@@ -41,6 +41,14 @@ BULGE = 1.08
 that the photo shows some limbs reach further (4 trees known in 3D; 1.15 is too deep again for a slim one)."""
 BARE_BREADTH = 0.5
 """Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
+READ = "the foliage and branches as they were read in the photo"
+UNCLEAR = StrokeWarning(
+    "crown_unclear",
+    "crown",
+    "what is inside it hardly differs from what is around it; draw it around the tree's foliage, or take another photo",
+)
+DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
+"""Codes of warnings of strokes that may mean no tree."""
 _KINDS: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
 
 
@@ -55,6 +63,12 @@ class Seen:
     foliage: Foliage
     traced: Traced | None
     side: Drawing | None = None
+
+    @property
+    def warnings(self) -> tuple[StrokeWarning, ...]:
+        """What was mended, and what makes the reading doubtful."""
+        unclear = () if self.foliage.clear else (UNCLEAR,)
+        return (*self.sight.warnings, *unclear, *(() if self.side is None else self.side.warnings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,8 +163,17 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
         stature=_stature(sight, foliage, camera, traced, stem, envelope),
         likeness=leafy | wood,
         score={"attractors_reached": grown.attractors_reached, **lifted.score},
-        warnings=sight.warnings + (() if seen.side is None else seen.side.warnings),
+        reading=_reading(seen, settings),
+        warnings=seen.warnings,
     )
+
+
+def _reading(seen: Seen, settings: ModelSettings) -> Reading:
+    """Tell what was read in the photo, and what makes that doubtful."""
+    told = settings.foliage != "auto" or settings.season in LEAFY
+    sureness = 1.0 if told else seen.foliage.sureness
+    doubts = [warning.code for warning in seen.warnings if warning.code in DOUBTFUL]
+    return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
 
 
 def _stature(sight: Sight, foliage: Foliage, camera: Camera, traced: Traced, stem: Indices, crown: Envelope) -> Stature:

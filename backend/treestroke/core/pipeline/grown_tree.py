@@ -83,6 +83,25 @@ class Stature:
     crown: Envelope
 
 
+@dataclass(frozen=True)
+class Reading:
+    """What a tree's likeness is measured against, and how far that is to be trusted.
+
+    Attributes
+    ----------
+    against
+        What was read, in words.
+    kind_sureness
+        How sure it is that the tree bears leaves, or none, 0 to 1; 1 where it was said.
+    doubts
+        Codes of what makes the reading doubtful.
+    """
+
+    against: str
+    kind_sureness: float
+    doubts: tuple[str, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class GrownTree:
     """A tree that has grown.
@@ -105,6 +124,8 @@ class GrownTree:
         (h, w), at the working size, what the front view should cover: foliage and branches that were seen.
     score
         How well it does what it was grown for, by name.
+    reading
+        What that is measured against.
     warnings
         What was mended or assumed.
     """
@@ -117,6 +138,7 @@ class GrownTree:
     stature: Stature
     likeness: Mask
     score: dict[str, float]
+    reading: Reading
     warnings: tuple[StrokeWarning, ...]
 
     @property

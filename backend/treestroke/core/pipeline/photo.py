@@ -34,7 +34,7 @@ class PhotoTrace:
     stroke
         (n,) index of the stroke that each joint follows, -1 where it was found.
     warnings
-        What was mended.
+        What was mended, and what makes the reading doubtful.
     """
 
     foliage: Mask
@@ -68,9 +68,8 @@ def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
     """
     if side is None and traced.seen.side is None:
         return traced
-    drawing = None if side is None else draw_side(side, "side")
-    warnings = traced.seen.sight.warnings + (() if drawing is None else drawing.warnings)
-    return replace(traced, seen=replace(traced.seen, side=drawing), warnings=warnings)
+    seen = replace(traced.seen, side=None if side is None else draw_side(side, "side"))
+    return replace(traced, seen=seen, warnings=seen.warnings)
 
 
 def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:
@@ -106,7 +105,7 @@ def _in_photo(seen: Seen) -> PhotoTrace:
     scale, foliage, traced = seen.sight.scale, seen.foliage, seen.traced
     mask = cv2.resize(foliage.mask.astype(np.uint8), seen.sight.size, interpolation=cv2.INTER_NEAREST).astype(bool)
     if traced is None:
-        return PhotoTrace(mask, seen, None, np.empty(0, dtype=np.int64), seen.sight.warnings)
+        return PhotoTrace(mask, seen, None, np.empty(0, dtype=np.int64), seen.warnings)
     small = traced.skeleton
     full = Skeleton(small.points / scale, small.radii / scale, small.parents)
-    return PhotoTrace(mask, seen, full, traced.stroke, seen.sight.warnings)
+    return PhotoTrace(mask, seen, full, traced.stroke, seen.warnings)

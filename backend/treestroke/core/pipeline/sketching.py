@@ -18,7 +18,7 @@ from treestroke.core.pipeline.crowns import drawn, frayed
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
 from treestroke.core.pipeline.growing import borne_kind
-from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Stature
+from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Reading, Stature
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import (
     Side,
@@ -45,6 +45,7 @@ SMALL_BRANCHES = 8
 """Small branches for each round of growth that the settings allow."""
 LEAFED_SHARE = 0.035
 """Of the tree's height: as far from its branches a sketched crown is leafy."""
+AS_DRAWN = Reading("the strokes as they were drawn", 1.0, ())
 ONE_SIDE = StrokeWarning(
     "side_assumed",
     "side",
@@ -205,6 +206,7 @@ def _grown_tree(
         stature=_stature(seen, frame, envelope),
         likeness=(leafy & (kind != "bare")) | drawn(wood, leafy.shape),
         score=score,
+        reading=AS_DRAWN,
         warnings=seen.warnings,
     )
 

@@ -25,6 +25,7 @@ from treestroke.core.imaging.mixture import (
 )
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.progress import Report, silent
+from treestroke.core.segment.contrast import stands_out
 from treestroke.core.segment.height import LIMIT, log_odds_by_height
 from treestroke.core.segment.kind import Look, foliage_look
 
@@ -96,6 +97,10 @@ class Foliage:
         Colour models of the foliage and of all else near it.
     look
         How the leaves look, for judging what they are.
+    sureness
+        How sure it is that they are leaves and not bare twigs, or the other way round, 0 to 1.
+    clear
+        Whether the crown stands out from what is around it.
     """
 
     mask: Mask
@@ -104,6 +109,8 @@ class Foliage:
     leaf: Mixture
     ground: Mixture
     look: Look
+    sureness: float
+    clear: bool
 
 
 def segment_foliage(
@@ -134,10 +141,11 @@ def segment_foliage(
     report("foliage", 0.9)
     pure = _alike(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
     found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
-    look = foliage_look(pixels, found, region)
+    look, sureness = foliage_look(pixels, found, region)
     mask, sure, searched = (_framed(part, box, crown) for part in (found, pure, region))
     report("foliage", 1.0)
-    return Foliage(mask, sure, searched, leaf, ground, look)
+    clear = stands_out(pixels, inside, max(height, width))
+    return Foliage(mask, sure, searched, leaf, ground, look, sureness, clear)
 
 
 def _alike(pure: Mask, pixels: Photo) -> Mask:

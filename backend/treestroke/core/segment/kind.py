@@ -18,20 +18,30 @@ THIN = 0.5
 """Share of the foliage that is lines thinner than 1 % of the crown, over which a tree is bare."""
 TWIG_CONTRAST = 85.0
 """Mean height of fine lines over what is behind them, 0 to 510, over which a colourless crown is bare."""
+COLOURLESS, WHITE = 0.25, 0.15
+"""Greatest tint of twigs, green or red over blue; and share of a crown that is white, over which it blossoms."""
+UNSURE = 0.2
+"""Sureness below which the foliage may be another than it is taken for (28 photos; the wrong ones are below)."""
 DARKNESS = 95.0
 """Greatest mean brightness of needles, 0 to 255."""
 TALLNESS = 1.2
 """Least height of a conifer's crown over its width, for a crown that does not taper."""
 
 
-def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> Look:
-    """Judge foliage by its mask (h, w) on a photo (h, w, 3) and the crown's inside (h, w).
+def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Look, float]:
+    """Judge how foliage looks, and how surely, by its mask (h, w) on a photo (h, w, 3) and the crown's inside (h, w).
 
-    Bare: the crown is thin lines, or a web of colourless ones with something else between them.
+    Bare: the crown is thin lines, or a web of colourless ones with something else between them. It is as sure,
+    0 to 1, as the cues are far from where they would say otherwise; blue leaves are sky rather than leaves.
     """
-    if not mask.any() or _thinness(mask, crown) > THIN or _is_twiggy(photo, mask, crown):
-        return "bare"
-    return "dull" if _is_dull_green(photo, mask) else "fresh"
+    if not mask.any():
+        return "bare", 1.0
+    colours = photo[mask].astype(np.float64)
+    tint = _tint(colours)
+    bareness = max(_thinness(mask, crown) / THIN - 1.0, _twigginess(photo, mask, crown, colours, tint))
+    if bareness >= 0.0:
+        return "bare", min(bareness, 1.0)
+    return "dull" if _is_dull_green(colours) else "fresh", 0.0 if tint < 0.0 else min(-bareness, 1.0)
 
 
 def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> Kind:
@@ -50,17 +60,18 @@ def _thinness(mask: Mask, crown: Mask) -> float:
     return 1.0 - float(opened.sum()) / float(mask.sum())
 
 
-def _is_twiggy(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> bool:
-    """Tell whether the crown is a web of colourless fine lines, none of them white as blossom is."""
-    colours = photo[mask].astype(np.float64)
-    brightness = colours.max(axis=1)
-    green_or_red = (colours[:, :2].max(axis=1) - colours[:, 2]) / np.maximum(brightness, 40.0)
-    if np.median(green_or_red) > 0.25 or (brightness > 200).mean() > 0.15:
-        return False
+def _tint(colours: Floats) -> float:
+    """How much green or red outshine blue in colours (n, 3), on the whole: below 0 they are bluish."""
+    return float(np.median((colours[:, :2].max(axis=1) - colours[:, 2]) / np.maximum(colours.max(axis=1), 40.0)))
+
+
+def _twigginess(photo: NDArray[np.uint8], mask: Mask, crown: Mask, colours: Floats, tint: float) -> float:
+    """How far a crown is a web of colourless fine lines, none white as blossom is: from 0 on it is one."""
+    white = (colours.max(axis=1) > 200).mean()
     grey, kernel = cv2.cvtColor(photo, cv2.COLOR_RGB2GRAY), _disc(0.012, crown)
     lines = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)[mask].astype(np.float64)
     lines += cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)[mask]
-    return bool(lines.mean() > TWIG_CONTRAST)
+    return float(min(1.0 - tint / COLOURLESS, 1.0 - white / WHITE, lines.mean() / TWIG_CONTRAST - 1.0))
 
 
 def _disc(share: float, crown: Mask) -> NDArray[np.uint8]:
@@ -69,9 +80,9 @@ def _disc(share: float, crown: Mask) -> NDArray[np.uint8]:
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)), dtype=np.uint8)
 
 
-def _is_dull_green(photo: NDArray[np.uint8], mask: Mask) -> bool:
-    """Tell whether the foliage is dark and green without being vivid."""
-    red, green, blue = np.median(photo[mask].astype(np.float64), axis=0)
+def _is_dull_green(colours: Floats) -> bool:
+    """Tell whether colours (n, 3) are dark and green without being vivid, on the whole."""
+    red, green, blue = np.median(colours, axis=0)
     return bool(max(red, green, blue) < DARKNESS and green >= blue and green > 0.97 * red)
 
 
