@@ -173,7 +173,7 @@ def test_a_photo_that_lacks_its_last_bytes_gives_its_tree_and_a_line_that_says_s
     tree = (tmp_path / "tree.glb").read_bytes()
     (warning,) = json.loads(report.read_text())["warnings"]
     assert (warning["code"], warning["stroke"]) == ("photo_cut_short", "photo")
-    assert line == f"treestroke: {warning['detail']}"
+    assert line == f"treestroke: photo: {warning['detail']}"
     assert run(photo=maple_photo)[0] == 0
     assert (tmp_path / "tree.glb").read_bytes() == tree
 
@@ -420,7 +420,7 @@ def test_one_sketch_alone_says_aloud_what_was_assumed(draw, tmp_path: Path) -> N
     code, lines, _ = draw("--report", str(report), views=("front",))
     assert code == 0
     assert len(lines) == 1
-    assert lines[0].startswith("treestroke: there is no sketch of the left side")
+    assert lines[0].startswith("treestroke: side: there is no sketch of the left side")
     assert [warning["code"] for warning in json.loads(report.read_text())["warnings"]] == ["side_assumed"]
 
 

@@ -186,7 +186,7 @@ def _make(options: argparse.Namespace) -> None:
 def _say_aloud(warnings: Sequence[Mapping[str, str]]) -> None:
     for warning in warnings:
         if warning["code"] in _ALOUD:
-            print(f"treestroke: {warning['detail']}", file=sys.stderr)
+            print(f"treestroke: {warning['stroke']}: {warning['detail']}", file=sys.stderr)
 
 
 def _stem(out: Path) -> str:
