@@ -12,6 +12,7 @@ PHOTO = ROOT / "examples" / "sugar_maple_autumn.jpg"
 STROKES = strokes_of(PHOTO)
 STILL_MS = 500
 """Until what the wheel or a drag has moved stands still."""
+LEVEL = [[200.0, 400.0], [420.0, 396.0]]
 LIMB = [[300.0, 430.0], [260.0, 380.0], [220.0, 340.0]]
 
 
@@ -61,6 +62,20 @@ def test_what_is_deleted_comes_back_by_undo(visitor: Visitor) -> None:
     visitor.page.keyboard.press("Control+z")
     visitor.wait_for_preview("live")
     assert last_branches(visitor) == both
+
+
+def test_a_trunk_that_lies_level_is_told_of_until_it_is_drawn_anew(visitor: Visitor) -> None:
+    page, told = visitor.page, "The trunk lies level or runs down."
+    opened(visitor).draw_tree({**STROKES, "branches": [{"points": LEVEL}]})
+    expect(page.locator(".hint-text", has_text=told)).to_be_visible()
+    page.get_by_role("button", name="Strokes (2)").click()
+    expect(page.locator(".stroke-remark", has_text=told)).to_be_visible()
+    visitor.shot("doubt")
+    page.get_by_role("button", name="Delete Trunk").click()
+    page.keyboard.press("Escape")
+    visitor.draw(STROKES["branches"][0]["points"], button="right")
+    visitor.wait_for_preview("live")
+    expect(page.get_by_text(told)).to_have_count(0)
 
 
 def test_strokes_and_their_history_survive_a_reload(visitor: Visitor) -> None:
