@@ -75,6 +75,7 @@ class _FolderChannel(filesystem.Channel):
     def _put(self, queue: str, payload: Any, **_: Any) -> None:  # type: ignore[override]
         name = f"{time.time_ns():020d}-{secrets.token_hex(8)}"
         begun = Path(self.data_folder_out) / f"{name}.part"
+        begun.parent.mkdir(mode=0o700, parents=True, exist_ok=True)  # somebody may have removed it
         try:
             begun.write_text(json.dumps(payload))
             begun.rename(begun.with_name(f"{name}.{queue}.msg"))
@@ -82,8 +83,15 @@ class _FolderChannel(filesystem.Channel):
             begun.unlink(missing_ok=True)
             raise
 
+    def _size(self, queue: str) -> int:
+        return len(self._messages(queue))
+
+    def _messages(self, queue: str) -> list[Path]:
+        """List the messages in their order; none where the folder is gone."""
+        return sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg"))
+
     def _get(self, queue: str) -> Any:  # type: ignore[override]
-        for path in sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg")):
+        for path in self._messages(queue):
             # Whoever removes it has it.
             with suppress(FileNotFoundError, ValueError):
                 content = path.read_bytes()

@@ -1,5 +1,6 @@
 import hashlib
 import io
+import shutil
 
 import httpx
 import numpy as np
@@ -25,6 +26,13 @@ def test_a_photo_in_a_form_is_stored(client: httpx.Client) -> None:
     assert (photo["width"], photo["height"]) == (drawn.WIDTH, drawn.HEIGHT)
     assert photo["sha256"] == hashlib.sha256(content).hexdigest()
     assert client.get(answer.headers["location"]).json() == photo
+
+
+def test_a_large_form_is_taken_although_the_folder_for_temporary_files_is_gone(service: Service) -> None:
+    large = drawn.encoded("PNG") + bytes(2_000_000)  # what is behind its end does not matter
+    for _ in range(2):
+        assert service.client.post("/v1/photos", files={"file": large}).status_code == 201
+        shutil.rmtree(service.data / "tmp")
 
 
 @pytest.mark.parametrize(

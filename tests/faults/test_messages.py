@@ -1,6 +1,7 @@
 """Messages that come twice, too late, torn, or from somebody else: the queue's messages are hints, and only that."""
 
 import json
+import shutil
 import time
 from pathlib import Path
 
@@ -83,6 +84,13 @@ def old_form(id: str) -> bytes:
             "properties": properties,
         }
     ).encode()
+
+
+def test_a_queue_whose_folder_is_removed_takes_messages(tmp_path: Path) -> None:
+    queue = make_queue(Settings(data=tmp_path))
+    shutil.rmtree(tmp_path / "queue")
+    send_hint(queue, "mdl_1")
+    assert len(list((tmp_path / "queue" / "messages").glob("*.msg"))) == 1
 
 
 def test_a_message_that_is_being_written_is_not_seen(tmp_path: Path) -> None:

@@ -160,6 +160,23 @@ def test_a_disk_that_is_nearly_full_is_ill(small_disk: Path) -> None:
     assert found["disk"].mend.startswith("free space")
 
 
+def test_a_queue_that_is_no_folder_is_ill(folder: Path) -> None:
+    assert findings(folder)["queue"].well
+    (folder / "queue").touch()
+    found = findings(folder)["queue"]
+    assert (found.well, found.found) == (False, f"{folder / 'queue'}: Not a directory")
+    assert "move it away" in found.mend
+
+
+def test_a_file_that_cannot_be_read_is_named_and_the_rest_is_looked_at(folder: Path) -> None:
+    (path,) = (one for one in (folder / "blobs").rglob("*") if one.is_file())
+    path.unlink()
+    path.mkdir()
+    found = findings(folder)
+    assert found["files"].found == f"1 of 1 bad: {path.name}: Is a directory"
+    assert "workers" in found
+
+
 def test_a_redis_that_does_not_run_is_ill_and_nothing_else(folder: Path) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]

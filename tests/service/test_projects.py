@@ -100,7 +100,7 @@ def test_what_was_asked_for_longest_ago_goes_first(
     assert packed(projects, rows[1]).sha256 == second.sha256
 
 
-def test_what_is_gone_or_failed_is_packed_anew(shelf: Shelf, projects: Projects) -> None:
+def test_what_is_gone_changed_or_failed_is_packed_anew(shelf: Shelf, projects: Projects) -> None:
     row = model_of(shelf, b"photo")
     blob = shelf.blobs.path(row.parts["photo"])
     blob.rename(blob.with_suffix(".away"))
@@ -109,9 +109,11 @@ def test_what_is_gone_or_failed_is_packed_anew(shelf: Shelf, projects: Projects)
     assert list((shelf.blobs.folder.parent / "projects").iterdir()) == []
     blob.with_suffix(".away").rename(blob)
     made = packed(projects, row)
-    made.path.unlink()
-    assert packed(projects, row) == made
-    assert made.path.is_file()
+    for harm in (made.path.unlink, lambda: made.path.write_bytes(b"")):
+        harm()
+        again = packed(projects, row)
+        assert (again.sha256, again.size) == (made.sha256, made.size)
+        assert hashlib.sha256(made.path.read_bytes()).hexdigest() == made.sha256
 
 
 def test_what_is_kept_goes_at_the_next_start(shelf: Shelf, projects: Projects) -> None:

@@ -1,8 +1,10 @@
 import hashlib
 import os
+import resource
 import threading
 import time
 import tracemalloc
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -57,6 +59,30 @@ def test_a_damaged_blob_is_not_read(blobs: Blobs) -> None:
     for read in (blobs.get, blobs.check):
         with pytest.raises(Damaged, match=f"{name}: missing"):
             read(name)
+
+
+@pytest.mark.parametrize(
+    ("harm", "said"), [(Path.mkdir, "Is a directory"), (lambda path: path.symlink_to(path), "symbolic links")]
+)
+def test_what_cannot_be_read_is_damaged(blobs: Blobs, harm: Callable[[Path], None], said: str) -> None:
+    path = blobs.path(blobs.put(b"tree"))
+    path.unlink()
+    harm(path)
+    for read in (blobs.get, blobs.check):
+        with pytest.raises(Damaged, match=f"{path.name}: .*{said}"):
+            read(path.name)
+
+
+def test_a_lack_of_descriptors_is_no_damage(blobs: Blobs) -> None:
+    name = blobs.put(b"tree")
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (0, before[1]))
+    try:
+        for read in (blobs.get, blobs.check):
+            with pytest.raises(OSError, match="Too many open files"):
+                read(name)
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, before)
 
 
 def test_storing_a_damaged_blob_again_mends_it(blobs: Blobs) -> None:

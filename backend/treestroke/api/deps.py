@@ -1,8 +1,12 @@
 """What routes are given: the shelf with everything on it, and bodies read whole."""
 
+import os
+from contextlib import AbstractAsyncContextManager
+from tempfile import gettempdir
 from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Query, Request
+from starlette.datastructures import FormData
 
 from treestroke.api.following import Watcher
 from treestroke.codec.image import MAX_BYTES
@@ -49,6 +53,12 @@ async def _json_body(request: Request) -> bytes:
     if media_type(request) not in ("application/json", ""):
         raise HTTPException(415, "the body must be JSON; send it as application/json")
     return await request.body()
+
+
+def form_of(request: Request, **limits: int) -> AbstractAsyncContextManager[FormData]:
+    """Read a form within limits; the folder for temporary files, where its large ones lie, is made if it is gone."""
+    os.makedirs(gettempdir(), 0o700, exist_ok=True)
+    return request.form(**limits)
 
 
 def check_length(photo: bytes) -> None:

@@ -40,7 +40,7 @@ _SERVE = "`treestroke serve`"
 _PARTS = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
 _REDIS_PARTS = ("kombu.transport.redis",)
 """What a worker imports, by name alone, once it queues on a Redis."""
-_ONLY_THERE = ("dispatcher", "tracers")
+_ONLY_THERE = ("broker", "dispatcher", "tracers")
 """What only the web process can tell of itself."""
 
 
@@ -95,7 +95,7 @@ def examine_deployment(settings: Settings) -> Iterator[Finding]:
     yield folder
     yield _disk(settings)
     yield _web_process(settings)
-    yield Finding("queue", True, "files in the data folder") if settings.embedded else _redis(settings)
+    yield _messages(settings) if settings.embedded else _redis(settings)
     if folder.well:
         yield from _rows(settings)
 
@@ -184,6 +184,19 @@ def _web_process(settings: Settings) -> Finding:
         ill = {name: check for name, check in ill.items() if name in _ONLY_THERE}
     said = "; ".join(f"{name}: {check}" for name, check in ill.items())
     return Finding("web process", not ill, said or f"answers at {place}", mend if ill else "")
+
+
+def _messages(settings: Settings) -> Finding:
+    """Try the folder of the embedded queue, where there is one."""
+    folder = settings.folder / "queue"
+    try:
+        if folder.exists():
+            with tempfile.TemporaryFile(dir=folder) as probe:
+                probe.write(b"well")
+    except OSError as error:
+        mend = f"make {folder} a folder that the service may write to, or move it away"
+        return Finding("queue", False, f"{folder}: {error.strerror}", mend)
+    return Finding("queue", True, "files in the data folder")
 
 
 def _redis(settings: Settings) -> Finding:

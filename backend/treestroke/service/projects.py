@@ -30,6 +30,8 @@ class Packed:
     path: Path
     sha256: str
     size: int
+    state: tuple[int, ...]
+    """Of the file; it changes with whatever is done to it."""
 
 
 class Projects:
@@ -82,7 +84,7 @@ class Projects:
             path.unlink(missing_ok=True)
             raise
         self._make_room(size)
-        return Packed(path, sha256, size)
+        return Packed(path, sha256, size, _state(path))
 
     def _make_room(self, size: int) -> None:
         """Remove what was asked for longest ago, until a new one of this size fits in."""
@@ -98,7 +100,19 @@ class Projects:
 
 
 def _gone(promised: Future[Packed]) -> bool:
-    """Tell whether a promise has come to nothing: its packing failed, or its file was removed."""
-    return promised.done() and (
-        promised.cancelled() or promised.exception() is not None or not promised.result().path.is_file()
-    )
+    """Tell whether a promise has come to nothing: its packing failed, or its file was removed or changed."""
+    if not promised.done():
+        return False
+    if promised.cancelled() or promised.exception() is not None:
+        return True
+    packed = promised.result()
+    return _state(packed.path) != packed.state
+
+
+def _state(path: Path) -> tuple[int, ...]:
+    """Tell a file's state; () where there is none."""
+    try:
+        now = path.stat()
+    except FileNotFoundError:
+        return ()
+    return now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns

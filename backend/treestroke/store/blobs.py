@@ -1,5 +1,6 @@
 """Blobs: immutable files named by the SHA-256 of what they hold, so that the same bytes are stored once."""
 
+import errno
 import hashlib
 import os
 import secrets
@@ -17,8 +18,12 @@ _SETTLED_NS = 10**9
 """After a file was written: a second change at the same moment would not show in its times."""
 
 
+_OURS = (errno.EMFILE, errno.ENFILE, errno.ENOMEM)
+"""What keeps this process from reading any file."""
+
+
 class Damaged(Exception):
-    """A stored file is not there, or does not hold what its name says."""
+    """A stored file is not there, cannot be read, or does not hold what its name says."""
 
 
 class Blobs:
@@ -66,7 +71,7 @@ class Blobs:
         Raises
         ------
         Damaged
-            The blob is missing, or holds other bytes than its name says.
+            The blob is missing, cannot be read, or holds other bytes than its name says.
         """
         path = self.path(sha256)
         try:
@@ -76,8 +81,8 @@ class Blobs:
                 return path
             with path.open("rb") as file:
                 found = hashlib.file_digest(file, "sha256").hexdigest()
-        except FileNotFoundError as error:
-            raise Damaged(f"{path.name}: missing") from error
+        except OSError as error:
+            raise _harm(path, error) from error
         if found != sha256:
             raise Damaged(f"{path.name}: damaged")
         if time.time_ns() - now.st_ctime_ns > _SETTLED_NS:
@@ -125,12 +130,19 @@ def read_blob(path: Path) -> bytes:
     Raises
     ------
     Damaged
-        It is missing, or holds other bytes than its name says.
+        It is missing, cannot be read, or holds other bytes than its name says.
     """
     try:
         content = path.read_bytes()
-    except FileNotFoundError as error:
-        raise Damaged(f"{path.name}: missing") from error
+    except OSError as error:
+        raise _harm(path, error) from error
     if hashlib.sha256(content).hexdigest() != path.name:
         raise Damaged(f"{path.name}: damaged")
     return content
+
+
+def _harm(path: Path, error: OSError) -> Exception:
+    """Say what is wrong with a blob that cannot be read; the error itself where nothing can."""
+    if error.errno in _OURS:
+        return error
+    return Damaged(f"{path.name}: {'missing' if isinstance(error, FileNotFoundError) else error.strerror}")

@@ -22,6 +22,7 @@ from treestroke.api.deps import (
     ShelfOf,
     WatcherOf,
     check_length,
+    form_of,
     leads_to,
     media_type,
 )
@@ -118,7 +119,7 @@ async def _request(request: Request, shelf: ShelfOf) -> _Request:
     if kind != "multipart/form-data":
         raise HTTPException(415, "send application/json, or a form with photo and strokes, or front and side")
     most = len(_FIELDS)
-    async with request.form(max_files=most, max_fields=most, max_part_size=MAX_TEXT_BYTES) as form:
+    async with form_of(request, max_files=most, max_fields=most, max_part_size=MAX_TEXT_BYTES) as form:
         if len(form) < len(form.multi_items()):
             raise HTTPException(400, "the form has a field twice; send each once")
         photo = form.get("photo")

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Depends, HTTPException, Request, Response
 from fastapi.responses import FileResponse
 from starlette.datastructures import UploadFile
 
-from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ShelfOf, check_length, leads_to, media_type
+from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ShelfOf, check_length, form_of, leads_to, media_type
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
@@ -57,7 +57,7 @@ async def _photo_bytes(request: Request) -> bytes:
         if not kind.startswith("image/") and kind not in (*_RAW, ""):
             raise HTTPException(415, f"send a form with the field file, or the photo itself as {' or '.join(_RAW)}")
         return await request.body()
-    async with request.form(max_files=1, max_fields=0) as form:
+    async with form_of(request, max_files=1, max_fields=0) as form:
         file = form.get("file")
         if not isinstance(file, UploadFile):
             raise HTTPException(400, "the form has no file in the field file; send the photo there")
