@@ -17,7 +17,12 @@ ACCEPTED = 8
 """Connections that are taken from the listening socket at once."""
 HEAD_SECONDS = 10.0
 STALLED_SECONDS = 120.0
-"""A client that reads nothing of its answer for so long has gone, or means harm."""
+"""A client that reads nothing of its answer, or is behind the slowest rate, for so long has gone, or means harm."""
+SLOWEST_READ_BYTES_PER_SECOND = 20_000
+BEHIND_SECONDS = 5.0
+"""A client that is so far behind the slowest rate makes room before all others."""
+_LOOKS = 0.25
+"""How often it is looked whether a client reads, as a part of the seconds that it may be behind."""
 _OWN_FILES = 30 + 2 * ACCEPTED
 """Descriptors of the process itself: log, loop, listening socket, fork server, and what is about to be closed."""
 _DATABASE_FILES = 15 * 3
@@ -39,32 +44,60 @@ def most_connections(tracers: int) -> int:
     return max(min((free - own) // _CONNECTION_FILES, MOST), FEWEST)
 
 
+class _CountedHTTP(h11.Connection):
+    """HTTP that knows how many bytes it has given to be sent."""
+
+    said = 0
+
+    def send_with_data_passthrough(self, event: h11.Event) -> list[bytes] | None:
+        """Write an event, and count its bytes."""
+        parts = super().send_with_data_passthrough(event)
+        self.said += sum(map(len, parts or ()))
+        return parts
+
+
 class Connection(H11Protocol):
     """A connection that ends where a request's head does not come in time, or where nobody reads the answer.
 
-    Where ``most`` are open already, the one that has sent no whole request for the longest time makes room.
+    What the client may be behind in reading is counted in seconds: each passes, and what it reads gives some back, but
+    never more than ``stalled_s`` altogether. So neither silence nor a few bytes now and then hold a connection, in
+    whatever state it is, also where it only waits for its last bytes to go.
+
+    Where ``most`` are open already, one makes room: of those that are ``behind_s`` behind in reading, or else of all,
+    the one that has sent no whole request for the longest time.
     """
 
     def __init__(
-        self, *, most: int, head_s: float = HEAD_SECONDS, stalled_s: float = STALLED_SECONDS, **given: Any
+        self,
+        *,
+        most: int,
+        head_s: float = HEAD_SECONDS,
+        stalled_s: float = STALLED_SECONDS,
+        slowest: float = SLOWEST_READ_BYTES_PER_SECOND,
+        behind_s: float = BEHIND_SECONDS,
+        **given: Any,
     ) -> None:
         super().__init__(**given)
-        self._most, self._head_s, self._stalled_s = most, head_s, stalled_s
+        self.conn: _CountedHTTP = _CountedHTTP(h11.SERVER)
+        self._most, self._head_s = most, head_s
+        self._stalled_s, self._slowest, self._behind_s = stalled_s, slowest, behind_s
         self._since = self.loop.time()
         self._due: asyncio.TimerHandle | None = None
-        self._stalled: asyncio.TimerHandle | None = None
+        self._look: asyncio.TimerHandle | None = None
+        self._taken, self._behind = 0, 0.0
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin to wait for a request."""
         super().connection_made(transport)
         self._expect_head()
+        self._look_later()
         if len(self.connections) > self._most:
             min(self.connections, key=attrgetter("worth")).make_room()  # type: ignore[union-attr]
 
     def connection_lost(self, exc: Exception | None) -> None:
         """End what waits."""
         super().connection_lost(exc)
-        for timer in (self._due, self._stalled):
+        for timer in (self._due, self._look):
             if timer is not None:
                 timer.cancel()
 
@@ -79,17 +112,6 @@ class Connection(H11Protocol):
         super().on_response_complete()
         self._expect_head()
 
-    def pause_writing(self) -> None:
-        """Give the client some time to read."""
-        super().pause_writing()
-        self._expect_reading()
-
-    def resume_writing(self) -> None:
-        """Go on: the client reads."""
-        super().resume_writing()
-        if self._stalled is not None:
-            self._stalled.cancel()
-
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002 - uvicorn's words
         """Refuse what is no HTTP."""
         self._refuse(problem(400, "bad_request", "this is no valid HTTP request; send it anew"))
@@ -102,9 +124,10 @@ class Connection(H11Protocol):
         )
 
     @property
-    def worth(self) -> tuple[bool, bool, float]:
-        """What it would cost to close this one: least for the one that has been silent for the longest time."""
-        return self.answering and not self.cycle.more_body, self.answering, self._since
+    def worth(self) -> tuple[bool, bool, bool, float]:
+        """What it would cost to close this one: least where nobody reads, then for what is silent for longest."""
+        reads = self._behind < self._behind_s
+        return reads, self.answering and not self.cycle.more_body, self.answering, self._since
 
     def make_room(self) -> None:
         """Close, so that another connection can be open."""
@@ -125,16 +148,21 @@ class Connection(H11Protocol):
         elif self._due is None:
             self._due = self.loop.call_later(self._head_s, self._give_up)
 
-    def _expect_reading(self) -> None:
-        unread = self.transport.get_write_buffer_size()
-        self._stalled = self.loop.call_later(self._stalled_s, self._look_after_reader, unread)
+    def _look_later(self) -> None:
+        self._look = self.loop.call_later(self._behind_s * _LOOKS, self._look_after_reader)
 
-    def _look_after_reader(self, unread: int) -> None:
-        """End a connection from which nothing was read meanwhile."""
-        if self.transport.get_write_buffer_size() < unread:
-            self._expect_reading()
-        else:
+    def _look_after_reader(self) -> None:
+        """Count how far behind the client is in reading, and end a connection where it is too far."""
+        unread = self.transport.get_write_buffer_size()
+        taken = self.conn.said - unread
+        caught_up = (taken - self._taken) / self._slowest
+        self._behind = max(self._behind + self._behind_s * _LOOKS - caught_up, 0.0) if unread else 0.0
+        self._taken = taken
+        if self._behind >= self._stalled_s:
             self.transport.abort()
+        else:
+            self._expect_head()
+            self._look_later()
 
     def _give_up(self) -> None:
         if self.conn.trailing_data[0]:
