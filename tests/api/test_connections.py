@@ -240,3 +240,38 @@ def test_what_is_no_http_is_refused_as_a_problem() -> None:
         said = rest(served.line(b"nonsense\r\n\r\n"))
     assert said.startswith(b"HTTP/1.1 400 ")
     assert b"application/problem+json" in said
+
+
+CHUNKED = b"POST %s HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
+
+
+@pytest.mark.parametrize("path", [b"/", b"/upload"])
+@pytest.mark.parametrize("chunk", [b"g\r\n", b"5\r\nhello\r\nXYZ\r\n", b"5\r\nhelloXX"])
+def test_a_chunk_that_is_none_is_refused_once_and_without_an_error(
+    path: bytes, chunk: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    with serving() as served:
+        said = rest(served.line(CHUNKED % path + chunk))
+    assert said.startswith(b"HTTP/1.1 400 ")
+    assert said.count(b"HTTP/1.1 ") == 1
+    assert b"application/problem+json" in said
+    assert [record for record in caplog.records if record.levelname == "ERROR"] == []
+
+
+def test_a_client_that_is_refused_while_it_sends_can_send_the_rest_and_read_why() -> None:
+    with serving() as served:
+        line = served.line(CHUNKED % b"/upload" + b"XYZ\r\n")
+        for _ in range(20):
+            line.sendall(bytes(100_000))
+        said = b""
+        while part := line.recv(65536):
+            said += part
+        assert said.startswith(b"HTTP/1.1 400 ")
+        line.close()
+        wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")
+
+
+def test_a_refused_client_does_not_keep_its_connection() -> None:
+    with serving() as served:
+        assert rest(served.line(b"nonsense\r\n\r\n")).startswith(b"HTTP/1.1 400 ")
+        wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")

@@ -6,6 +6,7 @@ from operator import attrgetter
 from typing import Any
 
 import h11
+import structlog
 from fastapi.responses import JSONResponse
 from uvicorn.protocols.http.h11_impl import STATUS_PHRASES, H11Protocol
 
@@ -16,6 +17,8 @@ FEWEST = 8
 ACCEPTED = 8
 """Connections that are taken from the listening socket at once."""
 HEAD_SECONDS = 10.0
+LINGER_SECONDS = 1.0
+"""For so long what a refused client still sends is thrown away: a reset in the middle of it would hide the answer."""
 STALLED_SECONDS = 120.0
 """A client that reads nothing of its answer, or is behind the slowest rate, for so long has gone, or means harm."""
 SLOWEST_READ_BYTES_PER_SECOND = 20_000
@@ -30,6 +33,7 @@ _DATABASE_FILES = 15 * 3
 _TRACER_FILES = 4
 _CONNECTION_FILES = 2
 """Its socket, and a file that is being sent or received."""
+log = structlog.get_logger()
 
 
 def most_connections(tracers: int) -> int:
@@ -85,6 +89,7 @@ class Connection(H11Protocol):
         self._due: asyncio.TimerHandle | None = None
         self._look: asyncio.TimerHandle | None = None
         self._taken, self._behind = 0, 0.0
+        self._refused: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin to wait for a request."""
@@ -97,9 +102,14 @@ class Connection(H11Protocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """End what waits."""
         super().connection_lost(exc)
-        for timer in (self._due, self._look):
+        for timer in (self._due, self._look, self._refused):
             if timer is not None:
                 timer.cancel()
+
+    def data_received(self, data: bytes) -> None:
+        """Take what came, unless the client was refused."""
+        if self._refused is None:
+            super().data_received(data)
 
     def handle_events(self) -> None:
         """Take what came, and see whether it is a whole head."""
@@ -114,14 +124,15 @@ class Connection(H11Protocol):
 
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002 - uvicorn's words
         """Refuse what is no HTTP."""
-        self._refuse(problem(400, "bad_request", "this is no valid HTTP request; send it anew"))
+        log.warning("request_invalid", peer=self.client and self.client[0])
+        self._refuse(problem(400, "bad_request", "this is no valid HTTP request; send it anew"), LINGER_SECONDS)
 
     @property
     def answering(self) -> bool:
         """Whether a request is under way, or its answer on its way."""
-        return self.cycle is not None and not (
-            self.cycle.response_complete and not self.transport.get_write_buffer_size()
-        )
+        if self.cycle is None or self._refused is not None:
+            return False
+        return not self.cycle.response_complete or self.transport.get_write_buffer_size() > 0
 
     @property
     def worth(self) -> tuple[bool, bool, bool, float]:
@@ -166,18 +177,29 @@ class Connection(H11Protocol):
 
     def _give_up(self) -> None:
         if self.conn.trailing_data[0]:
-            self._refuse(problem(408, "request_too_slow", "the request's head comes too slowly; send it again"))
+            slow = "the request's head comes too slowly; send it again"
+            self._refuse(problem(408, "request_too_slow", slow), LINGER_SECONDS)
         else:
             self.transport.close()
 
-    def _refuse(self, answer: JSONResponse) -> None:
+    def _refuse(self, answer: JSONResponse, linger_s: float = 0.0) -> None:
         """Answer instead of the application, where no other answer has begun, and close."""
-        if self.conn.our_state in (h11.IDLE, h11.SEND_RESPONSE):
-            head = h11.Response(
-                status_code=answer.status_code,
-                headers=[*answer.raw_headers, (b"connection", b"close")],
-                reason=STATUS_PHRASES[answer.status_code],
-            )
-            for event in (head, h11.Data(data=bytes(answer.body)), h11.EndOfMessage()):
-                self.transport.write(self.conn.send(event) or b"")
-        self.transport.close()
+        if self.conn.our_state not in (h11.IDLE, h11.SEND_RESPONSE):
+            self.transport.close()
+            return
+        head = h11.Response(
+            status_code=answer.status_code,
+            headers=[*answer.raw_headers, (b"connection", b"close")],
+            reason=STATUS_PHRASES[answer.status_code],
+        )
+        for event in (head, h11.Data(data=bytes(answer.body)), h11.EndOfMessage()):
+            self.transport.write(self.conn.send(event) or b"")
+        if self.cycle is not None:  # the application has nobody to answer any more
+            self.cycle.disconnected = True
+            self.cycle.message_event.set()
+        if linger_s:
+            self.transport.write_eof()
+            self.flow.resume_reading()
+            self._refused = self.loop.call_later(linger_s, self.transport.close)
+        else:
+            self.transport.close()
