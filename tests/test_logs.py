@@ -3,6 +3,7 @@
 import io
 import json
 import logging
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -58,6 +59,19 @@ def test_lines_about_different_jobs_are_different_lines() -> None:
         "        log.info('job_started')\n"
     )
     assert [line["job"] for line in lines] == list(range(50))
+
+
+def test_requests_that_are_no_http_are_told_once_with_who_sent_them(tmp_path: Path) -> None:
+    with serving(tmp_path / "data") as address:
+        host, port = address.removeprefix("http:" + "//").split(":")
+        for _ in range(5):
+            with socket.create_connection((host, int(port)), timeout=10) as line:
+                line.sendall(b"nonsense\r\n\r\n")
+                assert line.recv(100).startswith(b"HTTP/1.1 400 ")
+    lines = [json.loads(line) for line in (tmp_path / "data.log").read_text().splitlines()]
+    about = [line for line in lines if "nvalid" in line["event"]]
+    assert {(line["event"], line["peer"]) for line in about} == {("request_invalid", "127.0.0.1")}
+    assert len(about) <= 2
 
 
 def test_every_error_s_first_trace_is_kept_and_no_repeated_one() -> None:

@@ -84,6 +84,11 @@ def _add_repeated(_logger: object, _name: str, event: structlog.typing.EventDict
     return {**event, "repeated": repeated} if repeated else event
 
 
+def _is_news(record: logging.LogRecord) -> bool:
+    """Leave out what uvicorn says of a request that is no HTTP: the service's own line names who sent it."""
+    return record.msg != "Invalid HTTP request received."
+
+
 def start_logging() -> None:
     """Write structured lines to stderr; the libraries' own lines take the same form."""
     watched = sys.stderr.isatty()
@@ -116,3 +121,4 @@ def start_logging() -> None:
     root.setLevel(logging.INFO)
     for noisy in ("alembic", "celery", "kombu", "uvicorn", "httpx"):
         logging.getLogger(noisy).setLevel(logging.WARNING)
+    logging.getLogger("uvicorn.error").addFilter(_is_news)

@@ -28,8 +28,7 @@ async def application(scope: Scope, receive: Receive, send: Send) -> None:
             pass
     if path == "/late":
         await asyncio.sleep(1)
-    if path == "/large":
-        size = 20_000_000
+    size = {"/large": 20_000_000, "/medium": 1_000_000, "/small": 90_000}.get(path, size)
     await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"%d" % size)]})
     await send({"type": "http.response.body", "body": bytes(size)})
 
@@ -48,6 +47,10 @@ class Served:
     def answering(self) -> int:
         return sum(one.answering for one in list(self._server.server_state.connections))  # type: ignore[union-attr]
 
+    @property
+    def behind(self) -> int:
+        return sum(not one.worth[0] for one in list(self._server.server_state.connections))  # type: ignore[union-attr]
+
     def line(self, said: bytes = b"") -> socket.socket:
         """Open a connection and say something."""
         line = self._lines.enter_context(socket.create_connection(("127.0.0.1", self._port), PATIENCE_SECONDS))
@@ -57,6 +60,14 @@ class Served:
     def ask(self, path: bytes = b"/") -> bytes:
         line = self.line(b"GET " + path + b" HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n")
         return rest(line)
+
+    def slow_line(self, path: bytes) -> socket.socket:
+        """Ask for what is longer than what this side takes of it without being read."""
+        line = self._lines.enter_context(socket.socket())
+        line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 2304)
+        line.connect(("127.0.0.1", self._port))
+        line.sendall(GET.replace(b"/ ", path + b" ", 1) + b"\r\n")
+        return line
 
 
 def rest(line: socket.socket) -> bytes:
@@ -79,22 +90,27 @@ def answer(line: socket.socket) -> bytes:
 
 
 @contextmanager
-def serving(**limits: Any) -> Iterator[Served]:
+def serving(keep_alive_s: int = 30, **limits: Any) -> Iterator[Served]:
     config = uvicorn.Config(
         application,
         port=0,
         lifespan="off",
         log_config=None,
         ws="none",
+        timeout_keep_alive=keep_alive_s,
         http=partial(Connection, **{"most": 100, **limits}),  # type: ignore[arg-type]
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
     thread.start()
     wait_for(lambda: server.started, PATIENCE_SECONDS, "the server")
+    listener = server.servers[0].sockets[0]
+    listener.setsockopt(
+        socket.SOL_SOCKET, socket.SO_SNDBUF, 16_384
+    )  # connections have what it has: little is in the kernel
     try:
         with ExitStack() as lines:
-            yield Served(server, server.servers[0].sockets[0].getsockname()[1], lines)
+            yield Served(server, listener.getsockname()[1], lines)
     finally:
         server.should_exit = True
         thread.join()
@@ -147,12 +163,45 @@ def test_a_body_that_nobody_wants_does_not_hold_a_connection() -> None:
         wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")
 
 
-def test_a_client_that_reads_nothing_is_given_up() -> None:
-    with serving(stalled_s=0.5) as served:
-        served.line(GET.replace(b"/ ", b"/large ", 1) + b"\r\n")
-        wait_for(lambda: served.open, PATIENCE_SECONDS, "the connection")
+@pytest.mark.parametrize("path", [b"/large", b"/small"])  # what the application waits for, and what it is done with
+@pytest.mark.parametrize("keep_alive_s", [0, 30])
+def test_a_client_that_reads_nothing_is_given_up(path: bytes, keep_alive_s: int) -> None:
+    with serving(keep_alive_s, stalled_s=0.4, behind_s=0.1) as served:
+        served.slow_line(path)
+        wait_for(lambda: served.answering, PATIENCE_SECONDS, "the answer")
         wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")
-        assert len(served.ask(b"/large")) > 20_000_000
+        assert served.ask().startswith(b"HTTP/1.1 200 ")
+
+
+def test_a_client_that_reads_a_little_now_and_then_is_given_up() -> None:
+    with serving(stalled_s=0.5, behind_s=0.1, slowest=1_000_000) as served:
+        line = served.slow_line(b"/medium")
+        wait_for(lambda: served.open, PATIENCE_SECONDS, "the connection")
+        got = 0
+        with suppress(ConnectionResetError):
+            while part := line.recv(2000):
+                got += len(part)
+                time.sleep(0.02)
+        assert 0 < got < 1_000_000
+
+
+def test_a_client_that_reads_slowly_and_fast_enough_gets_all() -> None:
+    with serving(stalled_s=0.5, behind_s=0.1, slowest=1000) as served:
+        line = served.line(GET.replace(b"/ ", b"/medium ", 1) + b"Connection: close\r\n\r\n")
+        got = 0
+        while part := line.recv(50_000):
+            got += len(part)
+            time.sleep(0.05)
+        assert got > 1_000_000
+
+
+def test_who_does_not_read_makes_room_for_others() -> None:
+    with serving(most=2, behind_s=0.2) as served:
+        for path in (b"/large", b"/small"):
+            served.slow_line(path)
+        wait_for(lambda: served.behind == 2, PATIENCE_SECONDS, "both being behind")
+        answers = [served.line(GET.replace(b"/ ", b"/late ", 1) + b"\r\n") for _ in range(2)]
+        assert all(answer(line).startswith(b"HTTP/1.1 200 ") for line in answers)
 
 
 def test_silent_connections_make_room_the_oldest_first() -> None:
@@ -191,3 +240,38 @@ def test_what_is_no_http_is_refused_as_a_problem() -> None:
         said = rest(served.line(b"nonsense\r\n\r\n"))
     assert said.startswith(b"HTTP/1.1 400 ")
     assert b"application/problem+json" in said
+
+
+CHUNKED = b"POST %s HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n"
+
+
+@pytest.mark.parametrize("path", [b"/", b"/upload"])
+@pytest.mark.parametrize("chunk", [b"g\r\n", b"5\r\nhello\r\nXYZ\r\n", b"5\r\nhelloXX"])
+def test_a_chunk_that_is_none_is_refused_once_and_without_an_error(
+    path: bytes, chunk: bytes, caplog: pytest.LogCaptureFixture
+) -> None:
+    with serving() as served:
+        said = rest(served.line(CHUNKED % path + chunk))
+    assert said.startswith(b"HTTP/1.1 400 ")
+    assert said.count(b"HTTP/1.1 ") == 1
+    assert b"application/problem+json" in said
+    assert [record for record in caplog.records if record.levelname == "ERROR"] == []
+
+
+def test_a_client_that_is_refused_while_it_sends_can_send_the_rest_and_read_why() -> None:
+    with serving() as served:
+        line = served.line(CHUNKED % b"/upload" + b"XYZ\r\n")
+        for _ in range(20):
+            line.sendall(bytes(100_000))
+        said = b""
+        while part := line.recv(65536):
+            said += part
+        assert said.startswith(b"HTTP/1.1 400 ")
+        line.close()
+        wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")
+
+
+def test_a_refused_client_does_not_keep_its_connection() -> None:
+    with serving() as served:
+        assert rest(served.line(b"nonsense\r\n\r\n")).startswith(b"HTTP/1.1 400 ")
+        wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")

@@ -16,6 +16,7 @@ from tests.api.conftest import Service
 
 from treestroke.api.guard import Limited
 
+PATIENCE_SECONDS = 10.0
 CALLS = [
     ("GET", "/"),
     ("GET", "/livez"),
@@ -298,6 +299,52 @@ def test_all_bodies_together_are_bounded() -> None:
     asyncio.run(crowd())
     assert sorted(outcomes[:2]) == [200, 503]
     assert outcomes[2] == 200
+
+
+def test_a_body_that_came_fast_and_fell_silent_is_given_up_as_soon_as_any_other() -> None:
+    async def bodies() -> AsyncIterator[bytes]:
+        yield bytes(900)  # 90 s at the slowest rate
+        await asyncio.sleep(PATIENCE_SECONDS)
+
+    async def speak() -> tuple[int, bytes]:
+        return await asyncio.wait_for(_speak(bodies(), slowest=10.0), PATIENCE_SECONDS / 2)
+
+    assert asyncio.run(speak())[0] == 408
+
+
+def test_silent_halves_of_bodies_make_room_for_one_that_comes() -> None:
+    outcomes: dict[str, int] = {}
+    limited = Limited(_read_whole, lambda _: 1000, patience_s=1.5, slowest=1000.0, held=2100)
+
+    async def come(name: str, *pieces: bytes) -> None:
+        left = list(pieces)
+
+        async def receive() -> Message:
+            if not left:
+                await asyncio.sleep(PATIENCE_SECONDS)
+            piece = left.pop(0)
+            return {"type": "http.request", "body": piece, "more_body": piece[-1:] != b"."}
+
+        try:
+            await limited({"type": "http", "method": "POST", "path": "/", "headers": []}, receive, _unsent)
+            outcomes[name] = 200
+        except HTTPException as error:
+            outcomes[name] = error.status_code
+
+    async def crowd() -> None:
+        first = asyncio.create_task(come("first", bytes(900)))
+        await asyncio.sleep(0.1)
+        second = asyncio.create_task(come("second", bytes(900)))
+        await asyncio.sleep(0)
+        await come("early", bytes(800), b".")
+        await asyncio.sleep(0.9)
+        await come("whole", bytes(800), b".")
+        await first
+        assert not second.done()
+        await second
+
+    asyncio.run(crowd())
+    assert outcomes == {"early": 503, "whole": 200, "first": 408, "second": 408}
 
 
 async def _read_whole(scope: Scope, receive: Receive, send: Send) -> None:

@@ -1,9 +1,11 @@
 """What comes before every route: whose request it is, how long it may be, and what the answer's headers say."""
 
 import asyncio
+import math
 import time
 from collections.abc import Callable
 from functools import partial
+from operator import attrgetter
 from urllib.parse import urlsplit
 
 from fastapi import Response
@@ -15,10 +17,10 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from treestroke.api.errors import allowed_methods, nothing_there, problem
 
 HELD_BYTES = 400_000_000
-"""Of the bodies of all requests together; whoever comes beyond it is to come again."""
-PATIENCE_SECONDS = 30.0
+"""Of the bodies of all requests together; beyond it those that hardly come make room, or who comes is to come again."""
+PATIENCE_SECONDS = 15.0
+"""A body that says nothing, or is behind the slowest rate, for so long is given up, however fast it came before."""
 SLOWEST_BYTES_PER_SECOND = 20_000
-"""A body that comes more slowly, after the first half minute, is given up."""
 # A GLB's textures are read from blob: addresses, by fetch as well as by image.
 POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob: data:; object-src 'none'; "
@@ -100,6 +102,47 @@ class Methods:
             await (told if asked else nothing_there(scope["method"], allowed))(scope, receive, send)
 
 
+class _Body:
+    """A request's body on its way: how much of it came, and how long it may still keep its reader waiting."""
+
+    def __init__(self, receive: Receive, patience_s: float, slowest: float) -> None:
+        self._receive, self._patience_s, self._slowest = receive, patience_s, slowest
+        self._left_s = patience_s
+        self._wait: asyncio.Timeout | None = None
+        self._given_up = False
+        self.got, self.whole = 0, False
+
+    async def piece(self) -> Message:
+        """Give the next piece; what comes in good time gives back patience, but never more than there was at first."""
+        began = time.monotonic()
+        try:
+            async with asyncio.timeout(self._left_s) as self._wait:
+                message = await self._receive()
+                if self._given_up:  # and something came in the same moment
+                    raise TimeoutError
+        except TimeoutError:
+            raise HTTPException(408, "the request's body comes too slowly; send it again") from None
+        finally:
+            self._wait = None
+        size = len(message.get("body", b""))
+        left_s = self._left_s - (time.monotonic() - began) + size / self._slowest
+        self._left_s = min(left_s, self._patience_s)
+        self.got += size
+        self.whole = not message.get("more_body", False)
+        return message
+
+    @property
+    def due(self) -> float:
+        """When this body is given up, by the loop's clock; never while nobody waits for it."""
+        return (self._wait and self._wait.when()) or math.inf
+
+    def give_up(self) -> None:
+        """End the wait for it at once."""
+        self._given_up = True
+        if self._wait is not None:
+            self._wait.reschedule(0.0)
+
+
 class Limited:
     """Bounds a request's body, whatever its Content-Length says, and gives up on bodies that hardly come."""
 
@@ -112,8 +155,8 @@ class Limited:
         held: int = HELD_BYTES,
     ) -> None:
         self._app, self._limit_of = app, limit_of
-        self._patience_s, self._slowest = patience_s, slowest
-        self._free = held
+        self._patience_s, self._slowest, self._free = patience_s, slowest, held
+        self._bodies: set[_Body] = set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass a request on with its body counted."""
@@ -125,30 +168,38 @@ class Limited:
         if declared.isdecimal() and int(declared) > limit:
             await problem(413, "body_too_large", _too_large(limit))(scope, receive, send)
             return
-        began, got, whole = time.monotonic(), 0, False
+        body = _Body(receive, self._patience_s, self._slowest)
 
         async def counted() -> Message:
-            nonlocal got, whole
-            if whole:
+            if body.whole:
                 return await receive()  # what comes now is the news that the client has gone
-            patience = began + self._patience_s + got / self._slowest - time.monotonic()
-            try:
-                message = await asyncio.wait_for(receive(), max(patience, 0.0))
-            except TimeoutError:
-                raise HTTPException(408, "the request's body comes too slowly; send it again") from None
-            got += len(message.get("body", b""))
+            message = await body.piece()
             self._free -= len(message.get("body", b""))
-            whole = not message.get("more_body", False)
-            if got > limit:
+            if body.got > limit:
                 raise HTTPException(413, _too_large(limit))
+            self._make_room()
             if self._free < 0:
                 raise HTTPException(503, "too much is being sent at the moment; try again", {"Retry-After": "1"})
             return message
 
+        self._bodies.add(body)
         try:
             await self._app(scope, counted, send)
         finally:
-            self._free += got
+            self._forget(body)
+
+    def _make_room(self) -> None:
+        """Where all bodies together are too much, end those that have used up half of their patience."""
+        late = asyncio.get_running_loop().time() + self._patience_s / 2
+        while self._free < 0 and (slowest := min(self._bodies, key=attrgetter("due"))).due < late:
+            slowest.give_up()
+            self._forget(slowest)
+
+    def _forget(self, body: _Body) -> None:
+        """Let what a body holds be free, once."""
+        if body in self._bodies:
+            self._bodies.remove(body)
+            self._free += body.got
 
 
 def _as_get(scope: Scope) -> Scope:
