@@ -14,6 +14,8 @@ from treestroke.store.database import Database
 
 def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with serving(tmp_path / "data"):
+        for path in (tmp_path / "data").glob("*lock*"):
+            path.unlink()
         assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 2
         assert "another `treestroke serve` keeps its data there; stop it, or name another" in capsys.readouterr().err
     assert (tmp_path / "data").stat().st_mode & 0o077 == 0
