@@ -94,7 +94,7 @@ def serve(settings: Settings) -> int:
     SettingsError
         The address is not this machine's own: without keys nobody else may reach it. Or the port is taken.
     Unusable
-        The data folder is open to others and not plainly ours, or holds the database of a newer program.
+        The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
     OSError
         The data folder cannot be written.
     """
