@@ -9,11 +9,14 @@ from tests.running import serving
 
 from treestroke.cli import main
 from treestroke.serve import Child
+from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 
 
 def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with serving(tmp_path / "data"):
+        for path in (tmp_path / "data").glob("*lock*"):
+            path.unlink()
         assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 2
         assert "another `treestroke serve` keeps its data there; stop it, or name another" in capsys.readouterr().err
     assert (tmp_path / "data").stat().st_mode & 0o077 == 0
@@ -53,6 +56,21 @@ def test_a_newer_database_is_one_line_and_nothing_is_started(
     assert len(lines) == 1, told.err
     assert "a newer treestroke made this database" in (told.out if command == "doctor" else lines[0])
     assert not (folder / "tmp").exists()
+
+
+@pytest.mark.parametrize("command", ["serve", "worker", "doctor"])
+def test_a_lost_database_is_one_line_and_nothing_is_started_or_made(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], command: str
+) -> None:
+    tmp_path.chmod(0o700)
+    Blobs(tmp_path).put(b"tree")
+    before = sorted(tmp_path.rglob("*"))
+    assert main([command, "--data", str(tmp_path), *(["--port", "0"] if command == "serve" else [])]) == 1
+    told = capfd.readouterr()
+    lines = [line for line in told.err.splitlines() if not line.startswith("{")]
+    assert len(lines) == 1, told.err
+    assert "treestroke.sqlite3: the database is lost or empty" in (told.out if command == "doctor" else lines[0])
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_a_process_that_gives_up_at_once_is_started_ever_more_slowly(

@@ -19,7 +19,7 @@ from types import FrameType
 from treestroke.core.errors import SettingsError
 from treestroke.lifeline import LIFELINE, RUN, RUN_BEFORE
 from treestroke.settings import Settings
-from treestroke.store.folder import LOCK, own_folder
+from treestroke.store.folder import own_folder
 from treestroke.store.versions import check_version
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -94,7 +94,7 @@ def serve(settings: Settings) -> int:
     SettingsError
         The address is not this machine's own: without keys nobody else may reach it. Or the port is taken.
     Unusable
-        The data folder is open to others and not plainly ours, or holds the database of a newer program.
+        The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
     OSError
         The data folder cannot be written.
     """
@@ -154,10 +154,13 @@ def _listen(settings: Settings) -> socket.socket:
 
 
 def _hold(folder: Path) -> None:
-    """Keep the data folder to this process, as long as it lives."""
-    lock = os.open(folder / LOCK, os.O_CREAT | os.O_RDWR, 0o600)  # held until this process ends
+    """Keep the data folder to this process, as long as it lives.
+
+    The folder itself is locked: a file in it could be removed, and made anew by another process.
+    """
+    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)  # until this process ends
     try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise SettingsError(
             f"--data {folder}: another `treestroke serve` keeps its data there; stop it, or name another folder"

@@ -53,7 +53,7 @@ def main() -> int:
     Raises
     ------
     Unusable
-        The data folder is open to others and not plainly ours, or holds the database of a newer program.
+        The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
     """
     settings = read_settings()
     start_logging()

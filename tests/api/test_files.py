@@ -18,6 +18,8 @@ from tests.api import drawn
 from tests.api.conftest import Service
 from tests.running import BACKEND
 
+from treestroke.store.folder import _OURS
+
 KINDS = {
     "tree.glb": "model/gltf-binary",
     "preview.png": "image/png",
@@ -202,6 +204,14 @@ def test_a_part_of_a_project_is_sent_of_the_one_that_was_packed(service: Service
         assert answer.content == whole.content[first : first + 1]
     assert {path: path.stat().st_mtime_ns for path in (service.data / "projects").iterdir()} == before
     assert not (service.data / "blobs" / whole.headers["etag"][1:3] / whole.headers["etag"].strip('"')).exists()
+
+
+def test_a_served_folder_holds_only_what_the_next_start_knows_as_its_own(
+    service: Service, made: dict[str, Any]
+) -> None:
+    assert service.client.get(made["files"]["project"]).status_code == 200
+    names = {path.name for path in service.data.iterdir()}
+    assert {"blobs", "projects", "treestroke.sqlite3"} <= names <= _OURS
 
 
 def test_the_report_is_the_command_lines(client: httpx.Client, made: dict[str, Any]) -> None:

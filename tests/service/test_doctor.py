@@ -221,6 +221,17 @@ def test_a_damaged_database_is_ill(folder: Path) -> None:
     assert "not a database" in ill(folder)["database"]
 
 
+def test_a_database_that_is_lost_or_empty_beside_files_is_ill(folder: Path) -> None:
+    (folder / "treestroke.sqlite3").unlink()
+    for _ in range(2):
+        found = findings(folder)["database"]
+        assert (found.well, found.mend) == (
+            False, "restore it from a copy, or move the folder 'blobs' away to begin anew",
+        )  # fmt: skip
+        assert f"the database is lost or empty, but there are files in {folder / 'blobs'}" in found.found
+        (folder / "treestroke.sqlite3").write_bytes(b"")
+
+
 def test_a_database_of_another_version_is_ill(folder: Path) -> None:
     with closing(sqlite3.connect(folder / "treestroke.sqlite3")) as connection:
         connection.execute("UPDATE alembic_version SET version_num = 'later'")

@@ -145,6 +145,29 @@ def test_no_one_stretch_in_which_nobody_watched_counts_as_a_day(kept: Kept) -> N
     assert UNWATCHED_SECONDS * 2 == DAY
 
 
+def test_a_clock_that_jumps_forth_and_back_between_starts_counts_no_hour_twice(kept: Kept) -> None:
+    kept.sweep()
+    kept.delete(kept.model())
+    for jump in (9, -9, 9, -9, 9, -9, 9, -9):
+        kept.clocks.wall += jump * HOUR
+        kept.clocks.pass_(60)
+        kept.restart()
+        assert kept.sweep().models == 0
+    assert kept.count(Model) == 1
+
+
+@pytest.mark.parametrize("again", [False, True])
+def test_ages_go_on_after_a_clock_that_was_far_ahead_is_set_right(kept: Kept, again: bool) -> None:
+    kept.clocks.wall += 400 * DAY
+    kept.sweep()
+    kept.clocks.wall -= 400 * DAY
+    if again:
+        kept.restart()
+    kept.delete(kept.model())
+    assert kept.sweep_for(23 * HOUR).models == 0
+    assert kept.sweep_for(2 * HOUR).models == 1
+
+
 @pytest.mark.parametrize("part", ["front", "side", "leaf", "fruit"])
 def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str) -> None:
     blob = kept.blobs.put(part.encode())

@@ -32,7 +32,9 @@ def test_a_new_folder_and_all_that_is_put_there_are_this_user_s_alone(tmp_path: 
 
 
 def test_a_data_folder_that_others_may_look_into_is_closed(tmp_path: Path) -> None:
-    for number, made in enumerate([(), ("treestroke.sqlite3", "lock"), ("blobs", "lost+found")]):
+    for number, made in enumerate(
+        [(), ("treestroke.sqlite3", "lock"), ("blobs", "lost+found"), ("projects", "treestroke.sqlite3-journal")]
+    ):
         folder = tmp_path / str(number)
         folder.mkdir(0o755)
         for name in made:

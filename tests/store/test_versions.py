@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 from alembic.script import ScriptDirectory
 
+from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database, _migrations
 from treestroke.store.versions import Unusable, check_version, known_revisions
 
@@ -24,6 +25,21 @@ def test_no_database_a_bare_one_and_one_of_ours_are_well(tmp_path: Path) -> None
     database.migrate()
     check_version(tmp_path)
     database.close()
+
+
+@pytest.mark.parametrize("left", [None, "", "CREATE TABLE other (id)"])
+def test_a_database_that_is_lost_or_empty_beside_files_is_refused(tmp_path: Path, left: str | None) -> None:
+    if left is not None:
+        with closing(sqlite3.connect(tmp_path / "treestroke.sqlite3")) as bare:
+            bare.execute(left)
+        (tmp_path / "treestroke.sqlite3").touch()
+    blobs = Blobs(tmp_path)
+    check_version(tmp_path)  # no file yet
+    blobs.put(b"tree")
+    with pytest.raises(Unusable, match=r"lost or empty.*; restore it from a copy, or move the folder 'blobs' away"):
+        check_version(tmp_path)
+    blobs.folder.rename(tmp_path / "kept")
+    check_version(tmp_path)
 
 
 def test_a_newer_database_is_refused_in_one_line_that_says_how_to_mend_it(database: Database) -> None:

@@ -29,6 +29,7 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.folder import own_folder
+from treestroke.store.versions import check_version
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
@@ -70,6 +71,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
     own_folder(settings.folder)
+    check_version(settings.folder)
     database, blobs = Database(settings.folder), Blobs(settings.folder)
     database.migrate()
     tracers = Tracers(settings.tracers, settings.trace_seconds, settings.memory_mb)

@@ -216,7 +216,7 @@ def _rows(settings: Settings) -> Iterator[Finding]:
     """Look into the database: sound, of this version, every file there, workers alive."""
     database = Database(settings.folder)
     if not database.path.is_file():
-        yield Finding("database", True, f"none yet; {_SERVE} makes it")
+        yield _refused(settings.folder) or Finding("database", True, f"none yet; {_SERVE} makes it")
         return
     try:
         for look in (_soundness, _files, _workers):
@@ -235,14 +235,21 @@ def _soundness(_: Settings, database: Database) -> Finding:
         said = session.execute(text("PRAGMA quick_check(1)")).scalar()
     if said != "ok":
         return _unsound(database, " ".join(str(said).split()))
-    try:
-        check_version(database.path.parent)
-    except Unusable as error:
-        what, _sign, mend = str(error).partition("; ")
-        return Finding("database", False, what, mend)
+    if refused := _refused(database.path.parent):
+        return refused
     if not database.current():
         return Finding("database", False, "of an older version", f"start {_SERVE}, which brings it up to date")
     return Finding("database", True, "sound")
+
+
+def _refused(folder: Path) -> Finding | None:
+    """Say why a start would refuse the database."""
+    try:
+        check_version(folder)
+    except Unusable as error:
+        what, _sign, mend = str(error).partition("; ")
+        return Finding("database", False, what, mend)
+    return None
 
 
 def _unsound(database: Database, why: str) -> Finding:

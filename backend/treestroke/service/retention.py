@@ -81,14 +81,15 @@ class Sweeper:
     def _watch(self) -> float:
         """Move the store's clock on, and read it.
 
-        It moves by the wall's clock, but no further than this process has run since it last looked.
+        It moves by as long as this process has run since it last looked. For the time before its first look, it moves
+        by what the wall's clock says beyond all that it ever said: the same hours never count twice.
         """
         now, wall = self._monotonic(), time.time()
-        most = UNWATCHED_SECONDS if self._last is None else now - self._last
         with self._database.writing() as session:
             clock = session.get(StoreClock, 1) or StoreClock(id=1, age_s=0.0, wall=wall)
-            clock.age_s += min(max(wall - clock.wall, 0.0), most)
-            clock.wall = wall
+            unwatched_s = min(max(wall - clock.wall, 0.0), UNWATCHED_SECONDS)
+            clock.age_s += unwatched_s if self._last is None else now - self._last
+            clock.wall = max(clock.wall, wall)
             session.add(clock)
         self._last = now
         return clock.age_s

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from treestroke.store.versions import DATABASE, Unusable
 
-LOCK = "lock"
-_OURS = {LOCK, "blobs", "queue", "tmp", DATABASE, f"{DATABASE}-wal", f"{DATABASE}-shm"}
+_DATABASE_FILES = {DATABASE, *(f"{DATABASE}-{part}" for part in ("journal", "shm", "wal"))}
+_OURS = {"blobs", "projects", "queue", "tmp", *_DATABASE_FILES, "lock"}
+"""What the service makes; ``lock`` lies in folders that earlier versions served."""
 _OF_THE_DISK = {"lost+found"}
 
 

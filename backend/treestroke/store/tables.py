@@ -155,7 +155,7 @@ class StoreClock(Table):
     id: Mapped[int] = mapped_column(primary_key=True)
     age_s: Mapped[float]
     wall: Mapped[float]
-    """The clock on the wall when ``age_s`` was written."""
+    """The latest that the clock on the wall ever said when ``age_s`` was written."""
 
 
 class Stray(Table):

@@ -1,10 +1,12 @@
 """Which form a database has, told before anything else is started: this imports nothing that takes long."""
 
+import os
 import sqlite3
 from contextlib import closing
 from pathlib import Path
 
 DATABASE = "treestroke.sqlite3"
+_BLOBS = "blobs"
 _MIGRATIONS = Path(__file__).parent / "migrations" / "versions"
 _BUSY_SECONDS = 10
 
@@ -16,20 +18,25 @@ class Unusable(Exception):
 def check_version(folder: Path) -> None:
     """Refuse a database that a newer program made, or that is none; one that is not there yet is well.
 
+    One that is lost is not: by an empty database all files are strays, and would be removed.
+
     Raises
     ------
     Unusable
         It is of another kind.
     """
     path = folder / DATABASE
-    if not path.is_file():
-        return
     try:
-        unknown = _revisions(path) - known_revisions()
+        found = _revisions(path) if path.is_file() else set[str]()
     except sqlite3.DatabaseError as error:
         what = f"{path}: the database cannot be read ({error})"
         raise Unusable(f"{what}; restore it from a copy, or name another folder by --data") from error
-    if unknown:
+    if not found and any(files for _, _, files in os.walk(folder / _BLOBS)):
+        raise Unusable(
+            f"{path}: the database is lost or empty, but there are files in {folder / _BLOBS}; restore it from a copy, "
+            f"or move the folder {_BLOBS!r} away to begin anew"
+        )
+    if unknown := found - known_revisions():
         raise Unusable(
             f"{path}: a newer treestroke made this database (its version is {', '.join(sorted(unknown))}, this one "
             f"knows up to {max(known_revisions())}); install that treestroke again, or name another folder by --data"
