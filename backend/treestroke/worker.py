@@ -96,7 +96,8 @@ def main() -> int:
         quiet=True,
     ).start()
     stopped.set()
-    say_gone(database, name)
+    with suppress(SQLAlchemyError):  # others find out by themselves
+        say_gone(database, name)
     log.info("worker_stopped", worker=name)
     return 0
 

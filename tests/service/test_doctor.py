@@ -16,8 +16,9 @@ from pathlib import Path
 import pytest
 
 from treestroke.cli import main
-from treestroke.service.dispatch import say_alive
-from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation
+from treestroke.service.dispatch import Dispatcher, say_alive
+from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation, readiness
+from treestroke.service.photos import Shelf
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -140,6 +141,14 @@ def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> N
     assert all(finding.well for finding in found.values())
     assert "`treestroke serve` makes it" in found["data folder"].found
     assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_ready_once_the_database_is_gone_from_its_place(shelf: Shelf) -> None:
+    dispatcher = Dispatcher(shelf.database, shelf.blobs, lambda id: None, 0)
+    assert readiness(shelf, dispatcher).checks["database"] == "ok"
+    shelf.database.path.rename(shelf.database.path.with_name("away"))
+    health = readiness(shelf, dispatcher)
+    assert (health.status, health.checks["database"]) == ("down", "unavailable")
 
 
 def test_looking_leaves_no_file(folder: Path) -> None:

@@ -1,4 +1,5 @@
 import os
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -17,13 +18,13 @@ from sqlalchemy.exc import OperationalError
 from tests.rows import add_model, find
 from tests.running import BACKEND
 
+from treestroke.service.failures import code_of
 from treestroke.store.database import Database
 from treestroke.store.tables import File, Model, Photo, Replay, Table, Worker
 
 
 def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
     database = Database(tmp_path)
-    assert not database.current()
     database.migrate()
     assert database.current()
     database.close()
@@ -237,6 +238,51 @@ def test_what_is_committed_survives_a_power_cut(database: Database) -> None:
             for name in ("journal_mode", "synchronous", "foreign_keys")
         }
     assert pragmas == {"journal_mode": "wal", "synchronous": 2, "foreign_keys": 1}
+
+
+def test_only_migrating_makes_the_file(tmp_path: Path) -> None:
+    database = Database(tmp_path)
+    for use in (database.reading, database.writing, database.stating):
+        with pytest.raises(OperationalError) as refused, use() as session:
+            session.scalars(select(Model)).all()
+        assert code_of(refused.value) == "database_unavailable"
+    with pytest.raises(OperationalError):
+        database.current()
+    assert list(tmp_path.iterdir()) == []
+    database.migrate()
+    add_model(database)
+    database.close()
+
+
+@pytest.mark.parametrize("name", ["with spaces", "a?b#c%20d", "für;uri=false&mode=ro"])
+def test_the_folder_may_have_any_name(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).mkdir()
+    database = Database(tmp_path / name)
+    database.migrate()
+    row = add_model(database)
+    assert find(database, row.id).id == row.id
+    database.close()
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert [path.name for path in (tmp_path / name).iterdir()] == ["treestroke.sqlite3"]
+
+
+@pytest.mark.parametrize("replaced", [False, True])
+def test_a_database_whose_file_is_removed_or_replaced_takes_nothing_until_it_is_opened_anew(
+    database: Database, replaced: bool
+) -> None:
+    row = add_model(database)
+    kept = database.path.with_name("kept")
+    shutil.copy(database.path, kept)
+    database.path.rename(database.path.with_name("away"))
+    if replaced:
+        kept.rename(database.path)
+    for use in (database.reading, database.writing, database.stating):
+        with pytest.raises(OperationalError) as refused, use() as session:
+            session.scalars(select(Model)).all()
+        assert code_of(refused.value) == "database_unavailable"
+    assert database.path.exists() == replaced
+    database.path.with_name("away").rename(database.path)
+    assert find(database, row.id).id == row.id
 
 
 def test_a_database_that_cannot_be_opened_says_so(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from alembic import command
 from alembic.config import Config
 from alembic.runtime.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, Engine, create_engine, event
+from sqlalchemy import URL, Connection, Engine, create_engine, event
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
@@ -27,17 +27,22 @@ _READERS = 10
 class Database:
     """SQLite in WAL mode: many readers beside one writer, from several processes.
 
-    A committed change survives a power cut: what was accepted is never lost.
+    A committed change survives a power cut: what was accepted is never lost. Only `migrate` makes the file; once it is
+    gone from its place, or another is there, nothing more is read or written until the database is closed: what went to
+    the old file would be lost.
     """
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / DATABASE
-        self._readers, self._writer = _engine(self.path, _READERS), _engine(self.path, 1)
+        there = URL.create("sqlite", database=self.path.absolute().as_uri(), query={"mode": "rw", "uri": "true"})
+        self._readers, self._writer = _engine(there, _READERS), _engine(there, 1)
         self._turn = threading.Lock()
+        self._opened: tuple[int, int] | None = None
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """Open a session that sees one state of the database and changes nothing."""
+        self._look_at_file()
         with Session(self._readers, expire_on_commit=False) as session:
             yield session
 
@@ -48,7 +53,7 @@ class Database:
         Raises
         ------
         OperationalError
-            Others write for longer than a writer waits.
+            Others write for longer than a writer waits, or the file is gone.
         """
         with self._write_by(_WRITES) as session, session.begin():
             yield session
@@ -69,6 +74,7 @@ class Database:
         if not self._turn.acquire(timeout=_BUSY_SECONDS):
             raise OperationalError("BEGIN IMMEDIATE", None, sqlite3.OperationalError("database is locked"))
         try:
+            self._look_at_file()
             with (
                 self._writer.connect().execution_options(**{option: True}) as connection,
                 Session(connection, expire_on_commit=False) as session,
@@ -77,12 +83,21 @@ class Database:
         finally:
             self._turn.release()
 
+    def _look_at_file(self) -> None:
+        """Refuse a file that is not the one which was opened first."""
+        found = _identity(self.path)
+        self._opened = self._opened or found
+        if found is None or found != self._opened:
+            error = sqlite3.OperationalError("the database file was removed or replaced")
+            error.sqlite_errorcode = sqlite3.SQLITE_CANTOPEN
+            raise OperationalError("open", None, error)
+
     def migrate(self) -> None:
         """Bring the tables to the newest form, from nothing or from any older one.
 
         A table that is made anew is dropped for a moment: rows that refer to its rows must not go with them.
         """
-        engine = _engine(self.path, 1, foreign_keys=False)
+        engine = _engine(URL.create("sqlite", database=str(self.path)), 1, foreign_keys=False)
         try:
             with engine.connect().execution_options(**{_WRITES: True}) as connection:
                 settings = _migrations()
@@ -101,6 +116,7 @@ class Database:
         """Close all connections."""
         self._readers.dispose()
         self._writer.dispose()
+        self._opened = None
 
 
 def _migrations() -> Config:
@@ -109,9 +125,18 @@ def _migrations() -> Config:
     return settings
 
 
-def _engine(path: Path, connections: int, foreign_keys: bool = True) -> Engine:
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Tell one file from another that takes its place."""
+    try:
+        found = path.stat()
+    except FileNotFoundError:
+        return None
+    return found.st_dev, found.st_ino
+
+
+def _engine(place: URL, connections: int, foreign_keys: bool = True) -> Engine:
     engine = create_engine(
-        f"sqlite:///{path}",
+        place,
         pool_size=connections,
         max_overflow=0,
         connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False},
