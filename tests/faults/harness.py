@@ -32,6 +32,8 @@ ROOT = Path(__file__).parents[2]
 PHOTO = ROOT / "tests" / "data" / "beech_round.jpg"
 SHRUNK = 0.35
 QUICK: dict[str, object] = {"iterations": 0, "foliage": "bare"}
+LONGER: dict[str, object] = {"iterations": 2000, "foliage": "leaves"}
+"""Of a model that is under way for some seconds: a quick one may be finished before it can be struck."""
 """A job of about a second."""
 Row = dict[str, Any]
 
@@ -227,8 +229,8 @@ class Service:
         self.accepted.append(answer.json()["id"])
         return self.accepted[-1]
 
-    def ask_for(self, number: int, name: str = "") -> list[str]:
-        return [self.ask(name) for _ in range(number)]
+    def ask_for(self, number: int, name: str = "", **settings: object) -> list[str]:
+        return [self.ask(name, **settings) for _ in range(number)]
 
     def get(self, id: str) -> Row:
         answer = self.client.get(f"/v1/models/{id}")

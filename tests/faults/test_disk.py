@@ -11,7 +11,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from tests.faults.harness import Service, small_tree
+from tests.faults.harness import LONGER, Service, small_tree
 
 from treestroke.queue import make_queue, send_hint
 from treestroke.settings import Settings
@@ -66,7 +66,7 @@ def test_a_full_disk_refuses_uploads_and_serves_nothing_half_made(tmp_path: Path
         assert stored(service) == before
         assert service.client.get(f"/v1/photos/{body['photo']}/image").status_code == 200
         disk.free()
-        id = service.ask()
+        id = service.ask(**LONGER)
         service.wait_running(id)
         disk.fill()
         with suppress(AssertionError):

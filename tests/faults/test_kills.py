@@ -5,7 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 from sqlalchemy import delete
-from tests.faults.harness import Service
+from tests.faults.harness import LONGER, Service
 from tests.faults.processes import wait_for
 from tests.rows import add_model
 
@@ -18,7 +18,7 @@ AGAIN_SECONDS = 30
 
 
 def test_a_job_whose_process_dies_is_grown_again(service: Service) -> None:
-    id = service.ask()
+    id = service.ask(**LONGER)
     service.wait_running(id)
     for grower in service.growers():
         grower.hit()
@@ -27,7 +27,7 @@ def test_a_job_whose_process_dies_is_grown_again(service: Service) -> None:
 
 
 def test_a_job_whose_worker_dies_with_its_child_is_grown_again(service: Service) -> None:
-    id, expired = service.ask(), len(service.logged("attempt_lost"))
+    id, expired = service.ask(**LONGER), len(service.logged("attempt_lost"))
     service.wait_running(id)
     for process in service.workers() + service.growers():
         process.hit()
@@ -65,7 +65,7 @@ def test_a_worker_that_dies_leaves_no_process_behind(service: Service) -> None:
 def test_requests_wait_while_the_web_process_is_replaced_and_only_those_it_had_begun_are_cut_off(
     service: Service,
 ) -> None:
-    id = service.ask()
+    id = service.ask(**LONGER)
     service.wait_running(id)
     web = service.web()
     assert web is not None
@@ -89,7 +89,7 @@ def answer_or_cut(service: Service) -> str:
 
 
 def test_all_processes_end_with_a_launcher_that_dies_and_the_next_one_finishes_their_jobs(service: Service) -> None:
-    ids = service.ask_for(2)
+    ids = service.ask_for(2, **LONGER)
     service.wait_running(ids[0])
     launcher = service.launcher
     assert launcher is not None

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import pytest
-from tests.faults.harness import Service
+from tests.faults.harness import LONGER, Service
 from tests.faults.processes import wait_for
 from tests.faults.redis_server import RedisServer, need_redis
 
@@ -33,11 +33,11 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pair]:
         redis.kill()
 
 
-def ask_quickly(service: Service, number: int = 2) -> list[str]:
+def ask_quickly(service: Service, number: int = 2, **settings: object) -> list[str]:
     """Ask for models, each answered within what is promised."""
     ids = []
     for _ in range(number):
-        body, began = service.body(), time.monotonic()
+        body, began = service.body(**settings), time.monotonic()
         answer = service.client.post("/v1/models", json=body)
         took = time.monotonic() - began
         assert (answer.status_code, took < PROMISED_SECONDS) == (202, True), took
@@ -77,14 +77,14 @@ def test_jobs_are_taken_while_redis_is_gone_and_a_worker_that_starts_meanwhile_w
 
 
 def test_jobs_survive_a_redis_that_is_emptied(pair: Pair) -> None:
-    ids = ask_quickly(pair.service, 4)
+    ids = ask_quickly(pair.service, 4, **LONGER)
     pair.service.wait_running(ids[0])
     pair.redis.empty()
     assert outcomes(pair.service, ids) == {"succeeded"}
 
 
 def test_jobs_survive_a_redis_that_comes_back_empty_while_one_is_being_grown(pair: Pair) -> None:
-    ids = ask_quickly(pair.service, 4)
+    ids = ask_quickly(pair.service, 4, **LONGER)
     pair.service.wait_running(ids[0])
     pair.redis.kill()
     pair.redis.start(empty=True)

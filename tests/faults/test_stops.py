@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import pytest
-from tests.faults.harness import Service
+from tests.faults.harness import LONGER, Service
 from tests.faults.processes import wait_for
 
 PROMISED_SECONDS = 12
@@ -20,7 +20,7 @@ def follow(service: Service, id: str) -> str:
 
 def test_a_stop_ends_streams_lets_a_short_job_finish_and_refuses_what_comes_later(service: Service) -> None:
     service.wait_for_workers(1)
-    id = service.ask()
+    id = service.ask(**LONGER)
     service.wait_running(id)
     with ThreadPoolExecutor() as pool:
         stream = pool.submit(follow, service, id)

@@ -37,8 +37,9 @@ def kill_below(service: Service, web: Process) -> None:
 def no_descriptors(web: Process) -> Iterator[None]:
     """Let the web process open nothing more, as with many connections."""
     before = resource.prlimit(web.pid, resource.RLIMIT_NOFILE)
-    taken = max(int(name) for name in os.listdir(f"/proc/{web.pid}/fd"))
-    resource.prlimit(web.pid, resource.RLIMIT_NOFILE, (taken + 1, before[1]))
+    taken = {int(name) for name in os.listdir(f"/proc/{web.pid}/fd")}
+    # The lowest that is free is the one that would be given next.
+    resource.prlimit(web.pid, resource.RLIMIT_NOFILE, (min(set(range(len(taken) + 1)) - taken), before[1]))
     try:
         yield
     finally:
