@@ -46,7 +46,7 @@ def test_a_newcomer_gets_from_a_photo_to_a_tree_and_takes_it_home(
     visitor.shot("live")
     page.get_by_role("button", name="Grow", exact=True).click()
     visitor.wait_for_preview("model")
-    expect(page.get_by_text("match with the photo").first).to_be_visible()
+    expect(page.get_by_text("match with the foliage and branches").first).to_be_visible()
     visitor.shot("grown")
     with page.expect_download() as download:
         page.get_by_role("link", name="Download GLB").click()
