@@ -27,7 +27,7 @@ BEHIND_SECONDS = 5.0
 _LOOKS = 0.25
 """How often it is looked whether a client reads, as a part of the seconds that it may be behind."""
 _OWN_FILES = 30 + 2 * ACCEPTED
-"""Descriptors of the process itself: log, loop, listening socket, fork server, and what is about to be closed."""
+"""Descriptors of the process itself: log, loop, listening socket, tracers' tracker, and what is about to be closed."""
 _DATABASE_FILES = 15 * 3
 """Of SQLAlchemy's pool at its largest: database, WAL and its index."""
 _TRACER_FILES = 4

@@ -5,7 +5,6 @@ import struct
 import warnings
 import zlib
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -14,12 +13,10 @@ from PIL import Image, ImageCms
 
 from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, lost
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
+from treestroke.codec.watched_bytes import WatchedBytes
 from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
-
-if TYPE_CHECKING:
-    from _typeshed import WriteableBuffer
 
 Picture = NDArray[np.uint8]
 Warn = Callable[[StrokeWarning], object]
@@ -45,8 +42,6 @@ _DAMAGED = (
 """What decoders raise on files that break their format."""
 _NOT_READ = {"F": "floating-point", "I": "32-bit", "I;16S": "signed", "LAB": "Lab"}
 """Kinds of pixels, by Pillow's modes, that have no one meaning as sRGB."""
-_TOLD = 0.05
-"""Share of a file's bytes after which its reading is told again."""
 _ORIENTATION = 0x0112
 _TURNS = {
     2: Image.Transpose.FLIP_LEFT_RIGHT,
@@ -234,38 +229,6 @@ def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[Fru
     return np.ascontiguousarray(picture)
 
 
-class _Watched(io.RawIOBase):
-    """Bytes, not copied, as a file that tells how far it was read."""
-
-    def __init__(self, data: bytes, report: Report) -> None:
-        self._data, self._at, self._furthest, self._report = memoryview(data), 0, 0, report
-
-    def readable(self) -> bool:
-        """Say that it can be read."""
-        return True
-
-    def seekable(self) -> bool:
-        """Say that it can be read from anywhere."""
-        return True
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Go to a place, as in any file."""
-        start = {io.SEEK_SET: 0, io.SEEK_CUR: self._at, io.SEEK_END: len(self._data)}[whence]
-        self._at = max(start + offset, 0)
-        return self._at
-
-    def readinto(self, buffer: "WriteableBuffer") -> int:
-        """Read, as any file does; tell of each further share of `_TOLD`."""
-        room = memoryview(buffer)
-        found = self._data[self._at : self._at + len(room)]
-        room[: len(found)] = found
-        self._at += len(found)
-        if self._at > self._furthest + _TOLD * len(self._data):
-            self._furthest = self._at
-            self._report("decode", _READ * self._furthest / len(self._data))
-        return len(found)
-
-
 def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
     kind = kind_of(data)
     if kind is None:
@@ -292,7 +255,7 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
 def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
     """Read a photo's header."""
     try:
-        file = io.BufferedReader(_Watched(data, report))
+        file = io.BufferedReader(WatchedBytes(data, lambda share: report("decode", _READ * share)))
         if kind == "HEIF":
             # It takes a while to import, and few need it. Pillow is not told of it: whoever calls may have another.
             from pillow_heif import HeifImageFile

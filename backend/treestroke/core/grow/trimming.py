@@ -9,6 +9,7 @@ from treestroke.core.geometry.camera import Camera
 from treestroke.core.grow.crown import in_mask, pixels_of
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.skeleton.traverse import accumulate_to_root
 
 
 def trimmed(grown: Grown, foliage: NDArray[np.bool_], camera: Camera) -> Grown:
@@ -17,10 +18,8 @@ def trimmed(grown: Grown, foliage: NDArray[np.bool_], camera: Camera) -> Grown:
     Growth bridges the bays and gaps of a crown, for branches pass there. Visible joints stay.
     """
     tree = grown.skeleton
-    kept = (grown.born == 0) | in_mask(pixels_of(tree.points, camera), foliage)
-    for joint in range(len(tree) - 1, 0, -1):
-        if kept[joint] and tree.parents[joint] >= 0:
-            kept[tree.parents[joint]] = True
+    wanted = (grown.born == 0) | in_mask(pixels_of(tree.points, camera), foliage)
+    kept = accumulate_to_root(tree, wanted.astype(np.float64)) > 0
     number = np.cumsum(kept) - 1
     parents = np.where(tree.parents < 0, -1, number[tree.parents])[kept]
     return replace(grown, skeleton=Skeleton(tree.points[kept], tree.radii[kept], parents), born=grown.born[kept])
