@@ -11,7 +11,7 @@ SIDE = 700
 """Long side of the photo, px, at which a crown is looked at."""
 GRAIN_PX = 3.0
 """Size of leaves' light and dark, at that size."""
-SHADES = np.array([24.0, 12.0, 12.0])
+SHADES = np.array([24, 12, 12], dtype=np.uint8)
 """Differences in Lab that count as another colour."""
 INNER = 0.3
 """Depth inside the crown, over its greatest, from which on nearly all is foliage: strokes are loose."""
@@ -37,22 +37,29 @@ def stands_out(pixels: NDArray[np.uint8], inside: Mask, side: int) -> bool:
     depth = cv2.distanceTransform(np.pad(within.astype(np.uint8), 1), cv2.DIST_L2, 3)[1:-1, 1:-1]
     colours = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), dtype=np.uint8)
     differs = _divergence(colours[depth > INNER * depth.max()], colours[~within])
-    return differs >= (LEAST if _grain(small, within) >= _grain(small, ~within) else LEAST_SMOOTH)
+    grain = _grain(small)
+    return differs >= (LEAST if grain[within].mean() >= grain[~within].mean() else LEAST_SMOOTH)
 
 
-def _grain(pixels: NDArray[np.uint8], where: Mask) -> float:
-    """Mean of the fine light and dark in a part of a photo."""
+def _grain(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """Fine light and dark (h, w) of a photo."""
     grey = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY).astype(np.float32)
-    return float(np.abs(grey - cv2.GaussianBlur(grey, (0, 0), GRAIN_PX))[where].mean())
+    return np.asarray(cv2.absdiff(grey, cv2.GaussianBlur(grey, (0, 0), GRAIN_PX)), dtype=np.float32)
 
 
 def _divergence(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> float:
     """How far two sets of colours (n, 3), Lab, are apart, 0 to 1 (Jensen and Shannon's divergence of their counts)."""
-    cells = (np.concatenate([one, other]) / SHADES).astype(np.int64) @ (1 << 16, 1 << 8, 1)
-    shade = np.unique(cells, return_inverse=True)[1]
-    shares = [np.bincount(part, minlength=int(shade.max()) + 1) / len(part) for part in np.split(shade, [len(one)])]
+    shares = [_shares(colours) for colours in (one, other)]
     middle = (shares[0] + shares[1]) / 2
     return float(sum(_entropy(share, middle) for share in shares) / 2)
+
+
+def _shares(colours: NDArray[np.uint8]) -> Floats:
+    """Share of each shade among colours (n, 3), Lab."""
+    lightness, red, yellow = (255 // SHADES + 1).tolist()
+    of_lightness, of_red, of_yellow = (colours // SHADES).T.astype(np.int64)
+    cells = (of_lightness * red + of_red) * yellow + of_yellow
+    return np.bincount(cells, minlength=lightness * red * yellow) / len(colours)
 
 
 def _entropy(share: Floats, middle: Floats) -> float:

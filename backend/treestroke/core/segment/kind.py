@@ -38,7 +38,11 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Loo
         return "bare", 1.0
     colours = photo[mask].astype(np.float64)
     tint = _tint(colours)
-    bareness = max(_thinness(mask, crown) / THIN - 1.0, _twigginess(photo, mask, crown, colours, tint))
+    thinness = _thinness(mask, crown) / THIN - 1.0
+    colourless = min(1.0 - tint / COLOURLESS, 1.0 - (colours.max(axis=1) > 200).mean() / WHITE)
+    # Where it has colour, or is white, it is no web of twigs: that need not be looked for.
+    web = min(colourless, _lines(photo, mask, crown) / TWIG_CONTRAST - 1.0) if colourless > thinness else colourless
+    bareness = float(max(thinness, web))
     if bareness >= 0.0:
         return "bare", min(bareness, 1.0)
     return "dull" if _is_dull_green(colours) else "fresh", 0.0 if tint < 0.0 else min(-bareness, 1.0)
@@ -65,13 +69,12 @@ def _tint(colours: Floats) -> float:
     return float(np.median((colours[:, :2].max(axis=1) - colours[:, 2]) / np.maximum(colours.max(axis=1), 40.0)))
 
 
-def _twigginess(photo: NDArray[np.uint8], mask: Mask, crown: Mask, colours: Floats, tint: float) -> float:
-    """How far a crown is a web of colourless fine lines, none white as blossom is: from 0 on it is one."""
-    white = (colours.max(axis=1) > 200).mean()
+def _lines(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> float:
+    """Mean height of fine lines over what is behind them, 0 to 510."""
     grey, kernel = cv2.cvtColor(photo, cv2.COLOR_RGB2GRAY), _disc(0.012, crown)
     lines = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)[mask].astype(np.float64)
     lines += cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)[mask]
-    return float(min(1.0 - tint / COLOURLESS, 1.0 - white / WHITE, lines.mean() / TWIG_CONTRAST - 1.0))
+    return float(lines.mean())
 
 
 def _disc(share: float, crown: Mask) -> NDArray[np.uint8]:
