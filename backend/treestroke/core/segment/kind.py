@@ -37,9 +37,12 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Loo
     if not mask.any():
         return "bare", 1.0
     colours = photo[mask].astype(np.float64)
-    tint = _tint(colours)
+    # How much green or red outshine blue, on the whole: below 0 the colours are bluish.
+    warmest = np.maximum(colours[:, 0], colours[:, 1])
+    brightness = np.maximum(warmest, colours[:, 2])
+    tint = float(np.median((warmest - colours[:, 2]) / np.maximum(brightness, 40.0)))
     thinness = _thinness(mask, crown) / THIN - 1.0
-    colourless = min(1.0 - tint / COLOURLESS, 1.0 - (colours.max(axis=1) > 200).mean() / WHITE)
+    colourless = min(1.0 - tint / COLOURLESS, 1.0 - float((brightness > 200).mean()) / WHITE)
     # Where it has colour, or is white, it is no web of twigs: that need not be looked for.
     web = min(colourless, _lines(photo, mask, crown) / TWIG_CONTRAST - 1.0) if colourless > thinness else colourless
     bareness = float(max(thinness, web))
@@ -62,11 +65,6 @@ def _thinness(mask: Mask, crown: Mask) -> float:
     """Share of the mask (0 to 1) that vanishes when it is opened by 1 % of the crown's size."""
     opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, _disc(0.02, crown))
     return 1.0 - float(opened.sum()) / float(mask.sum())
-
-
-def _tint(colours: Floats) -> float:
-    """How much green or red outshine blue in colours (n, 3), on the whole: below 0 they are bluish."""
-    return float(np.median((colours[:, :2].max(axis=1) - colours[:, 2]) / np.maximum(colours.max(axis=1), 40.0)))
 
 
 def _lines(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> float:
