@@ -5,10 +5,10 @@ from typing import Any
 
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 
 
-def add_model(database: Database, **values: Any) -> Model:
+def add_model(database: Database, **values: Any) -> ModelRow:
     """Write the row of a queued model and give it."""
     usual: dict[str, Any] = {
         "id": new_id("mdl"),
@@ -29,13 +29,13 @@ def add_model(database: Database, **values: Any) -> Model:
         "cancel": False,
         "created": time.time(),
     }
-    row = Model(**{**usual, **values})
+    row = ModelRow(**{**usual, **values})
     with database.writing() as session:
         session.add(row)
     return row
 
 
-def find(database: Database, id: str) -> Model:
+def find(database: Database, id: str) -> ModelRow:
     """Read a model's row."""
     with database.reading() as session:
-        return session.query(Model).filter_by(id=id).one()
+        return session.query(ModelRow).filter_by(id=id).one()

@@ -8,7 +8,7 @@ from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 
 Pair = tuple[Branched, Branched]
-Course = Callable[[float], tuple[float, float]]
+ProgressEstimate = Callable[[float], tuple[float, float]]
 Stroke = tuple[int, int, Sequence[tuple[float, float]]]
 """Branch that bears it, joint of that branch, and its further points."""
 
@@ -48,7 +48,7 @@ class Pen:
         self,
         bearer: int,
         share: float,
-        course: Course,
+        course: ProgressEstimate,
         length: float,
         radius: float = 0.0,
     ) -> int:
@@ -96,23 +96,23 @@ def broadleaf(limbs: int, seed: int, twigs: int = 2, radius: float = 0.0) -> Bra
     return pen.drawn()
 
 
-def _arch(out: float, rise: float, droop: float) -> Course:
+def _arch(out: float, rise: float, droop: float) -> ProgressEstimate:
     return lambda t: (out * t, rise * np.sin(0.5 * np.pi * t) - droop * t**3)
 
 
-def _bough(out: float, tilt: float, lift: float) -> Course:
+def _bough(out: float, tilt: float, lift: float) -> ProgressEstimate:
     return lambda t: (out * t, abs(out) * tilt * t + lift * t**3)
 
 
-def _willow(out: float, rise: float, hang: float) -> Course:
+def _willow(out: float, rise: float, hang: float) -> ProgressEstimate:
     return lambda t: (out * np.sin(0.5 * np.pi * t), 2.2 * rise * np.sin(np.pi * t) - hang * t**2)
 
 
-def _cordon(out: float) -> Course:
+def _cordon(out: float) -> ProgressEstimate:
     return lambda t: (out * t, 30 * np.sin(2 * t))
 
 
-def _shoot(aside: float, up: float) -> Course:
+def _shoot(aside: float, up: float) -> ProgressEstimate:
     return lambda t: (aside * t * t, up * t)
 
 

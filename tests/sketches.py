@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, place_at, places_along, resample
+from treestroke.core.geometry.polyline import place_at, places_along, resample
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.strokes import Sketch, Stroke
 from treestroke.core.trace.drawing import Drawing
+from treestroke.core.types import Floats
 
 SIZE = (900, 1100)
 """Width and height; the trees on it are 1000 px high."""

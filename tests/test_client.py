@@ -20,7 +20,7 @@ from tests.running import BACKEND, serving
 from treestroke import client as client_module
 from treestroke.client import Client, ServiceError
 from treestroke.schemas import Model, Photo
-from treestroke.shapes import Sketch, Strokes
+from treestroke.wire_strokes import Sketch, Strokes
 
 DATA = Path(__file__).parent / "data"
 PHOTO, STROKES = DATA / "elm_house.jpg", DATA / "elm_house.strokes.json"

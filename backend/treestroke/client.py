@@ -16,9 +16,9 @@ from urllib.parse import quote
 
 import httpx
 
-from treestroke.answers import Again, Event, ServiceError, checked, events_of, read, unreachable
+from treestroke.responses import Again, Event, ServiceError, checked, events_of, read, unreachable
 from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, PhotoPage, SketchTraceAnswer, TraceAnswer
-from treestroke.shapes import Sketch, Strokes
+from treestroke.wire_strokes import Sketch, Strokes
 
 __all__ = ["Client", "PictureLike", "ServiceError", "SketchLike", "StrokesLike"]
 

@@ -5,7 +5,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from pydantic.json_schema import SkipJsonSchema
 
-from treestroke.shapes import (
+from treestroke.wire_strokes import (
     STROKES_EXAMPLE,
     PhotoFrame,
     Point,

@@ -33,7 +33,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.folder import own_folder
 from treestroke.store.leases import end, lose
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 from treestroke.store.versions import check_version
 
 NICENESS = 10
@@ -182,7 +182,7 @@ def _close(database: Database, token: str, code: str) -> None:
     """End or give back what a child held when it was killed."""
     try:
         with _briefly(database), database.writing() as session:
-            job = session.scalars(select(Model).where(Model.claim == token, Model.status == "running")).first()
+            job = session.scalars(select(ModelRow).where(ModelRow.claim == token, ModelRow.status == "running")).first()
             if job is not None and code == "time_limit":
                 end(session, job, "failed", problem_of(code))
             elif job is not None:

@@ -13,7 +13,7 @@ from tests.api import drawn
 from tests.api.corpora import saved
 
 from treestroke.schemas import SKETCHES_EXAMPLE
-from treestroke.shapes import STROKES_EXAMPLE
+from treestroke.wire_strokes import STROKES_EXAMPLE
 
 PICTURE = Image.fromarray(cv2.resize(drawn.pixels(), (800, 960)))
 """The tree that the document's example of strokes is drawn over."""

@@ -18,12 +18,12 @@ from treestroke.core.geometry.mesh import Surface
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import grow
-from treestroke.core.leaf.atlas import leaf_atlas
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.lift.spread import lift
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.paint.atlas import leaf_atlas
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import levels
 from treestroke.core.skeleton.skeleton import Skeleton

@@ -6,9 +6,9 @@ from tests.builders import stick
 
 from treestroke.codec.ply import encode_ply
 from treestroke.core.geometry.mesh import Mesh, Surface
-from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.paint.atlas import Atlas
 
 
 def bark() -> Surface:

@@ -17,7 +17,7 @@ from treestroke.service import jobs
 from treestroke.service.jobs import Pulse
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 
 CHUNK = 64 * 2**20
 GRACE_SECONDS = 2
@@ -71,7 +71,7 @@ _POISONS: dict[str, Any] = {
 
 
 def _make_or_break(
-    database: Database, blobs: Blobs, job: Model, pulse: Pulse
+    database: Database, blobs: Blobs, job: ModelRow, pulse: Pulse
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     kind = job.name.partition(" ")[0]
     if kind == "instant":
@@ -82,14 +82,16 @@ def _make_or_break(
     return _make(database, blobs, job, pulse)
 
 
-def _instant(blobs: Blobs, job: Model) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
+def _instant(blobs: Blobs, job: ModelRow) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     """Make three small files instead of a tree: for what is not about trees, and is tried a hundred times."""
     content = job.id.encode()
     files = {name: (blobs.put(content + name.encode()), len(content)) for name in (jobs.GLB, jobs.PREVIEW, jobs.GROWTH)}
     return {"score": {}}, files
 
 
-def _publish_or_die(database: Database, job: Model, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> None:
+def _publish_or_die(
+    database: Database, job: ModelRow, report: dict[str, Any], files: dict[str, tuple[str, int]]
+) -> None:
     first = job.attempt == 1
     if first and job.name == "dies before the commit":
         os.kill(os.getpid(), signal.SIGKILL)

@@ -10,7 +10,7 @@ from treestroke.service.dispatch import Dispatcher, say_alive
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import claim
-from treestroke.store.tables import Model, Worker
+from treestroke.store.tables import ModelRow, Worker
 
 HOUR = 3600.0
 
@@ -30,7 +30,7 @@ def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
         dispatcher.recover()
         dispatcher.dispatch()
     with database.reading() as session:
-        job, worker = session.get(Model, queued.number), session.get(Worker, "worker")
+        job, worker = session.get(ModelRow, queued.number), session.get(Worker, "worker")
     assert job is not None
     assert (job.status, job.attempt) == ("running", 1)
     assert worker is not None

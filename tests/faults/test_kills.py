@@ -11,7 +11,7 @@ from tests.rows import add_model
 
 from treestroke.service.dispatch import say_alive
 from treestroke.store.database import Database
-from treestroke.store.tables import Model, Worker
+from treestroke.store.tables import ModelRow, Worker
 
 AGAIN_SECONDS = 30
 """A lost job is ready again within this, beside its own time."""
@@ -48,7 +48,7 @@ def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: 
     row = service.row(held.id)
     assert (row["status"], row["worker"], row["attempt"]) == ("running", name, 1)
     with database.writing() as session:
-        session.execute(delete(Model).where(Model.id == held.id))
+        session.execute(delete(ModelRow).where(ModelRow.id == held.id))
         session.execute(delete(Worker).where(Worker.id == name))
     database.close()
 

@@ -22,7 +22,7 @@ from treestroke.service.photos import Shelf
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import Photo
+from treestroke.store.tables import PhotoRow
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def folder(tmp_path: Path) -> Path:
     database.migrate()
     blob = Blobs(place).put(b"photo")
     with database.writing() as session:
-        session.add(Photo(id="pho_1", sha256="0" * 64, width=64, height=64, blob=blob, created=0.0))
+        session.add(PhotoRow(id="pho_1", sha256="0" * 64, width=64, height=64, blob=blob, created=0.0))
     database.close()
     return place
 

@@ -11,13 +11,13 @@ from tests.rows import add_model
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
 from treestroke.service.engine import engine
+from treestroke.service.model_request import Wish
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
-from treestroke.service.wishes import Wish
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import claim, succeed
-from treestroke.store.tables import Model, Photo
+from treestroke.store.tables import ModelRow, PhotoRow
 
 
 def wish(shelf: Shelf, photo: str, **others: Any) -> Wish:
@@ -32,7 +32,7 @@ def finished(shelf: Shelf, id: str, glb: bytes, by: str = "") -> None:
         assert succeed(session, job, {"score": {}}, {"tree.glb": (shelf.blobs.put(glb), len(glb))})
 
 
-def count(shelf: Shelf, table: type[Model] | type[Photo]) -> int:
+def count(shelf: Shelf, table: type[ModelRow] | type[PhotoRow]) -> int:
     with shelf.database.reading() as session:
         return session.query(table).count()
 
@@ -82,7 +82,7 @@ def test_a_request_with_a_damaged_photo_is_refused_and_uploading_it_again_mends_
         models.ask_for_model(shelf, wish(shelf, photo.id), None)
     with pytest.raises(Damaged):
         photos.trace_photo(shelf, photo.id, json.dumps(drawn.STROKES).encode())
-    assert count(shelf, Model) == 0
+    assert count(shelf, ModelRow) == 0
     assert photos.add_photo(shelf, drawn.encoded(seed=7)).blob == photo.blob
     assert models.ask_for_model(shelf, wish(shelf, photo.id), None).row.status == "queued"
 
@@ -105,14 +105,14 @@ def test_a_photo_that_came_along_is_kept_with_its_model_alone(shelf: Shelf) -> N
     bad = models.read_fields(shelf, {"strokes": json.dumps(beside).encode()})
     with pytest.raises(StrokesError):
         models.ask_for_model(shelf, bad, None, photos.take_in(shelf, drawn.encoded()))
-    assert (count(shelf, Photo), count(shelf, Model)) == (1, 1)
+    assert (count(shelf, PhotoRow), count(shelf, ModelRow)) == (1, 1)
 
 
 def test_a_key_that_outlived_its_model_gives_a_new_one(shelf: Shelf) -> None:
     photo = photos.add_photo(shelf, drawn.encoded()).id
     first = models.ask_for_model(shelf, wish(shelf, photo), "key").row.id
     with shelf.database.writing() as session:
-        session.query(Model).delete()
+        session.query(ModelRow).delete()
     second = models.ask_for_model(shelf, wish(shelf, photo), "key").row.id
     assert second != first
     assert models.ask_for_model(shelf, wish(shelf, photo), "key").row.id == second

@@ -9,10 +9,10 @@ from treestroke.service import photos
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.service.tracing import NoRoom
 from treestroke.store.queries import stored_bytes
-from treestroke.store.tables import Photo
+from treestroke.store.tables import PhotoRow
 
 
-def count(shelf: Shelf, table: type[Photo]) -> int:
+def count(shelf: Shelf, table: type[PhotoRow]) -> int:
     with shelf.database.reading() as session:
         return session.query(table).count()
 
@@ -26,7 +26,7 @@ def test_a_photo_is_kept_once_it_is_decoded(shelf: Shelf) -> None:
 def test_a_photo_that_cannot_be_used_leaves_nothing(shelf: Shelf) -> None:
     with pytest.raises(PhotoError):
         photos.add_photo(shelf, b"no photo")
-    assert count(shelf, Photo) == 0
+    assert count(shelf, PhotoRow) == 0
     assert not shelf.blobs.folder.exists()
 
 
@@ -63,7 +63,7 @@ def test_a_deleted_photo_counts_until_it_is_removed_for_good(shelf: Shelf) -> No
     with pytest.raises(NoRoom):
         photos.add_photo(full, drawn.encoded(seed=1))
     with shelf.database.writing() as session:
-        session.query(Photo).delete()  # as the sweep does a day later
+        session.query(PhotoRow).delete()  # as the sweep does a day later
     assert photos.add_photo(full, drawn.encoded())
 
 
@@ -73,5 +73,5 @@ def test_no_photo_is_taken_beyond_what_all_may_take(shelf: Shelf) -> None:
     for take in (photos.add_photo, photos.take_in):
         with pytest.raises(NoRoom):
             take(tight, drawn.encoded(seed=1))
-    assert count(shelf, Photo) == 1
+    assert count(shelf, PhotoRow) == 1
     assert sum(path.is_file() for path in shelf.blobs.folder.rglob("*")) == 1

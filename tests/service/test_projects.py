@@ -17,7 +17,7 @@ from treestroke.service.photos import Shelf
 from treestroke.service.pool import Overloaded
 from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
 from treestroke.store.blobs import Damaged
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 
 SECONDS = 30
 
@@ -29,16 +29,16 @@ def projects(shelf: Shelf) -> Iterator[Projects]:
     made.close()
 
 
-def packed(projects: Projects, row: Model) -> Packed:
+def packed(projects: Projects, row: ModelRow) -> Packed:
     return projects.ask(row).result(SECONDS)
 
 
-def project_of(projects: Projects, row: Model) -> Project:
+def project_of(projects: Projects, row: ModelRow) -> Project:
     with packed(projects, row).path.open("rb") as file:
         return read_project(file, "x")
 
 
-def model_of(shelf: Shelf, content: bytes, **values: object) -> Model:
+def model_of(shelf: Shelf, content: bytes, **values: object) -> ModelRow:
     """Write the row of a model whose photo has this content, whatever it is."""
     blobs = {"photo_blob": shelf.blobs.put(content), "strokes_blob": shelf.blobs.put(b"{}")}
     return add_model(shelf.database, **{**blobs, **values})

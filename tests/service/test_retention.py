@@ -17,7 +17,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.queries import referenced
-from treestroke.store.tables import File, Model, Photo, Replay, Stray
+from treestroke.store.tables import File, ModelRow, PhotoRow, Replay, Stray
 
 HOUR, DAY = 3600.0, 86_400.0
 NOTHING = Swept(0, 0, 0)
@@ -58,13 +58,13 @@ class Kept:
             went.append(self.sweep())
         return Swept(*(sum(getattr(one, name) for one in went) for name in ("models", "photos", "blobs")))
 
-    def photo(self, id: str) -> Photo:
-        row = Photo(id=id, sha256="", width=1, height=1, blob=self.blobs.put(id.encode()), created=self.clocks.wall)
+    def photo(self, id: str) -> PhotoRow:
+        row = PhotoRow(id=id, sha256="", width=1, height=1, blob=self.blobs.put(id.encode()), created=self.clocks.wall)
         with self.database.writing() as session:
             session.add(row)
         return row
 
-    def model(self, status: str = "succeeded", **parts: str) -> Model:
+    def model(self, status: str = "succeeded", **parts: str) -> ModelRow:
         blobs = {"photo_blob": self.blobs.put(b"photo"), "strokes_blob": self.blobs.put(b"strokes")}
         row = add_model(self.database, status=status, created=self.clocks.wall, **{**blobs, **parts})
         tree = self.blobs.put(b"tree of " + row.id.encode())
@@ -72,10 +72,10 @@ class Kept:
             session.add(File(model=row.id, name="tree.glb", blob=tree, bytes=4))
         return row
 
-    def delete(self, row: Model) -> None:
+    def delete(self, row: ModelRow) -> None:
         models.delete(self.database, row.id)
 
-    def count(self, table: type[Model] | type[Photo] | type[File] | type[Replay] | type[Stray]) -> int:
+    def count(self, table: type[ModelRow] | type[PhotoRow] | type[File] | type[Replay] | type[Stray]) -> int:
         with self.database.reading() as session:
             return session.scalar(select(func.count()).select_from(table)) or 0
 
@@ -98,7 +98,7 @@ def test_what_is_not_deleted_stays(kept: Kept) -> None:
     kept.model()
     kept.photo("pho_1")
     assert kept.sweep_for(30 * HOUR) == NOTHING
-    assert (kept.count(Model), kept.count(Photo), kept.count(File)) == (1, 1, 1)
+    assert (kept.count(ModelRow), kept.count(PhotoRow), kept.count(File)) == (1, 1, 1)
 
 
 def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
@@ -108,7 +108,7 @@ def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
     assert models.restore(kept.database, row.id).files["tree.glb"]
     kept.delete(row)
     assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 3)
-    assert (kept.count(Model), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
+    assert (kept.count(ModelRow), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
     with pytest.raises(NotFound):
         models.restore(kept.database, row.id)
 
@@ -127,7 +127,7 @@ def test_a_clock_that_jumps_purges_nothing_that_was_just_written_or_deleted(
     for _ in range(3):
         if again:
             kept.restart(keep_days=1)  # the first sweep of a process knows the wall's clock alone
-        assert (kept.sweep().models, kept.count(Model), kept.count(Photo)) == (0, 2, 1)
+        assert (kept.sweep().models, kept.count(ModelRow), kept.count(PhotoRow)) == (0, 2, 1)
         with kept.database.reading() as session:
             assert photo_by_id(session, photo.id) is not None
         assert kept.blobs.get(name)
@@ -153,7 +153,7 @@ def test_a_clock_that_jumps_forth_and_back_between_starts_counts_no_hour_twice(k
         kept.clocks.pass_(60)
         kept.restart()
         assert kept.sweep().models == 0
-    assert kept.count(Model) == 1
+    assert kept.count(ModelRow) == 1
 
 
 @pytest.mark.parametrize("again", [False, True])
@@ -193,7 +193,7 @@ def test_a_file_that_two_models_share_stays_with_the_other(kept: Kept) -> None:
 def test_a_deleted_photo_goes_after_a_day_and_its_models_keep_their_copy(kept: Kept) -> None:
     photo, model = kept.photo("pho_1"), kept.model()
     with kept.database.writing() as session:
-        session.execute(update(Photo).values(deleted=kept.clocks.wall))
+        session.execute(update(PhotoRow).values(deleted=kept.clocks.wall))
     assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 1)
     assert not kept.blobs.path(photo.blob).exists()
     assert kept.blobs.path(model.photo_blob or "").exists()
@@ -217,7 +217,7 @@ def test_what_is_older_than_the_days_is_deleted_and_goes_a_day_later(kept: Kept)
         assert models.see(kept.database, row.id).row.id == row.id
     assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 2)
     assert not kept.blobs.path(photo.blob).exists()
-    assert kept.count(Model) == 2
+    assert kept.count(ModelRow) == 2
 
 
 def test_a_model_that_is_restored_is_kept_for_as_long_again(kept: Kept) -> None:
@@ -294,7 +294,7 @@ def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, mo
 
     @contextmanager
     def watched() -> Iterator[Session]:
-        left.append(kept.count(Model))
+        left.append(kept.count(ModelRow))
         with writing() as session:
             yield session
 

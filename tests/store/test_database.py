@@ -20,7 +20,7 @@ from tests.running import BACKEND
 
 from treestroke.service.failures import code_of
 from treestroke.store.database import Database
-from treestroke.store.tables import File, Model, Photo, Replay, Table, Worker
+from treestroke.store.tables import File, ModelRow, PhotoRow, Replay, Table, Worker
 
 
 def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
@@ -77,7 +77,9 @@ def test_a_folder_of_the_program_before_is_brought_up_to_date_with_all_its_rows(
     row = find(database, "mdl_1")
     assert (row.name, row.deleted, row.seen) == ("Oak", 6.0, None)
     with database.reading() as session:
-        assert [(photo.id, photo.width, photo.seen) for photo in session.scalars(select(Photo))] == [("pho_1", 2, None)]
+        assert [(photo.id, photo.width, photo.seen) for photo in session.scalars(select(PhotoRow))] == [
+            ("pho_1", 2, None)
+        ]
         assert [(replay.key, replay.seen) for replay in session.scalars(select(Replay))] == [("k", None)]
     database.close()
 
@@ -118,7 +120,7 @@ def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) ->
     with database.reading() as session:
         assert [(file.name, file.blob) for file in session.scalars(select(File))] == [("tree.glb", "c")]
     with database.writing() as session:  # and a file still goes with its model
-        session.execute(delete(Model))
+        session.execute(delete(ModelRow))
         assert session.scalars(select(File)).all() == []
     database.close()
 
@@ -126,7 +128,7 @@ def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) ->
 def test_a_failure_takes_everything_back(database: Database) -> None:
     row = add_model(database)
     with suppress(ZeroDivisionError), database.writing() as session:
-        session.get_one(Model, row.number).name = "changed"
+        session.get_one(ModelRow, row.number).name = "changed"
         session.flush()
         raise ZeroDivisionError
     assert find(database, row.id).name == ""
@@ -139,7 +141,7 @@ def test_writers_take_turns_and_none_is_lost(database: Database) -> None:
     def count(one: Database) -> None:
         for _ in range(50):
             with one.writing() as session:
-                found = session.get_one(Model, row.number)
+                found = session.get_one(ModelRow, row.number)
                 found.seq = found.seq + 1
 
     threads = [threading.Thread(target=count, args=(one,)) for one in others for _ in range(2)]
@@ -155,10 +157,10 @@ def test_writers_take_turns_and_none_is_lost(database: Database) -> None:
 def test_readers_see_one_state_while_another_writes(database: Database) -> None:
     row = add_model(database)
     with database.reading() as reading:
-        before = reading.scalars(select(Model.name)).all()
+        before = reading.scalars(select(ModelRow.name)).all()
         with database.writing() as writing:
-            writing.get_one(Model, row.number).name = "changed"
-        assert reading.scalars(select(Model.name)).all() == before == [""]
+            writing.get_one(ModelRow, row.number).name = "changed"
+        assert reading.scalars(select(ModelRow.name)).all() == before == [""]
     assert find(database, row.id).name == "changed"
 
 
@@ -205,7 +207,7 @@ def test_many_readers_and_writers_have_few_files_open(database: Database) -> Non
         for _ in range(4):
             find(database, row.id)
             with database.writing() as session:
-                session.get_one(Model, row.number).seq += 1
+                session.get_one(ModelRow, row.number).seq += 1
             most.append(len(os.listdir("/proc/self/fd")))
 
     threads = [threading.Thread(target=ask) for _ in range(40)]
@@ -226,7 +228,7 @@ def test_a_writer_that_waits_too_long_says_so(database: Database, monkeypatch: p
 
 def test_a_writer_has_the_database_from_its_first_word_on(database: Database) -> None:
     with database.writing() as first:
-        first.scalars(select(Model)).all()  # it only reads, and still nobody else may write
+        first.scalars(select(ModelRow)).all()  # it only reads, and still nobody else may write
         with closing(sqlite3.connect(database.path, timeout=0.05)) as second, pytest.raises(sqlite3.OperationalError):
             second.execute("BEGIN IMMEDIATE")
 
@@ -244,7 +246,7 @@ def test_only_migrating_makes_the_file(tmp_path: Path) -> None:
     database = Database(tmp_path)
     for use in (database.reading, database.writing, database.stating):
         with pytest.raises(OperationalError) as refused, use() as session:
-            session.scalars(select(Model)).all()
+            session.scalars(select(ModelRow)).all()
         assert code_of(refused.value) == "database_unavailable"
     with pytest.raises(OperationalError):
         database.current()
@@ -278,7 +280,7 @@ def test_a_database_whose_file_is_removed_or_replaced_takes_nothing_until_it_is_
         kept.rename(database.path)
     for use in (database.reading, database.writing, database.stating):
         with pytest.raises(OperationalError) as refused, use() as session:
-            session.scalars(select(Model)).all()
+            session.scalars(select(ModelRow)).all()
         assert code_of(refused.value) == "database_unavailable"
     assert database.path.exists() == replaced
     database.path.with_name("away").rename(database.path)

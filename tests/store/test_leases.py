@@ -9,14 +9,14 @@ from tests.rows import add_model, find
 from treestroke.store import leases
 from treestroke.store.database import Database
 from treestroke.store.queries import files
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 
 LOST = {"code": "worker_lost", "detail": "lost", "retryable": True}
 GONE = {"code": "engine_error", "detail": "broke", "retryable": False}
 GLB = {"tree.glb": ("c" * 64, 7)}
 
 
-def claimed(database: Database, id: str, token: str = "t", worker: str = "w") -> Model | None:
+def claimed(database: Database, id: str, token: str = "t", worker: str = "w") -> ModelRow | None:
     with database.writing() as session:
         return leases.claim(session, id, token, worker, "engine of w")
 
@@ -26,14 +26,14 @@ def changed(database: Database, change: Callable[..., Any], *arguments: Any, **v
         return change(session, *arguments, **values)
 
 
-def started(database: Database, **values: Any) -> Model:
+def started(database: Database, **values: Any) -> ModelRow:
     """Give a model under way, as its worker holds it."""
     job = claimed(database, add_model(database, **values).id)
     assert job is not None
     return job
 
 
-def taken_over(database: Database) -> tuple[Model, Model]:
+def taken_over(database: Database) -> tuple[ModelRow, ModelRow]:
     """Give the same job as a stale worker and as the present one hold it."""
     stale = started(database)
     assert changed(database, leases.lose, stale, LOST)

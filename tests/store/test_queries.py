@@ -3,7 +3,7 @@ from tests.rows import add_model
 
 from treestroke.store import queries
 from treestroke.store.database import Database
-from treestroke.store.tables import File, Model, Photo
+from treestroke.store.tables import File, ModelRow, PhotoRow
 
 
 def test_ids_say_their_kind_and_cannot_be_guessed() -> None:
@@ -14,7 +14,7 @@ def test_ids_say_their_kind_and_cannot_be_guessed() -> None:
 
 def test_a_deleted_row_is_found_only_where_it_is_asked_for(database: Database) -> None:
     model = add_model(database, deleted=1.0)
-    photo = Photo(id="pho_1", sha256="", width=1, height=1, blob="", created=0.0, deleted=1.0)
+    photo = PhotoRow(id="pho_1", sha256="", width=1, height=1, blob="", created=0.0, deleted=1.0)
     with database.writing() as session:
         session.add(photo)
     with database.reading() as session:
@@ -59,7 +59,7 @@ def test_only_a_finished_model_answers_for_another(database: Database) -> None:
 
 
 def test_blobs_that_rows_refer_to_are_found_by_how_their_names_begin(database: Database) -> None:
-    photo = Photo(id="pho_1", sha256="", width=1, height=1, blob=f"ab{'0' * 62}", created=0.0)
+    photo = PhotoRow(id="pho_1", sha256="", width=1, height=1, blob=f"ab{'0' * 62}", created=0.0)
     model = add_model(database, photo_blob=f"ab{'1' * 62}", strokes_blob=f"cd{'2' * 62}", fruit_blob=f"ff{'f' * 62}")
     with database.writing() as session:
         session.add_all([photo, File(model=model.id, name="tree.glb", blob=f"ab{'3' * 62}", bytes=1)])
@@ -77,7 +77,7 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
         queries.twin(session, row.fingerprint, row.engine)
         queries.usual_seconds(session)
         queries.queue_positions(session, [row.number])
-        queries.page(session, Model, "10", 20)
+        queries.page(session, ModelRow, "10", 20)
         queries.model(session, row.id)
         queries.photo(session, "pho_1")
         queries.files(session, [row.id])
@@ -90,5 +90,5 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
 
 def test_the_newest_are_read_from_the_end(database: Database) -> None:
     with planned() as steps, database.reading() as session:
-        queries.page(session, Model, None, 20)
+        queries.page(session, ModelRow, None, 20)
     assert steps == ["SCAN models"]  # from its end, and no more than there are on a page: nothing is sorted

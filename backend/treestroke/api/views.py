@@ -6,11 +6,11 @@ from typing import Any
 from treestroke import schemas
 from treestroke.service.jobs import GROWTH
 from treestroke.service.models import Seen
-from treestroke.shapes import StrokeWarning
-from treestroke.store.tables import Photo
+from treestroke.store.tables import PhotoRow
+from treestroke.wire_strokes import StrokeWarning
 
 
-def photo_view(row: Photo) -> schemas.Photo:
+def photo_view(row: PhotoRow) -> schemas.Photo:
     """Show a photo."""
     return schemas.Photo(
         id=row.id,

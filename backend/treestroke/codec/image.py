@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
 from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, lost
@@ -17,8 +16,8 @@ from treestroke.codec.watched_bytes import WatchedBytes
 from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
+from treestroke.core.types import Picture
 
-Picture = NDArray[np.uint8]
 Warn = Callable[[StrokeWarning], object]
 """Called with each thing about a photo that was mended in reading it."""
 

@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
-from treestroke.core.leaf.atlas import Atlas, tile_alphas
 from treestroke.core.leaf.cards import cards as card_mesh
 from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas, tile_alphas
+from treestroke.core.types import Floats
 
 BARK, LEAF = 0, 1
 """Labels of the faces."""
@@ -32,7 +33,6 @@ end_header
 """
 _GAMMA = 2.2
 """Shades are factors on light, colours are sRGB."""
-Floats = NDArray[np.float64]
 
 
 def encode_ply(bark: Surface, cards: Leaves | None, atlas: Atlas | None) -> bytes:

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
-from treestroke.core.geometry.raster import Floats, Indices, Planes, pixel_centres, planes, visible_triangles
+from treestroke.core.geometry.raster import Planes, pixel_centres, planes, visible_triangles
+from treestroke.core.types import Floats, Indices
 
 _VIEW_HEIGHT, _MAX_ASPECT = 620, 1.5
 _FINER = 2

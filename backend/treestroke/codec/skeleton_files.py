@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.skeleton.measure import generations, path_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
+from treestroke.core.types import Indices
 
 SCHEMA, VERSION = "treestroke.skeleton", 1
 _DIGITS = 5

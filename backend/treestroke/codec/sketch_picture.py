@@ -13,10 +13,9 @@ from PIL import Image
 
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.polyline import Floats
 from treestroke.core.strokes import Sketch, Stroke
+from treestroke.core.types import Floats, Mask
 
-Mask = NDArray[np.bool_]
 Marks = NDArray[np.uint8]
 
 PNG = b"\x89PNG\r\n\x1a\n"

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.polyline import arc_lengths, place_at, resample
 from treestroke.core.imaging.outline import filled_and_crossing
 from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes, StrokeWarning
+from treestroke.core.types import Floats
 
 MAX_STROKES = 200
 MAX_POINTS = 10_000

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
+from treestroke.core.types import Floats
 
 
 @dataclass(frozen=True, eq=False)

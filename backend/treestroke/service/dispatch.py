@@ -20,7 +20,7 @@ from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import lose
-from treestroke.store.tables import Model, Worker
+from treestroke.store.tables import ModelRow, Worker
 
 LEASE_SECONDS = 10.0
 RESEND_SECONDS = 5.0
@@ -109,7 +109,7 @@ class Dispatcher:
     def recover(self) -> None:
         """Take back the jobs whose worker has not beaten for a lease, and forget workers that are silent."""
         with self._database.reading() as session:
-            jobs = {job.id: job for job in session.scalars(select(Model).where(Model.status == "running"))}
+            jobs = {job.id: job for job in session.scalars(select(ModelRow).where(ModelRow.status == "running"))}
             workers = {worker.id: worker for worker in session.scalars(select(Worker))}
         for id, _ in self._jobs.still((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
             job = jobs[id]
@@ -129,9 +129,9 @@ class Dispatcher:
             return
         with self._database.reading() as session:
             slots = session.scalar(select(func.sum(Worker.slots))) or 0
-            running = session.scalar(select(func.count()).where(Model.status == "running")) or 0
+            running = session.scalar(select(func.count()).where(ModelRow.status == "running")) or 0
             wanted = max(2 * slots - running, 0) if slots else _UNKNOWN_SLOTS
-            queued = select(Model.id).where(Model.status == "queued").order_by(Model.number).limit(wanted)
+            queued = select(ModelRow.id).where(ModelRow.status == "queued").order_by(ModelRow.number).limit(wanted)
             next_ones = session.scalars(queued).all()
         now = time.monotonic()
         self._sent = {id: at for id, at in self._sent.items() if id in next_ones}
@@ -190,7 +190,7 @@ def say_alive(database: Database, worker: str, slots: int) -> None:
 def holds_jobs(database: Database, worker: str) -> bool:
     """Tell whether a worker has jobs under way."""
     with database.reading() as session:
-        held = select(Model.id).where(Model.status == "running", Model.worker == worker).limit(1)
+        held = select(ModelRow.id).where(ModelRow.status == "running", ModelRow.worker == worker).limit(1)
         return session.scalar(held) is not None
 
 
@@ -198,15 +198,17 @@ def say_gone(database: Database, worker: str, error: dict[str, Any] | None = Non
     """Write down that a worker stops, or by what ``error`` it ended: what it still held queues again at once."""
     with database.writing() as session:
         session.execute(delete(Worker).where(Worker.id == worker))
-        for job in session.scalars(select(Model).where(Model.status == "running", Model.worker == worker)).all():
+        for job in session.scalars(
+            select(ModelRow).where(ModelRow.status == "running", ModelRow.worker == worker)
+        ).all():
             lose(session, job, error)
 
 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
     """Give the queue's figures by name, each with what it means."""
     with database.reading() as session:
-        counts = dict(session.execute(select(Model.status, func.count()).group_by(Model.status)).tuples().all())
-        queued = select(Model.created).where(Model.status == "queued").order_by(Model.number).limit(1)
+        counts = dict(session.execute(select(ModelRow.status, func.count()).group_by(ModelRow.status)).tuples().all())
+        queued = select(ModelRow.created).where(ModelRow.status == "queued").order_by(ModelRow.number).limit(1)
         oldest = session.scalar(queued)
         slots = session.scalar(select(func.sum(Worker.slots))) or 0
     return {

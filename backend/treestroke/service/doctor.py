@@ -26,7 +26,7 @@ from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
 from treestroke.store.folder import open_to_others
 from treestroke.store.queries import referenced
-from treestroke.store.tables import Model, Worker
+from treestroke.store.tables import ModelRow, Worker
 from treestroke.store.versions import Unusable, check_version
 
 _LEAST_FREE_BYTES = 500_000_000
@@ -304,4 +304,4 @@ def _beats(database: Database) -> dict[str, int]:
 
 def _waiting(database: Database) -> int:
     with database.reading() as session:
-        return session.scalar(select(func.count()).where(Model.status.in_(("queued", "running")))) or 0
+        return session.scalar(select(func.count()).where(ModelRow.status.in_(("queued", "running")))) or 0

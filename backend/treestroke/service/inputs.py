@@ -11,7 +11,6 @@ import numpy as np
 from treestroke.codec.image import (
     MAX_BYTES,
     MAX_LEAF_BYTES,
-    Picture,
     Warn,
     check_size,
     decode_fruit,
@@ -26,6 +25,7 @@ from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesErr
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import Sketch, Strokes
+from treestroke.core.types import Picture
 
 PhotoLike = str | os.PathLike[str] | bytes | Picture
 StrokesLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Strokes

@@ -16,18 +16,18 @@ from treestroke.codec.image import encode_png
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.grown_tree import LiveTree
-from treestroke.service.course import Course
 from treestroke.service.engine import engine
 from treestroke.service.evidence import Evidence, make_of
 from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
 from treestroke.service.inputs import load_settings
 from treestroke.service.models import project_from
+from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store import queries
 from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import add_file, beat, claim, end, succeed
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 
 GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
 _BEAT_SECONDS = 2.0
@@ -50,10 +50,10 @@ class TimeLimit(Exception):
 class Pulse:
     """Keeps a job's lease from a thread of its own, passes its progress on, and hears when it is to stop."""
 
-    def __init__(self, database: Database, job: Model, seconds: float) -> None:
+    def __init__(self, database: Database, job: ModelRow, seconds: float) -> None:
         self._database, self._job = database, job
         self._deadline = time.monotonic() + seconds
-        self._course = Course(load_settings(job.settings), of_sketches="front" in job.parts)
+        self._course = ProgressEstimate(load_settings(job.settings), of_sketches="front" in job.parts)
         self._state: tuple[str | None, float, float] = (None, 0.0, 0.0)
         self._order: type[Exception] | None = None
         self._over = threading.Event()
@@ -98,7 +98,7 @@ class Pulse:
     def _listen(self) -> bool:
         """Tell whether the row says anything else than to go on."""
         with suppress(SQLAlchemyError), self._database.reading() as session:
-            row = session.get(Model, self._job.number)
+            row = session.get(ModelRow, self._job.number)
             return row is None or row.cancel or row.attempt != self._job.attempt or row.status != "running"
         return False
 
@@ -137,7 +137,7 @@ def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: st
 
 
 def _make(
-    database: Database, blobs: Blobs, job: Model, pulse: Pulse
+    database: Database, blobs: Blobs, job: ModelRow, pulse: Pulse
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     """Make the tree and store its files; nobody sees them before they are published."""
     pulse.report("decode", 0.0)
@@ -145,7 +145,7 @@ def _make(
 
     def show(grown: LiveTree) -> None:
         content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
-        blob, first = blobs.put(content), {} if job.preview_seq else {"preview_seq": Model.seq + 1}
+        blob, first = blobs.put(content), {} if job.preview_seq else {"preview_seq": ModelRow.seq + 1}
         with database.writing() as session:
             add_file(session, job, GROWTH, blob, len(content), **first)
 
@@ -159,7 +159,7 @@ def _make(
     return {**made.report, "files": {name: len(content) for name, content in trees.items()}}, files
 
 
-def _mended_in_photo(database: Database, job: Model) -> list[dict[str, Any]]:
+def _mended_in_photo(database: Database, job: ModelRow) -> list[dict[str, Any]]:
     """Look up what was mended in reading the photo, of which only the pixels are stored."""
     with database.reading() as session:
         row = None if job.photo is None else queries.photo(session, job.photo, deleted=True)
@@ -174,7 +174,7 @@ def _packed(bundles: Mapping[str, Bundle]) -> dict[str, bytes]:
     }
 
 
-def _publish(database: Database, job: Model, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> None:
+def _publish(database: Database, job: ModelRow, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> None:
     with database.writing() as session:
         published = succeed(session, job, report, files)
         # Not published: it was to be stopped at the last moment, or another attempt has the job.
@@ -182,7 +182,7 @@ def _publish(database: Database, job: Model, report: dict[str, Any], files: dict
     log.info("job_succeeded" if published else "job_canceled" if canceled else "job_superseded")
 
 
-def _end(database: Database, job: Model, status: Any, error: dict[str, Any] | None) -> None:
+def _end(database: Database, job: ModelRow, status: Any, error: dict[str, Any] | None) -> None:
     with database.writing() as session:
         ended = end(session, job, status, error)
     log.info(f"job_{status}" if ended else "job_superseded", code=error["code"] if error else None)

@@ -13,14 +13,14 @@ from sqlalchemy.orm import Session
 
 from treestroke.codec.image import StoredPhoto
 from treestroke.codec.project import VIEWS, Project, sketch_ending
-from treestroke.service import tracing, wishes
+from treestroke.service import model_request, tracing
 from treestroke.service.engine import engine
+from treestroke.service.model_request import Wish, check_name
 from treestroke.service.photos import NotFound, Shelf
-from treestroke.service.wishes import Wish, check_name
 from treestroke.store import leases, queries
 from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
-from treestroke.store.tables import File, Model, Photo, Replay
+from treestroke.store.tables import File, ModelRow, PhotoRow, Replay
 
 RESTORABLE_SECONDS = 24 * 3600.0
 log = structlog.get_logger()
@@ -42,7 +42,7 @@ class Mark(NamedTuple):
 class Seen:
     """A model as its readers see it: the row, its files, its place in the queue and its remaining seconds."""
 
-    row: Model
+    row: ModelRow
     files: dict[str, File]
     queue_position: int | None
     eta_s: float | None
@@ -61,7 +61,7 @@ def read_wish(shelf: Shelf, body: bytes) -> Wish:
     TreestrokeError
         It is no such request.
     """
-    return shelf.tracers("", wishes.read_wish, body)
+    return shelf.tracers("", model_request.read_wish, body)
 
 
 def read_fields(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> Wish:
@@ -72,10 +72,10 @@ def read_fields(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = Tru
     TreestrokeError
         It is no such request.
     """
-    return shelf.tracers("", wishes.read_fields, fields, brings_photo)
+    return shelf.tracers("", model_request.read_fields, fields, brings_photo)
 
 
-def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: Photo | None = None) -> Seen:
+def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: PhotoRow | None = None) -> Seen:
     """Accept a model: checked, stored and queued, or answered from the one that was made of the same input.
 
     ``key`` is the Idempotency-Key: with the same request it gives the model that it gave first. A photo that the
@@ -128,7 +128,7 @@ def see(database: Database, id: str, deleted: bool = False) -> Seen:
 def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[Seen], str | None]:
     """Give a page of models, newest first, and the cursor of the next page: decimal digits."""
     with database.reading() as session:
-        rows, following = queries.page(session, Model, cursor, limit)
+        rows, following = queries.page(session, ModelRow, cursor, limit)
         return _all_seen(session, rows), following
 
 
@@ -136,11 +136,13 @@ def see_changed(database: Database, marks: Mapping[str, Mark | None]) -> dict[st
     """Look at many models at once; give those that no longer bear their mark, None for one that is gone for good."""
     with database.reading() as session:
         rows = session.execute(
-            select(Model.id, Model.number, Model.seq, Model.status, Model.progress).where(Model.id.in_(marks))
+            select(ModelRow.id, ModelRow.number, ModelRow.seq, ModelRow.status, ModelRow.progress).where(
+                ModelRow.id.in_(marks)
+            )
         ).all()
         waits = _waits(session, rows)
         changed = [row.id for row in rows if Mark(row.seq, *waits[row.number]) != marks[row.id]]
-        found = session.scalars(select(Model).where(Model.id.in_(changed))).all() if changed else ()
+        found = session.scalars(select(ModelRow).where(ModelRow.id.in_(changed))).all() if changed else ()
         gone = dict.fromkeys(marks.keys() - {row.id for row in rows})
         return {**gone, **{seen.row.id: seen for seen in _all_seen(session, found)}}
 
@@ -156,7 +158,7 @@ def rename(database: Database, id: str, name: str) -> Seen:
     check_name(name)
     with database.writing() as session:
         _found(session, id)
-        session.execute(update(Model).where(Model.id == id).values(name=name, seq=Model.seq + 1))
+        session.execute(update(ModelRow).where(ModelRow.id == id).values(name=name, seq=ModelRow.seq + 1))
     return see(database, id)
 
 
@@ -185,7 +187,7 @@ def delete(database: Database, id: str) -> None:
     with database.writing() as session:
         _found(session, id)
         leases.cancel(session, id)
-        session.execute(update(Model).where(Model.id == id).values(deleted=time.time(), seen=None))
+        session.execute(update(ModelRow).where(ModelRow.id == id).values(deleted=time.time(), seen=None))
 
 
 def restore(database: Database, id: str) -> Seen:
@@ -203,14 +205,14 @@ def restore(database: Database, id: str) -> Seen:
     return see(database, id)
 
 
-def project_from(blobs: Blobs, row: Model) -> Project:
+def project_from(blobs: Blobs, row: ModelRow) -> Project:
     """Read what a model is made of."""
     contents = {part: blobs.get(blob) for part, blob in row.parts.items()}
     photo = StoredPhoto(contents.pop("photo")) if "photo" in contents else None
     return Project(photo, contents.pop("strokes", None), {**row.settings, "seed": row.seed}, **contents)
 
 
-def _photo_for(shelf: Shelf, id: str, key: str | None) -> Photo:
+def _photo_for(shelf: Shelf, id: str, key: str | None) -> PhotoRow:
     """Find the photo that a request names; a deleted one only where the request may be a repetition."""
     with shelf.database.reading() as session:
         repeated = key is not None and session.get(Replay, key) is not None
@@ -220,19 +222,19 @@ def _photo_for(shelf: Shelf, id: str, key: str | None) -> Photo:
     return photo
 
 
-def _found(session: Session, id: str, deleted: bool = False) -> Model:
+def _found(session: Session, id: str, deleted: bool = False) -> ModelRow:
     row = queries.model(session, id, deleted)
     if row is None:
         raise NotFound("model")
     return row
 
 
-def _seen(session: Session, row: Model) -> Seen:
+def _seen(session: Session, row: ModelRow) -> Seen:
     (seen,) = _all_seen(session, [row])
     return seen
 
 
-def _all_seen(session: Session, rows: Sequence[Model]) -> list[Seen]:
+def _all_seen(session: Session, rows: Sequence[ModelRow]) -> list[Seen]:
     """Show rows with as few questions for many as for one."""
     files, waits = queries.files(session, [row.id for row in rows]), _waits(session, rows)
     return [Seen(row, files[row.id], *waits[row.number]) for row in rows]
@@ -250,10 +252,10 @@ def _waits(session: Session, rows: Sequence[Any]) -> dict[int, tuple[int | None,
     return waits
 
 
-def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str]) -> Model:
+def _new_row(photo: PhotoRow | None, wish: Wish, parts: Mapping[str, str]) -> ModelRow:
     blob, mended = (None, []) if photo is None else (photo.blob, photo.warnings)
     endings = {view: sketch_ending(wish.parts[view]) for view in VIEWS if view in parts}
-    return Model(
+    return ModelRow(
         id=queries.new_id("mdl"),
         name=wish.name,
         photo=None if photo is None else photo.id,
@@ -275,7 +277,7 @@ def _new_row(photo: Photo | None, wish: Wish, parts: Mapping[str, str]) -> Model
     )
 
 
-def _twin(shelf: Shelf, row: Model) -> Model | None:
+def _twin(shelf: Shelf, row: ModelRow) -> ModelRow | None:
     """Find a model that was made of the same input, by the same engine; one whose files are damaged is made anew."""
     with shelf.database.reading() as session:
         twin = queries.twin(session, row.fingerprint, row.engine)
@@ -289,7 +291,7 @@ def _twin(shelf: Shelf, row: Model) -> Model | None:
     return twin
 
 
-def _answer_from(session: Session, twin: Model, row: Model) -> None:
+def _answer_from(session: Session, twin: ModelRow, row: ModelRow) -> None:
     """Take the files of a twin, unless it is gone by now: they would come out the same."""
     files = queries.files(session, [twin.id])[twin.id]
     if files:

@@ -15,7 +15,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
-from treestroke.store.tables import Photo
+from treestroke.store.tables import PhotoRow
 
 
 class NotFound(Exception):
@@ -35,7 +35,7 @@ class Shelf:
     """What all of them may take."""
 
 
-def add_photo(shelf: Shelf, content: bytes) -> Photo:
+def add_photo(shelf: Shelf, content: bytes) -> PhotoRow:
     """Take a photo in and keep it.
 
     Raises
@@ -49,7 +49,7 @@ def add_photo(shelf: Shelf, content: bytes) -> Photo:
     return row
 
 
-def take_in(shelf: Shelf, content: bytes) -> Photo:
+def take_in(shelf: Shelf, content: bytes) -> PhotoRow:
     """Decode a photo and store its upright pixels, without its metadata; the row that is given is not yet kept.
 
     Raises
@@ -69,10 +69,10 @@ def take_in(shelf: Shelf, content: bytes) -> Photo:
         kept = shelf.tracers(sha256, tracing.keep_photo, folder, content, most, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
-    return Photo(id=new_id("pho"), sha256=sha256, created=time.time(), **kept)
+    return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **kept)
 
 
-def get_photo(shelf: Shelf, id: str) -> Photo:
+def get_photo(shelf: Shelf, id: str) -> PhotoRow:
     """Find a photo.
 
     Raises
@@ -87,10 +87,10 @@ def get_photo(shelf: Shelf, id: str) -> Photo:
     return found
 
 
-def list_photos(shelf: Shelf, cursor: str | None, limit: int) -> tuple[Sequence[Photo], str | None]:
+def list_photos(shelf: Shelf, cursor: str | None, limit: int) -> tuple[Sequence[PhotoRow], str | None]:
     """Give a page of photos, newest first, and the cursor of the next page: decimal digits."""
     with shelf.database.reading() as session:
-        return page(session, Photo, cursor, limit)
+        return page(session, PhotoRow, cursor, limit)
 
 
 def delete_photo(shelf: Shelf, id: str) -> None:
@@ -102,8 +102,10 @@ def delete_photo(shelf: Shelf, id: str) -> None:
         There is none.
     """
     with shelf.database.writing() as session:
-        gone = update(Photo).where(Photo.id == id, Photo.deleted.is_(None)).values(deleted=time.time(), seen=None)
-        if session.scalars(gone.returning(Photo.id)).first() is None:
+        gone = (
+            update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None)).values(deleted=time.time(), seen=None)
+        )
+        if session.scalars(gone.returning(PhotoRow.id)).first() is None:
             raise NotFound("photo")
 
 

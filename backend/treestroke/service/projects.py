@@ -13,7 +13,7 @@ from pathlib import Path
 from treestroke.codec.project import write_project
 from treestroke.service.pool import Overloaded
 from treestroke.store.blobs import Blobs, Damaged
-from treestroke.store.tables import Model
+from treestroke.store.tables import ModelRow
 
 AT_ONCE = 2
 """Projects that are packed at the same time."""
@@ -44,7 +44,7 @@ class Projects:
         self._kept: OrderedDict[str, Future[Packed]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def ask(self, row: Model) -> Future[Packed]:
+    def ask(self, row: ModelRow) -> Future[Packed]:
         """Promise a model's project file; one of the same parts, settings and seed is packed once.
 
         Where it cannot be packed the promise ends in an OSError, or in Damaged where a part of it is.
@@ -68,7 +68,7 @@ class Projects:
         """Pack no more."""
         self._packers.shutdown(cancel_futures=True)
 
-    def _pack(self, key: str, row: Model) -> Packed:
+    def _pack(self, key: str, row: ModelRow) -> Packed:
         self._folder.mkdir(mode=0o700, exist_ok=True)
         path = self._folder / key
         try:

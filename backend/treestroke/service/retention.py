@@ -20,7 +20,7 @@ from treestroke.store.blobs import Blobs, state_of
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
 from treestroke.store.queries import referenced
-from treestroke.store.tables import Model, Photo, Replay, StoreClock, Stray
+from treestroke.store.tables import ModelRow, PhotoRow, Replay, StoreClock, Stray
 
 STRAY_SECONDS = 3600.0
 """A file that no row names may belong to one that is about to be written; after this it does not."""
@@ -30,7 +30,7 @@ _STEP_ROWS = 50
 _PAUSE_SECONDS = 0.02
 """Between two steps others write."""
 _DAY = 86_400.0
-_FINISHED = Model.status.not_in(UNFINISHED)  # said so, it leads nobody to read all finished models by their status
+_FINISHED = ModelRow.status.not_in(UNFINISHED)  # said so, it leads nobody to read all finished models by their status
 
 
 @dataclass(frozen=True)
@@ -69,12 +69,14 @@ class Sweeper:
         """
         first, age_s = self._last is None, self._watch()
         gone = age_s - RESTORABLE_SECONDS
-        for table in (Model, Photo, Replay):
+        for table in (ModelRow, PhotoRow, Replay):
             self._in_steps(table, update(table).values(seen=age_s), table.seen.is_(None))
         if self._keep_days:
             self._delete_older_than(age_s - self._keep_days * _DAY, age_s)
-        models = self._in_steps(Model, delete(Model), Model.deleted.is_not(None), Model.seen <= gone, _FINISHED)
-        photos = self._in_steps(Photo, delete(Photo), Photo.deleted.is_not(None), Photo.seen <= gone)
+        models = self._in_steps(
+            ModelRow, delete(ModelRow), ModelRow.deleted.is_not(None), ModelRow.seen <= gone, _FINISHED
+        )
+        photos = self._in_steps(PhotoRow, delete(PhotoRow), PhotoRow.deleted.is_not(None), PhotoRow.seen <= gone)
         self._in_steps(Replay, delete(Replay), Replay.seen <= gone)
         return Swept(models, photos, sum(self._sweep_folders(age_s, math.inf if first else stray_s)))
 
@@ -95,7 +97,7 @@ class Sweeper:
         return clock.age_s
 
     def _delete_older_than(self, oldest: float, age_s: float) -> None:
-        for table, finished in ((Model, _FINISHED), (Photo, Photo.id.is_not(None))):
+        for table, finished in ((ModelRow, _FINISHED), (PhotoRow, PhotoRow.id.is_not(None))):
             change = update(table).values(deleted=time.time(), seen=age_s)
             self._in_steps(table, change, table.deleted.is_(None), table.seen <= oldest, finished)
 

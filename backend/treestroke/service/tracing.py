@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
-from treestroke.codec.image import Picture, decode_photo, decode_stored, encode_stored
+from treestroke.codec.image import decode_photo, decode_stored, encode_stored
 from treestroke.codec.project import VIEWS
 from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
@@ -19,6 +19,7 @@ from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import see_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
 from treestroke.core.strokes import Sketch, StrokeWarning
+from treestroke.core.types import Picture
 from treestroke.service.bodies import check_keys, inside, read_object, take_rev_and_grow
 from treestroke.service.sketch import trace_sketches
 from treestroke.service.trace import Trace, trace

@@ -7,9 +7,9 @@ from typing import TypeVar
 from sqlalchemy import func, select, union
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import REFERENCES, File, Model, Photo
+from treestroke.store.tables import REFERENCES, File, ModelRow, PhotoRow
 
-Listed = TypeVar("Listed", Model, Photo)
+Listed = TypeVar("Listed", ModelRow, PhotoRow)
 _RECENT = 20
 """Finished models whose time tells how long the next will take."""
 _FIRST_GUESS_S = 5.0
@@ -20,15 +20,15 @@ def new_id(kind: str) -> str:
     return f"{kind}_{secrets.token_hex(12)}"
 
 
-def photo(session: Session, id: str, deleted: bool = False) -> Photo | None:
+def photo(session: Session, id: str, deleted: bool = False) -> PhotoRow | None:
     """Find a photo; a deleted one only where ``deleted``."""
-    found = session.scalars(select(Photo).where(Photo.id == id)).first()
+    found = session.scalars(select(PhotoRow).where(PhotoRow.id == id)).first()
     return found if found is not None and (deleted or found.deleted is None) else None
 
 
-def model(session: Session, id: str, deleted: bool = False) -> Model | None:
+def model(session: Session, id: str, deleted: bool = False) -> ModelRow | None:
     """Find a model; a deleted one only where ``deleted``."""
-    found = session.scalars(select(Model).where(Model.id == id)).first()
+    found = session.scalars(select(ModelRow).where(ModelRow.id == id)).first()
     return found if found is not None and (deleted or found.deleted is None) else None
 
 
@@ -47,10 +47,10 @@ def page(session: Session, table: type[Listed], cursor: str | None, limit: int) 
     return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
 
 
-def twin(session: Session, fingerprint: str, engine: str) -> Model | None:
+def twin(session: Session, fingerprint: str, engine: str) -> ModelRow | None:
     """Find a model that this engine has finished of the same photo, drawings, settings and seed."""
-    same = Model.fingerprint == fingerprint, Model.engine == engine, Model.status == "succeeded"
-    return session.scalars(select(Model).where(*same).limit(1)).first()
+    same = ModelRow.fingerprint == fingerprint, ModelRow.engine == engine, ModelRow.status == "succeeded"
+    return session.scalars(select(ModelRow).where(*same).limit(1)).first()
 
 
 def referenced(session: Session, beginning: str = "") -> set[str]:
@@ -64,8 +64,8 @@ def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int
     if not numbers:
         return {}
     places = (
-        select(Model.number, func.row_number().over(order_by=Model.number).label("place"))
-        .where(Model.status == "queued", Model.number <= max(numbers))
+        select(ModelRow.number, func.row_number().over(order_by=ModelRow.number).label("place"))
+        .where(ModelRow.status == "queued", ModelRow.number <= max(numbers))
         .subquery()
     )
     wanted = select(places.c.number, places.c.place).where(places.c.number.in_(numbers))
@@ -75,9 +75,9 @@ def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int
 def usual_seconds(session: Session) -> float:
     """Say how long a model took of late; one that was answered from a twin was never started."""
     took = session.scalars(
-        select(Model.finished - Model.started)
-        .where(Model.status == "succeeded", Model.started.is_not(None))
-        .order_by(Model.started.desc())
+        select(ModelRow.finished - ModelRow.started)
+        .where(ModelRow.status == "succeeded", ModelRow.started.is_not(None))
+        .order_by(ModelRow.started.desc())
         .limit(_RECENT)
     ).all()
     known = sorted(seconds for seconds in took if seconds is not None)
@@ -86,5 +86,5 @@ def usual_seconds(session: Session) -> float:
 
 def stored_bytes(session: Session) -> int:
     """Add up what photos take, the deleted that are not yet removed among them; the same pixels count once."""
-    blobs = select(func.max(Photo.bytes).label("bytes")).group_by(Photo.blob).subquery()
+    blobs = select(func.max(PhotoRow.bytes).label("bytes")).group_by(PhotoRow.blob).subquery()
     return session.scalar(select(func.sum(blobs.c.bytes))) or 0

@@ -36,7 +36,7 @@ class Aged:
     seen: Mapped[float | None]
 
 
-class Photo(Aged, Table):
+class PhotoRow(Aged, Table):
     """An uploaded photo: upright sRGB pixels in a blob, without metadata."""
 
     __tablename__ = "photos"
@@ -56,7 +56,7 @@ class Photo(Aged, Table):
     deleted: Mapped[float | None]
 
 
-class Model(Aged, Table):
+class ModelRow(Aged, Table):
     """A tree that was asked for, is being made, or is made. This row is the job; a queue message is a hint to it.
 
     ``attempt`` is the fence: what works on the job says which attempt it is, and nothing of another attempt is
@@ -171,18 +171,18 @@ class Stray(Table):
     """By the store's own clock, and in this state."""
 
 
-REFERENCES = (Photo.blob, *(getattr(Model, f"{part}_blob") for part in PARTS), File.blob)
+REFERENCES = (PhotoRow.blob, *(getattr(ModelRow, f"{part}_blob") for part in PARTS), File.blob)
 """Every column that names a blob."""
 
-Index("ix_models_queue", Model.status, Model.number)
-Index("ix_models_twins", Model.fingerprint, Model.engine, Model.status)
-Index("ix_models_times", Model.status, Model.started, Model.finished)
-for _table in (Model, Photo):
+Index("ix_models_queue", ModelRow.status, ModelRow.number)
+Index("ix_models_twins", ModelRow.fingerprint, ModelRow.engine, ModelRow.status)
+Index("ix_models_times", ModelRow.status, ModelRow.started, ModelRow.finished)
+for _table in (ModelRow, PhotoRow):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
-Index("ix_photos_stored", Photo.blob, Photo.bytes)
+Index("ix_photos_stored", PhotoRow.blob, PhotoRow.bytes)
 Index("ix_replays_seen", Replay.seen)
-Index("ix_photos_blob", Photo.blob)
+Index("ix_photos_blob", PhotoRow.blob)
 Index("ix_files_blob", File.blob)
 for _column in REFERENCES[1:-1]:
     Index(f"ix_models_{_column.key}", _column, sqlite_where=_column.is_not(None))

@@ -7,10 +7,10 @@ from treestroke.codec.gltf.instances import encode_instanced, quaternions
 from treestroke.codec.gltf.tree import Part
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.paint.atlas import Atlas
 
 CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
 TYPES = {5121: "<u1", 5122: "<i2", 5123: "<u2", 5126: "<f4"}

@@ -1,6 +1,7 @@
 import numpy as np
 
-from treestroke.core.geometry.raster import Indices, covered_pixels, planes, visible_triangles
+from treestroke.core.geometry.raster import covered_pixels, planes, visible_triangles
+from treestroke.core.types import Indices
 
 RIGHT_HALF = [[20.0, 0.0], [40.0, 0.0], [20.0, 20.0]]
 

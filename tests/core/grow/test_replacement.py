@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from tests.core.grow.crowns import Case, limbed_case, trunk_case
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.grow.grown import Grown
-from treestroke.core.grow.library import TYPE_1, TYPE_2, Kind, choose_library, visible_subtrees
+from treestroke.core.grow.library import TYPE_1, TYPE_2, choose_library, visible_subtrees
 from treestroke.core.grow.params import GrowthParams, growth_for
 from treestroke.core.grow.replacement import grow
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.traverse import child_counts
+from treestroke.core.types import Floats, FoliageKind
 
 
-def grown(case: Case, params: GrowthParams | None = None, kind: Kind = "leaves", seed: int = 0) -> Grown:
+def grown(case: Case, params: GrowthParams | None = None, kind: FoliageKind = "leaves", seed: int = 0) -> Grown:
     library = choose_library("auto", kind, case.skeleton)
     params = params or growth_for(kind, 60)
     return grow(case.skeleton, case.mask, case.envelope, library, params, np.random.default_rng(seed))

@@ -6,7 +6,7 @@ import pytest
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.leaf.atlas import Atlas, leaf_atlas
+from treestroke.core.paint.atlas import Atlas, leaf_atlas
 from treestroke.core.skeleton.skeleton import Skeleton
 
 SKY, GREEN = (110, 160, 230), (70, 110, 40)

@@ -9,12 +9,12 @@ from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.silhouette import framing, silhouettes
 from treestroke.core.geometry.views import CrownViews, View
 from treestroke.core.leaf.area import leaf_area
-from treestroke.core.leaf.atlas import Atlas, tile_alphas
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, fruit_among, hang_fruit, with_fruit
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.leaf.thinning import thin_leaves
+from treestroke.core.paint.atlas import Atlas, tile_alphas
 from treestroke.core.skeleton.skeleton import Skeleton
 
 ORANGE = (230, 130, 20)

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from treestroke.core.leaf.atlas import tile_alphas
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
+from treestroke.core.paint.atlas import tile_alphas
 from treestroke.core.skeleton.traverse import child_counts
 
 HEIGHT = 10.0

@@ -3,10 +3,10 @@ import pytest
 
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.silhouette import Framing, framing, likeness, silhouettes
-from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.thinning import ThinningParams, thin_leaves
+from treestroke.core.paint.atlas import Atlas
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@ import pytest
 from tests.sketched import Stroke, sketched
 
 from treestroke.core.lift.pairing import ALONE, FEATURES, Search, detour
+from treestroke.core.lift.path_pairs import Weave
 from treestroke.core.lift.sheet import Sheet, sheet
-from treestroke.core.lift.weaving import Weave
 
 STEM = [(0.0, 300.0), (0.0, 600.0), (0.0, 1000.0)]
 LOW: Stroke = (0, 1, [(200.0, 450.0)])

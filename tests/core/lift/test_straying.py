@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 from tests.sketched import Stroke, sketched
 
+from treestroke.core.lift.path_pairs import Walk, Weave, walk
 from treestroke.core.lift.retrieval import retrieve_depth
 from treestroke.core.lift.sheet import Sheet, sheet
 from treestroke.core.lift.straying import stray
-from treestroke.core.lift.weaving import Walk, Weave, walk
 
 STEM = [(0.0, 300.0), (0.0, 1000.0)]
 LIMB: Stroke = (0, 1, [(300.0, 800.0)])

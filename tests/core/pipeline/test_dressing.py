@@ -8,8 +8,8 @@ import pytest
 from tests.conftest import DATA, EXAMPLES
 
 import treestroke
-from treestroke.core.leaf.atlas import tile_labs
 from treestroke.core.leaf.fruit import fruit_among
+from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo

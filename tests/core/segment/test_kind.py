@@ -8,7 +8,8 @@ from tests.pictures import disc, leaves_on_sky, ring, wood_mask, wood_photo
 
 from treestroke.codec.image import decode_photo
 from treestroke.core.segment.foliage import segment_foliage
-from treestroke.core.segment.kind import UNSURE, Kind, foliage_kind, foliage_look
+from treestroke.core.segment.kind import UNSURE, foliage_kind, foliage_look
+from treestroke.core.types import FoliageKind
 from treestroke.service.inputs import load_strokes
 
 DULL, VIVID = (50, 62, 40), (90, 150, 40)
@@ -16,7 +17,7 @@ TRUNK = np.array([[150.0, 290.0], [150.0, 200.0], [150.0, 60.0]])
 SHORT_TRUNK = np.array([[150.0, 290.0], [150.0, 230.0]])
 
 
-def kind_of(photo: np.ndarray, mask: np.ndarray, crown: np.ndarray, trunk: np.ndarray) -> Kind:
+def kind_of(photo: np.ndarray, mask: np.ndarray, crown: np.ndarray, trunk: np.ndarray) -> FoliageKind:
     return foliage_kind(foliage_look(photo, mask, crown)[0], mask, trunk)
 
 

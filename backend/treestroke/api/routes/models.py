@@ -33,12 +33,12 @@ from treestroke.codec.photo_kinds import TAKEN
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import models, photos
+from treestroke.service.model_request import MAX_NAME, Wish, read_name
 from treestroke.service.models import Seen
 from treestroke.service.photos import Shelf
-from treestroke.service.wishes import MAX_NAME, Wish, read_name
-from treestroke.shapes import STROKES_EXAMPLE
 from treestroke.store.leases import TERMINAL
-from treestroke.store.tables import Photo
+from treestroke.store.tables import PhotoRow
+from treestroke.wire_strokes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
 MAX_WAIT_SECONDS = 60.0
@@ -108,7 +108,7 @@ class _Request:
     """What is wished for, and the photo that came along."""
 
     wish: Wish
-    photo: Photo | None = None
+    photo: PhotoRow | None = None
 
 
 async def _request(request: Request, shelf: ShelfOf) -> _Request:

@@ -13,7 +13,7 @@ from treestroke.api.views import photo_view
 from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.schemas import Photo, PhotoPage, TraceAnswer
 from treestroke.service import photos
-from treestroke.shapes import STROKES_EXAMPLE
+from treestroke.wire_strokes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/photos", tags=["photos"])
 _RAW = (*MEDIA_TYPES, "image/*", "application/octet-stream")

@@ -18,7 +18,7 @@ from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
 from treestroke.service.engine import engine
 from treestroke.service.files import files_on_offer
-from treestroke.service.wishes import MAX_NAME
+from treestroke.service.model_request import MAX_NAME
 
 router = APIRouter(tags=["service"])
 

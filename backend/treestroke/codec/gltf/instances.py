@@ -7,9 +7,10 @@ from treestroke.codec.gltf.tree import MATERIALS, Part, head_of
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.cards import CORNERS
-from treestroke.core.leaf.leaves import Floats, Leaves
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas
+from treestroke.core.types import Floats
 
 INSTANCING = "EXT_mesh_gpu_instancing"
 _BULGE = 0.5

@@ -13,8 +13,9 @@ t       triangles
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.types import Indices
+
 Bytes = NDArray[np.uint8]
-Indices = NDArray[np.int64]
 
 _ATTRIBUTES, _TRIANGLES = 0xA0, 0xE1  # the streams' first bytes
 _GROUP, _GROUPS_A_BYTE, _BLOCK_BYTES, _BLOCK_ELEMENTS = 16, 4, 8192, 256

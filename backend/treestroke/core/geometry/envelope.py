@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera, Floats
+from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.polyline import smoothed
+from treestroke.core.types import Floats
 
 MOST_STRETCH = 4.0
 """Width over depth, or depth over width, beyond which a section is not made round."""

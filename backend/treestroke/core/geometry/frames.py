@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
+from treestroke.core.types import Floats
 
 
 def rotation_minimizing_normals(points: Floats, tangents: Floats, first: NDArray[np.int64], seeds: Floats) -> Floats:

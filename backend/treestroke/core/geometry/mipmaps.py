@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
-from treestroke.core.geometry.raster import Floats, Indices, planes
+from treestroke.core.geometry.raster import planes
+from treestroke.core.types import Floats, Indices
 
 
 class Mipmaps:

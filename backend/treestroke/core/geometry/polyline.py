@@ -2,10 +2,8 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from treestroke.core.types import Floats, Indices
 
 
 def arc_lengths(points: Floats) -> Floats:

@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from treestroke.core.types import Floats, Indices
+
 Cut = Callable[[Indices, Floats, Floats], NDArray[np.bool_]]
 """Called with triangles' indices and the x and y, px, of points on them; true where they are not cut away."""
 

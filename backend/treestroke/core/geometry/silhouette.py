@@ -5,14 +5,12 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.geometry.mipmaps import Cutout
-from treestroke.core.geometry.raster import Floats, Indices, covered_pixels, planes, visible_triangles
-
-Mask = NDArray[np.bool_]
+from treestroke.core.geometry.raster import covered_pixels, planes, visible_triangles
+from treestroke.core.types import Floats, Indices, Mask
 
 AZIMUTHS_RAD = np.radians(np.arange(0.0, 360.0, 45.0))
 """From where a tree is looked at: 0 is the photo's side (+Z), a quarter turn +X."""

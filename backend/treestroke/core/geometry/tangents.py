@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.mesh import Mesh
 from treestroke.core.geometry.vectors import unit
+from treestroke.core.types import Floats
 
 _AXES = np.eye(3)
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
+from treestroke.core.types import Floats
 
 UP = np.array([0.0, 1.0, 0.0])
 """The world's vertical."""

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera, Floats
-
-Mask = NDArray[np.bool_]
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.types import Floats, Mask
 
 
 def from_left(points_world: Floats) -> Floats:

@@ -1,8 +1,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
-from treestroke.core.skeleton.skeleton import Indices
+from treestroke.core.types import Floats, Indices
 
 class Engine:
     def __init__(

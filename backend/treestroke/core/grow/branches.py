@@ -6,10 +6,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.skeleton.measure import edge_lengths, path_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
+from treestroke.core.types import Floats, Indices
 
 TURN_DEG = 30.0
 STRAIGHT_SHARE = 0.03

@@ -2,12 +2,11 @@
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.grow._engine import Engine
 from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.evaluator import Choice, Rules, Shoot, turn_library
 from treestroke.core.grow.library import Subtree
-from treestroke.core.skeleton.skeleton import Indices
+from treestroke.core.types import Floats, Indices
 
 GROUP_SIDE = 2.0
 """Side of the cells that group the image attractors, in mean distances between them."""

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera, Floats
+from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.types import Floats
 
 REFERENCE_WIDTH = 1000.0
 """Crown width, px, to which the pixel figures of growth refer (a photo of 1,500 px)."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.views import CrownViews
-from treestroke.core.skeleton.skeleton import Floats, Indices
+from treestroke.core.types import Floats, Indices
 
 CELLS = 1500
 """About so many cells lie in the crown: each is as wide as a small branch is long."""

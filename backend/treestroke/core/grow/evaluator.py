@@ -5,10 +5,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.library import Subtree
-from treestroke.core.skeleton.skeleton import Indices
+from treestroke.core.types import Floats, Indices
 
 TIE = 1e-9
 """Gains within this share of the best are equal; the smallest (branch, subtree, angle) of them wins."""

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import Chain
 from treestroke.core.grow.crown import Crown, in_mask
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices
 
 UP = np.array([0.0, -1.0, 0.0])
 FOLLOW, SAG, RISE = 0.3, 0.22, 0.38

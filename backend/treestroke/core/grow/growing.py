@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.grow.branches import Chain, split_chains
 from treestroke.core.grow.crown import Crown, in_mask
 from treestroke.core.grow.evaluator import Choice, Evaluator, Rules, Shoot
@@ -12,7 +11,8 @@ from treestroke.core.grow.form import BranchTable
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.progress import Report
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices
 
 MOST_STRETCH = 6.0
 THINNING = 0.75

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,12 +5,11 @@ from typing import Literal
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.skeleton.measure import edge_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
+from treestroke.core.types import Floats, FoliageKind, Indices
 
-Kind = Literal["leaves", "needles", "bare"]
 Bearer = Literal["any", "stem", "limb"]
 
 MOST_SUBTREES = 8
@@ -191,7 +190,7 @@ def _subtree_of(skeleton: Skeleton, chain: Indices, borne: list[Indices]) -> Sub
     return Subtree(np.full(len(borne), -1), np.clip(fractions, 0.05, 1.0), local)
 
 
-def choose_library(name: str, kind: Kind, skeleton: Skeleton) -> tuple[Subtree, ...]:
+def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton) -> tuple[Subtree, ...]:
     """Choose at most 8 subtrees by the setting's name, what the twigs bear and the visible tree (3D, metres).
 
     ``auto`` takes up to three visible subtrees beside the predefined ones, and none where fewer than three are

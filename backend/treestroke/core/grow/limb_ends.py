@@ -10,14 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import successors_by_wood
 from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.form import UP
 from treestroke.core.skeleton.measure import path_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import limbs
+from treestroke.core.types import Floats, Indices
 
 JOINT_SHARE = 0.02
 """Of the crown's height: between the joints of what is carried on."""

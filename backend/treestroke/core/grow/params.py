@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from treestroke.core.grow.library import Kind
+from treestroke.core.types import FoliageKind
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class GrowthParams:
             raise ValueError(f"keep share, inward cosine or leader is out of range in {self}")
 
 
-def growth_for(kind: Kind, iterations: int = 300) -> GrowthParams:
+def growth_for(kind: FoliageKind, iterations: int = 300) -> GrowthParams:
     """Fit the figures to what the twigs bear: a conifer has one leader and many whorls, a bare tree finer twigs."""
     if kind == "needles":
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)

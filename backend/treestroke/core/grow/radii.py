@@ -7,10 +7,10 @@ exponent is solved so that the trunk's base meets its measured radius.
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.skeleton.measure import edge_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, child_counts, heaviest_children, limbs
+from treestroke.core.types import Floats, Indices
 
 TWIG_TIPS = 40.0
 """Twig length that bears as many pipes as its tip, in tip radii."""

@@ -11,11 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.evaluator import TIE, Choice, Rules, Shoot, turn_library
 from treestroke.core.grow.library import Subtree
-from treestroke.core.skeleton.skeleton import Indices
+from treestroke.core.types import Floats, Indices
 
 BLOCK = 12_000
 """Point pairs measured at a time: their scratch fits the first cache levels."""

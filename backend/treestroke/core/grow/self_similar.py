@@ -17,14 +17,15 @@ import numpy as np
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.geometry.views import CrownViews
-from treestroke.core.grow.bearers import Bearers, across, bearers_of_main, bearers_of_small
 from treestroke.core.grow.crown_cells import CrownCells, crown_cells
 from treestroke.core.grow.grown import Grown
+from treestroke.core.grow.parent_branches import Bearers, across, bearers_of_main, bearers_of_small
 from treestroke.core.grow.radii import pipe_radii
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.measure import edge_lengths
-from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices
 
 FAN = 5.0
 """Small branches of a level for each of the level before, where all find room."""

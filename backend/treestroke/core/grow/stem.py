@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.grow.branches import successors_by_wood
 from treestroke.core.grow.crown import in_mask
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices
 
 JOINT_SHARE = 0.02
 """Of the crown's height: between the joints of a stem that is carried on."""

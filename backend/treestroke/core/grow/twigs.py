@@ -6,13 +6,13 @@ forward, get shorter toward their branch's tip and rise a little.
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Floats
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.form import UP, Form
 from treestroke.core.skeleton.measure import edge_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root
+from treestroke.core.types import Floats, Indices
 
 GOLDEN_RAD = np.pi * (3 - np.sqrt(5.0))
 LEAN = (0.55, 1.0)

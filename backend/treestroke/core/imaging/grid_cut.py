@@ -5,8 +5,8 @@ import maxflow
 import numpy as np
 from numpy.typing import NDArray
 
-Mask = NDArray[np.bool_]
-Photo = NDArray[np.uint8]
+from treestroke.core.types import Mask, Picture
+
 Energies = NDArray[np.float32]
 
 SOFTEST_STEP = 6.0
@@ -15,7 +15,7 @@ BAND_PX = 3
 """Half-width of the band around a coarse border that is cut again, in fine pixels per halving."""
 
 
-def cut_grid(pixels: Photo, odds: Energies, region: Mask, smoothness: float, coarse_pixels: int) -> Mask:
+def cut_grid(pixels: Picture, odds: Energies, region: Mask, smoothness: float, coarse_pixels: int) -> Mask:
     """Label the region's pixels (h, w) so that data and smoothness cost least; outside it all is False.
 
     Data: ``odds`` (h, w), the log odds of True. Smoothness (Tan et al. 2008, section 2): 4-neighbours with
@@ -35,7 +35,7 @@ def cut_grid(pixels: Photo, odds: Energies, region: Mask, smoothness: float, coa
     return np.zeros_like(region) if labels is None else labels
 
 
-def _pyramid(pixels: Photo, odds: Energies, region: Mask, coarse_pixels: int) -> list[tuple[Photo, Energies, Mask]]:
+def _pyramid(pixels: Picture, odds: Energies, region: Mask, coarse_pixels: int) -> list[tuple[Picture, Energies, Mask]]:
     """Halve the problem until it is small enough; coarsest first."""
     levels = [(pixels, odds, region)]
     while levels[0][2].sum() > coarse_pixels:
@@ -55,7 +55,7 @@ def _border_band(labels: Mask) -> Mask:
     return np.asarray(cv2.dilate(grey, kernel) != cv2.erode(grey, kernel))
 
 
-def _cut(pixels: Photo, odds: Energies, region: Mask, band: Mask, known: Mask | None, smoothness: float) -> Mask:
+def _cut(pixels: Picture, odds: Energies, region: Mask, band: Mask, known: Mask | None, smoothness: float) -> Mask:
     """Solve the band's pixels; the others keep their known label (outside the region: False)."""
     labels = region & known if known is not None else np.zeros_like(region)
     count = int(band.sum())
@@ -89,7 +89,7 @@ def _neighbours() -> tuple[tuple[tuple[slice, slice], tuple[slice, slice]], ...]
     return ((every, ahead), (every, behind)), ((ahead, every), (behind, every))
 
 
-def _edge_weights(this: Photo, following: Photo, smoothness: float) -> NDArray[np.float64]:
+def _edge_weights(this: Picture, following: Picture, smoothness: float) -> NDArray[np.float64]:
     """Cost of a border between neighbouring colours."""
     red, green, blue = (cv2.absdiff(this[..., c], following[..., c]).astype(np.float32) for c in range(3))
     step = np.sqrt(red * red + green * green + blue * blue)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats
 
 TABLE_BITS = 5
 """Colours are looked up in a table of 2^5 steps a channel: 32,768 densities stand for millions of pixels."""

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats
 
 
 def winding_numbers(points: Floats, height: int, width: int) -> NDArray[np.int16]:

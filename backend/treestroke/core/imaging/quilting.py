@@ -7,7 +7,7 @@ import maxflow
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats
 
 _CANDIDATES = 24
 _LOOK = 3  # every how many px patches are compared when one is chosen

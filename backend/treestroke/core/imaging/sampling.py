@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats
 
 
 def sample_nearest(image: NDArray[Any], points_px: Floats, outside: Any) -> NDArray[Any]:

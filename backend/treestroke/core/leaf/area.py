@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from treestroke.core.leaf.atlas import Atlas, tile_alphas
 from treestroke.core.leaf.fruit import fruit_among
 from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas, tile_alphas
 
 
 def leaf_area(leaves: Leaves, atlas: Atlas) -> float:

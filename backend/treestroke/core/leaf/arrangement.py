@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves
+from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts
+from treestroke.core.types import Floats, Indices
 
 THIN = 0.25
 """Branches thinner than this share of the thickest bear leaves."""

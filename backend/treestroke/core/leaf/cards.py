@@ -5,8 +5,9 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.leaf.atlas import Atlas
-from treestroke.core.leaf.leaves import Floats, Leaves
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas
+from treestroke.core.types import Floats
 
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 """Corners of a card in half-extents, counter-clockwise from its lower left: x right, y up."""

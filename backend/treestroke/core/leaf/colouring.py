@@ -6,8 +6,9 @@ import numpy as np
 
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.leaf.grid import FoliageGrid
-from treestroke.core.leaf.palette import Floats, Indices, nearest_colour
-from treestroke.core.leaf.seasons import Recolour
+from treestroke.core.paint.palette import nearest_colour
+from treestroke.core.paint.seasons import Recolour
+from treestroke.core.types import Floats, Indices
 
 SHOWN_DEPTH = 0.35
 """Places nearer to the viewer than this share of the crown's half depth are taken as seen by the photo."""

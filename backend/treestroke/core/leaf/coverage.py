@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.leaf.grid import FoliageGrid
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.types import Floats, Indices
 
 DOTS_ACROSS = 12
 """A tile is looked at in 12 x 12 dots: about one a grid cell for a card of usual size."""

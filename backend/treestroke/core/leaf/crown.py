@@ -7,11 +7,12 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.leaf.arrangement import Poses, Seats
-from treestroke.core.leaf.atlas import Atlas, tile_alphas, tile_labs
 from treestroke.core.leaf.colouring import DARKEST, Colouring, colouring_of, shades
 from treestroke.core.leaf.coverage import Outlines, cover, outlines_of, share_inside
 from treestroke.core.leaf.grid import FoliageGrid
-from treestroke.core.leaf.leaves import Floats, Leaves
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
+from treestroke.core.types import Floats
 
 SIDES = (0.015, 0.03)
 """Smallest and largest side of a card of size 1, as shares of the crown's width."""

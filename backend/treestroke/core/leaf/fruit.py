@@ -14,11 +14,12 @@ from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.geometry.views import CrownViews
 from treestroke.core.leaf.arrangement import Seats, seats_along, thin_edges
-from treestroke.core.leaf.atlas import TILE_SIDE, Atlas, tile_labs
-from treestroke.core.leaf.easel import MARGIN, Image
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves, join_leaves
-from treestroke.core.leaf.palette import nearest_colour
+from treestroke.core.leaf.leaves import Leaves, join_leaves
+from treestroke.core.paint.atlas import TILE_SIDE, Atlas, tile_labs
+from treestroke.core.paint.easel import MARGIN
+from treestroke.core.paint.palette import nearest_colour
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices, Picture
 
 GOLDEN_RAD = np.pi * (3 - np.sqrt(5.0))
 TRIED = 12
@@ -68,7 +69,7 @@ def hang_fruit(
     skeleton: Skeleton,
     envelope: Envelope,
     views: CrownViews,
-    picture: Image,
+    picture: Picture,
     params: FruitParams,
     rng: np.random.Generator,
 ) -> Leaves:
@@ -94,7 +95,7 @@ def hang_fruit(
     return _crossed(feet[chosen], half[chosen], seats.joints[chosen], rng)
 
 
-def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Image) -> tuple[Leaves, Atlas]:
+def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Picture) -> tuple[Leaves, Atlas]:
     """Add fruit to the leaves and its picture to their atlas, in place of the tile that fewest leaves show.
 
     Those leaves show the tile of the most similar colour instead. Without an atlas the fruit's tile is the only one.
@@ -164,7 +165,7 @@ def _crossed(feet: Floats, half: Floats, joints: Indices, rng: np.random.Generat
     )
 
 
-def _tile(picture: Image) -> Image:
+def _tile(picture: Picture) -> Picture:
     """Lay a picture (h, w, 4), straight alpha, on a clear tile, its top in the middle of the upper margin.
 
     The clear part has the fruit's mean colour, so that edges and mip levels show no halo.

@@ -6,8 +6,9 @@ import numpy as np
 from treestroke.core.leaf.arrangement import Seats, pose_over, seats_along
 from treestroke.core.leaf.crown import SIDES, Crown
 from treestroke.core.leaf.grid import FoliageGrid
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves
+from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices
 
 SIZES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.4, 0.3)
 """Sizes of the cards, round by round, the large ones first."""

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.leaf.palette import Floats, Indices, Mask, Photo, flattened, lab_from_rgb
+from treestroke.core.paint.palette import flattened, lab_from_rgb
+from treestroke.core.types import Floats, Indices, Mask, Picture
 
 CELLS_ACROSS = 500
 """Cells over the foliage's width: a spray is about 10 cells wide, a leaf 2 to 3."""
@@ -78,7 +79,7 @@ class FoliageGrid:
         return points[:, 0], points[:, 1]
 
 
-def foliage_grid(photo: Photo, front: NDArray[np.float32], camera: Camera) -> FoliageGrid:
+def foliage_grid(photo: Picture, front: NDArray[np.float32], camera: Camera) -> FoliageGrid:
     """Lay a grid over the foliage and average the photo (h, w, 3) in its cells.
 
     ``front`` (h, w) is infinite in the foliage, the wood's world Z where the photo shows wood, else minus infinite.

@@ -6,8 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from treestroke.core.types import Floats, Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,14 +20,15 @@ from treestroke.core.leaf.arrangement import (
     pose_on_branches,
     seats_along,
 )
-from treestroke.core.leaf.atlas import Atlas, Kind
 from treestroke.core.leaf.crown import Crown, crown_of
 from treestroke.core.leaf.gaps import cover_gaps
 from treestroke.core.leaf.grid import foliage_grid
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves, join_leaves, no_leaves
-from treestroke.core.leaf.mass import bearing
+from treestroke.core.leaf.leaf_density import bearing
+from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.paint.atlas import Atlas
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, FoliageKind, Indices
 
 LAYERS = 10.0
 """Cards' opaque area over the foliage's area in the photo, at density 1 (a leaf area index)."""
@@ -60,7 +61,7 @@ class LeafParams:
     size: float = 1.0
     density: float = 1.0
     max_cards: int = 25_000
-    kind: Kind = "leaves"
+    kind: FoliageKind = "leaves"
 
     def __post_init__(self) -> None:
         if not LEAST_SIZE <= self.size <= 3:
@@ -68,7 +69,7 @@ class LeafParams:
         if not 0 <= self.density <= 3:
             raise ValueError(f"density must be 0 to 3, got {self.density}")
         if self.max_cards < 0 or self.kind not in ("leaves", "needles", "bare"):
-            raise ValueError(f"max_cards must not be negative and kind one of Kind, got {self}")
+            raise ValueError(f"max_cards must not be negative and kind one of FoliageKind, got {self}")
 
 
 def place_leaves(

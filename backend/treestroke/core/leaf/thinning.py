@@ -7,10 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import ALPHA_CUT
-from treestroke.core.geometry.silhouette import HALF_AZIMUTHS_RAD, Framing, Mask
-from treestroke.core.leaf.atlas import Atlas, tile_alphas
+from treestroke.core.geometry.silhouette import HALF_AZIMUTHS_RAD, Framing
 from treestroke.core.leaf.fruit import fruit_among
-from treestroke.core.leaf.leaves import Floats, Indices, Leaves, join_leaves
+from treestroke.core.leaf.leaves import Leaves, join_leaves
+from treestroke.core.paint.atlas import Atlas, tile_alphas
+from treestroke.core.types import Floats, Indices, Mask
 
 _DOTS_ACROSS = 8
 """A tile is looked at in 8 x 8 dots: about the texels of the copy that a viewer takes for a card of 10 px."""

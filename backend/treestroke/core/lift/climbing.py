@@ -7,7 +7,7 @@ heights together and turns back least, by dynamic programming over (place on the
 
 import numpy as np
 
-from treestroke.core.geometry.polyline import Floats, Indices
+from treestroke.core.types import Floats, Indices
 
 NEAR = 3.0
 """Units of height apart at which a unit walked costs 1; nearer it is nearly free, further it grows as the square."""

@@ -5,10 +5,10 @@ from math import exp
 
 import numpy as np
 
-from treestroke.core.geometry.polyline import Floats, Indices
-from treestroke.core.lift.sheet import BINS, Mask, Sheet
+from treestroke.core.lift.path_pairs import HALVED, Walk, Weave, walk
+from treestroke.core.lift.sheet import BINS, Sheet
 from treestroke.core.lift.straying import stray
-from treestroke.core.lift.weaving import HALVED, Walk, Weave, walk
+from treestroke.core.types import Floats, Indices, Mask
 
 SHORTEST = 8.0
 """Units of a branch that need no partner: it is led on where its partner ends, and a shorter rest is left out."""

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.geometry.polyline import Indices
 from treestroke.core.lift.pairing import ALONE, SHORTEST, STRAYED, Match, Search
-from treestroke.core.lift.sheet import Mask, Sheet, sheet
+from treestroke.core.lift.path_pairs import HALVED, Weave
+from treestroke.core.lift.sheet import Sheet, sheet
 from treestroke.core.lift.trimming import trimmed
-from treestroke.core.lift.weaving import HALVED, Weave
 from treestroke.core.skeleton.branched import Branched
+from treestroke.core.types import Indices, Mask
 
 PAIRED, COMPLEMENTED, LONE = 0, 1, 2
 """How a joint came: a branch of the front paired with one of the side; one of the side that no pair used, given a

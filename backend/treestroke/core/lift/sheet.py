@@ -5,15 +5,13 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, Indices, simplified
+from treestroke.core.geometry.polyline import simplified
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths, path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
-
-Mask = NDArray[np.bool_]
+from treestroke.core.types import Floats, Indices, Mask
 
 STRAIGHT = 0.3
 """How far, units, joints may be off a straight piece and yet be left out."""

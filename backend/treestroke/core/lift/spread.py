@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
+from treestroke.core.types import Floats, Indices
 
 UPRIGHT = 0.4
 """Share of the steepest slope that an upright limb may take: the law of gravity holds in depth too."""

@@ -10,9 +10,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from treestroke.core.geometry.polyline import Floats, Indices, arc_lengths
-from treestroke.core.lift.sheet import Mask, Sheet
-from treestroke.core.lift.weaving import HALVED, Walk, Weave
+from treestroke.core.geometry.polyline import arc_lengths
+from treestroke.core.lift.path_pairs import HALVED, Walk, Weave
+from treestroke.core.lift.sheet import Sheet
+from treestroke.core.types import Floats, Indices, Mask
 
 BEFORE = 60
 """Joints before a run from which on a walk may leave the tree."""

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from treestroke.core.geometry.polyline import Floats, Indices, simplified
-from treestroke.core.lift.sheet import Mask
-from treestroke.core.lift.weaving import Weave
+from treestroke.core.geometry.polyline import simplified
+from treestroke.core.lift.path_pairs import Weave
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices, Mask
 
 TOLERANCE = 0.5
 """How far, units, a joint may be off a straight piece and yet be left out."""

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.polyline import smoothed
 from treestroke.core.imaging.quilting import QuiltParams, quilt
 from treestroke.core.mesh.grain import Form, bark_grain
-
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats
 
 TEXTURE_SIZE = (512, 256)
 """Rows, columns; the width stands for a third of the trunk's circumference."""

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children, limbs
+from treestroke.core.types import Floats, Indices
 
 _ROUNDS = 8  # of thinning; each drops at most every other joint
 

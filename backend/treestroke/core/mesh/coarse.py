@@ -7,12 +7,13 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.mesh.chains import Chains, chains_of, missed_without, subset, thinned
-from treestroke.core.mesh.sheath import Grid
 from treestroke.core.mesh.stations import stations_of
+from treestroke.core.mesh.tube_surface import Grid
 from treestroke.core.mesh.tubes import THINNEST, TubeParams, wrapping
 from treestroke.core.skeleton.measure import edge_lengths
-from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
+from treestroke.core.types import Floats, Indices
 
 LEAST_TRIANGLES = 100
 """A single stem takes about that many."""

@@ -8,8 +8,9 @@ from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.mesh.chains import Chains, chains_of, missed_without, subset
 from treestroke.core.skeleton.measure import edge_lengths, generations
-from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
+from treestroke.core.types import Floats, Indices
 
 MAX_TRIANGLES = 1_000
 SIDES = 6

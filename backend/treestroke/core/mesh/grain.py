@@ -3,9 +3,9 @@
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats
+
 Form = Literal["smooth", "furrowed", "plated", "peeling", "banded", "scaly"]
 
 _BANDS = ((5.0, 26.0, 1.0), (2.2, 9.0, 0.55), (0.9, 1.6, 0.25))  # (width px, height px, weight) of each size of feature

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
 from treestroke.core.geometry.mipmaps import Cutout, Mipmaps, stacked
-from treestroke.core.geometry.raster import Floats, Indices, pixel_centres, planes, visible_triangles
+from treestroke.core.geometry.raster import pixel_centres, planes, visible_triangles
 from treestroke.core.geometry.silhouette import AZIMUTHS_RAD, Framing, framing
+from treestroke.core.types import Floats, Indices
 
 TILE_SIDE = 256
 """Side of a picture in the atlas, px."""

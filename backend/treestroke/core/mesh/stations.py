@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.mesh.chains import Chains
-from treestroke.core.skeleton.skeleton import Floats, Indices
+from treestroke.core.types import Floats, Indices
 
 COLLAR_STEPS = np.array([-0.9, -0.2, 0.4, 1.0, 1.8, 3.0])
 """Rings of a collar, in child radii beyond the place where its axis leaves the bearer's surface."""

@@ -3,9 +3,9 @@
 import numpy as np
 
 from treestroke.core.mesh.chains import Chains
-from treestroke.core.mesh.sheath import Grid
 from treestroke.core.mesh.stations import Stations
-from treestroke.core.skeleton.skeleton import Floats, Indices
+from treestroke.core.mesh.tube_surface import Grid
+from treestroke.core.types import Floats, Indices
 
 _LOBES = ((3, 0.4, 0.5), (5, 2.1, 0.8))  # buttresses: (how many around, phase, weight)
 _COLLAR_REACH = 1.6  # how far a collar reaches above its bearer's surface, in radii of the limb

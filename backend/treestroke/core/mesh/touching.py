@@ -5,7 +5,7 @@ import numpy as np
 from treestroke.core.geometry.polyline import arc_lengths, places_along
 from treestroke.core.mesh.chains import Chains, subset
 from treestroke.core.mesh.stations import Stations
-from treestroke.core.skeleton.skeleton import Floats, Indices
+from treestroke.core.types import Floats, Indices
 
 _MISSED = 0.5  # of a radius: a tube this far off a joint still hides where another limb starts, whatever its sides
 

@@ -7,11 +7,12 @@ import numpy as np
 from treestroke.core.geometry.frames import rotation_minimizing_normals
 from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.mesh.chains import Chains, chains_of, subset, thinned
-from treestroke.core.mesh.sheath import Grid, smooth_normals, texture_coordinates
 from treestroke.core.mesh.stations import Stations, stations_of
 from treestroke.core.mesh.swelling import collar, flare, merged_normals, nearness_to_bearer
 from treestroke.core.mesh.touching import missed_forks, without_hidden
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.mesh.tube_surface import Grid, smooth_normals, texture_coordinates
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Indices
 
 _LEAST_DETAIL = 0.003  # where every limb is a cone or two; less saves no more triangles
 THINNEST = 1.2e-4  # radius of the thinnest twig, in tree heights: a third of a pixel in a 1500 px photo

@@ -4,9 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats
-from treestroke.core.pipeline.sight import Mask
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Mask
 
 CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
 """Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""

@@ -7,18 +7,18 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.views import CrownViews, View
-from treestroke.core.leaf.atlas import Atlas, LeafLook, leaf_atlas
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
 from treestroke.core.leaf.leaves import Leaves, no_leaves
-from treestroke.core.leaf.picture import opaque_part, reduced
 from treestroke.core.leaf.placement import LEAST_SIZE, LeafParams, place_leaves
-from treestroke.core.leaf.seasons import size_and_density
-from treestroke.core.leaf.species import KINDS
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
 from treestroke.core.mesh.grain import bark_grain
-from treestroke.core.mesh.relief import ReliefParams, bark_relief
+from treestroke.core.mesh.normal_map import ReliefParams, bark_relief
 from treestroke.core.mesh.tubes import tubes
+from treestroke.core.paint.atlas import Atlas, LeafLook, leaf_atlas
+from treestroke.core.paint.picture import opaque_part, reduced
+from treestroke.core.paint.seasons import size_and_density
+from treestroke.core.paint.species import KINDS
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings

@@ -8,21 +8,19 @@ import numpy as np
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.geometry.polyline import Floats
 from treestroke.core.grow.grown import Grown
 from treestroke.core.leaf.area import leaf_area
-from treestroke.core.leaf.atlas import Atlas
 from treestroke.core.leaf.fruit import fruit_among
 from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sight import Mask
 from treestroke.core.progress import Report, silent
-from treestroke.core.segment.kind import Kind
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Measures, measure_tree
+from treestroke.core.types import Floats, FoliageKind, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +51,7 @@ class TreeModel:
     cards: Leaves | None
     atlas: Atlas | None
     likeness: Mask
-    foliage_kind: Kind
+    foliage_kind: FoliageKind
     iterations: int
     branches: int
     measures: Measures

@@ -7,23 +7,22 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.geometry.polyline import Indices
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import Subtree, choose_library
 from treestroke.core.grow.params import GrowthParams, growth_for
 from treestroke.core.grow.replacement import grow
 from treestroke.core.grow.trimming import trimmed
-from treestroke.core.leaf.seasons import LEAFY
-from treestroke.core.leaf.species import AUTO, KINDS
 from treestroke.core.lift.spread import lift
+from treestroke.core.paint.seasons import LEAFY
+from treestroke.core.paint.species import AUTO, KINDS
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, LEAFED_SHARE, closed, drawn, drawn_depth, frayed
 from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Reading, Stature
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, deepened, draw_side, side_of, with_depth
-from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo, Sight, look
+from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, look
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
-from treestroke.core.segment.kind import UNSURE, Kind, foliage_kind
+from treestroke.core.segment.kind import UNSURE, foliage_kind
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths
@@ -33,6 +32,7 @@ from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
+from treestroke.core.types import FoliageKind, Indices, Mask, Picture
 
 JOINT_SHARE = 0.015
 """Of the tree's height: joints this near let growth cut a straight trunk where it likes."""
@@ -49,7 +49,7 @@ UNCLEAR = StrokeWarning(
 )
 DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
 """Codes of warnings of strokes that may mean no tree."""
-_KINDS: dict[str, Kind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
+_KINDS: dict[str, FoliageKind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class Seen:
     Nothing is traced without a branch stroke.
     """
 
-    sight: Sight
+    sight: WorkingCopy
     foliage: Foliage
     traced: Traced | None
     side: Drawing | None = None
@@ -94,7 +94,7 @@ class _Lifted:
 
 
 def see(
-    photo: Photo,
+    photo: Picture,
     strokes: Strokes,
     known: Foliage | None = None,
     report: Report = silent,
@@ -176,7 +176,9 @@ def _reading(seen: Seen, settings: ModelSettings) -> Reading:
     return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
 
 
-def _stature(sight: Sight, foliage: Foliage, camera: Camera, traced: Traced, stem: Indices, crown: Envelope) -> Stature:
+def _stature(
+    sight: WorkingCopy, foliage: Foliage, camera: Camera, traced: Traced, stem: Indices, crown: Envelope
+) -> Stature:
     """Tell the tree's height by the scale that the strokes or the settings set, and whether its trunk is seen."""
     known, error, metres = sight.strokes.scale, 0.0, camera.metres_per_pixel
     if known is not None:
@@ -237,14 +239,14 @@ def _front(foliage: Foliage, traced: Traced, lifted: _Lifted, leafy: Mask, shows
     return front.astype(np.float32)
 
 
-def _shown_kind(sight: Sight, foliage: Foliage, settings: ModelSettings) -> Kind:
+def _shown_kind(sight: WorkingCopy, foliage: Foliage, settings: ModelSettings) -> FoliageKind:
     """Take the kind that was asked for, or judge by the picture; a season may ask for leaves that it does not show."""
     if settings.foliage == "auto" or settings.season in LEAFY:
         return foliage_kind(foliage.look, foliage.mask, sight.strokes.branches[0].points)
     return _KINDS[settings.foliage]
 
 
-def borne_kind(shown: Kind, settings: ModelSettings) -> Kind:
+def borne_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
     """Tell what the twigs bear: what was asked for, else what season, species and photo say, in this order."""
     species = KINDS[settings.species]
     if settings.season == "bare" or settings.foliage == "bare":

@@ -7,13 +7,11 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.grow.grown import Grown
-from treestroke.core.pipeline.sight import Mask, Photo
-from treestroke.core.segment.kind import Kind
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Scale
+from treestroke.core.types import Floats, FoliageKind, Indices, Mask, Picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +51,7 @@ class Portrait:
         (m, 2) and (m,) places along the first stem, root first, px, and its radius where it is seen, else 0.
     """
 
-    photo: Photo
+    photo: Picture
     shows_leaves: bool
     leaves: Mask
     front: NDArray[np.float32]
@@ -130,7 +128,7 @@ class GrownTree:
         What was mended or assumed.
     """
 
-    kind: Kind
+    kind: FoliageKind
     grown: Grown
     envelope: Envelope
     camera: Camera

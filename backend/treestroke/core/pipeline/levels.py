@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.geometry.polyline import Floats
-from treestroke.core.geometry.silhouette import Framing, Mask, framing, silhouettes
+from treestroke.core.geometry.silhouette import Framing, framing, silhouettes
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.thinning import thin_leaves
 from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
 from treestroke.core.mesh.impostor import impostor
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.progress import Report, silent
+from treestroke.core.types import Floats, Mask
 
 HEIGHTS_PX = (400, 150, 64)
 """How tall a tree is seen, px, at which the first and second level and the impostor are judged."""

@@ -5,18 +5,17 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import Indices
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
 from treestroke.core.pipeline.growing import Seen, grow_tree, see
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
-from treestroke.core.pipeline.sight import Mask, Photo
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
+from treestroke.core.types import Indices, Mask, Picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +43,7 @@ class PhotoTrace:
     warnings: tuple[StrokeWarning, ...]
 
 
-def trace_photo(photo: Photo, strokes: Strokes, known: Foliage | None = None) -> PhotoTrace:
+def trace_photo(photo: Picture, strokes: Strokes, known: Foliage | None = None) -> PhotoTrace:
     """Find the foliage and the visible branches of a photo (h, w, 3), sRGB.
 
     ``known`` is the foliage that an earlier trace of the same photo has seen in the same crown: it is kept, so that one

@@ -7,8 +7,8 @@ from typing import Any, Literal
 import numpy as np
 
 from treestroke.core.errors import SettingsError, shown
-from treestroke.core.leaf.seasons import SEASONS
-from treestroke.core.leaf.species import SPECIES
+from treestroke.core.paint.seasons import SEASONS
+from treestroke.core.paint.species import SPECIES
 
 MAX_SEED = 2**63 - 1
 FILES = ("gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv")

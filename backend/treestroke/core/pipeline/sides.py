@@ -8,7 +8,6 @@ import numpy as np
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.geometry.polyline import Indices
 from treestroke.core.geometry.views import View
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.lift.retrieval import PAIRED, retrieve_depth
@@ -17,6 +16,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch
 from treestroke.core.survey.fidelity import fidelity
 from treestroke.core.trace.drawing import Drawing, draw_up
+from treestroke.core.types import Indices
 
 UNITS = 1000.0
 """Height of a tree, root to top, in which sketches are compared."""

@@ -8,7 +8,6 @@ import numpy as np
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.geometry.polyline import Floats
 from treestroke.core.geometry.views import CrownViews, View
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
@@ -29,15 +28,16 @@ from treestroke.core.pipeline.sides import (
     stroke_height,
     with_depth,
 )
-from treestroke.core.pipeline.sight import WORKING_SIDE, Mask, Photo
+from treestroke.core.pipeline.working_copy import WORKING_SIDE
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import segment_foliage
-from treestroke.core.segment.kind import Kind, foliage_kind
+from treestroke.core.segment.kind import foliage_kind
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, Scale
 from treestroke.core.trace.drawing import Drawing
+from treestroke.core.types import Floats, FoliageKind, Mask, Picture
 
 WORKING_HEIGHT = 1000.0
 """Height, px, that a tree is brought to."""
@@ -59,7 +59,7 @@ class SeenSketches:
 
     front: Drawing
     side: Drawing | None
-    photo: Photo | None
+    photo: Picture | None
 
     @property
     def warnings(self) -> tuple[StrokeWarning, ...]:
@@ -78,7 +78,7 @@ class _Frame:
 
 
 def see_sketches(
-    front: Sketch, side: Sketch | None = None, photo: Photo | None = None, report: Report = silent
+    front: Sketch, side: Sketch | None = None, photo: Picture | None = None, report: Report = silent
 ) -> SeenSketches:
     """Find the 2D skeletons of a front sketch and, where there is one, of a left-side sketch.
 
@@ -133,7 +133,7 @@ def model_sketches(
     return finish(tree, settings, rng, report, pictures)
 
 
-def _over(front: Sketch, photo: Photo) -> Sketch:
+def _over(front: Sketch, photo: Picture) -> Sketch:
     """Let a sketch lie on its photo.
 
     Raises
@@ -220,7 +220,7 @@ def _leafy(frame: _Frame, grown: Grown, rng: np.random.Generator) -> Mask:
 
 def _portrait(
     seen: SeenSketches, settings: ModelSettings, frame: _Frame, leafy: Mask, stem: Floats, stem_radii: Floats
-) -> tuple[Kind, Portrait]:
+) -> tuple[FoliageKind, Portrait]:
     """Take colours from the photo that the front was drawn over; on white they are the species' own."""
     front = np.where(leafy, np.inf, -np.inf).astype(np.float32)
     if seen.photo is None:

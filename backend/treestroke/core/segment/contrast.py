@@ -4,8 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
+from treestroke.core.types import Floats, Mask
 
 SIDE = 700
 """Long side of the photo, px, at which a crown is looked at."""

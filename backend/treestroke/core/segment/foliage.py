@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from treestroke.core.imaging.grid_cut import cut_grid
 from treestroke.core.imaging.mixture import (
-    Floats,
     Mixture,
     component_shares,
     fit_mixture,
@@ -28,9 +27,7 @@ from treestroke.core.progress import Report, silent
 from treestroke.core.segment.contrast import stands_out
 from treestroke.core.segment.height import LIMIT, log_odds_by_height
 from treestroke.core.segment.kind import Look, foliage_look
-
-Mask = NDArray[np.bool_]
-Photo = NDArray[np.uint8]
+from treestroke.core.types import Floats, Mask, Picture
 
 REFERENCE_SIDE = 1500
 """Long side of a photo, px, for which the paper gives its pixel constants."""
@@ -114,7 +111,7 @@ class Foliage:
 
 
 def segment_foliage(
-    photo: Photo, crown_px: Floats, params: FoliageParams = FoliageParams(), report: Report = silent
+    photo: Picture, crown_px: Floats, params: FoliageParams = FoliageParams(), report: Report = silent
 ) -> Foliage:
     """Find the foliage inside a crown stroke (n, 3 points at least), px, on a photo (h, w, 3), sRGB.
 
@@ -148,14 +145,14 @@ def segment_foliage(
     return Foliage(mask, sure, searched, leaf, ground, look, sureness, clear)
 
 
-def _alike(pure: Mask, pixels: Photo) -> Mask:
+def _alike(pure: Mask, pixels: Picture) -> Mask:
     """Drop the pixels that glare among dark foliage: a cloud between the leaves."""
     brightness = np.maximum(pixels[..., 2], np.maximum(pixels[..., 0], pixels[..., 1]))
     usual = float(np.median(brightness[pure])) if pure.any() else 255.0
     return np.asarray(pure & (brightness <= GLARE * usual + 30))
 
 
-def _bluish(pixels: Photo) -> Mask:
+def _bluish(pixels: Picture) -> Mask:
     """Tell where blue outshines red and green: sky shines through, or on."""
     return np.asarray(pixels[..., 2] > 1.04 * np.maximum(pixels[..., 0], pixels[..., 1]))
 
@@ -183,7 +180,7 @@ def _surroundings(crown: Mask) -> tuple[slice, slice]:
     return slice(top, rows[-1] + 1 + edge), slice(left, columns[-1] + 1 + edge)
 
 
-def _colour_models(pixels: Photo, inside: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
+def _colour_models(pixels: Picture, inside: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
     """Share the crown's components out between leaf and ground, and let the ring around the crown join the ground."""
     crown, ring = _sample(pixels, inside, params.samples), _sample(pixels, ~inside, params.samples)
     core = _sample(pixels, _depth(inside) > 0.45, params.samples)
@@ -202,7 +199,7 @@ def _weighted(mixture: Mixture, belief: Floats) -> Mixture:
     return Mixture(weights / weights.sum(), mixture.means, mixture.covariances)
 
 
-def _refit(pixels: Photo, told: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
+def _refit(pixels: Picture, told: Mask, params: FoliageParams) -> tuple[Mixture, Mixture]:
     """Fit leaf and ground anew to what was told to be leaves (h, w) and what was not.
 
     This is what makes the answer hold still when the hand trembles: the first guess depends on where the stroke
@@ -212,7 +209,7 @@ def _refit(pixels: Photo, told: Mask, params: FoliageParams) -> tuple[Mixture, M
     return fit_mixture(leaf, params.components // 2), fit_mixture(ground, params.components // 2 + 4)
 
 
-def _sample(pixels: Photo, where: Mask, count: int) -> NDArray[np.uint8]:
+def _sample(pixels: Picture, where: Mask, count: int) -> NDArray[np.uint8]:
     """Take at most ``count`` pixels, evenly spaced in reading order."""
     index = np.flatnonzero(where.ravel())
     step = max(1, len(index) // count)
@@ -226,7 +223,7 @@ def _depth(inside: Mask) -> Floats:
     return np.asarray(away / max(float(away.max()), 1.0), dtype=np.float64)
 
 
-def _leaf_belief(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -> Floats:
+def _leaf_belief(mixture: Mixture, crown: Picture, core: Picture, ring: Picture) -> Floats:
     """Belief (k,), 0 to 1, that a component is leaves.
 
     A component speaks for leaves by how much commoner it is in the crown's core than in the ring around the
@@ -238,7 +235,7 @@ def _leaf_belief(mixture: Mixture, crown: Photo, core: Photo, ring: Photo) -> Fl
     return np.asarray(1 / (1 + np.exp(-4.0 * votes)))
 
 
-def _shares(mixture: Mixture, colours: Photo) -> Floats:
+def _shares(mixture: Mixture, colours: Picture) -> Floats:
     """Share of the colours that each component explains (k,)."""
     if len(colours) == 0:
         return np.zeros(len(mixture))
@@ -254,7 +251,7 @@ def _hue_prior(means: Floats) -> Floats:
     return np.asarray(1.5 * np.clip(vegetation, 0, 0.6) - 6.0 * np.clip(sky - 0.2, 0, 0.6) * (brightness > 60))
 
 
-def _log_odds(leaf: Mixture, ground: Mixture, pixels: Photo) -> NDArray[np.float32]:
+def _log_odds(leaf: Mixture, ground: Mixture, pixels: Picture) -> NDArray[np.float32]:
     """Log odds that each pixel (h, w) is a leaf, by its colour, within +-8."""
     colours = table_colours()
     table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -LIMIT, LIMIT)

@@ -7,14 +7,8 @@ than in its shade. So a mixture's components stay what they are, and their weigh
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.imaging.mixture import (
-    Floats,
-    Mixture,
-    component_shares,
-    log_components,
-    table_colours,
-    table_index,
-)
+from treestroke.core.imaging.mixture import Mixture, component_shares, log_components, table_colours, table_index
+from treestroke.core.types import Floats
 
 BANDS = 10
 """Heights at which weights are counted; between them they are interpolated."""

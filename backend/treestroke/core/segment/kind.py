@@ -7,12 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import distances_to_segment
+from treestroke.core.types import Floats, FoliageKind, Mask
 
-Kind = Literal["leaves", "needles", "bare"]
 Look = Literal["bare", "dull", "fresh"]
 """Twigs alone; dull dark green; all else."""
-Mask = NDArray[np.bool_]
-Floats = NDArray[np.float64]
 
 THIN = 0.5
 """Share of the foliage that is lines thinner than 1 % of the crown, over which a tree is bare."""
@@ -51,7 +49,7 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Loo
     return "dull" if _is_dull_green(colours) else "fresh", 0.0 if tint < 0.0 else min(-bareness, 1.0)
 
 
-def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> Kind:
+def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> FoliageKind:
     """Judge by how the foliage looks, its mask (h, w) and the trunk stroke (n, 2), px.
 
     Needles: dull dark green, in a crown that is tall or tapers to a top above a trunk that runs through it.

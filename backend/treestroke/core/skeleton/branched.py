@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import limbs
+from treestroke.core.types import Indices
 
 
 @dataclass(frozen=True, eq=False)

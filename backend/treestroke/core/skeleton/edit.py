@@ -3,7 +3,8 @@
 import numpy as np
 
 from treestroke.core.skeleton.measure import edge_lengths
-from treestroke.core.skeleton.skeleton import Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Indices
 
 
 def densified(skeleton: Skeleton, step: float) -> tuple[Skeleton, Indices]:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices
 
 
 def edge_lengths(skeleton: Skeleton) -> Floats:

@@ -6,12 +6,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
-
-Mask = NDArray[np.bool_]
+from treestroke.core.types import Floats, Indices, Mask
 
 COVERED, TRUE = 2.0, 4.0
 """Units in which a stroke counts as covered, and a projected limb as true to a stroke."""

@@ -8,8 +8,9 @@ import numpy as np
 
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.skeleton.measure import edge_lengths, generations
-from treestroke.core.skeleton.skeleton import Floats, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
+from treestroke.core.types import Floats
 
 BREAST_HEIGHT = 1.3
 """Metres above the root at which a trunk's diameter is taken."""

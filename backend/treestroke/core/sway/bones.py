@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.skeleton.measure import edge_lengths, path_lengths
-from treestroke.core.skeleton.skeleton import Floats, Indices, Skeleton
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
 from treestroke.core.sway.wind import Rig
+from treestroke.core.types import Floats, Indices
 
 MOST_BRANCHES = 48
 """Bones at most, the root's with them: what a phone skins without effort, leaves' flutter on top."""

@@ -12,7 +12,8 @@ from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.sway.bones import rig_of
 from treestroke.core.sway.stiffness import moving_branches, softness, swing, thickness
-from treestroke.core.sway.wind import Clip, Floats, Indices, Rig, Wind
+from treestroke.core.sway.wind import Clip, Rig, Wind
+from treestroke.core.types import Floats, Indices
 
 WIND = np.array([0.94, 0.0, 0.342])
 """Where the wind blows to, horizontal, unit length: to the photo's right, and a little towards the camera."""

@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Hold, Mesh
 from treestroke.core.sway.stiffness import softness
-from treestroke.core.sway.wind import Floats, Indices, Rig, Skin
+from treestroke.core.sway.wind import Rig, Skin
+from treestroke.core.types import Floats, Indices
 
 FLUTTER = 0.5
 """How much a leaf's outer corners follow the flutter bone of their own bone; its inner ones hold to the wood."""

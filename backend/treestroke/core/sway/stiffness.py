@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.sway.wind import Floats, Rig
+from treestroke.core.sway.wind import Rig
+from treestroke.core.types import Floats
 
 _SLENDER = 1.25  # power of the radius at which the turn falls: twigs move some centimetres where the trunk moves one
 _THIN = 0.03  # of the greatest radius: thinner wood is no longer much softer

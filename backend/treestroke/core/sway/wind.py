@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Indices = NDArray[np.int64]
+from treestroke.core.types import Floats, Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, normals, resample
+from treestroke.core.geometry.polyline import normals, resample
 from treestroke.core.imaging.mixture import (
     TABLE_BITS,
     Mixture,
@@ -17,9 +17,8 @@ from treestroke.core.imaging.mixture import (
     table_index,
 )
 from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.types import Floats, Mask, Picture
 
-Photo = NDArray[np.uint8]
-Mask = NDArray[np.bool_]
 Odds = NDArray[np.float32]
 
 COMPONENTS = 5
@@ -33,7 +32,7 @@ FEWEST = 100
 
 
 def branch_odds(
-    photo: Photo, lines_px: Sequence[Floats], breadth_px: float, leaf: Mixture, ground: Mixture, crown: Mask
+    photo: Picture, lines_px: Sequence[Floats], breadth_px: float, leaf: Mixture, ground: Mixture, crown: Mask
 ) -> Odds:
     """Log odds (h, w) that each pixel is branch rather than anything else, within +-6.
 
@@ -60,8 +59,8 @@ def _odds(branch: Mixture, rest: Mixture) -> Odds:
 
 
 def _pixels_under(
-    photo: Photo, lines_px: Sequence[Floats], breadth_px: float, crown: Mask
-) -> tuple[Photo, NDArray[np.bool_]]:
+    photo: Picture, lines_px: Sequence[Floats], breadth_px: float, crown: Mask
+) -> tuple[Picture, NDArray[np.bool_]]:
     """Read the pixels along the lines and up to ``breadth_px`` beside them (n, 3); tell which lie in the crown (n,)."""
     offsets = np.arange(-np.floor(breadth_px), np.floor(breadth_px) + 1)
     walked = [resample(line, 1.0) for line in lines_px]
@@ -70,7 +69,7 @@ def _pixels_under(
     return np.asarray(sample_nearest(photo, spread, 0), dtype=np.uint8), sample_nearest(crown, spread, False)
 
 
-def _thinned(pixels: Photo) -> Photo:
+def _thinned(pixels: Picture) -> Picture:
     """Take evenly spaced ones of many pixels."""
     return pixels[:: max(1, len(pixels) // SAMPLES)]
 

@@ -13,9 +13,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, Indices, arc_lengths, place_at
-
-Mask = NDArray[np.bool_]
+from treestroke.core.geometry.polyline import arc_lengths, place_at
+from treestroke.core.types import Floats, Indices, Mask
 
 SPUR = 1.5
 """Of the ink's half width: a line that ends nearer to its fork than this, and `SPUR_PX`, follows an uneven edge."""

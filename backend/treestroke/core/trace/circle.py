@@ -11,10 +11,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, resample
+from treestroke.core.geometry.polyline import resample
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.trace.draft import Draft
 from treestroke.core.trace.thickness import half_widths
+from treestroke.core.types import Floats
 
 SOLID_SHARE = 0.92
 """Share of branch pixels on the way to an arc's centre; the paper asks for all, a JPEG has specks."""

@@ -3,10 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, Indices, simplified
+from treestroke.core.geometry.polyline import simplified
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts, children
+from treestroke.core.types import Floats, Indices
 
 
 class Draft:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.polyline import Floats
 from treestroke.core.imaging.outline import filled_and_crossing
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.branched import Branched
@@ -15,6 +14,7 @@ from treestroke.core.trace.hull import crown_around
 from treestroke.core.trace.inked import follow_ink
 from treestroke.core.trace.lined import link_strokes
 from treestroke.core.trace.lines import branched_from
+from treestroke.core.types import Floats
 
 CHECKED_SIDE = 750
 """Long side, px, of the picture in which a crown is checked: sketches are drawn up while they are drawn."""

@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, arc_lengths
+from treestroke.core.geometry.polyline import arc_lengths
+from treestroke.core.types import Floats
 
 REACH = 2.0
 """Radii above the ground below which a trunk's line is drawn anew."""

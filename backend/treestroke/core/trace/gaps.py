@@ -5,9 +5,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.polyline import Floats, Indices
 from treestroke.core.stroke_rules import MAX_STROKES, TOUCH_SHARE
-from treestroke.core.trace.centre_lines import Mask
+from treestroke.core.types import Floats, Indices, Mask
 
 SPECK = 0.006
 """Of the long side: what is no larger is no stroke."""

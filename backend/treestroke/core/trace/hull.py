@@ -3,8 +3,8 @@
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import Floats
 from treestroke.core.skeleton.branched import Branched
+from treestroke.core.types import Floats
 
 MARGIN = 0.06
 """Of the tree's height: as far as leaves stand out from the strokes."""

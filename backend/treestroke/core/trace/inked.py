@@ -9,22 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.polyline import (
-    Floats,
-    arc_lengths,
-    place_at,
-    places_along,
-    resample,
-    simplified,
-    smoothed,
-)
+from treestroke.core.geometry.polyline import arc_lengths, place_at, places_along, resample, simplified, smoothed
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.strokes import StrokeWarning
-from treestroke.core.trace.centre_lines import Graph, Mask, graph_of, thinned, with_crossings_joined, without_spurs
+from treestroke.core.trace.centre_lines import Graph, graph_of, thinned, with_crossings_joined, without_spurs
 from treestroke.core.trace.foot import stood
 from treestroke.core.trace.gaps import bridge_gaps
 from treestroke.core.trace.lines import Line, check_length, tree_height
 from treestroke.core.trace.spanning import Path, paths_of
+from treestroke.core.types import Floats, Mask
 
 WORKED_SIDE = 1600
 """Long side, px, at which a picture is worked on."""

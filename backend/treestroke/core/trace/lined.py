@@ -13,10 +13,11 @@ import cv2
 import numpy as np
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.polyline import Floats, Indices, arc_lengths, place_at, places_along, resample
+from treestroke.core.geometry.polyline import arc_lengths, place_at, places_along, resample
 from treestroke.core.stroke_rules import TOUCH_SHARE, check_count, clamped
 from treestroke.core.strokes import Stroke, StrokeWarning
 from treestroke.core.trace.lines import Line, check_length, tree_height
+from treestroke.core.types import Floats, Indices
 
 TOLERANCE = 0.0003
 """Of the tree's height: as far as the line through the points that are kept runs from those that are left out."""

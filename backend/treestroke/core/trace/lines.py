@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.polyline import Floats, arc_lengths, place_at
+from treestroke.core.geometry.polyline import arc_lengths, place_at
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats
 
 STEP = 0.008
 """Of the tree's height: as far as joints lie apart at most."""

@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, normals, resample, smoothed
+from treestroke.core.geometry.polyline import normals, resample, smoothed
 from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.types import Floats
 
 OFFSETS = 21
 EVIDENCE = 0.5

@@ -4,8 +4,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, normals
+from treestroke.core.geometry.polyline import normals
 from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.types import Floats
 
 
 def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tuple[Floats, Floats]:

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.polyline import Floats, Indices, arc_lengths, normals
+from treestroke.core.geometry.polyline import arc_lengths, normals
 from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -20,6 +20,7 @@ from treestroke.core.trace.circle import Circle, trace_forks
 from treestroke.core.trace.draft import Draft, simplify, without, without_spurs
 from treestroke.core.trace.snapping import blurred, snap
 from treestroke.core.trace.thickness import half_widths
+from treestroke.core.types import Floats, Indices
 
 REFERENCE_SIDE = 1500
 CONE, TAPER = 1.25, 0.75

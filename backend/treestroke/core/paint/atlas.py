@@ -1,0 +1,178 @@
+"""The leaf atlas: one texture of sprays, drawn in the colours of this photo."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
+from treestroke.core.paint.picture import draw_pictured, opaque_part, picture_recolour, reduced
+from treestroke.core.paint.seasons import LEAFY, Recolour, own_palette, recolour_bare, recolour_for
+from treestroke.core.paint.species import AUTO, Species
+from treestroke.core.paint.sprays import Shape, draw_spray
+from treestroke.core.types import Floats, FoliageKind
+
+COLUMNS = 4
+"""Tiles a row; the atlas has as many rows."""
+TILE_SIDE = 256
+"""Side of a tile, px: a spray is seen at 20 to 60 px, so this bears a close look."""
+BLOSSOM_LIGHTNESS, BLOSSOM_CHROMA = 62.0, 17.0
+"""Clusters that are lighter and paler than this (or pink) look like blossom."""
+BLOSSOM_SHARE = 0.3
+"""Share of the foliage that must look like blossom for the tree to be in flower (CIE Lab; told on 3 of 11 photos)."""
+
+
+@dataclass(frozen=True, eq=False)
+class LeafLook:
+    """What is known of the leaves apart from the photo.
+
+    Attributes
+    ----------
+    species
+        What they are drawn as.
+    season
+        One of `treestroke.core.paint.seasons.SEASONS`, or ``photo`` for their colours as they stand.
+    shown
+        Whether the photo shows leaves; if not, all colours are the season's.
+    picture
+        A leaf, (h, w, 4) uint8, sRGB with straight alpha, its stalk down, kept as its opaque part; None to draw one.
+
+    Raises
+    ------
+    ValueError
+        The picture is none, or transparent.
+    """
+
+    species: Species = AUTO
+    season: str = "photo"
+    shown: bool = True
+    picture: NDArray[np.uint8] | None = None
+
+    def __post_init__(self) -> None:
+        if self.picture is not None:
+            object.__setattr__(self, "picture", reduced(opaque_part(self.picture)))
+
+
+@dataclass(frozen=True, eq=False)
+class Atlas:
+    """Tiles of one texture; each holds another spray.
+
+    Attributes
+    ----------
+    image
+        (h, w, 4) uint8, sRGB, straight alpha, sides powers of two; to be cut at alpha 0.5.
+    boxes
+        (k, 4) left, top, right, bottom of each tile in texture coordinates, 0 to 1, v down.
+    colours
+        (k, 3) mean colour of each tile's opaque part, sRGB, 0 to 255.
+    recolour
+        How the photo's colours became the tiles', or None where they are the same.
+    fruit
+        The tile that shows a fruit, if one does; no leaf shows it.
+    """
+
+    image: NDArray[np.uint8]
+    boxes: Floats
+    colours: Floats
+    recolour: Recolour | None = None
+    fruit: int | None = None
+
+
+def leaf_atlas(
+    photo: NDArray[np.uint8],
+    mask: NDArray[np.bool_],
+    kind: FoliageKind,
+    rng: np.random.Generator,
+    look: LeafLook = LeafLook(),
+) -> Atlas:
+    """Draw sprays of leaves (or needles, or blossom) in up to 16 colours of the photo's foliage.
+
+    Every tile is another drawing; where the foliage has fewer colours, the common ones have several tiles.
+    Very pale clusters of a broad-leaved tree are drawn as blossom. A season other than the photo's recolours them.
+
+    Raises
+    ------
+    ValueError
+        The mask (h, w) is empty or not of the photo's size (h, w, 3).
+    """
+    tiles = COLUMNS * COLUMNS
+    palette = foliage_palette(photo, mask, tiles, rng) if look.shown else own_palette(tiles, rng)
+    flower = _in_flower(palette, kind, look)
+    recolour = None if flower and look.picture is None else _recolour(palette, kind, look)
+    shapes = _shapes(palette, kind, look, flower)
+    if recolour is not None:
+        palette = recolour.palette(palette, tiles, rng)
+    image = np.zeros((COLUMNS * TILE_SIDE, COLUMNS * TILE_SIDE, 4), dtype=np.uint8)
+    for tile, window in enumerate(_windows()):
+        cluster = tile % len(palette.members)
+        image[window] = _tile(shapes[cluster % len(shapes)], palette.members[cluster], look, rng)
+    return Atlas(image, _boxes(), _mean_colours(image), recolour if look.shown else _blind(recolour))
+
+
+def tile_alphas(atlas: Atlas) -> NDArray[np.uint8]:
+    """Cut the tiles' alpha (k, side, side) out of the atlas."""
+    height, width = atlas.image.shape[:2]
+    edges = np.rint(atlas.boxes * np.array([width, height, width, height])).astype(np.int64)
+    return np.stack([atlas.image[top:bottom, left:right, 3] for left, top, right, bottom in edges.tolist()])
+
+
+def tile_labs(atlas: Atlas) -> Floats:
+    """Mean colour of each tile (k, 3), CIE Lab."""
+    return lab_from_rgb(np.rint(atlas.colours).astype(np.uint8))
+
+
+def _in_flower(palette: Palette, kind: FoliageKind, look: LeafLook) -> bool:
+    """Tell whether much of the tree looks like blossom, at a season when it may."""
+    lightness, red, yellow = palette.centres.T
+    pale = (np.hypot(red, yellow) < BLOSSOM_CHROMA) & (lightness > BLOSSOM_LIGHTNESS)
+    pink = (red > 8) & (yellow < 6) & (lightness > 45)
+    its_time = look.season == "spring" and (look.species.flowers or look.species == AUTO)
+    blooms = look.shown and kind != "needles" and (look.season not in LEAFY or its_time)
+    return bool(blooms and palette.shares[pale | pink].sum() > BLOSSOM_SHARE)
+
+
+def _shapes(palette: Palette, kind: FoliageKind, look: LeafLook, flower: bool) -> list[Shape]:
+    """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
+    if kind == "needles":
+        return ["needles"]
+    if look.species.flowers and look.season == "spring":
+        return ["blossom"]
+    return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]
+
+
+def _recolour(palette: Palette, kind: FoliageKind, look: LeafLook) -> Recolour | None:
+    """Tell how the photo's colours become the leaves'."""
+    if look.picture is not None:
+        return picture_recolour(look.picture, palette)
+    if not look.shown:
+        return recolour_bare(look.season, look.species, kind == "needles")
+    return recolour_for(look.season, look.species, palette, kind == "needles")
+
+
+def _blind(recolour: Recolour | None) -> Recolour | None:
+    """Take no notice of a photo that shows no leaves."""
+    return None if recolour is None else replace(recolour, kept=np.zeros(3))
+
+
+def _tile(shape: Shape, members: Floats, look: LeafLook, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Draw one spray."""
+    if look.picture is not None:
+        return draw_pictured(look.picture, look.species, TILE_SIDE, members, rng)
+    return draw_spray(shape, TILE_SIDE, members, rng, look.species)
+
+
+def _windows() -> list[tuple[slice, slice]]:
+    """Rows and columns of each tile."""
+    edges = [slice(index * TILE_SIDE, (index + 1) * TILE_SIDE) for index in range(COLUMNS)]
+    return [(rows, columns) for rows in edges for columns in edges]
+
+
+def _boxes() -> Floats:
+    """Texture coordinates of the tiles (k, 4)."""
+    edges = [(columns.start, rows.start, columns.stop, rows.stop) for rows, columns in _windows()]
+    return np.array(edges, dtype=np.float64) / (COLUMNS * TILE_SIDE)
+
+
+def _mean_colours(image: NDArray[np.uint8]) -> Floats:
+    """Mean opaque colour of each tile (k, 3)."""
+    return np.stack([image[window][image[window][..., 3] > 127][:, :3].mean(axis=0) for window in _windows()])

@@ -1,0 +1,183 @@
+"""The colours of one photo's foliage, as clusters of its own pixels."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from treestroke.core.types import Floats, Indices, Mask, Picture
+
+SAMPLES = 6000
+"""Foliage pixels that are clustered; more change no cluster by more than the noise of a photo."""
+ROUNDS = 10
+"""Rounds of k-means; centres move by under one Lab unit after eight (measured on the 11 photos)."""
+RING = 0.06
+"""Width of the ring around the foliage that shows the background, as a share of the foliage's height."""
+RING_CLUSTERS = 4
+DISTINCT = 20.0
+"""Lab distance from the foliage's median from which a colour of the ring can be told from it."""
+BLEND = 0.3
+"""Share of background from which a pixel counts as seen through, where it lies between the two colours."""
+OFF_LINE = 18.0
+"""Lab distance from the line between foliage and background up to which a pixel is a blend of the two."""
+TINT_REMOVED = 0.6
+"""Share of the background's hue that is taken out of foliage that leans to it (blue sky on white petals)."""
+BACKGROUND_SHARE = 0.3
+"""At most this share of the foliage's pixels is given up as background."""
+SHADOWS_KEPT, LIGHTS_KEPT = 0.65, 0.95
+"""Contrast of lightness that is kept below and above the mean: the viewer shades the crown once more, so shade that is
+baked into the photo is taken back; judged on renders of 5 photos."""
+GAIN = 1.1
+"""Factor on colours for the same reason: a crown under sun and sky shows about 0.8 of its leaves' lightness."""
+LIGHTEST = 94.0
+"""Lightness, CIE Lab, up to which colours are lifted; white petals keep their drawing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Palette:
+    """Clusters of foliage colour, the most common first.
+
+    Attributes
+    ----------
+    centres
+        (k, 3) mean of each cluster, CIE Lab (L 0 to 100), light flattened.
+    shares
+        (k,) share of the foliage pixels in each cluster, summing to 1.
+    members
+        k arrays (m, 3) of the cluster's own pixels, CIE Lab, light flattened.
+    """
+
+    centres: Floats
+    shares: Floats
+    members: tuple[Floats, ...]
+
+
+def lab_from_rgb(rgb: Picture) -> Floats:
+    """Convert sRGB (..., 3) uint8 to CIE Lab (..., 3), L 0 to 100."""
+    flat = np.ascontiguousarray(rgb.reshape(1, -1, 3), dtype=np.float32) / np.float32(255)
+    return np.asarray(cv2.cvtColor(flat, cv2.COLOR_RGB2LAB), dtype=np.float64).reshape(rgb.shape)
+
+
+def rgb_from_lab(lab: Floats) -> Picture:
+    """Convert CIE Lab (..., 3) to sRGB (..., 3) uint8, clipped to what sRGB holds."""
+    flat = np.ascontiguousarray(lab.reshape(1, -1, 3), dtype=np.float32)
+    rgb = np.asarray(cv2.cvtColor(flat, cv2.COLOR_LAB2RGB)).reshape(lab.shape)
+    return np.asarray(np.clip(np.rint(rgb * 255), 0, 255), dtype=np.uint8)
+
+
+def nearest_colour(lab: Floats, centres: Floats) -> tuple[Indices, Floats]:
+    """Find the nearest of the centres (k, 3) to each colour (n, 3): its index and its squared distance."""
+    best = np.zeros(len(lab), dtype=np.int64)
+    least = np.full(len(lab), np.inf)
+    for index, centre in enumerate(centres):
+        gap = lab - centre
+        square = gap[:, 0] ** 2 + gap[:, 1] ** 2 + gap[:, 2] ** 2
+        closer = square < least
+        best[closer], least[closer] = index, square[closer]
+    return best, least
+
+
+def flattened(lab: Floats) -> Floats:
+    """Draw the lightness of colours (n, 3), CIE Lab, towards their mean, shadows more than lights, and lift all."""
+    mean = lab[:, 0].mean()
+    kept = np.where(lab[:, 0] < mean, SHADOWS_KEPT, LIGHTS_KEPT)
+    lightness = np.minimum(GAIN * (mean + kept * (lab[:, 0] - mean)), np.maximum(lab[:, 0], LIGHTEST))
+    return np.stack([lightness, GAIN * lab[:, 1], GAIN * lab[:, 2]], axis=1)
+
+
+def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Generator) -> Palette:
+    """Cluster the foliage's pixels by k-means in CIE Lab.
+
+    Pixels at the mask's border are left out, since sky shines into them, and so are pixels that blend the
+    foliage's colour with one seen around the crown's upper half. Baked light is
+    flattened (:func:`flattened`).
+
+    Raises
+    ------
+    ValueError
+        The mask is empty or not of the photo's size.
+    """
+    if mask.shape != photo.shape[:2] or not mask.any():
+        raise ValueError(f"a palette needs a mask with foliage of the photo's size, got {mask.shape}")
+    inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+    samples = _sample(photo, inner if inner.sum() > mask.sum() // 10 else mask, rng)
+    samples = _own_colours(samples, _sample(photo, _ring(mask), rng), rng)
+    samples = flattened(samples)
+    _, labels = _k_means(samples, clusters, rng)
+    counts = np.bincount(labels)
+    order = [int(k) for k in np.argsort(-counts, kind="stable") if counts[k] > 0]
+    members = tuple(samples[labels == k] for k in order)
+    return Palette(np.stack([m.mean(axis=0) for m in members]), counts[order] / counts.sum(), members)
+
+
+def _sample(photo: Picture, mask: Mask, rng: np.random.Generator) -> Floats:
+    """Draw the Lab colours of up to SAMPLES pixels of the mask."""
+    index = np.flatnonzero(mask)
+    if len(index) > SAMPLES:
+        index = index[np.sort(rng.choice(len(index), SAMPLES, replace=False))]
+    return lab_from_rgb(photo.reshape(-1, 3)[index])
+
+
+def _ring(mask: Mask) -> Mask:
+    """Mark what lies around the foliage's upper half, a few pixels off its blurred border."""
+    rows = np.flatnonzero(mask.any(axis=1))
+    far = max(4, round(RING * (rows[-1] - rows[0] + 1)))
+    outside = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 3)
+    outside[(rows[0] + rows[-1]) // 2 :] = 0
+    return np.asarray((outside > 2.5) & (outside <= far), dtype=np.bool_)
+
+
+def _k_means(samples: Floats, clusters: int, rng: np.random.Generator) -> tuple[Floats, Indices]:
+    """Lloyd's k-means from a k-means++ start; clusters that lose all samples keep their centre."""
+    centres = samples[rng.integers(len(samples))][None]
+    least = nearest_colour(samples, centres)[1]
+    while len(centres) < clusters and least.max() > 0:
+        chosen = np.searchsorted(np.cumsum(least), rng.random() * least.sum())
+        centres = np.vstack([centres, samples[min(int(chosen), len(samples) - 1)]])
+        least = np.minimum(least, nearest_colour(samples, centres[-1:])[1])
+    for _ in range(ROUNDS):
+        labels, _ = nearest_colour(samples, centres)
+        counts = np.bincount(labels, minlength=len(centres))[:, None]
+        sums = np.stack([np.bincount(labels, samples[:, axis], len(centres)) for axis in range(3)], axis=1)
+        centres = np.where(counts > 0, sums / np.maximum(counts, 1), centres)
+    return centres, nearest_colour(samples, centres)[0]
+
+
+def _own_colours(samples: Floats, ring: Floats, rng: np.random.Generator) -> Floats:
+    """Drop the samples (n, 3) that are background between leaves, and weaken its tint in the others.
+
+    Those with the largest share of background go first, up to BACKGROUND_SHARE of all.
+    """
+    if len(ring) == 0:
+        return samples
+    foliage, share = np.median(samples, axis=0), np.zeros(len(samples))
+    backgrounds = _k_means(ring, RING_CLUSTERS, rng)[0]
+    for background in backgrounds:
+        share = np.maximum(share, _background_share(samples, foliage, background))
+    limit = np.sort(share)[-1 - int(BACKGROUND_SHARE * len(share))]
+    samples = samples[(share <= BLEND) | (share <= limit)]
+    for background in backgrounds:
+        samples = _without_tint(samples, foliage, background)
+    return samples
+
+
+def _without_tint(samples: Floats, foliage: Floats, background: Floats) -> Floats:
+    """Take most of a background's hue out of samples (n, 3) that lean to it from the foliage's median."""
+    way = background - foliage
+    way[0] = 0.0
+    length = float(np.hypot(way[1], way[2]))
+    if length < DISTINCT:
+        return samples
+    lean = ((samples - foliage) * way).sum(axis=1) / length**2
+    return np.asarray(samples - TINT_REMOVED * np.maximum(lean, 0.0)[:, None] * way)
+
+
+def _background_share(samples: Floats, foliage: Floats, background: Floats) -> Floats:
+    """Share of the background's colour in each sample (n,), 0 where it is no blend of the two."""
+    way = background - foliage
+    length = float(np.sqrt((way**2).sum()))
+    if length < DISTINCT:
+        return np.zeros(len(samples))
+    share = ((samples - foliage) * way).sum(axis=1) / length**2
+    off_line = np.sqrt((((samples - foliage) - share[:, None] * way) ** 2).sum(axis=1))
+    return np.where(off_line < OFF_LINE, share, 0.0)

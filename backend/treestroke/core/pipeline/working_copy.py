@@ -1,0 +1,78 @@
+"""The working copy of a photo and its strokes, and the camera that took it."""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.stroke_rules import mend_strokes
+from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
+from treestroke.core.types import Mask, Picture
+
+WORKING_SIDE = 1600
+"""Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
+
+
+@dataclass(frozen=True, eq=False)
+class WorkingCopy:
+    """The working copy of a photo: reduced by ``scale`` (1 or less), with mended strokes to match.
+
+    ``size`` is the photo's own width and height, px.
+    """
+
+    photo: Picture
+    strokes: Strokes
+    scale: float
+    size: tuple[int, int]
+    warnings: tuple[StrokeWarning, ...]
+
+    def height_px(self, mask: Mask) -> float:
+        """Measure the tree, px, from its root to its topmost leaf, or to the crown's top where there is no leaf."""
+        rows = np.flatnonzero(mask.any(axis=1))
+        top = float(rows[0]) if rows.size else float(self.strokes.crown.points[:, 1].min())
+        return max(float(self.strokes.branches[0].points[0, 1]) - top, 1.0)
+
+    def camera(self, mask: Mask, height_m: float) -> Camera:
+        """Set the scale by the known length, or by the tree's height where there is none."""
+        root, known = self.strokes.branches[0].points[0], self.strokes.scale
+        scale = height_m / self.height_px(mask)
+        if known is not None:
+            scale = known.metres / float(np.hypot(*(known.points[1] - known.points[0])))
+        return Camera(self.photo.shape[1], self.photo.shape[0], scale, (float(root[0]), float(root[1])))
+
+    def unreduced(self, camera: Camera) -> Camera:
+        """Give the same camera for the photo at its own size."""
+        root_x, root_y = camera.root_px
+        return replace(
+            camera,
+            width=self.size[0],
+            height=self.size[1],
+            metres_per_pixel=camera.metres_per_pixel * self.scale,
+            root_px=(root_x / self.scale, root_y / self.scale),
+        )
+
+
+def look(photo: Picture, strokes: Strokes) -> WorkingCopy:
+    """Mend the strokes and reduce a large photo (h, w, 3), strokes and all.
+
+    Raises
+    ------
+    StrokesError
+        The strokes do not describe a tree.
+    """
+    height, width = photo.shape[:2]
+    mended = mend_strokes(strokes, width, height)
+    scale = min(1.0, WORKING_SIDE / max(height, width))
+    if scale == 1.0:
+        return WorkingCopy(photo, mended.strokes, 1.0, (width, height), mended.warnings)
+    size = (max(1, round(width * scale)), max(1, round(height * scale)))
+    small = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+    def reduced(strokes: tuple[Stroke, ...]) -> tuple[Stroke, ...]:
+        return tuple(Stroke(s.points * scale, None if s.width is None else s.width * scale) for s in strokes)
+
+    given = mended.strokes
+    known = None if given.scale is None else Length(given.scale.points * scale, given.scale.metres)
+    fitted = Strokes(reduced((given.crown,))[0], reduced(given.branches), reduced(given.erase), known)
+    return WorkingCopy(small, fitted, scale, (width, height), mended.warnings)

@@ -1,0 +1,15 @@
+"""Names of arrays and of values that several stages share."""
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Mask = NDArray[np.bool_]
+"""(h, w) where it belongs to a picture."""
+Picture = NDArray[np.uint8]
+"""(h, w, 3) sRGB, or (h, w, 4) with straight alpha."""
+FoliageKind = Literal["leaves", "needles", "bare"]
+"""What twigs bear."""

@@ -1,0 +1,69 @@
+import numpy as np
+import pytest
+
+from treestroke.core.paint.species import KINDS, SPECIES
+from treestroke.core.paint.sprays import draw_spray
+
+MEMBERS = np.array([[45.0, -20.0, 25.0], [55.0, -18.0, 28.0], [50.0, -22.0, 20.0]])
+
+
+@pytest.mark.parametrize("shape", ["broad", "needles", "blossom"])
+def test_a_spray_covers_near_half_its_tile_and_leaves_gaps(shape):
+    covered = [(draw_spray(shape, 128, MEMBERS, np.random.default_rng(seed))[..., 3] > 127).mean() for seed in range(8)]
+    assert 0.36 <= np.mean(covered) <= 0.58
+
+
+@pytest.mark.parametrize("shape", ["broad", "needles", "blossom"])
+def test_the_border_is_clear(shape):
+    alpha = draw_spray(shape, 128, MEMBERS, np.random.default_rng(0))[..., 3]
+    assert max(alpha[0].max(), alpha[-1].max(), alpha[:, 0].max(), alpha[:, -1].max()) == 0
+
+
+def test_clear_pixels_have_the_leaves_colour():
+    tile = draw_spray("broad", 128, MEMBERS, np.random.default_rng(0)).astype(float)
+    opaque, clear = tile[tile[..., 3] > 250][:, :3], tile[tile[..., 3] == 0][:, :3]
+    assert np.abs(opaque.mean(axis=0) - clear.mean(axis=0)).max() < 16
+
+
+def test_the_same_seed_draws_the_same_spray():
+    first, second = (draw_spray("needles", 64, MEMBERS, np.random.default_rng(5)) for _ in range(2))
+    assert np.array_equal(first, second)
+
+
+def test_no_two_sprays_have_the_same_outline():
+    shown = [draw_spray("broad", 64, MEMBERS, np.random.default_rng(seed))[..., 3] > 127 for seed in range(6)]
+    overlaps = [(a & b).sum() / (a | b).sum() for i, a in enumerate(shown) for b in shown[:i]]
+    assert max(overlaps) < 0.8
+
+
+def of(name: str, seed: int = 0) -> np.ndarray:
+    """Draw a species' spray."""
+    shape = "needles" if KINDS[name].needles else "broad"
+    return draw_spray(shape, 128, MEMBERS, np.random.default_rng(seed), KINDS[name])
+
+
+@pytest.mark.parametrize("name", SPECIES)
+def test_a_species_fills_a_quarter_to_three_quarters_of_its_tile(name):
+    covered = [(of(name, seed)[..., 3] > 127).mean() for seed in range(4)]
+    assert min(covered) >= 0.25
+    assert max(covered) <= 0.75
+
+
+@pytest.mark.parametrize("name", SPECIES)
+def test_a_species_leaves_the_border_clear(name):
+    alpha = of(name)[..., 3]
+    assert max(alpha[0].max(), alpha[-1].max(), alpha[:, 0].max(), alpha[:, -1].max()) == 0
+
+
+def test_species_differ_from_each_other_and_from_a_tree_of_unknown_kind():
+    shown = [of(name)[..., 3] > 127 for name in ("auto", *SPECIES)]
+    overlaps = [(a & b).sum() / (a | b).sum() for i, a in enumerate(shown) for b in shown[:i]]
+    assert max(overlaps) < 0.85
+
+
+def test_needles_have_more_edge_for_their_area_than_leaves():
+    def edge(name: str) -> float:
+        opaque = (of(name)[..., 3] > 127).astype(int)
+        return (np.abs(np.diff(opaque, axis=0)).sum() + np.abs(np.diff(opaque, axis=1)).sum()) / opaque.sum()
+
+    assert min(edge("pine"), edge("larch"), edge("spruce")) > edge("plane")
