@@ -3,6 +3,7 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
+from http import HTTPStatus
 from typing import Any
 
 from fastapi import FastAPI
@@ -57,7 +58,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     app.state.settings, app.state.places = settings, places
     add_handlers(app)
     for routes in (photos, sketches, models, events, files, status):
-        app.include_router(routes.router, responses=documented(500, 503))
+        app.include_router(routes.router, responses=documented("foreign_host", "internal", "overloaded"))
     add_metrics(app)
     add_page(app)
     app.add_middleware(Limited, limit_of=_limit_of)
@@ -107,12 +108,13 @@ def _operation_id(route: APIRoute) -> str:
 
 
 def _drop_standard_problems(document: dict[str, Any]) -> None:
-    """Leave out FastAPI's own form of a 422, which it names wherever there is a parameter; ours are named by hand."""
+    """Remove FastAPI's own form of an invalid request, which it adds wherever a parameter exists; ours are listed."""
+    invalid = str(HTTPStatus.UNPROCESSABLE_ENTITY.value)
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
     for operation in (one for path in document["paths"].values() for one in path.values()):
-        if "HTTPValidationError" in str(operation["responses"].get("422")):
-            del operation["responses"]["422"]
+        if "HTTPValidationError" in str(operation["responses"].get(invalid)):
+            del operation["responses"][invalid]
 
 
 def _document(app: FastAPI) -> dict[str, Any]:

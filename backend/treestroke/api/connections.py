@@ -125,7 +125,7 @@ class Connection(H11Protocol):
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002 - uvicorn's words
         """Refuse what is no HTTP."""
         log.warning("request_invalid", peer=self.client and self.client[0])
-        self._refuse(problem(400, "bad_request", "this is no valid HTTP request; send it anew"), LINGER_SECONDS)
+        self._refuse(problem("bad_request", "this is no valid HTTP request; send it anew"), LINGER_SECONDS)
 
     @property
     def answering(self) -> bool:
@@ -145,7 +145,7 @@ class Connection(H11Protocol):
         self.connections.discard(self)
         if self._due is not None:
             busy = "too many connections are open at the moment; try again"
-            self._refuse(problem(503, "overloaded", busy, headers={"Retry-After": "1"}))
+            self._refuse(problem("overloaded", busy))
         else:
             self.transport.abort()
 
@@ -178,7 +178,7 @@ class Connection(H11Protocol):
     def _give_up(self) -> None:
         if self.conn.trailing_data[0]:
             slow = "the request's head comes too slowly; send it again"
-            self._refuse(problem(408, "request_too_slow", slow), LINGER_SECONDS)
+            self._refuse(problem("request_too_slow", slow), LINGER_SECONDS)
         else:
             self.transport.close()
 

@@ -5,9 +5,10 @@ from contextlib import AbstractAsyncContextManager
 from tempfile import gettempdir
 from typing import Annotated, Any
 
-from fastapi import Depends, HTTPException, Path, Query, Request
+from fastapi import Depends, Path, Query, Request
 from starlette.datastructures import FormData
 
+from treestroke.api.errors import Refusal
 from treestroke.api.following import Watcher
 from treestroke.codec.image import MAX_BYTES
 from treestroke.service.dispatch import Dispatcher
@@ -51,7 +52,7 @@ def media_type(request: Request) -> str:
 async def _json_body(request: Request) -> bytes:
     """Read a JSON body; it is parsed where a large or hostile one does no harm."""
     if media_type(request) not in ("application/json", ""):
-        raise HTTPException(415, "the body must be JSON; send it as application/json")
+        raise Refusal("unsupported_media_type", "the body must be JSON; send it as application/json")
     return await request.body()
 
 
@@ -66,11 +67,11 @@ def check_length(photo: bytes) -> None:
 
     Raises
     ------
-    HTTPException
-        413.
+    Refusal
+        The photo is too large.
     """
     if len(photo) > MAX_BYTES:
-        raise HTTPException(413, f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
+        raise Refusal("body_too_large", f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
 
 
 def _id(kind: str) -> Any:

@@ -1,7 +1,7 @@
-"""Errors as problem+json: the only place that knows which error is which HTTP status."""
+"""Errors as problem+json: the only place that knows which problem has which HTTP status."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from http import HTTPStatus
 from typing import Any
 
@@ -26,18 +26,31 @@ from treestroke.service.tracing import NoRoom
 from treestroke.store.blobs import Damaged
 
 MEDIA_TYPE = "application/problem+json"
-_RETRY = {"Retry-After": "1"}
+_RETRY_SECONDS = 1
 _RETRY_HEADER = {"Retry-After": {"schema": {"type": "string", "pattern": "^[0-9]+$"}, "description": "seconds"}}
-_CODES = {
-    400: "bad_request",
-    404: "not_found",
-    405: "method_not_allowed",
-    408: "body_too_slow",
-    413: "body_too_large",
-    415: "unsupported_media_type",
-    503: "overloaded",
-}
-_STORAGE = {
+_STATUS = {
+    "bad_request": 400,
+    "malformed_json": 400,
+    "foreign_host": 403,
+    "foreign_origin": 403,
+    "not_found": 404,
+    "photo_not_found": 404,
+    "model_not_found": 404,
+    "file_not_found": 404,
+    "method_not_allowed": 405,
+    "body_too_slow": 408,
+    "request_too_slow": 408,
+    "body_too_large": 413,
+    "unsupported_media_type": 415,
+    "range_not_satisfiable": 416,
+    "invalid": 422,
+    "idempotency_key_reused": 422,
+    "internal": 500,
+    "file_damaged": 500,
+    "overloaded": 503,
+    "tracing_stopped": 503,
+    "tracing_unavailable": 503,
+    "photos_full": 507,
     "storage_full": 507,
     "storage_read_only": 500,
     "storage_broken": 500,
@@ -46,13 +59,34 @@ _STORAGE = {
     "database_busy": 503,
     "database_unavailable": 503,
 }
+"""HTTP status of each problem's code; the codes of a `TreestrokeError` that are not listed have `_INPUT_STATUS`."""
+_INPUT_STATUS = 422
+BODY = ("bad_request", "body_too_slow", "body_too_large", "unsupported_media_type", "invalid")
+"""Codes that every route which reads a body may answer with, for `documented`."""
 log = structlog.get_logger()
 
 
+class Refusal(HTTPException):
+    """A request that a route or a middleware refuses; ``code`` decides the HTTP status."""
+
+    def __init__(self, code: str, detail: str) -> None:
+        super().__init__(_STATUS[code], detail)
+        self.code = code
+
+
 def problem(
-    status: int, code: str, detail: str, errors: Sequence[Fault] = (), headers: dict[str, str] | None = None
+    code: str, detail: str, errors: Sequence[Fault] = (), headers: Mapping[str, str] | None = None
 ) -> JSONResponse:
-    """Answer with a problem."""
+    """Return the response to a problem; where it is over before long, the response says when to try again."""
+    return _response(_STATUS.get(code, _INPUT_STATUS), code, detail, errors, headers)
+
+
+def _response(
+    status: int, code: str, detail: str, errors: Sequence[Fault] = (), headers: Mapping[str, str] | None = None
+) -> JSONResponse:
+    headers = dict(headers or {})
+    if status == HTTPStatus.SERVICE_UNAVAILABLE:
+        headers["Retry-After"] = str(_RETRY_SECONDS)
     body = Problem(
         type="about:blank",
         title=HTTPStatus(status).phrase,
@@ -64,14 +98,14 @@ def problem(
     return JSONResponse(body.model_dump(), status, headers, MEDIA_TYPE)
 
 
-def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Name the problems that a route may answer with, for the API's document."""
+def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI responses for the problems with these codes, by status."""
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
-    described: dict[int | str, dict[str, Any]] = {
-        status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses
-    }
-    for status in {503} & described.keys():
-        described[status]["headers"] = _RETRY_HEADER
+    described: dict[int | str, dict[str, Any]] = {}
+    for status in sorted({_STATUS[code] for code in codes}):
+        described[status] = {"description": HTTPStatus(status).phrase, "content": content}
+        if status == HTTPStatus.SERVICE_UNAVAILABLE:
+            described[status]["headers"] = _RETRY_HEADER
     return described
 
 
@@ -83,87 +117,90 @@ def add_handlers(app: FastAPI) -> None:
 
 def _input(_: Request, error: TreestrokeError) -> JSONResponse:
     faults = [Fault(pointer=error.pointer, code=error.code, detail=str(error))] if error.pointer else []
-    return problem(400 if error.code == "malformed_json" else 422, error.code, str(error), faults)
+    return problem(error.code, str(error), faults)
 
 
 def _invalid(_: Request, error: RequestValidationError) -> JSONResponse:
     if error.errors()[0]["type"] == "json_invalid":
-        return problem(400, "malformed_json", "the body is no valid JSON; send it anew")
+        return problem("malformed_json", "the body is no valid JSON; send it anew")
     # What was sent is not repeated: it may be anything.
     faults = [
         Fault(pointer="".join(f"/{part}" for part in one["loc"][1:]), code=one["type"], detail=one["msg"])
         for one in error.errors()
     ]
     said = "; ".join(f"{fault.pointer[1:]}: {fault.detail}" for fault in faults)
-    return problem(422, "invalid", f"{said}; change it", faults)
+    return problem("invalid", f"{said}; change it", faults)
 
 
 def _missing(_: Request, error: NotFound) -> JSONResponse:
-    return problem(404, f"{error}_not_found", f"there is no such {error}; check its id")
+    return problem(f"{error}_not_found", f"there is no such {error}; check its id")
 
 
 def _reused(_: Request, __: KeyReused) -> JSONResponse:
     detail = "this Idempotency-Key was used with another request; take a new one"
-    return problem(422, "idempotency_key_reused", detail)
+    return problem("idempotency_key_reused", detail)
 
 
 def _no_room(_: Request, __: NoRoom) -> JSONResponse:
     detail = "all photos together would take more than they may here; delete some, whose room is free a day later"
-    return problem(507, "photos_full", f"{detail}, or raise TREESTROKE_PHOTOS_MB")
+    return problem("photos_full", f"{detail}, or raise TREESTROKE_PHOTOS_MB")
 
 
 def _busy(_: Request, error: Overloaded) -> JSONResponse:
-    return problem(503, "overloaded", f"{error}; try again", headers=_RETRY)
+    return problem("overloaded", f"{error}; try again")
 
 
 def _crowded(_: Request, __: Crowded) -> JSONResponse:
-    return problem(503, "overloaded", "too many models are followed at the moment; try again", headers=_RETRY)
+    return problem("overloaded", "too many models are followed at the moment; try again")
 
 
 def _crashed(_: Request, error: Crashed) -> JSONResponse:
     log.error("tracer_replaced", why=str(error))
     detail = "this took too long or failed; try again, or with fewer strokes"
-    return problem(503, "tracing_stopped", detail, headers=_RETRY)
+    return problem("tracing_stopped", detail)
 
 
 def _cannot_start(_: Request, error: CannotStart) -> JSONResponse:
     log.error("tracer_not_started", why=str(error))
     detail = f"the process that reads this cannot be started ({error}); try again"
-    return problem(503, "tracing_unavailable", detail, headers=_RETRY)
+    return problem("tracing_unavailable", detail)
 
 
 def _storage(request: Request, error: OSError | SQLAlchemyError) -> JSONResponse:
     code = code_of(error)
-    status = _STORAGE.get(code)
-    if status is None:
+    if code not in _STATUS:
         return _ours(request, error)
     log.error("storage_failed", code=code, error=str(getattr(error, "orig", error)))
-    return problem(status, code, problem_of(code)["detail"], headers=_RETRY if status == 503 else None)
+    return problem(code, problem_of(code)["detail"])
 
 
 def _damaged(_: Request, error: Damaged) -> JSONResponse:
     log.error("file_damaged", file=str(error))
     detail = "a file that the service kept is damaged or gone; upload the photo or ask for the model again"
-    return problem(500, "file_damaged", f"{detail}, and have `treestroke doctor` say what else is")
+    return problem("file_damaged", f"{detail}, and have `treestroke doctor` say what else is")
 
 
 def _http(request: Request, error: HTTPException) -> JSONResponse:
-    if error.status_code == 405:
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
         return nothing_there(request.method, allowed_methods(request.app, request.scope["path"]))
     if error.detail == HTTPStatus.NOT_FOUND.phrase:
         return nothing_there(request.method, ())
-    code = _CODES.get(error.status_code, "error")
-    return problem(error.status_code, code, str(error.detail), headers=dict(error.headers or {}))
+    code = next((code for code, status in _STATUS.items() if status == error.status_code), "error")
+    return _response(error.status_code, code, str(error.detail), headers=error.headers)
+
+
+def _refused(_: Request, error: Refusal) -> JSONResponse:
+    return problem(error.code, error.detail)
 
 
 def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
     """Answer, for order's sake, a client that left before its body was whole."""
-    return problem(400, "bad_request", "the body ended too soon; send it again")
+    return problem("bad_request", "the body ended too soon; send it again")
 
 
 def _ours(_: Request, error: Exception) -> JSONResponse:
     log.error("request_failed", exc_info=error)
-    return problem(500, "internal", "this is our mistake, and it is in the log; try again later")
+    return problem("internal", "this is our mistake, and it is in the log; try again later")
 
 
 _ANSWERS: dict[type[Exception], Any] = {
@@ -179,6 +216,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     Damaged: _damaged,
     OSError: _storage,
     SQLAlchemyError: _storage,
+    Refusal: _refused,
     HTTPException: _http,
     ClientDisconnect: _gone,
     Exception: _ours,
@@ -189,9 +227,9 @@ def nothing_there(method: str, allowed: Sequence[str]) -> JSONResponse:
     """Answer a method that does nothing at an address where others are ``allowed``, or none."""
     if not allowed:
         nothing = "there is nothing at this address; /openapi.json names what there is"
-        return problem(404, _CODES[404], nothing)
+        return problem("not_found", nothing)
     names = ", ".join(allowed)
-    return problem(405, _CODES[405], f"{method} does nothing here; what does is {names}", headers={"Allow": names})
+    return problem("method_not_allowed", f"{method} does nothing here; what does is {names}", headers={"Allow": names})
 
 
 def allowed_methods(app: FastAPI, path: str) -> list[str]:

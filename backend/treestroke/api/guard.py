@@ -5,16 +5,16 @@ import math
 import time
 from collections.abc import Callable
 from functools import partial
+from http import HTTPStatus
 from operator import attrgetter
 from urllib.parse import urlsplit
 
 from fastapi import Response
 from fastapi.responses import JSONResponse
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from treestroke.api.errors import allowed_methods, nothing_there, problem
+from treestroke.api.errors import Refusal, allowed_methods, nothing_there, problem
 
 HELD_BYTES = 400_000_000
 """Of the bodies of all requests together; beyond it those that hardly come make room, or who comes is to come again."""
@@ -69,14 +69,14 @@ class Guard:
         host, origin = headers.get("host", ""), headers.get("origin")
         if "transfer-encoding" in headers and ("content-length" in headers or scope["http_version"] == "1.0"):
             twice = "the request says twice how long its body is; send Content-Length or Transfer-Encoding"
-            return problem(400, "bad_request", twice, headers={"Connection": "close"})
+            return problem("bad_request", twice, headers={"Connection": "close"})
         if _name(f"//{host}") not in self._hosts:
             here = "this service answers on this machine only; open it as 127.0.0.1 or localhost"
-            return problem(403, "foreign_host", here)
+            return problem("foreign_host", here)
         foreign = origin is not None and not (origin.split("://")[-1] == host and _name(origin) in self._hosts)
         # A form may be sent without an origin; browsers add where it came from. Another port of a host is "same-site".
         if foreign or (scope["method"] not in _READS and headers.get("sec-fetch-site", "none") not in _OWN_SITES):
-            return problem(403, "foreign_origin", "this page is not of this service; open the service's own page")
+            return problem("foreign_origin", "this page is not of this service; open the service's own page")
         return None
 
 
@@ -97,7 +97,7 @@ class Methods:
             await self._app(_as_get(scope), receive, partial(_send_head, send))
         else:
             allowed = allowed_methods(scope["app"], scope["path"])
-            told = Response(status_code=204, headers={"Allow": ", ".join(allowed)})
+            told = Response(status_code=HTTPStatus.NO_CONTENT, headers={"Allow": ", ".join(allowed)})
             asked = scope["method"] == "OPTIONS" and allowed
             await (told if asked else nothing_there(scope["method"], allowed))(scope, receive, send)
 
@@ -121,7 +121,7 @@ class _Body:
                 if self._given_up:  # and something came in the same moment
                     raise TimeoutError
         except TimeoutError:
-            raise HTTPException(408, "the request's body comes too slowly; send it again") from None
+            raise Refusal("body_too_slow", "the request's body comes too slowly; send it again") from None
         finally:
             self._wait = None
         size = len(message.get("body", b""))
@@ -166,7 +166,7 @@ class Limited:
         limit = self._limit_of(scope)
         declared = Headers(scope=scope).get("content-length", "")
         if declared.isdecimal() and int(declared) > limit:
-            await problem(413, "body_too_large", _too_large(limit))(scope, receive, send)
+            await problem("body_too_large", _too_large(limit))(scope, receive, send)
             return
         body = _Body(receive, self._patience_s, self._slowest)
 
@@ -176,10 +176,10 @@ class Limited:
             message = await body.piece()
             self._free -= len(message.get("body", b""))
             if body.got > limit:
-                raise HTTPException(413, _too_large(limit))
+                raise Refusal("body_too_large", _too_large(limit))
             self._make_room()
             if self._free < 0:
-                raise HTTPException(503, "too much is being sent at the moment; try again", {"Retry-After": "1"})
+                raise Refusal("overloaded", "too much is being sent at the moment; try again")
             return message
 
         self._bodies.add(body)

@@ -1,6 +1,7 @@
 """Stored files as answers: whole, in part, or not again."""
 
 import re
+from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -21,12 +22,16 @@ def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]
     content: dict[str, Any] = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
     whole = {"content": {kind: {"schema": {"$ref": f"#/components/schemas/{schema}"}}}} if schema else content
     length = {"Content-Range": {"schema": {"type": "string"}, "description": "bytes FIRST-LAST/ALL"}}
-    problems = documented(403, 404, 416, 500)
-    problems[416]["headers"] = length
+    problems = documented("foreign_host", "not_found", "range_not_satisfiable", "internal")
+    problems[HTTPStatus.REQUESTED_RANGE_NOT_SATISFIABLE]["headers"] = length
     return {
-        200: {**whole, "description": "The file", "headers": _TAG_HEADER},
-        206: {**content, "description": "The part that Range asks for", "headers": {**_TAG_HEADER, **length}},
-        304: {"description": "If-None-Match names this very file", "headers": _TAG_HEADER},
+        HTTPStatus.OK: {**whole, "description": "The file", "headers": _TAG_HEADER},
+        HTTPStatus.PARTIAL_CONTENT: {
+            **content,
+            "description": "The part that Range asks for",
+            "headers": {**_TAG_HEADER, **length},
+        },
+        HTTPStatus.NOT_MODIFIED: {"description": "If-None-Match names this very file", "headers": _TAG_HEADER},
         **problems,
     }
 
@@ -47,14 +52,14 @@ def send_file(request: Request, path: Path, sha256: str, kind: str, download: st
     tag = f'"{sha256}"'
     headers = {"ETag": tag, "Cache-Control": "private, no-cache"}
     if _names(request.headers.get("if-none-match", ""), tag):
-        return Response(status_code=304, headers=headers)
+        return Response(status_code=HTTPStatus.NOT_MODIFIED, headers=headers)
     size = path.stat().st_size
     part = _part(request, tag, size)
     if part is None:
         del MutableHeaders(scope=request.scope)["range"]
     elif not part:
         told = {"Content-Range": f"bytes */{size}"}
-        return problem(416, "range_not_satisfiable", f"the file has {size} bytes; ask for some of them", headers=told)
+        return problem("range_not_satisfiable", f"the file has {size} bytes; ask for some of them", headers=told)
     if download is not None:
         headers["Content-Disposition"] = _saved_as(download)
     return FileResponse(path, headers=headers, media_type=kind)

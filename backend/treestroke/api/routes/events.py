@@ -44,7 +44,7 @@ def _growth(shelf: Shelf, seen: Seen) -> str | None:
         return None
 
 
-@router.get("/{id}/events", response_class=EventSourceResponse, responses=documented(403, 404, 422, 503))
+@router.get("/{id}/events", response_class=EventSourceResponse, responses=documented("not_found", "invalid"))
 async def follow_model(
     shelf: ShelfOf,
     seen: Annotated[Seen, Depends(_seen)],

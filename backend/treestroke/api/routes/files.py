@@ -1,6 +1,7 @@
 """A model's files."""
 
 import asyncio
+from http import HTTPStatus
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request, Response
@@ -37,13 +38,13 @@ _MANY: dict[int | str, dict[str, Any]] = {
         **answer,
         "content": {kind: {"schema": {"type": "string", "format": "binary"}} for kind in _KINDS.values()},
     }
-    if status in (200, 206)
+    if status in (HTTPStatus.OK, HTTPStatus.PARTIAL_CONTENT)
     else answer
     for status, answer in file_answers(_GLB).items()
 }
 _SKETCH: dict[int | str, dict[str, Any]] = {
     status: {**answer, "content": {**answer["content"], **file_answers(_PNG)[status]["content"]}}
-    if status in (200, 206)
+    if status in (HTTPStatus.OK, HTTPStatus.PARTIAL_CONTENT)
     else answer
     for status, answer in file_answers(_JSON, "StrokeSketch").items()
 }
@@ -70,7 +71,11 @@ def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     return _drawing(request, shelf, id, "strokes.json")
 
 
-@router.get("/project", response_class=FileResponse, responses={**file_answers(_ZIP), **documented(503, 507)})
+@router.get(
+    "/project",
+    response_class=FileResponse,
+    responses={**file_answers(_ZIP), **documented("overloaded", "storage_full")},
+)
 async def get_project(request: Request, shelf: ShelfOf, projects: ProjectsOf, id: ModelId) -> Response:
     """Download NAME.treestroke: all that the tree is made of, for the command line and the page."""
     row = (await run_in_threadpool(models.see, shelf.database, id)).row

@@ -5,9 +5,10 @@ import json
 import re
 from contextlib import suppress
 from dataclasses import dataclass
+from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, HTTPException, Request, Response
+from fastapi import APIRouter, Depends, Header, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
@@ -26,7 +27,7 @@ from treestroke.api.deps import (
     leads_to,
     media_type,
 )
-from treestroke.api.errors import documented
+from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.following import Crowded, Watcher
 from treestroke.api.views import model_view
 from treestroke.codec.photo_kinds import TAKEN
@@ -117,14 +118,16 @@ async def _request(request: Request, shelf: ShelfOf) -> _Request:
     if kind in ("application/json", ""):
         return _Request(await run_in_threadpool(models.read_wish, shelf, await request.body()))
     if kind != "multipart/form-data":
-        raise HTTPException(415, "send application/json, or a form with photo and strokes, or front and side")
+        raise Refusal(
+            "unsupported_media_type", "send application/json, or a form with photo and strokes, or front and side"
+        )
     most = len(_FIELDS)
     async with form_of(request, max_files=most, max_fields=most, max_part_size=MAX_TEXT_BYTES) as form:
         if len(form) < len(form.multi_items()):
-            raise HTTPException(400, "the form has a field twice; send each once")
+            raise Refusal("bad_request", "the form has a field twice; send each once")
         photo = form.get("photo")
         if photo is not None and not isinstance(photo, UploadFile):
-            raise HTTPException(400, "the form has no file in the field photo; send the photo there")
+            raise Refusal("bad_request", "the form has no file in the field photo; send the photo there")
         texts = {name: await _text(field) for name, field in form.items() if field is not photo}
         content = None if photo is None else await photo.read()
     return await run_in_threadpool(_take_in, shelf, content, texts)
@@ -143,12 +146,12 @@ async def _text(field: UploadFile | str) -> bytes:
 
 @router.post(
     "",
-    status_code=202,
+    status_code=HTTPStatus.ACCEPTED,
     response_model=Model,
     responses={
-        200: {"model": Model, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
-        202: {"model": Model, "headers": _LOCATION, "links": _LINKS},
-        **documented(400, 403, 404, 408, 413, 415, 422, 500, 503, 507),
+        HTTPStatus.OK: {"model": Model, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
+        HTTPStatus.ACCEPTED: {"model": Model, "headers": _LOCATION, "links": _LINKS},
+        **documented(*BODY, "not_found", "storage_full"),
     },
     openapi_extra=_ASK,
 )
@@ -169,7 +172,7 @@ async def ask_for_model(
     headers = {"Location": f"/v1/models/{seen.row.id}"}
     if wanted:
         headers["Preference-Applied"] = f"wait={wanted[1]}"
-    status = 200 if seen.row.status in TERMINAL else 202
+    status = HTTPStatus.OK if seen.row.status in TERMINAL else HTTPStatus.ACCEPTED
     return JSONResponse(model_view(seen).model_dump(), status, headers)
 
 
@@ -182,38 +185,38 @@ async def _finished(watcher: Watcher, seen: Seen, seconds: float) -> Seen:
     return seen
 
 
-@router.get("", responses={200: {"links": _NEXT}, **documented(403, 422)})
+@router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
 def list_models(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
     """List models, newest first."""
     page, following = models.list_models(shelf.database, cursor, limit)
     return ModelPage(models=[model_view(seen) for seen in page], next=following)
 
 
-@router.get("/{id}", responses=documented(403, 404))
+@router.get("/{id}", responses=documented("not_found"))
 def get_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Look a model up."""
     return model_view(models.see(shelf.database, id))
 
 
-@router.patch("/{id}", responses=documented(400, 403, 404, 408, 413, 415, 422, 507), openapi_extra=_RENAME)
+@router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=_RENAME)
 def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> Model:
     """Name a model."""
     return model_view(models.rename(shelf.database, id, read_name(body)))
 
 
-@router.delete("/{id}", status_code=204, responses=documented(403, 404, 507))
+@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
 def delete_model(shelf: ShelfOf, id: ModelId) -> None:
     """Delete a model; its files go after 24 hours, until then it can be restored."""
     models.delete(shelf.database, id)
 
 
-@router.post("/{id}/restore", responses=documented(403, 404, 507))
+@router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
 def restore_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Take a deletion back."""
     return model_view(models.restore(shelf.database, id))
 
 
-@router.post("/{id}/cancel", responses=documented(403, 404, 507))
+@router.post("/{id}/cancel", responses=documented("not_found", "storage_full"))
 def cancel_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Stop a model that is not finished; a finished one stays as it is."""
     return model_view(models.cancel(shelf.database, id))

@@ -1,5 +1,6 @@
 """The browser's page: files that Vite built from frontend/ into the package."""
 
+from http import HTTPStatus
 from os import PathLike, fspath, stat_result
 from pathlib import Path, PurePath
 
@@ -51,13 +52,13 @@ class BuiltPage(StaticFiles):
         self.icon = folder / "favicon.svg"
 
     def file_response(
-        self, full_path: str | PathLike[str], stat_result: stat_result, scope: Scope, status_code: int = 200
+        self, full_path: str | PathLike[str], stat_result: stat_result, scope: Scope, status_code: int = HTTPStatus.OK
     ) -> Response:
         """Answer with a file, its type and how long it may be kept."""
         response = super().file_response(full_path, stat_result, scope, status_code)
         path = PurePath(fspath(full_path))
         response.headers["cache-control"] = _FOREVER if self._assets in path.parents else _ASK_FIRST
-        if response.status_code != 304 and path.suffix in _TYPES:
+        if response.status_code != HTTPStatus.NOT_MODIFIED and path.suffix in _TYPES:
             response.headers["content-type"] = _TYPES[path.suffix]
         return response
 
@@ -69,7 +70,7 @@ def add_page(app: FastAPI, folder: Path = PAGE) -> None:
     @app.get("/", include_in_schema=False)
     async def page(request: Request) -> Response:
         if not built.index.is_file():
-            return PlainTextResponse(_NOT_BUILT, 404)
+            return PlainTextResponse(_NOT_BUILT, HTTPStatus.NOT_FOUND)
         response = await built.get_response(built.index.name, request.scope)
         response.headers["content-security-policy"] = _POLICY
         return response
@@ -77,7 +78,7 @@ def add_page(app: FastAPI, folder: Path = PAGE) -> None:
     @app.get("/favicon.ico", include_in_schema=False)
     def icon() -> Response:
         if not built.icon.is_file():
-            return Response(status_code=204)
+            return Response(status_code=HTTPStatus.NO_CONTENT)
         return FileResponse(built.icon, media_type=_TYPES[".svg"], headers={"cache-control": _ASK_FIRST})
 
     app.mount("/page", built)

@@ -1,13 +1,14 @@
 """Photos and their traces."""
 
+from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, HTTPException, Request, Response
+from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse
 from starlette.datastructures import UploadFile
 
 from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ShelfOf, check_length, form_of, leads_to, media_type
-from treestroke.api.errors import documented
+from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
 from treestroke.codec.photo_kinds import MEDIA_TYPES
@@ -55,25 +56,27 @@ async def _photo_bytes(request: Request) -> bytes:
     if kind != "multipart/form-data":
         # Any picture is looked at: what is refused is refused by what it is, not by what it is called.
         if not kind.startswith("image/") and kind not in (*_RAW, ""):
-            raise HTTPException(415, f"send a form with the field file, or the photo itself as {' or '.join(_RAW)}")
+            raise Refusal(
+                "unsupported_media_type", f"send a form with the field file, or the photo itself as {' or '.join(_RAW)}"
+            )
         return await request.body()
     async with form_of(request, max_files=1, max_fields=0) as form:
         file = form.get("file")
         if not isinstance(file, UploadFile):
-            raise HTTPException(400, "the form has no file in the field file; send the photo there")
+            raise Refusal("bad_request", "the form has no file in the field file; send the photo there")
         return await file.read()
 
 
 @router.post(
     "",
-    status_code=201,
+    status_code=HTTPStatus.CREATED,
     responses={
-        201: {
+        HTTPStatus.CREATED: {
             "model": Photo,
             "headers": {"Location": _LOCATION},
             "links": leads_to("get_photo", "get_image", "trace_photo", "delete_photo"),
         },
-        **documented(400, 403, 408, 413, 415, 422, 503, 507),
+        **documented(*BODY, "storage_full"),
     },
     openapi_extra=_UPLOAD,
 )
@@ -85,14 +88,14 @@ def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], 
     return photo_view(row)
 
 
-@router.get("", responses={200: {"links": _NEXT}, **documented(403, 422)})
+@router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
 def list_photos(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> PhotoPage:
     """List photos, newest first."""
     page, following = photos.list_photos(shelf, cursor, limit)
     return PhotoPage(photos=[photo_view(row) for row in page], next=following)
 
 
-@router.get("/{id}", responses=documented(403, 404))
+@router.get("/{id}", responses=documented("not_found"))
 def get_photo(shelf: ShelfOf, id: PhotoId) -> Photo:
     """Look a photo up."""
     return photo_view(photos.get_photo(shelf, id))
@@ -104,7 +107,7 @@ def get_image(request: Request, shelf: ShelfOf, id: PhotoId) -> Response:
     return send_blob(request, shelf, photos.get_photo(shelf, id).blob, "image/png")
 
 
-@router.delete("/{id}", status_code=204, responses=documented(403, 404, 507))
+@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
 def delete_photo(shelf: ShelfOf, id: PhotoId) -> None:
     """Delete a photo; models that were made of it keep their own copy."""
     photos.delete_photo(shelf, id)
@@ -113,7 +116,7 @@ def delete_photo(shelf: ShelfOf, id: PhotoId) -> None:
 @router.post(
     "/{id}/trace",
     response_model=TraceAnswer,
-    responses=documented(400, 403, 404, 408, 413, 415, 422, 500, 503),
+    responses=documented(*BODY, "not_found"),
     openapi_extra=_TRACE,
 )
 def trace_photo(shelf: ShelfOf, id: PhotoId, body: JsonBody) -> Response:

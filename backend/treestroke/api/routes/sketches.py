@@ -5,7 +5,7 @@ from typing import Any
 from fastapi import APIRouter, Response
 
 from treestroke.api.deps import JsonBody, ShelfOf
-from treestroke.api.errors import documented
+from treestroke.api.errors import BODY, documented
 from treestroke.schemas import SKETCHES_EXAMPLE, SketchTraceAnswer
 from treestroke.service import sketches
 
@@ -26,7 +26,7 @@ _TRACE: dict[str, Any] = {
 @router.post(
     "/trace",
     response_model=SketchTraceAnswer,
-    responses=documented(400, 403, 408, 413, 415, 422, 503),
+    responses=documented(*BODY),
     openapi_extra=_TRACE,
 )
 def trace_sketches(shelf: ShelfOf, body: JsonBody) -> Response:

@@ -1,12 +1,12 @@
 """How the service is, what it takes, and which it is."""
 
 from dataclasses import fields
+from http import HTTPStatus
 
 from fastapi import APIRouter, Response
 
 from treestroke import __version__
 from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf, WatcherOf
-from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
@@ -23,22 +23,22 @@ from treestroke.service.model_request import MAX_NAME
 router = APIRouter(tags=["service"])
 
 
-@router.get("/livez", responses=documented(403))
+@router.get("/livez")
 async def live() -> Health:
     """Tell that this process answers."""
     return Health(status="ok")
 
 
-@router.get("/readyz", responses={503: {"model": Health}, **documented(403)})
+@router.get("/readyz", responses={HTTPStatus.SERVICE_UNAVAILABLE: {"model": Health}})
 def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Health:
     """Tell whether requests can be taken, part by part; without workers or broker they are taken and wait."""
     health = readiness(shelf, dispatcher)
     if health.status == "down":
-        response.status_code = 503
+        response.status_code = HTTPStatus.SERVICE_UNAVAILABLE
     return health
 
 
-@router.get("/v1/limits", responses=documented(403))
+@router.get("/v1/limits")
 def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
     """Name everything that is bounded."""
     return Limits(
@@ -72,7 +72,7 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
     )
 
 
-@router.get("/v1/version", responses=documented(403))
+@router.get("/v1/version")
 def version() -> Version:
     """Say which treestroke this is."""
     return Version(version=__version__, engine=engine(), api="v1")
