@@ -1,15 +1,13 @@
 import json
 import re
 from dataclasses import fields
-from pathlib import Path
 
 import pytest
+from tests.architecture.names import DOCUMENTS, ROOT
 
 import treestroke
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.settings import PREFIX, Settings
-
-ROOT = Path(__file__).parents[2]
 
 
 def test_the_readme_s_settings_are_the_table() -> None:
@@ -38,10 +36,11 @@ def test_the_readme_s_variables_are_the_service_s_settings() -> None:
     assert rows == table
 
 
-@pytest.mark.parametrize("name", ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"])
+@pytest.mark.parametrize("name", DOCUMENTS)
 def test_every_link_leads_somewhere(name: str) -> None:
-    links = re.findall(r"\]\(([^)#]+)\)", (ROOT / name).read_text())
-    assert [link for link in links if not (ROOT / link).exists()] == []
+    document = ROOT / name
+    links = re.findall(r"\]\(([^)#:]+)\)", document.read_text())
+    assert [link for link in links if not (document.parent / link).exists()] == []
 
 
 def test_every_make_target_is_documented() -> None:
