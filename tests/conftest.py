@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from treestroke.service.threads import one_thread
+from treestroke.service.execution import one_thread
 from treestroke.store.database import Database
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

@@ -17,7 +17,7 @@ from treestroke import __version__
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
-from treestroke.store.versions import Unusable
+from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
     from treestroke.service.evidence import Evidence
@@ -82,7 +82,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 options.command(options)
     except TreestrokeError as error:
         return _fail(BAD_INPUT, str(error), "--debug" in given)
-    except (MachineFault, Unusable) as error:
+    except (MachineFault, DataFolderError) as error:
         return _fail(OUR_FAULT, str(error), "--debug" in given)
     except (OSError, MemoryError) as error:
         return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in given)
@@ -163,7 +163,7 @@ def _make(options: argparse.Namespace) -> None:
     from treestroke.codec.image import encode_png
     from treestroke.service.evidence import make_of
     from treestroke.service.inputs import load_settings
-    from treestroke.store.files import write_whole
+    from treestroke.store.atomic_write import write_atomically
 
     seed, chosen = settings.pop("seed", 0), load_settings(settings)
     line = ProgressLine(sys.stderr, chosen.iterations) if sys.stderr.isatty() else None
@@ -179,7 +179,7 @@ def _make(options: argparse.Namespace) -> None:
     }
     further = {options.out.with_name(name): content for name, content in list(result.files.items())[1:]}
     _check_further(options, further)
-    write_whole({path: makers[name]() for name, path in outputs.items()} | further)
+    write_atomically({path: makers[name]() for name, path in outputs.items()} | further)
     _say_aloud(result.report["warnings"])
 
 
@@ -207,7 +207,7 @@ def _trace(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "overlay"))
     from treestroke.codec.image import encode_png
     from treestroke.service.trace import trace
-    from treestroke.store.files import write_whole
+    from treestroke.store.atomic_write import write_atomically
 
     result = trace(options.photo, options.strokes)
     found = result.answer()
@@ -216,7 +216,7 @@ def _trace(options: argparse.Namespace) -> None:
         "out": lambda: answer.encode() + b"\n",
         "overlay": lambda: encode_png(result.overlay()),
     }
-    write_whole({path: makers[name]() for name, path in outputs.items()})
+    write_atomically({path: makers[name]() for name, path in outputs.items()})
     if options.out is None:
         print(answer)
     _say_aloud(found["warnings"])

@@ -55,7 +55,7 @@ def make_queue(settings: Settings) -> Celery:
     return app
 
 
-def send_hint(app: Celery, model: str) -> None:
+def send_job_message(app: Celery, model: str) -> None:
     """Tell the workers that a job waits.
 
     Raises

@@ -17,10 +17,9 @@ from pathlib import Path
 from types import FrameType
 
 from treestroke.core.errors import SettingsError
-from treestroke.lifeline import LIFELINE, RUN, RUN_BEFORE
+from treestroke.parent_process import PARENT_HOLDS_STDIN, PREVIOUS_RUN_ID, RUN_ID
 from treestroke.settings import Settings
-from treestroke.store.folder import own_folder
-from treestroke.store.versions import check_version
+from treestroke.store.data_folder import check_version, prepare_folder
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 STOP_SECONDS = 10.0
@@ -61,7 +60,7 @@ class Child:
             # Standard output is the launcher's own, for its one line; what the processes have to say is on stderr.
             self._process = subprocess.Popen(
                 command,
-                env={**self._environment, RUN: self._run, RUN_BEFORE: before},
+                env={**self._environment, RUN_ID: self._run, PREVIOUS_RUN_ID: before},
                 pass_fds=self._sockets,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
@@ -93,7 +92,7 @@ def serve(settings: Settings) -> int:
     ------
     SettingsError
         The address is not this machine's own: without keys nobody else may reach it. Or the port is taken.
-    Unusable
+    DataFolderError
         The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
     OSError
         The data folder cannot be written.
@@ -105,7 +104,7 @@ def serve(settings: Settings) -> int:
         )
     folder = settings.folder
     with _listen(settings) as listener:
-        own_folder(folder)
+        prepare_folder(folder)
         _hold(folder)
         check_version(folder)
         _clear(folder / "tmp")
@@ -114,7 +113,7 @@ def serve(settings: Settings) -> int:
             **settings.environment(),
             "TREESTROKE_DATA": str(folder),
             "TMPDIR": str(folder / "tmp"),
-            LIFELINE: "1",
+            PARENT_HOLDS_STDIN: "1",
         }
         port = listener.getsockname()[1]
         children = [Child("treestroke.api", {**environment, "LISTEN_FD": str(listener.fileno())}, (listener.fileno(),))]

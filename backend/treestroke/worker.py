@@ -20,21 +20,20 @@ from celery.worker.request import Request
 from sqlalchemy import select
 from sqlalchemy.exc import SQLAlchemyError
 
-from treestroke.lifeline import RUN, RUN_BEFORE, end_with, hold_lifeline
 from treestroke.logs import start_logging
+from treestroke.parent_process import PREVIOUS_RUN_ID, RUN_ID, kill_with_parent, stop_with_parent
 from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
-from treestroke.service.dispatch import holds_jobs, say_alive, say_gone
-from treestroke.service.engine import engine
+from treestroke.service.dispatch import holds_jobs, record_heartbeat, remove_worker
+from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
 from treestroke.service.jobs import grow_model
-from treestroke.service.pool import limit_memory
+from treestroke.service.tracing_pool import limit_memory
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
+from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
-from treestroke.store.folder import own_folder
-from treestroke.store.leases import end, lose
+from treestroke.store.leases import end, take_back
 from treestroke.store.tables import ModelRow
-from treestroke.store.versions import check_version
 
 NICENESS = 10
 """Growing gives way to tracing, which somebody waits for with the pen in hand."""
@@ -52,23 +51,23 @@ def main() -> int:
 
     Raises
     ------
-    Unusable
+    DataFolderError
         The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
     """
     settings = read_settings()
     start_logging()
-    hold_lifeline()
-    own_folder(settings.folder)
+    stop_with_parent()
+    prepare_folder(settings.folder)
     database = Database(settings.folder)
     os.register_at_fork(before=_unforked.acquire, after_in_parent=_unforked.release, after_in_child=_unforked.release)
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
         return 1
-    name = os.environ.pop(RUN, "") or secrets.token_hex(12)
-    if before := os.environ.pop(RUN_BEFORE, ""):
+    name = os.environ.pop(RUN_ID, "") or secrets.token_hex(12)
+    if before := os.environ.pop(PREVIOUS_RUN_ID, ""):
         with _briefly(database):
-            say_gone(database, before, problem_of("worker_lost"))
-    grown_by = engine()  # before any child is forked: it is that of the code which all of them have loaded
+            remove_worker(database, before, problem_of("worker_lost"))
+    grown_by = engine_version()  # before any child is forked: it is that of the code which all of them have loaded
     app = make_worker(settings, database, name)
     signals.setup_logging.connect(_keep_logging, weak=False)
     # Running as root is the container's or the person's choice; messages are JSON and hold an id.
@@ -97,7 +96,7 @@ def main() -> int:
     ).start()
     stopped.set()
     with suppress(SQLAlchemyError):  # others find out by themselves
-        say_gone(database, name)
+        remove_worker(database, name)
     log.info("worker_stopped", worker=name)
     return 0
 
@@ -128,7 +127,7 @@ def _leave(database: Database, name: str) -> None:
         with suppress(SQLAlchemyError), _briefly(database):
             idle = 0 if holds_jobs(database, name) else idle + 1
     with suppress(SQLAlchemyError), _briefly(database):
-        say_gone(database, name)
+        remove_worker(database, name)
     log.info("worker_stopped", worker=name)
     os._exit(0)
 
@@ -145,7 +144,7 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
 
     @signals.worker_process_init.connect(weak=False)
     def _open(**_: object) -> None:
-        end_with(parent)
+        kill_with_parent(parent)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
         opened[:] = [(Database(settings.folder), Blobs(settings.folder))]
@@ -187,7 +186,7 @@ def _close(database: Database, token: str, code: str) -> None:
                 end(session, job, "failed", problem_of(code))
             elif job is not None:
                 # A pool that is being stopped kills its children before long; that is no fault of theirs.
-                lose(session, job, None if state.should_stop is not None else problem_of(code))
+                take_back(session, job, None if state.should_stop is not None else problem_of(code))
     except SQLAlchemyError as error:
         log.error("not_closed", token=token, code=code, error=str(error))
     else:
@@ -198,7 +197,7 @@ def _beat(database: Database, name: str, slots: int, stopped: threading.Event) -
     while not stopped.is_set():
         try:
             with _briefly(database):
-                say_alive(database, name, slots)
+                record_heartbeat(database, name, slots)
         except SQLAlchemyError as error:
             log.warning("beat_missed", error=str(error))
         stopped.wait(_BEAT_SECONDS)

@@ -18,7 +18,7 @@ from tests.api import drawn
 from tests.api.conftest import Service
 from tests.running import BACKEND
 
-from treestroke.store.folder import _OURS
+from treestroke.store.data_folder import _OURS
 
 KINDS = {
     "tree.glb": "model/gltf-binary",

@@ -5,7 +5,7 @@ from contextlib import ExitStack
 import pytest
 from tests.rows import add_model
 
-from treestroke.api.following import Crowded, Follower, Watcher
+from treestroke.api.following import Follower, TooManyFollowers, Watcher
 from treestroke.service import models
 from treestroke.service.models import Seen
 from treestroke.store.database import Database
@@ -24,7 +24,7 @@ def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable
 
 
 async def news(follower: Follower) -> Seen | None:
-    return await asyncio.wait_for(follower.news(), SECONDS)
+    return await asyncio.wait_for(follower.next_change(), SECONDS)
 
 
 def added(database: Database) -> Seen:
@@ -42,7 +42,7 @@ def test_a_change_wakes_those_who_follow_that_model_and_nobody_else(database: Da
                 assert told is not None
                 assert told.row.name == "Oak"
             with pytest.raises(TimeoutError):
-                await asyncio.wait_for(other.news(), 0.6)
+                await asyncio.wait_for(other.next_change(), 0.6)
 
     follow(database, 3, story)
 
@@ -66,7 +66,7 @@ def test_a_place_is_free_again_when_its_request_is_over(database: Database) -> N
 
     async def story(watcher: Watcher) -> None:
         for _ in range(2):
-            with watcher.follow(seen), pytest.raises(Crowded), watcher.follow(seen):
+            with watcher.follow(seen), pytest.raises(TooManyFollowers), watcher.follow(seen):
                 pass
 
     follow(database, 1, story)

@@ -9,7 +9,7 @@ import pytest
 
 from treestroke import __version__
 from treestroke.core.pipeline.settings import FILES, Choice, ModelSettings, Several, Span
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 
 METHODS = {"get", "put", "post", "delete", "patch"}
 
@@ -49,7 +49,7 @@ def test_the_limits_are_told(client: httpx.Client) -> None:
 def test_the_version_is_told(client: httpx.Client) -> None:
     assert client.get("/v1/version").json() == {
         "version": __version__,
-        "engine": engine(),
+        "engine": engine_version(),
         "api": "v1",
     }
 

@@ -21,10 +21,10 @@ from sqlalchemy.pool import Pool
 from tests.api import drawn
 
 from treestroke.service import models, photos
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 from treestroke.service.photos import Shelf
-from treestroke.service.pool import Tracers
 from treestroke.service.retention import Sweeper
+from treestroke.service.tracing_pool import TracingPool
 from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -47,7 +47,20 @@ def fill(path: Path, count: int) -> None:
         blob = f"{at * 2654435761 % 2**32:08x}" * 8
         started = None if at % 2 or at > count - 1000 else float(at)
         return (
-            *(f"mdl_{at:024x}", f"Tree {at}", "pho_1", blob, blob[::-1], "{}", at, engine(), blob, "succeeded", 0, 1),
+            *(
+                f"mdl_{at:024x}",
+                f"Tree {at}",
+                "pho_1",
+                blob,
+                blob[::-1],
+                "{}",
+                at,
+                engine_version(),
+                blob,
+                "succeeded",
+                0,
+                1,
+            ),
             *(5, 1, 9, float(at), started, at + 6.0, REPORT),
         )
 
@@ -145,7 +158,7 @@ def sweep(shelf: Shelf, path: Path) -> None:
 def main() -> int:
     """Print the times; give 1 where the lock is held for longer than is promised."""
     short = True
-    tracers = Tracers(1, 20, 2048)
+    tracers = TracingPool(1, 20, 2048)
     for count in SIZES:
         with tempfile.TemporaryDirectory() as folder:
             database = Database(Path(folder))

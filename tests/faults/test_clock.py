@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from tests.rows import add_model
 
-from treestroke.service.dispatch import Dispatcher, say_alive
+from treestroke.service.dispatch import Dispatcher, record_heartbeat
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import claim
@@ -22,7 +22,7 @@ def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
     queued = add_model(database)
     with database.writing() as session:
         assert claim(session, queued.id, "token", "worker", "engine") is not None
-    say_alive(database, "worker", 1)
+    record_heartbeat(database, "worker", 1)
     dispatcher = Dispatcher(database, Blobs(tmp_path), lambda id: None, 0)
     real = time.time
     for shift in (0.0, jump, 0.0):

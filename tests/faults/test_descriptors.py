@@ -16,7 +16,7 @@ from tests.running import serving
 DESCRIPTORS, SILENT = 160, 150
 
 
-class Crowded:
+class TooManyFollowers:
     """The service, and lines to it."""
 
     def __init__(self, url: str, log: Path, lines: ExitStack) -> None:
@@ -33,12 +33,12 @@ class Crowded:
 
 
 @pytest.fixture
-def crowded(tmp_path: Path) -> Iterator[Crowded]:
+def crowded(tmp_path: Path) -> Iterator[TooManyFollowers]:
     with serving(tmp_path / "data", descriptors=DESCRIPTORS, workers=0) as url, ExitStack() as lines:
-        yield Crowded(url, tmp_path / "data.log", lines)
+        yield TooManyFollowers(url, tmp_path / "data.log", lines)
 
 
-def test_silent_connections_leave_everybody_else_answered(crowded: Crowded) -> None:
+def test_silent_connections_leave_everybody_else_answered(crowded: TooManyFollowers) -> None:
     for number in range(SILENT):
         crowded.line("GET / HT" if number % 2 else "")
     photos, pages = [], []
@@ -53,7 +53,7 @@ def test_silent_connections_leave_everybody_else_answered(crowded: Crowded) -> N
     assert not {"request_failed", "storage_failed"} & set(crowded.logged())
 
 
-def test_streams_beyond_the_bound_are_told_to_come_again(crowded: Crowded) -> None:
+def test_streams_beyond_the_bound_are_told_to_come_again(crowded: TooManyFollowers) -> None:
     with httpx.Client(base_url=crowded.url, timeout=30) as client:
         photo = client.post("/v1/photos", content=drawn.encoded()).json()["id"]
         place = client.post("/v1/models", json=drawn.wish(photo)).headers["location"]

@@ -13,7 +13,7 @@ import httpx
 import pytest
 from tests.faults.harness import LONGER, Service, small_tree
 
-from treestroke.queue import make_queue, send_hint
+from treestroke.queue import make_queue, send_job_message
 from treestroke.settings import Settings
 
 SIZE = "40m"
@@ -86,9 +86,9 @@ def refused_for_space(answer: httpx.Response) -> None:
 
 def test_a_hint_that_does_not_fit_on_the_disk_leaves_nothing_behind(small_disk: Path) -> None:
     queue = make_queue(Settings(data=small_disk / "data"))
-    send_hint(queue, "mdl_1")
+    send_job_message(queue, "mdl_1")
     disk = Filler(small_disk)
     disk.fill()
     with pytest.raises(OSError, match=os.strerror(errno.ENOSPC)):
-        send_hint(queue, "mdl_2")
+        send_job_message(queue, "mdl_2")
     assert len(list((small_disk / "data" / "queue" / "messages").iterdir())) == 1

@@ -9,7 +9,7 @@ from tests.faults.harness import LONGER, Service
 from tests.faults.processes import wait_for
 from tests.rows import add_model
 
-from treestroke.service.dispatch import say_alive
+from treestroke.service.dispatch import record_heartbeat
 from treestroke.store.database import Database
 from treestroke.store.tables import ModelRow, Worker
 
@@ -41,7 +41,7 @@ def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: 
     service.finish()
     here = wait_for(service.workers, 20, "a worker")[0]
     database, name = Database(service.data), f"{socket.gethostname()}/{2**22 - 1}/abcd"
-    say_alive(database, name, 1)
+    record_heartbeat(database, name, 1)
     held = add_model(database, status="running", attempt=1, worker=name, claim="token", settings={})
     here.hit()
     wait_for(lambda: [one for one in service.workers() if one.pid != here.pid and service.name_of(one)], 20, "another")

@@ -11,7 +11,7 @@ from redis import Redis
 from tests.faults.harness import Service
 from tests.faults.processes import wait_for
 
-from treestroke.queue import TASK, make_queue, send_hint
+from treestroke.queue import TASK, make_queue, send_job_message
 from treestroke.settings import Settings
 
 
@@ -32,11 +32,11 @@ def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(servi
     queue = queue_of(service, broker_url)
     ids = service.ask_for(2)
     for id in (*ids, *ids, "mdl_nobody"):
-        send_hint(queue, id)
+        send_job_message(queue, id)
     before = service.finish(ids)
     ignored = len(service.logged("hint_ignored"))
     for id in ids:
-        send_hint(queue, id)
+        send_job_message(queue, id)
     wait_for(lambda: len(service.logged("hint_ignored")) >= ignored + 2, 20, "two more hints that are ignored")
     assert [(row["status"], row["attempt"]) for row in before] == [("succeeded", 1)] * 2
     assert [service.row(id) for id in ids] == before
@@ -89,13 +89,13 @@ def old_form(id: str) -> bytes:
 def test_a_queue_whose_folder_is_removed_takes_messages(tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
     shutil.rmtree(tmp_path / "queue")
-    send_hint(queue, "mdl_1")
+    send_job_message(queue, "mdl_1")
     assert len(list((tmp_path / "queue" / "messages").glob("*.msg"))) == 1
 
 
 def test_a_message_that_is_being_written_is_not_seen(tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
-    send_hint(queue, "mdl_1")
+    send_job_message(queue, "mdl_1")
     (message,) = (tmp_path / "queue" / "messages").iterdir()
     begun = message.with_suffix(".part")
     message.rename(begun)

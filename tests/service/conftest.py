@@ -4,20 +4,20 @@ from pathlib import Path
 import pytest
 
 from treestroke.service.photos import Shelf
-from treestroke.service.pool import Tracers
+from treestroke.service.tracing_pool import TracingPool
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 
 
 @pytest.fixture(scope="module")
-def tracers() -> Iterator[Tracers]:
-    pool = Tracers(1, 20, 2048)
+def tracers() -> Iterator[TracingPool]:
+    pool = TracingPool(1, 20, 2048)
     yield pool
     pool.close()
 
 
 @pytest.fixture
-def shelf(tmp_path: Path, tracers: Tracers) -> Iterator[Shelf]:
+def shelf(tmp_path: Path, tracers: TracingPool) -> Iterator[Shelf]:
     database = Database(tmp_path)
     database.migrate()
     yield Shelf(database, Blobs(tmp_path), tracers)

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from treestroke.cli import main
-from treestroke.service.dispatch import Dispatcher, say_alive
+from treestroke.service.dispatch import Dispatcher, record_heartbeat
 from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation, readiness
 from treestroke.service.photos import Shelf
 from treestroke.settings import Settings, read_settings
@@ -270,7 +270,7 @@ def test_a_folder_that_others_may_look_into_is_ill(folder: Path) -> None:
 
 def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
     database = Database(folder)
-    say_alive(database, "dead-1", 1)
+    record_heartbeat(database, "dead-1", 1)
     database.close()
     began = time.monotonic()
     assert ill(folder) == {"workers": "0 of 1 alive"}

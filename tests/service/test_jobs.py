@@ -4,7 +4,7 @@ import pytest
 from tests.api import drawn
 
 from treestroke.service import models, photos
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 from treestroke.service.jobs import grow_model
 from treestroke.service.photos import Shelf
 
@@ -21,4 +21,4 @@ def test_a_model_whose_input_is_damaged_fails_and_says_so(shelf: Shelf, part: st
     grow_model(shelf.database, shelf.blobs, row.id, "token", "worker", 60)
     after = models.see(shelf.database, row.id).row
     assert (after.status, after.error and after.error["code"]) == ("failed", "input_damaged")
-    assert after.engine == engine()
+    assert after.engine == engine_version()

@@ -10,7 +10,7 @@ from tests.rows import add_model
 
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 from treestroke.service.model_request import Wish
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
@@ -27,7 +27,7 @@ def wish(shelf: Shelf, photo: str, **others: Any) -> Wish:
 def finished(shelf: Shelf, id: str, glb: bytes, by: str = "") -> None:
     """Publish a model as its worker does."""
     with shelf.database.writing() as session:
-        job = claim(session, id, "t", "w", by or engine())
+        job = claim(session, id, "t", "w", by or engine_version())
         assert job is not None
         assert succeed(session, job, {"score": {}}, {"tree.glb": (shelf.blobs.put(glb), len(glb))})
 
@@ -52,7 +52,7 @@ def test_a_model_that_another_engine_grew_is_grown_anew(shelf: Shelf) -> None:
     """As in a data folder that outlives an upgrade, or where a worker is of another version than the web process."""
     photo = photos.add_photo(shelf, drawn.encoded()).id
     first = models.ask_for_model(shelf, wish(shelf, photo), "key").row
-    assert first.engine == engine()
+    assert first.engine == engine_version()
     finished(shelf, first.id, b"tree", by="treestroke 0.1.0+other")
     assert models.see(shelf.database, first.id).row.engine == "treestroke 0.1.0+other"
     assert models.ask_for_model(shelf, wish(shelf, photo), None).row.status == "queued"

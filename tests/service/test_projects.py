@@ -14,8 +14,8 @@ from tests.rows import add_model
 from treestroke.codec.project import Project, read_project
 from treestroke.service import models, photos
 from treestroke.service.photos import Shelf
-from treestroke.service.pool import Overloaded
 from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
+from treestroke.service.tracing_pool import Overloaded
 from treestroke.store.blobs import Damaged
 from treestroke.store.tables import ModelRow
 

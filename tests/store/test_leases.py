@@ -36,7 +36,7 @@ def started(database: Database, **values: Any) -> ModelRow:
 def taken_over(database: Database) -> tuple[ModelRow, ModelRow]:
     """Give the same job as a stale worker and as the present one hold it."""
     stale = started(database)
-    assert changed(database, leases.lose, stale, LOST)
+    assert changed(database, leases.take_back, stale, LOST)
     now = claimed(database, stale.id, "u", "other")
     assert now is not None
     return stale, now
@@ -87,7 +87,7 @@ def test_eight_workers_claim_each_of_fifty_jobs_once(database: Database) -> None
 
 def test_a_beat_keeps_the_lease_and_tells_the_progress(database: Database) -> None:
     job = started(database)
-    assert changed(database, leases.beat, job, "grow", 0.5, 0.3) is False
+    assert changed(database, leases.heartbeat, job, "grow", 0.5, 0.3) is False
     row = find(database, job.id)
     assert (row.beat, row.seq, row.phase, row.phase_fraction, row.progress) == (
         job.beat + 1,
@@ -101,16 +101,16 @@ def test_a_beat_keeps_the_lease_and_tells_the_progress(database: Database) -> No
 def test_a_beat_hears_that_it_is_to_stop(database: Database) -> None:
     job = started(database)
     changed(database, leases.cancel, job.id)
-    assert changed(database, leases.beat, job, "grow", 0.5, 0.3) is True
+    assert changed(database, leases.heartbeat, job, "grow", 0.5, 0.3) is True
 
 
 STALE: dict[str, tuple[Callable[..., Any], tuple[Any, ...], Any]] = {
-    "beat": (leases.beat, ("grow", 0.5, 0.3), None),
+    "beat": (leases.heartbeat, ("grow", 0.5, 0.3), None),
     "add a file": (leases.add_file, ("tree.glb", "c" * 64, 7), False),
     "succeed": (leases.succeed, ({"report": 1}, GLB), False),
     "fail": (leases.end, ("failed", GONE), False),
     "cancel": (leases.end, ("canceled", None), False),
-    "be lost": (leases.lose, (LOST,), False),
+    "be lost": (leases.take_back, (LOST,), False),
 }
 
 
@@ -166,7 +166,7 @@ def test_a_lost_job_queues_again_until_its_attempts_are_used_up(database: Databa
     for _ in range(leases.MAX_ATTEMPTS):
         job = claimed(database, id)
         assert job is not None
-        assert changed(database, leases.lose, job, LOST)
+        assert changed(database, leases.take_back, job, LOST)
         statuses.append(find(database, id).status)
     assert statuses == ["queued", "queued", "failed"]
     assert (find(database, id).error, find(database, id).attempt) == (LOST, 3)
@@ -175,22 +175,22 @@ def test_a_lost_job_queues_again_until_its_attempts_are_used_up(database: Databa
 
 def test_a_job_that_has_beaten_since_is_not_lost(database: Database) -> None:
     job = started(database)
-    changed(database, leases.beat, job, "grow", 0.5, 0.3)
-    assert changed(database, leases.lose, job, LOST) is False
+    changed(database, leases.heartbeat, job, "grow", 0.5, 0.3)
+    assert changed(database, leases.take_back, job, LOST) is False
     assert find(database, job.id).status == "running"
 
 
 def test_a_lost_job_that_was_to_be_stopped_is_canceled(database: Database) -> None:
     job = started(database)
     changed(database, leases.cancel, job.id)
-    assert changed(database, leases.lose, find(database, job.id), LOST)
+    assert changed(database, leases.take_back, find(database, job.id), LOST)
     assert find(database, job.id).status == "canceled"
 
 
 def test_a_cancel_just_before_a_job_is_taken_back_is_not_forgotten(database: Database) -> None:
     job = started(database)  # as the dispatcher read it
     changed(database, leases.cancel, job.id)
-    assert changed(database, leases.lose, job, LOST)
+    assert changed(database, leases.take_back, job, LOST)
     assert find(database, job.id).status == "canceled"
 
 

@@ -7,9 +7,9 @@ from functools import partial
 import uvicorn
 
 from treestroke.api.app import make_app
-from treestroke.api.connections import ACCEPTED, Connection, most_connections
-from treestroke.lifeline import hold_lifeline
+from treestroke.api.connections import ACCEPTED, Connection, max_connections
 from treestroke.logs import start_logging
+from treestroke.parent_process import stop_with_parent
 from treestroke.settings import read_settings
 
 LISTENER = "LISTEN_FD"
@@ -41,9 +41,9 @@ def main() -> None:
     """Serve on the socket that the parent process listens on."""
     settings = read_settings()
     start_logging()
-    hold_lifeline()
+    stop_with_parent()
     listener = socket.socket(fileno=int(os.environ.pop(LISTENER)))
-    most = most_connections(settings.tracers)
+    most = max_connections(settings.tracers)
     config = uvicorn.Config(
         make_app(settings, places=most // 2),
         http=partial(Connection, most=most),  # type: ignore[arg-type]

@@ -14,23 +14,22 @@ from starlette.types import Scope
 from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
-from treestroke.api.guard import Guard, Limited, Methods
 from treestroke.api.metrics import add_metrics
+from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware
 from treestroke.api.routes import events, files, models, photos, sketches, status
 from treestroke.api.routes.page import add_page
 from treestroke.codec.image import MAX_BYTES
 from treestroke.codec.project import MAX_TEXT_BYTES
-from treestroke.queue import make_queue, send_hint
+from treestroke.queue import make_queue, send_job_message
 from treestroke.schemas import ModelRequest, Problem, Rename, SketchTraceRequest, TraceRequest
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
-from treestroke.service.pool import Tracers
 from treestroke.service.projects import Projects
+from treestroke.service.tracing_pool import TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
+from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
-from treestroke.store.folder import own_folder
-from treestroke.store.versions import check_version
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
@@ -61,9 +60,9 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
         app.include_router(routes.router, responses=documented("foreign_host", "internal", "overloaded"))
     add_metrics(app)
     add_page(app)
-    app.add_middleware(Limited, limit_of=_limit_of)
-    app.add_middleware(Methods)
-    app.add_middleware(Guard, hosts=HOSTS)
+    app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of)
+    app.add_middleware(MethodMiddleware)
+    app.add_middleware(SecurityMiddleware, hosts=HOSTS)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]
     return app
 
@@ -71,12 +70,12 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
 @asynccontextmanager
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
-    own_folder(settings.folder)
+    prepare_folder(settings.folder)
     check_version(settings.folder)
     database, blobs = Database(settings.folder), Blobs(settings.folder)
     database.migrate()
-    tracers = Tracers(settings.tracers, settings.trace_seconds, settings.memory_mb)
-    dispatcher = Dispatcher(database, blobs, partial(send_hint, make_queue(settings)), settings.keep_days)
+    tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
+    dispatcher = Dispatcher(database, blobs, partial(send_job_message, make_queue(settings)), settings.keep_days)
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
     app.state.shelf = Shelf(database, blobs, tracers, *limits)
     app.state.projects = Projects(settings.folder, blobs)

@@ -36,7 +36,7 @@ _CONNECTION_FILES = 2
 log = structlog.get_logger()
 
 
-def most_connections(tracers: int) -> int:
+def max_connections(tracers: int) -> int:
     """Say how many connections may be open, and raise this process's limit of descriptors as far as that is of use."""
     own = _OWN_FILES + _DATABASE_FILES + _TRACER_FILES * tracers
     wanted = own + _CONNECTION_FILES * MOST

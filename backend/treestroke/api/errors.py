@@ -15,14 +15,14 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 from starlette.routing import Mount, compile_path
 
-from treestroke.api.following import Crowded
+from treestroke.api.following import TooManyFollowers
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.failures import code_of, problem_of
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
-from treestroke.service.pool import CannotStart, Crashed, Overloaded
 from treestroke.service.tracing import NoRoom
+from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
 from treestroke.store.blobs import Damaged
 
 MEDIA_TYPE = "application/problem+json"
@@ -150,7 +150,7 @@ def _busy(_: Request, error: Overloaded) -> JSONResponse:
     return problem("overloaded", f"{error}; try again")
 
 
-def _crowded(_: Request, __: Crowded) -> JSONResponse:
+def _crowded(_: Request, __: TooManyFollowers) -> JSONResponse:
     return problem("overloaded", "too many models are followed at the moment; try again")
 
 
@@ -210,7 +210,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     KeyReused: _reused,
     NoRoom: _no_room,
     Overloaded: _busy,
-    Crowded: _crowded,
+    TooManyFollowers: _crowded,
     Crashed: _crashed,
     CannotStart: _cannot_start,
     Damaged: _damaged,

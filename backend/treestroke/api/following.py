@@ -15,7 +15,7 @@ _LOOK_SECONDS = 0.25
 log = structlog.get_logger()
 
 
-class Crowded(Exception):
+class TooManyFollowers(Exception):
     """As many requests follow models as may at once."""
 
 
@@ -27,7 +27,7 @@ class Follower:
         self._latest: Seen | None = seen
         self._news = asyncio.Event()
 
-    async def news(self) -> Seen | None:
+    async def next_change(self) -> Seen | None:
         """Wait until the model looks different, and give it; None where nothing more comes."""
         await self._news.wait()
         self._news.clear()
@@ -56,11 +56,11 @@ class Watcher:
 
         Raises
         ------
-        Crowded
+        TooManyFollowers
             All places are taken.
         """
         if len(self._followers) >= self.places:
-            raise Crowded
+            raise TooManyFollowers
         follower = Follower(seen)
         self._followers.add(follower)
         if self._looking is None:

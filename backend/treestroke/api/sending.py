@@ -17,7 +17,7 @@ _TAG_HEADER = {"ETag": {"schema": {"type": "string"}, "description": "SHA-256 of
 _RANGE = re.compile(r"bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))")
 
 
-def file_answers(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]:
+def file_responses(kind: str, schema: str = "") -> dict[int | str, dict[str, Any]]:
     """Name the answers of a route that sends a file, JSON perhaps of a ``schema``, for the API's document."""
     content: dict[str, Any] = {"content": {kind: {"schema": {"type": "string", "format": "binary"}}}}
     whole = {"content": {kind: {"schema": {"$ref": f"#/components/schemas/{schema}"}}}} if schema else content

@@ -19,7 +19,7 @@ from treestroke.service.failures import problem_of
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import lose
+from treestroke.store.leases import take_back
 from treestroke.store.tables import ModelRow, Worker
 
 LEASE_SECONDS = 10.0
@@ -38,13 +38,13 @@ Key = TypeVar("Key", bound=Hashable)
 log = structlog.get_logger()
 
 
-class Watch(Generic[Key]):
+class StallDetector(Generic[Key]):
     """For how long each of some counters has stood still, by this process's monotonic clock."""
 
     def __init__(self) -> None:
         self._seen: dict[Key, tuple[int, float]] = {}
 
-    def still(self, counters: Iterable[tuple[Key, int]], seconds: float) -> set[Key]:
+    def stalled(self, counters: Iterable[tuple[Key, int]], seconds: float) -> set[Key]:
         """Take all counters that there are now; give the keys of those that stood still for ``seconds``."""
         now = time.monotonic()
         before, self._seen = self._seen, {}
@@ -59,7 +59,7 @@ class Dispatcher:
 
     def __init__(self, database: Database, blobs: Blobs, send: Callable[[str], None], keep_days: float) -> None:
         self._database, self._send = database, send
-        self._jobs, self._workers = Watch[tuple[str, int]](), Watch[str]()
+        self._jobs, self._workers = StallDetector[tuple[str, int]](), StallDetector[str]()
         self._sent: dict[str, float] = {}
         self._wake, self._stopped = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
@@ -84,7 +84,7 @@ class Dispatcher:
             "ok" if silent_s < _OVERDUE_SECONDS else f"has not finished a round for {silent_s:.0f} s; its log says why"
         )
 
-    def wake(self) -> None:
+    def notify(self) -> None:
         """Look at the queue now: something has changed."""
         self._wake.set()
 
@@ -111,15 +111,15 @@ class Dispatcher:
         with self._database.reading() as session:
             jobs = {job.id: job for job in session.scalars(select(ModelRow).where(ModelRow.status == "running"))}
             workers = {worker.id: worker for worker in session.scalars(select(Worker))}
-        for id, _ in self._jobs.still((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
+        for id, _ in self._jobs.stalled((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
             job = jobs[id]
             with self._database.writing() as session:
-                lost = lose(session, job, problem_of("worker_lost"))
+                lost = take_back(session, job, problem_of("worker_lost"))
             if lost:
                 LOST.inc()
                 log.warning("attempt_lost", job=job.id, attempt=job.attempt, worker=job.worker)
                 self._sent.pop(job.id, None)
-        for name in self._workers.still(((worker.id, worker.beat) for worker in workers.values()), LEASE_SECONDS):
+        for name in self._workers.stalled(((worker.id, worker.beat) for worker in workers.values()), LEASE_SECONDS):
             with self._database.writing() as session:
                 session.execute(delete(Worker).where(Worker.id == name, Worker.beat == workers[name].beat))
 
@@ -177,7 +177,7 @@ def _tried(step: Callable[[], None]) -> bool:
     return False
 
 
-def say_alive(database: Database, worker: str, slots: int) -> None:
+def record_heartbeat(database: Database, worker: str, slots: int) -> None:
     """Write down that a worker lives."""
     with database.writing() as session:
         beaten = session.execute(
@@ -194,14 +194,14 @@ def holds_jobs(database: Database, worker: str) -> bool:
         return session.scalar(held) is not None
 
 
-def say_gone(database: Database, worker: str, error: dict[str, Any] | None = None) -> None:
+def remove_worker(database: Database, worker: str, error: dict[str, Any] | None = None) -> None:
     """Write down that a worker stops, or by what ``error`` it ended: what it still held queues again at once."""
     with database.writing() as session:
         session.execute(delete(Worker).where(Worker.id == worker))
         for job in session.scalars(
             select(ModelRow).where(ModelRow.status == "running", ModelRow.worker == worker)
         ).all():
-            lose(session, job, error)
+            take_back(session, job, error)
 
 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:

@@ -20,14 +20,13 @@ from treestroke import __version__
 from treestroke.schemas import Health
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
-from treestroke.service.pool import CannotStart, Crashed, Tracers
+from treestroke.service.tracing_pool import CannotStart, Crashed, TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs, Damaged
+from treestroke.store.data_folder import DataFolderError, check_version, is_open_to_others
 from treestroke.store.database import Database
-from treestroke.store.folder import open_to_others
 from treestroke.store.queries import referenced
 from treestroke.store.tables import ModelRow, Worker
-from treestroke.store.versions import Unusable, check_version
 
 _LEAST_FREE_BYTES = 500_000_000
 _BROKER_SECONDS = 2
@@ -134,7 +133,7 @@ def _folder(settings: Settings) -> Finding:
             probe.write(b"well")
     except OSError as error:
         return Finding("data folder", False, f"{there}: {error.strerror}", mend)
-    if there == folder and open_to_others(folder):
+    if there == folder and is_open_to_others(folder):
         return Finding("data folder", False, f"{folder}: other users may look into it", f"chmod 700 {folder}")
     return Finding("data folder", True, str(folder) if there == folder else f"{folder}: none yet; {_SERVE} makes it")
 
@@ -153,7 +152,7 @@ def _disk(settings: Settings) -> Finding:
 
 def _tracers(settings: Settings) -> Finding:
     """Start a process as the web process does, and have it answer."""
-    pool = Tracers(1, settings.trace_seconds, settings.memory_mb)
+    pool = TracingPool(1, settings.trace_seconds, settings.memory_mb)
     try:
         pool("", os.getpid)
     except (CannotStart, Crashed) as error:
@@ -246,7 +245,7 @@ def _refused(folder: Path) -> Finding | None:
     """Say why a start would refuse the database."""
     try:
         check_version(folder)
-    except Unusable as error:
+    except DataFolderError as error:
         what, _sign, mend = str(error).partition("; ")
         return Finding("database", False, what, mend)
     return None

@@ -16,7 +16,7 @@ from treestroke.codec.image import encode_png
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.grown_tree import LiveTree
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 from treestroke.service.evidence import Evidence, make_of
 from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
@@ -26,7 +26,7 @@ from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store import queries
 from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
-from treestroke.store.leases import add_file, beat, claim, end, succeed
+from treestroke.store.leases import add_file, claim, end, heartbeat, succeed
 from treestroke.store.tables import ModelRow
 
 GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
@@ -91,7 +91,7 @@ class Pulse:
             # A database that is busy or full for a moment costs one beat; the lease outlasts several.
             with suppress(SQLAlchemyError):
                 with self._database.stating() as session:
-                    stop = beat(session, self._job, *state)
+                    stop = heartbeat(session, self._job, *state)
                 self._order = {None: Superseded, True: Stop, False: None}[stop]
                 shown, beaten = state, time.monotonic()
 
@@ -106,7 +106,7 @@ class Pulse:
 def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: str, seconds: float) -> None:
     """Grow the model that a hint names, unless somebody else does or did, and publish it whole or not at all."""
     with database.writing() as session:
-        job = claim(session, id, token, worker, engine())
+        job = claim(session, id, token, worker, engine_version())
     if job is None:
         log.info("hint_ignored", job=id)
         return

@@ -15,8 +15,8 @@ from treestroke.core.leaf.fruit import fruit_among
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
 from treestroke.core.survey.measures import Measures
-from treestroke.service.clock import Stopwatch
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
+from treestroke.service.execution import Stopwatch
 from treestroke.service.files import Bundle, tree_files
 
 GENERATOR = f"treestroke {__version__}"
@@ -91,7 +91,7 @@ def _report(
     scores = [{"silhouette_iou": _silhouette_iou(one), **one.score} for one in trees]
     counts = [_counts(one) for one in trees]
     return {
-        "engine": engine(),
+        "engine": engine_version(),
         "seed": seed,
         "settings": {**plain_settings(settings), "foliage": tree.foliage_kind},
         "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},

@@ -10,7 +10,7 @@ from treestroke.core.pipeline.settings import check_seed
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
-from treestroke.service.clock import Stopwatch
+from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import check_files
 from treestroke.service.inputs import (
     FruitLike,
@@ -27,7 +27,6 @@ from treestroke.service.inputs import (
     load_strokes,
 )
 from treestroke.service.making import Model, make
-from treestroke.service.threads import one_thread
 
 
 def model(

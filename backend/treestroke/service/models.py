@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 from treestroke.codec.image import StoredPhoto
 from treestroke.codec.project import VIEWS, Project, sketch_ending
 from treestroke.service import model_request, tracing
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 from treestroke.service.model_request import Wish, check_name
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.store import leases, queries
@@ -264,7 +264,7 @@ def _new_row(photo: PhotoRow | None, wish: Wish, parts: Mapping[str, str]) -> Mo
         **{f"{view}_ending": ending for view, ending in endings.items()},
         settings=wish.settings,
         seed=wish.seed,
-        engine=engine(),
+        engine=engine_version(),
         fingerprint=_digest([blob, parts, wish.settings, wish.seed, *mended]),
         status="queued",
         phase_fraction=0.0,

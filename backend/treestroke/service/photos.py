@@ -9,7 +9,7 @@ from sqlalchemy import update
 
 from treestroke.core.errors import PhotoError
 from treestroke.service import tracing
-from treestroke.service.pool import Crashed, Tracers
+from treestroke.service.tracing_pool import Crashed, TracingPool
 from treestroke.settings import PHOTO_MB, PHOTOS_MB
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -28,7 +28,7 @@ class Shelf:
 
     database: Database
     blobs: Blobs
-    tracers: Tracers
+    tracers: TracingPool
     photo_bytes: int = PHOTO_MB * 10**6
     """What one photo may take as it is kept."""
     photos_bytes: int = PHOTOS_MB * 10**6

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from treestroke.codec.project import write_project
-from treestroke.service.pool import Overloaded
+from treestroke.service.tracing_pool import Overloaded
 from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.tables import ModelRow
 

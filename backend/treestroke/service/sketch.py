@@ -14,7 +14,7 @@ from treestroke.core.pipeline.sketching import SeenSketches, grow_sketches, mode
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.drawing import Drawing
-from treestroke.service.clock import Stopwatch
+from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import check_files
 from treestroke.service.inputs import (
     FruitLike,
@@ -29,7 +29,6 @@ from treestroke.service.inputs import (
     load_sketch,
 )
 from treestroke.service.making import Model, make
-from treestroke.service.threads import one_thread
 
 
 @dataclass(frozen=True, eq=False)

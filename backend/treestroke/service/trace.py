@@ -14,8 +14,8 @@ from treestroke.core.pipeline.photo import PhotoTrace, beside, grow_photo, trace
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
+from treestroke.service.execution import one_thread
 from treestroke.service.inputs import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
-from treestroke.service.threads import one_thread
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from treestroke.store.files import write_whole
+from treestroke.store.atomic_write import write_atomically
 
 _REMEMBERED = 1024
 """Files that are known to be sound as long as their times stay what they are."""
@@ -48,7 +48,7 @@ class Blobs:
         sha256 = hashlib.sha256(content).hexdigest()
         path = self.path(sha256)
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole({path: content})
+        write_atomically({path: content})
         return sha256
 
     def path(self, sha256: str) -> Path:

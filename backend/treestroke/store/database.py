@@ -15,7 +15,7 @@ from sqlalchemy import URL, Connection, Engine, create_engine, event
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
-from treestroke.store.versions import DATABASE
+from treestroke.store.data_folder import DATABASE
 
 _WRITES, _STATES = "treestroke_writes", "treestroke_states"
 _BUSY_SECONDS = 10

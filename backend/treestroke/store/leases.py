@@ -42,7 +42,9 @@ def claim(session: Session, model: str, token: str, worker: str, engine: str) ->
     ).first()
 
 
-def beat(session: Session, job: ModelRow, phase: str | None, phase_fraction: float, progress: float) -> bool | None:
+def heartbeat(
+    session: Session, job: ModelRow, phase: str | None, phase_fraction: float, progress: float
+) -> bool | None:
     """Say that an attempt lives and how far it is; tell whether it is to stop, or None where it is no longer ours."""
     change = _ours(job).values(
         beat=ModelRow.beat + 1, seq=ModelRow.seq + 1, phase=phase, phase_fraction=phase_fraction, progress=progress
@@ -77,7 +79,7 @@ def end(session: Session, job: ModelRow, status: Literal["failed", "canceled"], 
     return session.scalars(change.returning(ModelRow.id)).first() is not None
 
 
-def lose(session: Session, job: ModelRow, error: dict[str, Any] | None) -> bool:
+def take_back(session: Session, job: ModelRow, error: dict[str, Any] | None) -> bool:
     """Take an attempt back: the job queues again, or ends where it was to be stopped or has used its attempts up.
 
     ``error`` says what went wrong; None where nothing did, and the job queues again however often it was begun.

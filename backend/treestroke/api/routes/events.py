@@ -69,7 +69,7 @@ async def follow_model(
             yield ServerSentEvent(event=row.status, data=model_view(latest), id=str(row.seq))
             return
         # One that is deleted meanwhile is canceled too, and whoever follows it is told so.
-        if (news := await follower.news()) is None:
+        if (news := await follower.next_change()) is None:
             return
         latest = news
         if (now := model_view(latest)) != shown and now.status not in TERMINAL:

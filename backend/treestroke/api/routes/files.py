@@ -10,12 +10,12 @@ from fastapi.responses import FileResponse
 
 from treestroke.api.deps import ModelId, ProjectsOf, ShelfOf
 from treestroke.api.errors import documented
-from treestroke.api.sending import file_answers, send_blob, send_file
+from treestroke.api.sending import file_responses, send_blob, send_file
 from treestroke.codec.project import VIEWS
 from treestroke.service import models
 from treestroke.service.jobs import GLB, PREVIEW
 from treestroke.service.photos import NotFound, Shelf
-from treestroke.service.pool import Overloaded
+from treestroke.service.tracing_pool import Overloaded
 
 router = APIRouter(prefix="/v1/models/{id}", tags=["files"])
 _GLB, _PNG, _ZIP, _JSON = "model/gltf-binary", "image/png", "application/zip", "application/json"
@@ -40,32 +40,32 @@ _MANY: dict[int | str, dict[str, Any]] = {
     }
     if status in (HTTPStatus.OK, HTTPStatus.PARTIAL_CONTENT)
     else answer
-    for status, answer in file_answers(_GLB).items()
+    for status, answer in file_responses(_GLB).items()
 }
 _SKETCH: dict[int | str, dict[str, Any]] = {
-    status: {**answer, "content": {**answer["content"], **file_answers(_PNG)[status]["content"]}}
+    status: {**answer, "content": {**answer["content"], **file_responses(_PNG)[status]["content"]}}
     if status in (HTTPStatus.OK, HTTPStatus.PARTIAL_CONTENT)
     else answer
-    for status, answer in file_answers(_JSON, "StrokeSketch").items()
+    for status, answer in file_responses(_JSON, "StrokeSketch").items()
 }
 View = Annotated[str, Path(json_schema_extra={"pattern": "^(front|side)$"})]
 SketchEnding = Annotated[str, Path(json_schema_extra={"pattern": "^(json|png)$"})]
 Ending = Annotated[str, Path(json_schema_extra={"pattern": _ENDING, "example": "glb"})]
 
 
-@router.get("/tree.glb", response_class=FileResponse, responses=file_answers(_GLB))
+@router.get("/tree.glb", response_class=FileResponse, responses=file_responses(_GLB))
 def get_tree(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Download the tree."""
     return _file(request, shelf, id, GLB)
 
 
-@router.get("/preview.png", response_class=FileResponse, responses=file_answers(_PNG))
+@router.get("/preview.png", response_class=FileResponse, responses=file_responses(_PNG))
 def get_preview(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Look at the tree: the front view at the photo's framing beside a 3/4 view."""
     return _file(request, shelf, id, PREVIEW)
 
 
-@router.get("/strokes.json", response_class=FileResponse, responses=file_answers(_JSON, "Strokes"))
+@router.get("/strokes.json", response_class=FileResponse, responses=file_responses(_JSON, "Strokes"))
 def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     """Give the strokes that the tree was made of."""
     return _drawing(request, shelf, id, "strokes.json")
@@ -74,7 +74,7 @@ def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
 @router.get(
     "/project",
     response_class=FileResponse,
-    responses={**file_answers(_ZIP), **documented("overloaded", "storage_full")},
+    responses={**file_responses(_ZIP), **documented("overloaded", "storage_full")},
 )
 async def get_project(request: Request, shelf: ShelfOf, projects: ProjectsOf, id: ModelId) -> Response:
     """Download NAME.treestroke: all that the tree is made of, for the command line and the page."""

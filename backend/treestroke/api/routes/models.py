@@ -28,7 +28,7 @@ from treestroke.api.deps import (
     media_type,
 )
 from treestroke.api.errors import BODY, Refusal, documented
-from treestroke.api.following import Crowded, Watcher
+from treestroke.api.following import TooManyFollowers, Watcher
 from treestroke.api.views import model_view
 from treestroke.codec.photo_kinds import TAKEN
 from treestroke.codec.project import MAX_TEXT_BYTES
@@ -165,7 +165,7 @@ async def ask_for_model(
 ) -> Response:
     """Ask for a tree: always a new model, finished at once where the same was made before."""
     seen = await run_in_threadpool(models.ask_for_model, shelf, request.wish, idempotency_key, request.photo)
-    dispatcher.wake()
+    dispatcher.notify()
     wanted = _WAIT.search(prefer or "")
     if wanted:
         seen = await _finished(watcher, seen, min(float(wanted[1]), MAX_WAIT_SECONDS))
@@ -178,9 +178,9 @@ async def ask_for_model(
 
 async def _finished(watcher: Watcher, seen: Seen, seconds: float) -> Seen:
     """Wait for a model as long as may be; not at all where too many wait."""
-    with suppress(Crowded, TimeoutError), watcher.follow(seen) as follower:
+    with suppress(TooManyFollowers, TimeoutError), watcher.follow(seen) as follower:
         async with asyncio.timeout(seconds):
-            while seen.row.status not in TERMINAL and (news := await follower.news()) is not None:
+            while seen.row.status not in TERMINAL and (news := await follower.next_change()) is not None:
                 seen = news
     return seen
 

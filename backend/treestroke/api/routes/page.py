@@ -9,7 +9,7 @@ from fastapi.responses import FileResponse, PlainTextResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.types import Scope
 
-from treestroke.api.guard import POLICY
+from treestroke.api.middleware import POLICY
 
 PAGE = Path(__file__).parents[1] / "page"
 _FOREVER = "public, max-age=31536000, immutable"

@@ -9,7 +9,7 @@ from starlette.datastructures import UploadFile
 
 from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ShelfOf, check_length, form_of, leads_to, media_type
 from treestroke.api.errors import BODY, Refusal, documented
-from treestroke.api.sending import file_answers, send_blob
+from treestroke.api.sending import file_responses, send_blob
 from treestroke.api.views import photo_view
 from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.schemas import Photo, PhotoPage, TraceAnswer
@@ -101,7 +101,7 @@ def get_photo(shelf: ShelfOf, id: PhotoId) -> Photo:
     return photo_view(photos.get_photo(shelf, id))
 
 
-@router.get("/{id}/image", response_class=FileResponse, responses=file_answers("image/png"))
+@router.get("/{id}/image", response_class=FileResponse, responses=file_responses("image/png"))
 def get_image(request: Request, shelf: ShelfOf, id: PhotoId) -> Response:
     """Give the stored picture: PNG, upright, sRGB, without metadata."""
     return send_blob(request, shelf, photos.get_photo(shelf, id).blob, "image/png")

@@ -16,7 +16,7 @@ from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Se
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
-from treestroke.service.engine import engine
+from treestroke.service.engine_version import engine_version
 from treestroke.service.files import files_on_offer
 from treestroke.service.model_request import MAX_NAME
 
@@ -75,7 +75,7 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
 @router.get("/v1/version")
 def version() -> Version:
     """Say which treestroke this is."""
-    return Version(version=__version__, engine=engine(), api="v1")
+    return Version(version=__version__, engine=engine_version(), api="v1")
 
 
 def _allowed(allowed: Allowed) -> dict[str, object]:

@@ -1,9 +1,12 @@
-"""The time that each stage takes, seen from outside the core."""
+"""How the pipeline runs: on one thread, with the seconds of each stage measured."""
 
 import time
 from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+import cv2
+from threadpoolctl import threadpool_limits
 
 from treestroke.core.progress import Report
 
@@ -35,3 +38,15 @@ class Stopwatch:
         if self._stage:
             self.seconds[self._stage] += now - self._since
         self._stage, self._since = stage, now
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Hold BLAS, OpenMP and OpenCV to one thread."""
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        with threadpool_limits(limits=1):
+            yield
+    finally:
+        cv2.setNumThreads(before)

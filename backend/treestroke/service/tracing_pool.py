@@ -50,7 +50,7 @@ class CannotStart(Exception):
     """No child could be started for this call; the next call tries again."""
 
 
-class Tracers:
+class TracingPool:
     """Processes that each keep what they know of the last photos they saw: a photo goes where it was."""
 
     def __init__(self, count: int, seconds: float, memory_mb: int) -> None:

@@ -1,4 +1,4 @@
-from treestroke.service.clock import Stopwatch
+from treestroke.service.execution import Stopwatch
 
 
 def test_each_stage_is_charged_its_own_time() -> None:

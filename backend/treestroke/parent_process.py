@@ -5,17 +5,17 @@ import signal
 import threading
 import time
 
-LIFELINE = "LIFELINE"
+PARENT_HOLDS_STDIN = "PARENT_HOLDS_STDIN"
 """Set where the parent holds this process's standard input open as long as it lives."""
-RUN, RUN_BEFORE = "LIFELINE_RUN", "LIFELINE_RUN_BEFORE"
+RUN_ID, PREVIOUS_RUN_ID = "RUN_ID", "PREVIOUS_RUN_ID"
 """Set by a parent that starts a process again and again: the name of this run, and of the one that ended before it."""
 
 _LOOK_SECONDS = 0.5
 
 
-def hold_lifeline() -> None:
+def stop_with_parent() -> None:
     """Stop this process, as by SIGTERM, when its parent is gone."""
-    if os.environ.pop(LIFELINE, None):
+    if os.environ.pop(PARENT_HOLDS_STDIN, None):
         threading.Thread(target=_wait, name="lifeline", daemon=True).start()
 
 
@@ -25,7 +25,7 @@ def _wait() -> None:
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-def end_with(parent: int) -> None:
+def kill_with_parent(parent: int) -> None:
     """Kill this process, a child of ``parent``, soon after that one is gone: nobody bounds its time any more."""
     threading.Thread(target=_follow, args=(parent,), name="follow", daemon=True).start()
 

@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from treestroke.store.blobs import Blobs
+from treestroke.store.data_folder import DataFolderError, is_open_to_others, prepare_folder
 from treestroke.store.database import Database
-from treestroke.store.folder import open_to_others, own_folder
-from treestroke.store.versions import Unusable
 
 
 @pytest.fixture(autouse=True)
@@ -23,12 +22,12 @@ def mode(path: Path) -> int:
 
 def test_a_new_folder_and_all_that_is_put_there_are_this_user_s_alone(tmp_path: Path) -> None:
     folder = tmp_path / "a" / "data"
-    own_folder(folder)
+    prepare_folder(folder)
     database = Database(folder)
     database.migrate()
     database.close()
     Blobs(folder).put(b"tree")
-    assert {path for path in (folder, *folder.rglob("*")) if open_to_others(path)} == set()
+    assert {path for path in (folder, *folder.rglob("*")) if is_open_to_others(path)} == set()
 
 
 def test_a_data_folder_that_others_may_look_into_is_closed(tmp_path: Path) -> None:
@@ -39,7 +38,7 @@ def test_a_data_folder_that_others_may_look_into_is_closed(tmp_path: Path) -> No
         folder.mkdir(0o755)
         for name in made:
             (folder / name).write_bytes(b"")
-        own_folder(folder)
+        prepare_folder(folder)
         assert mode(folder) == 0o700
 
 
@@ -48,11 +47,11 @@ def test_a_folder_of_other_things_is_refused_and_left_as_it_is(tmp_path: Path) -
     folder.mkdir(0o755)
     (folder / "treestroke.sqlite3").write_bytes(b"")
     (folder / "holiday.jpg").write_bytes(b"")
-    with pytest.raises(Unusable, match=r"drwxr-xr-x.*'holiday.jpg'; name a folder of its own, such as --data "):
-        own_folder(folder)
+    with pytest.raises(DataFolderError, match=r"drwxr-xr-x.*'holiday.jpg'; name a folder of its own, such as --data "):
+        prepare_folder(folder)
     assert mode(folder) == 0o755
     folder.chmod(0o700)
-    own_folder(folder)  # its user has closed it
+    prepare_folder(folder)  # its user has closed it
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may give a folder away")
@@ -60,6 +59,6 @@ def test_a_folder_of_another_user_is_refused_and_left_as_it_is(tmp_path: Path) -
     folder = tmp_path / "theirs"
     folder.mkdir(0o755)
     os.chown(folder, 12345, 12345)
-    with pytest.raises(Unusable, match="belongs to another user"):
-        own_folder(folder)
+    with pytest.raises(DataFolderError, match="belongs to another user"):
+        prepare_folder(folder)
     assert mode(folder) == 0o755

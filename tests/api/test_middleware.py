@@ -14,7 +14,7 @@ from starlette.types import Message, Receive, Scope, Send
 from tests.api import drawn
 from tests.api.conftest import Service
 
-from treestroke.api.guard import Limited
+from treestroke.api.middleware import BodyLimitMiddleware
 
 PATIENCE_SECONDS = 10.0
 CALLS = [
@@ -267,7 +267,7 @@ async def _speak(
 
     scope: Scope = {"type": "http", "method": "POST", "path": "/", "headers": []}
     try:
-        await Limited(app, lambda _: limit, patience_s, slowest)(scope, receive, _unsent)
+        await BodyLimitMiddleware(app, lambda _: limit, patience_s, slowest)(scope, receive, _unsent)
     except HTTPException as error:
         return error.status_code, got
     return 200, got
@@ -275,7 +275,7 @@ async def _speak(
 
 def test_all_bodies_together_are_bounded() -> None:
     outcomes: list[int] = []
-    limited = Limited(_read_whole, lambda _: 1000, held=1500)
+    limited = BodyLimitMiddleware(_read_whole, lambda _: 1000, held=1500)
 
     async def come() -> None:
         bodies = _pieces(10, 100, 0.01)
@@ -314,7 +314,7 @@ def test_a_body_that_came_fast_and_fell_silent_is_given_up_as_soon_as_any_other(
 
 def test_silent_halves_of_bodies_make_room_for_one_that_comes() -> None:
     outcomes: dict[str, int] = {}
-    limited = Limited(_read_whole, lambda _: 1000, patience_s=1.5, slowest=1000.0, held=2100)
+    limited = BodyLimitMiddleware(_read_whole, lambda _: 1000, patience_s=1.5, slowest=1000.0, held=2100)
 
     async def come(name: str, *pieces: bytes) -> None:
         left = list(pieces)

@@ -7,7 +7,7 @@ from contextlib import suppress
 from pathlib import Path
 
 
-def write_whole(contents: Mapping[Path, bytes]) -> None:
+def write_atomically(contents: Mapping[Path, bytes]) -> None:
     """Write files, each beside its place and then renamed, so that a failure leaves no new file and no damaged old one.
 
     A link is followed to the file that it names; what is no plain file (a device, a pipe) is written to directly.

@@ -8,7 +8,7 @@ import pytest
 from tests.running import BACKEND
 
 from treestroke import __version__
-from treestroke.service.engine import LIBRARIES, digest, engine, sources
+from treestroke.service.engine_version import LIBRARIES, digest, engine_version, sources
 
 PACKAGE = BACKEND / "treestroke"
 ROOT = BACKEND.parent
@@ -23,8 +23,8 @@ def copied(tmp_path: Path) -> Path:
 
 
 def test_the_engine_is_named_by_version_and_digest_wherever_it_lies(copied: Path) -> None:
-    assert engine() == f"treestroke {__version__}+{digest(copied, LIBRARIES)}"
-    assert len(engine()) <= 40  # as the table has it
+    assert engine_version() == f"treestroke {__version__}+{digest(copied, LIBRARIES)}"
+    assert len(engine_version()) <= 40  # as the table has it
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_another_byte_of_what_makes_the_tree_is_another_engine(copied: Path, fil
 
 def test_what_does_not_make_the_tree_is_the_same_engine(copied: Path) -> None:
     before = digest(copied, LIBRARIES)
-    for file in ("api/guard.py", "service/doctor.py", "core/grow/_engine.cpython-311.so", "core/__pycache__/a.pyc"):
+    for file in ("api/middleware.py", "service/doctor.py", "core/grow/_engine.so", "core/__pycache__/a.pyc"):
         (copied / file).parent.mkdir(exist_ok=True)
         with (copied / file).open("ab") as changed:
             changed.write(b" ")
@@ -61,7 +61,7 @@ def test_every_module_that_makes_a_tree_counts() -> None:
     told = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     imported = {Path(line) for line in told.stdout.splitlines() if line.endswith(".py")}
     others = {path.relative_to(PACKAGE).as_posix() for path in imported - set(sources(PACKAGE))}
-    assert others == {"__init__.py", "service/__init__.py", "service/engine.py"}
+    assert others == {"__init__.py", "service/__init__.py", "service/engine_version.py"}
 
 
 def test_the_wheel_s_files_are_the_same_engine(copied: Path) -> None:

@@ -12,14 +12,14 @@ import pytest
 from tests.service import pool_work as work
 
 from treestroke.core.errors import PhotoError
-from treestroke.service.pool import WAITING, CannotStart, Crashed, Overloaded, Tracers
+from treestroke.service.tracing_pool import WAITING, CannotStart, Crashed, Overloaded, TracingPool
 
 SECONDS = 1.0
 
 
 @pytest.fixture(scope="module")
-def tracers() -> Iterator[Tracers]:
-    pool = Tracers(2, SECONDS, 1536)
+def tracers() -> Iterator[TracingPool]:
+    pool = TracingPool(2, SECONDS, 1536)
     yield pool
     pool.close()
 
@@ -32,14 +32,14 @@ def alive(pid: int) -> bool:
     return True
 
 
-def test_work_is_done_in_another_process_that_stays_with_its_key(tracers: Tracers) -> None:
+def test_work_is_done_in_another_process_that_stays_with_its_key(tracers: TracingPool) -> None:
     first, again = tracers("a", work.process), tracers("a", work.process)
     assert first == again != os.getpid()
     assert len({tracers(f"key {at}", work.process) for at in range(8)}) == 2
 
 
 @pytest.mark.parametrize("crash", [work.segfault, work.leave])
-def test_a_process_that_dies_is_replaced(tracers: Tracers, crash: object) -> None:
+def test_a_process_that_dies_is_replaced(tracers: TracingPool, crash: object) -> None:
     before = tracers("b", work.process)
     with pytest.raises(Crashed):
         tracers("b", crash)  # type: ignore[arg-type]
@@ -48,7 +48,7 @@ def test_a_process_that_dies_is_replaced(tracers: Tracers, crash: object) -> Non
     assert not alive(before)
 
 
-def test_a_process_that_hangs_is_ended_at_the_limit(tracers: Tracers) -> None:
+def test_a_process_that_hangs_is_ended_at_the_limit(tracers: TracingPool) -> None:
     before, began = tracers("c", work.process), time.monotonic()
     with pytest.raises(Crashed, match="slow"):
         tracers("c", work.hang)
@@ -57,7 +57,7 @@ def test_a_process_that_hangs_is_ended_at_the_limit(tracers: Tracers) -> None:
     assert not alive(before)
 
 
-def test_a_neighbour_goes_on_while_a_process_dies(tracers: Tracers) -> None:
+def test_a_neighbour_goes_on_while_a_process_dies(tracers: TracingPool) -> None:
     keys = [f"d{at}" for at in range(20)]
     homes = {key: tracers(key, work.process) for key in keys}
     doomed = keys[0]
@@ -68,13 +68,13 @@ def test_a_neighbour_goes_on_while_a_process_dies(tracers: Tracers) -> None:
         assert isinstance(dying.exception(), Crashed)
 
 
-def test_a_process_that_is_killed_between_two_calls_is_replaced(tracers: Tracers) -> None:
+def test_a_process_that_is_killed_between_two_calls_is_replaced(tracers: TracingPool) -> None:
     os.kill(tracers("e", work.process), signal.SIGKILL)
     time.sleep(0.5)
     assert tracers("e", work.process) != os.getpid()
 
 
-def test_memory_is_bounded_and_the_process_lives_on(tracers: Tracers) -> None:
+def test_memory_is_bounded_and_the_process_lives_on(tracers: TracingPool) -> None:
     before = tracers("f", work.process)
     for devour in (work.devour, work.devour_pixels):
         with pytest.raises(Crashed, match="memory"):
@@ -82,13 +82,13 @@ def test_memory_is_bounded_and_the_process_lives_on(tracers: Tracers) -> None:
     assert tracers("f", work.process) == before
 
 
-def test_errors_of_the_input_come_back_whole(tracers: Tracers) -> None:
+def test_errors_of_the_input_come_back_whole(tracers: TracingPool) -> None:
     with pytest.raises(PhotoError, match="no photo") as caught:
         tracers("g", work.refuse)
     assert (caught.value.code, caught.value.pointer) == ("photo_unreadable", "/photo")
 
 
-def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: Tracers) -> None:
+def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: TracingPool) -> None:
     begun = threading.Barrier(WAITING + 1)
 
     def wait(at: int) -> int:
@@ -106,7 +106,7 @@ def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: Trac
 
 
 def test_a_pool_that_is_closed_leaves_no_process() -> None:
-    pool = Tracers(2, SECONDS, 1536)
+    pool = TracingPool(2, SECONDS, 1536)
     pids = {pool(f"key {at}", work.process) for at in range(4)}
     pool.close()
     assert len(pids) == 2
@@ -126,9 +126,9 @@ def spare_descriptors(count: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_NOFILE, before)
 
 
-def test_a_process_that_cannot_be_started_leaves_nothing_and_the_next_call_tries_again(tracers: Tracers) -> None:
+def test_a_process_that_cannot_be_started_leaves_nothing_and_the_next_call_tries_again(tracers: TracingPool) -> None:
     tracers("j", work.process)  # Python's own tracker of resources runs from now on
-    pool, failures = Tracers(1, SECONDS, 1536), []
+    pool, failures = TracingPool(1, SECONDS, 1536), []
     open_before = os.listdir("/proc/self/fd")
     for spare in range(32):
         with spare_descriptors(spare), suppress(CannotStart):
@@ -144,7 +144,7 @@ def test_a_process_that_cannot_be_started_leaves_nothing_and_the_next_call_tries
 
 
 def test_a_process_that_ends_before_it_is_ready_is_no_process() -> None:
-    others, pool = multiprocessing.active_children(), Tracers(1, SECONDS, 64)
+    others, pool = multiprocessing.active_children(), TracingPool(1, SECONDS, 64)
     for _ in range(2):
         with pytest.raises(CannotStart, match="it ended before it was ready"):
             pool("a", work.process)
@@ -152,7 +152,7 @@ def test_a_process_that_ends_before_it_is_ready_is_no_process() -> None:
 
 
 def test_all_processes_are_started_before_they_are_asked_for_anything() -> None:
-    others, pool = set(multiprocessing.active_children()), Tracers(2, SECONDS, 1536)
+    others, pool = set(multiprocessing.active_children()), TracingPool(2, SECONDS, 1536)
     pool.start()
     deadline = time.monotonic() + 30
     while len(started := set(multiprocessing.active_children()) - others) < 2 and time.monotonic() < deadline:

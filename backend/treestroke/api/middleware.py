@@ -39,7 +39,7 @@ _HEADERS = {
 }
 
 
-class Guard:
+class SecurityMiddleware:
     """Refuses what is ambiguous, names another host or comes from another site, and sets the safe headers.
 
     A page elsewhere that a browser has open reaches 127.0.0.1 as its user does; it is told by its Origin, or, where a
@@ -80,7 +80,7 @@ class Guard:
         return None
 
 
-class Methods:
+class MethodMiddleware:
     """Answers HEAD as GET without its body, and OPTIONS by what may be asked.
 
     Any other method that nobody knows is refused here, before it is counted: each would be a series of its own.
@@ -143,7 +143,7 @@ class _Body:
             self._wait.reschedule(0.0)
 
 
-class Limited:
+class BodyLimitMiddleware:
     """Bounds a request's body, whatever its Content-Length says, and gives up on bodies that hardly come."""
 
     def __init__(

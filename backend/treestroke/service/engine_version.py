@@ -13,7 +13,7 @@ import PIL
 from treestroke import __version__
 
 PACKAGES = ("core", "codec")
-MODULES = ("clock", "evidence", "files", "inputs", "jobs", "making", "model", "sketch", "threads")
+MODULES = ("evidence", "execution", "files", "inputs", "jobs", "making", "model", "sketch")
 """Of this package: what brings input to a tree and a tree to files."""
 LIBRARIES = {
     "numpy": np.__version__,
@@ -27,7 +27,7 @@ _DIGITS = 12
 
 
 @cache
-def engine() -> str:
+def engine_version() -> str:
     """Give the engine's name: program, version, and a digest of what makes the tree."""
     return f"treestroke {__version__}+{digest(Path(__file__).parents[1], LIBRARIES)}"
 

@@ -6,8 +6,8 @@ import pytest
 from alembic.script import ScriptDirectory
 
 from treestroke.store.blobs import Blobs
+from treestroke.store.data_folder import DataFolderError, check_version, known_revisions
 from treestroke.store.database import Database, _migrations
-from treestroke.store.versions import Unusable, check_version, known_revisions
 
 
 def test_the_known_versions_are_those_of_the_migrations() -> None:
@@ -36,7 +36,9 @@ def test_a_database_that_is_lost_or_empty_beside_files_is_refused(tmp_path: Path
     blobs = Blobs(tmp_path)
     check_version(tmp_path)  # no file yet
     blobs.put(b"tree")
-    with pytest.raises(Unusable, match=r"lost or empty.*; restore it from a copy, or move the folder 'blobs' away"):
+    with pytest.raises(
+        DataFolderError, match=r"lost or empty.*; restore it from a copy, or move the folder 'blobs' away"
+    ):
         check_version(tmp_path)
     blobs.folder.rename(tmp_path / "kept")
     check_version(tmp_path)
@@ -45,11 +47,11 @@ def test_a_database_that_is_lost_or_empty_beside_files_is_refused(tmp_path: Path
 def test_a_newer_database_is_refused_in_one_line_that_says_how_to_mend_it(database: Database) -> None:
     with database.writing() as session:
         session.connection().exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
-    with pytest.raises(Unusable, match=r"^\S+: a newer treestroke made this database .*9999.*; install .*$"):
+    with pytest.raises(DataFolderError, match=r"^\S+: a newer treestroke made this database .*9999.*; install .*$"):
         check_version(database.path.parent)
 
 
 def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:
     (tmp_path / "treestroke.sqlite3").write_bytes(b"no database at all" * 1000)
-    with pytest.raises(Unusable, match=r"cannot be read \(file is not a database\); restore it from a copy"):
+    with pytest.raises(DataFolderError, match=r"cannot be read \(file is not a database\); restore it from a copy"):
         check_version(tmp_path)
