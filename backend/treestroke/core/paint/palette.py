@@ -9,8 +9,8 @@ from treestroke.core.types import Floats, Indices, Mask, Picture
 
 SAMPLES = 6000
 """Foliage pixels that are clustered; more change no cluster by more than the noise of a photo."""
-ROUNDS = 10
-"""Rounds of k-means; centres move by under one Lab unit after eight (measured on the 11 photos)."""
+ROUNDS, RING_ROUNDS = 11, 10
+"""Steps of k-means for the foliage and for the ring; centres move by under one Lab unit after eight (11 photos)."""
 RING = 0.06
 """Width of the ring around the foliage that shows the background, as a share of the foliage's height."""
 RING_CLUSTERS = 4
@@ -103,7 +103,7 @@ def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Ge
     samples = _sample(photo, inner if inner.sum() > mask.sum() // 10 else mask, rng)
     samples = _own_colours(samples, _sample(photo, _ring(mask), rng), rng)
     samples = flattened(samples)
-    _, labels = _k_means(samples, clusters, rng)
+    labels = _k_means(samples, clusters, ROUNDS, rng)
     counts = np.bincount(labels)
     order = [int(k) for k in np.argsort(-counts, kind="stable") if counts[k] > 0]
     members = tuple(samples[labels == k] for k in order)
@@ -127,20 +127,37 @@ def _ring(mask: Mask) -> Mask:
     return np.asarray((outside > 2.5) & (outside <= far), dtype=np.bool_)
 
 
-def _k_means(samples: Floats, clusters: int, rng: np.random.Generator) -> tuple[Floats, Indices]:
-    """Lloyd's k-means from a k-means++ start; clusters that lose all samples keep their centre."""
+def _k_means(samples: Floats, clusters: int, steps: int, rng: np.random.Generator) -> Indices:
+    """Label each sample (n, 3) with its cluster (n,) of up to ``clusters``, after steps of Lloyd's algorithm.
+
+    OpenCV runs the steps: it is imported anyway, while importing scikit-learn takes longer than painting all leaves.
+    Samples are centred, so that its 32-bit floats round their distances less.
+    """
+    first = nearest_colour(samples, _seed_colours(samples, clusters, rng))[0]
+    labels = first.astype(np.int32)[:, None]
+    centred = (samples - samples.mean(axis=0)).astype(np.float32)
+    criteria = (cv2.TERM_CRITERIA_MAX_ITER, steps, 0.0)
+    cv2.kmeans(centred, int(first.max()) + 1, labels, criteria, 1, cv2.KMEANS_USE_INITIAL_LABELS)
+    return labels[:, 0].astype(np.int64)
+
+
+def _seed_colours(samples: Floats, clusters: int, rng: np.random.Generator) -> Floats:
+    """Draw up to ``clusters`` of the samples (n, 3) far from each other (k, 3), fewer where there are fewer colours.
+
+    Source: k-means++, Arthur and Vassilvitskii 2007. OpenCV's own draws from a generator that the whole process shares.
+    """
     centres = samples[rng.integers(len(samples))][None]
     least = nearest_colour(samples, centres)[1]
     while len(centres) < clusters and least.max() > 0:
         chosen = np.searchsorted(np.cumsum(least), rng.random() * least.sum())
         centres = np.vstack([centres, samples[min(int(chosen), len(samples) - 1)]])
         least = np.minimum(least, nearest_colour(samples, centres[-1:])[1])
-    for _ in range(ROUNDS):
-        labels, _ = nearest_colour(samples, centres)
-        counts = np.bincount(labels, minlength=len(centres))[:, None]
-        sums = np.stack([np.bincount(labels, samples[:, axis], len(centres)) for axis in range(3)], axis=1)
-        centres = np.where(counts > 0, sums / np.maximum(counts, 1), centres)
-    return centres, nearest_colour(samples, centres)[0]
+    return centres
+
+
+def _cluster_means(samples: Floats, labels: Indices) -> Floats:
+    """Mean (k, 3) of the samples (n, 3) with each label (n,)."""
+    return np.stack([samples[labels == label].mean(axis=0) for label in range(int(labels.max()) + 1)])
 
 
 def _own_colours(samples: Floats, ring: Floats, rng: np.random.Generator) -> Floats:
@@ -151,7 +168,7 @@ def _own_colours(samples: Floats, ring: Floats, rng: np.random.Generator) -> Flo
     if len(ring) == 0:
         return samples
     foliage, share = np.median(samples, axis=0), np.zeros(len(samples))
-    backgrounds = _k_means(ring, RING_CLUSTERS, rng)[0]
+    backgrounds = _cluster_means(ring, _k_means(ring, RING_CLUSTERS, RING_ROUNDS, rng))
     for background in backgrounds:
         share = np.maximum(share, _background_share(samples, foliage, background))
     limit = np.sort(share)[-1 - int(BACKGROUND_SHARE * len(share))]
