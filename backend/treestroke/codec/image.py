@@ -14,6 +14,7 @@ from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, lost
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.codec.watched_bytes import WatchedBytes
 from treestroke.core.errors import FruitError, LeafError, PhotoError
+from treestroke.core.geometry.mesh import ALPHA_CUT
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
@@ -220,7 +221,7 @@ def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[Fru
     except _DAMAGED as error:
         what = f"this is no PNG picture that can be read ({_brief(error)}); save the {thing} as PNG"
         raise refusal(f"{name}: {what}") from error
-    drawn = float((picture[..., 3] > 127).mean())
+    drawn = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
     if not 0.01 <= drawn <= 0.99:
         lacks = f"no {thing}: all is clear" if drawn < 0.01 else f"nothing clear around the {thing}"
         what = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"

@@ -6,9 +6,7 @@ random factors in place and direction. Ours stand apart from each other and most
 
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.vectors import UP, unit
@@ -16,7 +14,8 @@ from treestroke.core.geometry.views import CrownViews
 from treestroke.core.leaf.arrangement import Seats, seats_along, thin_edges
 from treestroke.core.leaf.leaves import Leaves, join_leaves
 from treestroke.core.paint.atlas import TILE_SIDE, Atlas, tile_labs
-from treestroke.core.paint.easel import MARGIN
+from treestroke.core.paint.canvas import MARGIN
+from treestroke.core.paint.cut_outs import mean_solid_colour, resized_premultiplied
 from treestroke.core.paint.palette import nearest_colour
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Picture
@@ -100,7 +99,7 @@ def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Pict
 
     Those leaves show the tile of the most similar colour instead. Without an atlas the fruit's tile is the only one.
     """
-    tile, colour = _tile(picture), picture[picture[..., 3] > 127][:, :3].astype(np.float64).mean(axis=0)
+    tile, colour = _tile(picture), mean_solid_colour(picture)
     if atlas is None:
         alone = Atlas(tile, np.array([[0.0, 0.0, 1.0, 1.0]]), colour[None], fruit=0)
         return replace(fruit, tiles=np.zeros(len(fruit), dtype=np.int64)), alone
@@ -113,11 +112,6 @@ def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Pict
     image[top : top + TILE_SIDE, left : left + TILE_SIDE], colours[place] = tile, colour
     hung = replace(fruit, tiles=np.full(len(fruit), place, dtype=np.int64))
     return join_leaves([leaves, hung]), replace(atlas, image=image, colours=colours, fruit=place)
-
-
-def fruit_among(leaves: Leaves, atlas: Atlas) -> NDArray[np.bool_]:
-    """Tell which cards (m,) are fruit."""
-    return np.zeros(len(leaves), dtype=bool) if atlas.fruit is None else leaves.tiles == atlas.fruit
 
 
 def _around(seats: Seats, rng: np.random.Generator) -> Floats:
@@ -173,11 +167,8 @@ def _tile(picture: Picture) -> Picture:
     room = round(TILE_SIDE * (1 - 2 * MARGIN))
     height, width = picture.shape[:2]
     size = max(1, round(width * room / max(height, width))), max(1, round(height * room / max(height, width)))
-    alpha = picture[..., 3:].astype(np.float32) / 255
-    premultiplied = np.concatenate([alpha * picture[..., :3], alpha], axis=2).astype(np.float32)
-    filtering = cv2.INTER_AREA if max(height, width) > room else cv2.INTER_LINEAR
-    small = cv2.resize(premultiplied, size, interpolation=filtering).reshape(size[1], size[0], 4)
-    mean = picture[picture[..., 3] > 127][:, :3].mean(axis=0)
+    small = resized_premultiplied(picture, *size)
+    mean = mean_solid_colour(picture)
     colour = np.where(small[..., 3:] > 1 / 255, small[..., :3] / np.maximum(small[..., 3:], 1e-3), mean)
     tile = np.empty((TILE_SIDE, TILE_SIDE, 4), dtype=np.uint8)
     tile[:] = (*np.rint(mean).astype(int).tolist(), 0)

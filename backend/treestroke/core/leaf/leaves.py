@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.types import Floats, Indices
+from treestroke.core.geometry.mesh import ALPHA_CUT
+from treestroke.core.paint.atlas import Atlas, tile_alphas
+from treestroke.core.types import Floats, Indices, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +34,7 @@ class Leaves:
     rights: Floats
     ups: Floats
     tiles: Indices
-    flips: NDArray[np.bool_]
+    flips: Mask
     shades: Floats
     joints: Indices
 
@@ -47,7 +48,7 @@ class Leaves:
     def __len__(self) -> int:
         return len(self.centres)
 
-    def select(self, kept: NDArray[np.bool_]) -> "Leaves":
+    def select(self, kept: Mask) -> "Leaves":
         """Keep the marked cards (m,)."""
         return Leaves(*(getattr(self, field.name)[kept] for field in fields(self)))
 
@@ -60,6 +61,22 @@ def join_leaves(parts: Sequence[Leaves]) -> Leaves:
 
 
 def no_leaves() -> Leaves:
-    """Bear nothing."""
+    """Return no cards."""
     vectors, indices = np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
     return Leaves(vectors, vectors, vectors, indices, np.zeros(0, dtype=np.bool_), np.zeros(0), indices)
+
+
+def fruit_among(leaves: Leaves, atlas: Atlas) -> Mask:
+    """Tell which cards (m,) are fruit: those that show the atlas's fruit tile."""
+    return np.zeros(len(leaves), dtype=bool) if atlas.fruit is None else leaves.tiles == atlas.fruit
+
+
+def leaf_area(leaves: Leaves, atlas: Atlas) -> float:
+    """One-sided area of all leaves, square metres: what remains of their cards when cut at `ALPHA_CUT`.
+
+    Leaves that overlap within one spray count once; fruit does not count.
+    """
+    leaves = leaves.select(~fruit_among(leaves, atlas))
+    drawn = (tile_alphas(atlas) >= 255 * ALPHA_CUT).mean(axis=(1, 2))
+    card_areas = 4 * np.linalg.norm(leaves.rights, axis=1) * np.linalg.norm(leaves.ups, axis=1)
+    return float((card_areas * drawn[leaves.tiles]).sum())

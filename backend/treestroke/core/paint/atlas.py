@@ -5,17 +5,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.paint.cut_outs import mean_solid_colour, opaque_part, reduced
+from treestroke.core.paint.leaf_picture import draw_pictured_leaves, picture_recolour
 from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
-from treestroke.core.paint.picture import draw_pictured, opaque_part, picture_recolour, reduced
 from treestroke.core.paint.seasons import LEAFY, Recolour, own_palette, recolour_bare, recolour_for
 from treestroke.core.paint.species import AUTO, Species
-from treestroke.core.paint.sprays import Shape, draw_spray
+from treestroke.core.paint.sprays import SprayKind, draw_spray
 from treestroke.core.types import Floats, FoliageKind
 
 COLUMNS = 4
 """Tiles a row; the atlas has as many rows."""
 TILE_SIDE = 256
-"""Side of a tile, px: a spray is seen at 20 to 60 px, so this bears a close look."""
+"""Side of a tile, px: a spray is seen at 20 to 60 px, so this bears a close style."""
 BLOSSOM_LIGHTNESS, BLOSSOM_CHROMA = 62.0, 17.0
 """Clusters that are lighter and paler than this (or pink) look like blossom."""
 BLOSSOM_SHARE = 0.3
@@ -23,7 +24,7 @@ BLOSSOM_SHARE = 0.3
 
 
 @dataclass(frozen=True, eq=False)
-class LeafLook:
+class LeafStyle:
     """What is known of the leaves apart from the photo.
 
     Attributes
@@ -83,7 +84,7 @@ def leaf_atlas(
     mask: NDArray[np.bool_],
     kind: FoliageKind,
     rng: np.random.Generator,
-    look: LeafLook = LeafLook(),
+    style: LeafStyle = LeafStyle(),
 ) -> Atlas:
     """Draw sprays of leaves (or needles, or blossom) in up to 16 colours of the photo's foliage.
 
@@ -96,17 +97,17 @@ def leaf_atlas(
         The mask (h, w) is empty or not of the photo's size (h, w, 3).
     """
     tiles = COLUMNS * COLUMNS
-    palette = foliage_palette(photo, mask, tiles, rng) if look.shown else own_palette(tiles, rng)
-    flower = _in_flower(palette, kind, look)
-    recolour = None if flower and look.picture is None else _recolour(palette, kind, look)
-    shapes = _shapes(palette, kind, look, flower)
+    palette = foliage_palette(photo, mask, tiles, rng) if style.shown else own_palette(tiles, rng)
+    flower = _in_flower(palette, kind, style)
+    recolour = None if flower and style.picture is None else _recolour(palette, kind, style)
+    kinds = _spray_kinds(palette, kind, style, flower)
     if recolour is not None:
         palette = recolour.palette(palette, tiles, rng)
     image = np.zeros((COLUMNS * TILE_SIDE, COLUMNS * TILE_SIDE, 4), dtype=np.uint8)
     for tile, window in enumerate(_windows()):
         cluster = tile % len(palette.members)
-        image[window] = _tile(shapes[cluster % len(shapes)], palette.members[cluster], look, rng)
-    return Atlas(image, _boxes(), _mean_colours(image), recolour if look.shown else _blind(recolour))
+        image[window] = _tile(kinds[cluster % len(kinds)], palette.members[cluster], style, rng)
+    return Atlas(image, _boxes(), _mean_colours(image), recolour if style.shown else _blind(recolour))
 
 
 def tile_alphas(atlas: Atlas) -> NDArray[np.uint8]:
@@ -121,32 +122,32 @@ def tile_labs(atlas: Atlas) -> Floats:
     return lab_from_rgb(np.rint(atlas.colours).astype(np.uint8))
 
 
-def _in_flower(palette: Palette, kind: FoliageKind, look: LeafLook) -> bool:
+def _in_flower(palette: Palette, kind: FoliageKind, style: LeafStyle) -> bool:
     """Tell whether much of the tree looks like blossom, at a season when it may."""
     lightness, red, yellow = palette.centres.T
     pale = (np.hypot(red, yellow) < BLOSSOM_CHROMA) & (lightness > BLOSSOM_LIGHTNESS)
     pink = (red > 8) & (yellow < 6) & (lightness > 45)
-    its_time = look.season == "spring" and (look.species.flowers or look.species == AUTO)
-    blooms = look.shown and kind != "needles" and (look.season not in LEAFY or its_time)
+    its_time = style.season == "spring" and (style.species.flowers or style.species == AUTO)
+    blooms = style.shown and kind != "needles" and (style.season not in LEAFY or its_time)
     return bool(blooms and palette.shares[pale | pink].sum() > BLOSSOM_SHARE)
 
 
-def _shapes(palette: Palette, kind: FoliageKind, look: LeafLook, flower: bool) -> list[Shape]:
+def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: bool) -> list[SprayKind]:
     """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
     if kind == "needles":
         return ["needles"]
-    if look.species.flowers and look.season == "spring":
+    if style.species.flowers and style.season == "spring":
         return ["blossom"]
     return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]
 
 
-def _recolour(palette: Palette, kind: FoliageKind, look: LeafLook) -> Recolour | None:
+def _recolour(palette: Palette, kind: FoliageKind, style: LeafStyle) -> Recolour | None:
     """Tell how the photo's colours become the leaves'."""
-    if look.picture is not None:
-        return picture_recolour(look.picture, palette)
-    if not look.shown:
-        return recolour_bare(look.season, look.species, kind == "needles")
-    return recolour_for(look.season, look.species, palette, kind == "needles")
+    if style.picture is not None:
+        return picture_recolour(style.picture, palette)
+    if not style.shown:
+        return recolour_bare(style.season, style.species, kind == "needles")
+    return recolour_for(style.season, style.species, palette, kind == "needles")
 
 
 def _blind(recolour: Recolour | None) -> Recolour | None:
@@ -154,11 +155,11 @@ def _blind(recolour: Recolour | None) -> Recolour | None:
     return None if recolour is None else replace(recolour, kept=np.zeros(3))
 
 
-def _tile(shape: Shape, members: Floats, look: LeafLook, rng: np.random.Generator) -> NDArray[np.uint8]:
+def _tile(kind: SprayKind, colours: Floats, style: LeafStyle, rng: np.random.Generator) -> NDArray[np.uint8]:
     """Draw one spray."""
-    if look.picture is not None:
-        return draw_pictured(look.picture, look.species, TILE_SIDE, members, rng)
-    return draw_spray(shape, TILE_SIDE, members, rng, look.species)
+    if style.picture is not None:
+        return draw_pictured_leaves(style.picture, style.species, TILE_SIDE, colours, rng)
+    return draw_spray(kind, TILE_SIDE, colours, rng, style.species)
 
 
 def _windows() -> list[tuple[slice, slice]]:
@@ -175,4 +176,4 @@ def _boxes() -> Floats:
 
 def _mean_colours(image: NDArray[np.uint8]) -> Floats:
     """Mean opaque colour of each tile (k, 3)."""
-    return np.stack([image[window][image[window][..., 3] > 127][:, :3].mean(axis=0) for window in _windows()])
+    return np.stack([mean_solid_colour(image[window]) for window in _windows()])

@@ -138,7 +138,7 @@ def _k_means(samples: Floats, clusters: int, steps: int, rng: np.random.Generato
     centred = (samples - samples.mean(axis=0)).astype(np.float32)
     criteria = (cv2.TERM_CRITERIA_MAX_ITER, steps, 0.0)
     cv2.kmeans(centred, int(first.max()) + 1, labels, criteria, 1, cv2.KMEANS_USE_INITIAL_LABELS)
-    return labels[:, 0].astype(np.int64)
+    return np.asarray(labels[:, 0], dtype=np.int64)
 
 
 def _seed_colours(samples: Floats, clusters: int, rng: np.random.Generator) -> Floats:
@@ -152,12 +152,12 @@ def _seed_colours(samples: Floats, clusters: int, rng: np.random.Generator) -> F
         chosen = np.searchsorted(np.cumsum(least), rng.random() * least.sum())
         centres = np.vstack([centres, samples[min(int(chosen), len(samples) - 1)]])
         least = np.minimum(least, nearest_colour(samples, centres[-1:])[1])
-    return centres
+    return np.asarray(centres)
 
 
 def _cluster_means(samples: Floats, labels: Indices) -> Floats:
-    """Mean (k, 3) of the samples (n, 3) with each label (n,)."""
-    return np.stack([samples[labels == label].mean(axis=0) for label in range(int(labels.max()) + 1)])
+    """Mean colours (k, 3) of the samples (n, 3) with each label (n,)."""
+    return np.asarray([samples[labels == label].mean(axis=0) for label in range(int(labels.max()) + 1)])
 
 
 def _own_colours(samples: Floats, ring: Floats, rng: np.random.Generator) -> Floats:

@@ -54,9 +54,9 @@ class Recolour:
     ramp: Floats
     kept: Floats
 
-    def at(self, labs: Floats, mood: Floats) -> Floats:
+    def at(self, labs: Floats, position: Floats) -> Floats:
         """Colours (n, 3) for colours of the photo (n, 3) at moods (n,), 0 to 1."""
-        place = np.clip(mood, 0, 1) * (len(self.ramp) - 1)
+        place = np.clip(position, 0, 1) * (len(self.ramp) - 1)
         first = np.minimum(place, max(len(self.ramp) - 2, 0)).astype(np.int64)
         second = np.minimum(first + 1, len(self.ramp) - 1)
         own = self.ramp[first] + (place - first)[:, None] * (self.ramp[second] - self.ramp[first])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.polyline import distances_to_segment
 from treestroke.core.types import Floats, FoliageKind, Mask
 
-Look = Literal["bare", "dull", "fresh"]
+FoliageLook = Literal["bare", "dull", "fresh"]
 """Twigs alone; dull dark green; all else."""
 
 THIN = 0.5
@@ -26,7 +26,7 @@ TALLNESS = 1.2
 """Least height of a conifer's crown over its width, for a crown that does not taper."""
 
 
-def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Look, float]:
+def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[FoliageLook, float]:
     """Judge how foliage looks, and how surely, by its mask (h, w) on a photo (h, w, 3) and the crown's inside (h, w).
 
     Bare: the crown is thin lines, or a web of colourless ones with something else between them. It is as sure,
@@ -49,7 +49,7 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Loo
     return "dull" if _is_dull_green(colours) else "fresh", 0.0 if tint < 0.0 else min(-bareness, 1.0)
 
 
-def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> FoliageKind:
+def foliage_kind(look: FoliageLook, mask: Mask, trunk_px: Floats) -> FoliageKind:
     """Judge by how the foliage looks, its mask (h, w) and the trunk stroke (n, 2), px.
 
     Needles: dull dark green, in a crown that is tall or tapers to a top above a trunk that runs through it.

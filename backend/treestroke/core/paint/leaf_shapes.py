@@ -8,7 +8,7 @@ import numpy as np
 
 from treestroke.core.types import Floats
 
-BladeName = Literal[
+LeafShapeName = Literal[
     "ash",
     "beech",
     "birch",
@@ -55,11 +55,11 @@ BIRCH = (
     (0.00, 0.00), (0.14, 0.06), (0.29, 0.18), (0.37, 0.30), (0.34, 0.43), (0.26, 0.57), (0.17, 0.71), (0.09, 0.84),
     (0.03, 0.94), (0.00, 1.00),
 )  # fmt: skip
-MIDRIB = np.linspace(0.0, 1.0, 8)[:, None] * np.array([0.0, 1.0])
+_MIDRIB = np.linspace(0.0, 1.0, 8)[:, None] * np.array([0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
-class Blade:
+class LeafShape:
     """One leaf in its own length: foot of its stalk at (0, 0), tip at (0, 1), x to the right.
 
     Attributes
@@ -81,7 +81,7 @@ class Blade:
 
 
 @cache
-def blade(name: BladeName) -> Blade:
+def leaf_shape(name: LeafShapeName) -> LeafShape:
     """Build a species' leaf."""
     match name:
         case "maple" | "plane":
@@ -102,7 +102,7 @@ def blade(name: BladeName) -> Blade:
             return _feather(name)
 
 
-def _simple(name: Literal["beech", "elm", "cherry", "willow"]) -> Blade:
+def _simple(name: Literal["beech", "elm", "cherry", "willow"]) -> LeafShape:
     """Build a leaf that is one oval, from broad (beech) to narrow (willow)."""
     breadth, widest, teeth, stalk, veins = {
         "beech": (0.62, 0.45, 0.008, 0.09, 6),
@@ -150,12 +150,12 @@ def _palmate_veins(foot: float, tips: tuple[tuple[float, float], ...]) -> tuple[
     )
 
 
-def _leaflet(half: Floats, veins: tuple[Floats, ...] = ()) -> Blade:
+def _leaflet(half: Floats, veins: tuple[Floats, ...] = ()) -> LeafShape:
     """Mirror the right half (n, 2) of an outline that runs from its foot to its tip."""
     left = half * np.array([-1.0, 1.0])
     foot = np.array([0.0, half[0, 1]])
-    midrib = foot + MIDRIB * (1.0 - half[0, 1])
-    return Blade(
+    midrib = foot + _MIDRIB * (1.0 - half[0, 1])
+    return LeafShape(
         (np.vstack([left, half[::-1][1:-1]]),),
         (np.vstack([left, midrib[::-1][1:-1]]),),
         (0.96 * midrib + 0.04 * foot, *veins),
@@ -163,25 +163,25 @@ def _leaflet(half: Floats, veins: tuple[Floats, ...] = ()) -> Blade:
     )
 
 
-def _stalked(leaf: Blade, length: float) -> Blade:
+def _stalked(leaf: LeafShape, length: float) -> LeafShape:
     """Set a leaf on a stalk of this share of the whole's length."""
     placed = _placed(leaf, 1.0 - length, 0.0, np.array([0.0, length]))
-    return Blade(placed.outlines, placed.halves, placed.veins, np.stack([np.zeros(2), placed.stalk[0]]))
+    return LeafShape(placed.outlines, placed.halves, placed.veins, np.stack([np.zeros(2), placed.stalk[0]]))
 
 
-def _placed(leaf: Blade, size: float, angle: float, foot: Floats) -> Blade:
+def _placed(leaf: LeafShape, size: float, angle: float, foot: Floats) -> LeafShape:
     """Scale a leaf, turn it clockwise and set it at foot (2,)."""
     turn = size * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
     def moved(lines: tuple[Floats, ...]) -> tuple[Floats, ...]:
         return tuple(line @ turn + foot for line in lines)
 
-    return Blade(moved(leaf.outlines), moved(leaf.halves), moved(leaf.veins), leaf.stalk @ turn + foot)
+    return LeafShape(moved(leaf.outlines), moved(leaf.halves), moved(leaf.veins), leaf.stalk @ turn + foot)
 
 
-def _joined(leaflets: list[Blade], stalk: Floats) -> Blade:
+def _joined(leaflets: list[LeafShape], stalk: Floats) -> LeafShape:
     """Make one leaf of leaflets."""
-    return Blade(
+    return LeafShape(
         tuple(line for leaf in leaflets for line in leaf.outlines),
         tuple(line for leaf in leaflets for line in leaf.halves),
         tuple(line for leaf in leaflets for line in leaf.veins[:1]),
@@ -189,7 +189,7 @@ def _joined(leaflets: list[Blade], stalk: Floats) -> Blade:
     )
 
 
-def _fan() -> Blade:
+def _fan() -> LeafShape:
     """Build a horse chestnut's leaf: seven leaflets from one point, the middle ones longest."""
     half = np.array([(0.0, 0.0), (0.04, 0.2), (0.11, 0.45), (0.17, 0.66), (0.16, 0.8), (0.07, 0.92), (0.0, 1.0)])
     foot, leaflet = np.array([0.0, 0.38]), _leaflet(_toothed(half, 0.012))
@@ -199,7 +199,7 @@ def _fan() -> Blade:
     )
 
 
-def _feather(name: Literal["ash", "walnut", "locust"]) -> Blade:
+def _feather(name: Literal["ash", "walnut", "locust"]) -> LeafShape:
     """Build a leaf of leaflets in pairs along a stalk, with one at its end."""
     pairs, breadth, length, stalk, lean = {
         "ash": (3, 0.4, 0.34, 0.26, 0.95),

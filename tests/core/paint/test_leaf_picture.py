@@ -2,10 +2,10 @@ import cv2
 import numpy as np
 import pytest
 
-from treestroke.core.paint.atlas import LeafLook, leaf_atlas, tile_alphas, tile_labs
+from treestroke.core.paint.atlas import LeafStyle, leaf_atlas, tile_alphas, tile_labs
+from treestroke.core.paint.cut_outs import LONGEST_PX, opaque_part, reduced
 from treestroke.core.paint.palette import lab_from_rgb
-from treestroke.core.paint.picture import LONGEST, opaque_part, reduced
-from treestroke.core.paint.species import KINDS
+from treestroke.core.paint.species import AUTO, SPECIES
 
 PURPLE = (130, 60, 140)
 
@@ -20,7 +20,7 @@ def leaf_picture(side: int = 300) -> np.ndarray:
 
 
 def atlas_of(photo, mask, **look):
-    return leaf_atlas(photo, mask, "leaves", np.random.default_rng(0), LeafLook(picture=leaf_picture(), **look))
+    return leaf_atlas(photo, mask, "leaves", np.random.default_rng(0), LeafStyle(picture=leaf_picture(), **look))
 
 
 def test_the_picture_s_colour_is_the_leaves_whatever_the_photo_s(photo, mask):
@@ -42,7 +42,7 @@ def test_light_and_dark_of_the_photo_stay(photo, mask):
 
 @pytest.mark.parametrize("name", ["auto", "maple", "willow"])
 def test_a_pictured_spray_fills_a_quarter_to_three_quarters_of_its_tile(name, photo, mask):
-    alphas = tile_alphas(atlas_of(photo, mask, species=KINDS[name])) > 127
+    alphas = tile_alphas(atlas_of(photo, mask, species=SPECIES.get(name, AUTO))) > 127
     assert alphas.mean(axis=(1, 2)).min() >= 0.25
     assert alphas.mean(axis=(1, 2)).max() <= 0.75
     assert not alphas[:, [0, -1]].any()
@@ -61,7 +61,7 @@ def test_the_opaque_part_is_cut_out():
 
 def test_a_large_picture_is_shrunk_without_the_colour_of_what_is_clear():
     small = reduced(opaque_part(leaf_picture(2000)))
-    assert max(small.shape) == LONGEST
+    assert max(small.shape) == LONGEST_PX
     assert np.abs(small[small[..., 3] > 10][:, :3].astype(int) - PURPLE).max() < 20
 
 
@@ -72,11 +72,11 @@ def test_a_large_picture_is_shrunk_without_the_colour_of_what_is_clear():
 )
 def test_what_shows_no_leaf_is_refused(wrong):
     with pytest.raises(ValueError, match="leaf's picture"):
-        LeafLook(picture=wrong)
+        LeafStyle(picture=wrong)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 400), (400, 1), (3, 2)])
 def test_odd_pictures_are_drawn_without_a_stop(shape, photo, mask):
     speck = np.full((*shape, 4), 200, np.uint8)
-    look = LeafLook(picture=speck)
+    look = LeafStyle(picture=speck)
     assert leaf_atlas(photo, mask, "leaves", np.random.default_rng(0), look).image.shape == (1024, 1024, 4)
