@@ -102,7 +102,7 @@ def test_a_season_keeps_what_is_light_and_what_is_dark(photo, mask):
     assert (np.diff(light) > 4).all()
 
 
-def test_moods_run_through_the_ramp():
+def test_positions_run_through_the_ramp():
     ramp = np.array([[50.0, -10, 30], [60, 0, 40], [50, 20, 30]])
     recolour = Recolour(np.array([40.0, 0, 0]), ramp, np.zeros(3))
     assert recolour.at(np.full((3, 3), 40.0), np.array([0, 0.5, 1])) == pytest.approx(ramp)

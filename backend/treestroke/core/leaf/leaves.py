@@ -1,4 +1,4 @@
-"""Leaves: the cards of one tree, as arrays."""
+"""Leaves: the cards of one tree, as arrays; fruit hangs among them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -12,14 +12,14 @@ from treestroke.core.types import Floats, Indices, Mask
 
 @dataclass(frozen=True, eq=False)
 class Leaves:
-    """m flat cards; each shows one tile of the atlas, a spray that grows along ``ups``.
+    """m flat cards; each shows one tile of the atlas, a spray that grows in the direction of ``ups``.
 
     Attributes
     ----------
     centres
         (m, 3) middle of each card, metres, world.
     rights, ups
-        (m, 3) half its width and half its height, metres, at right angles; right x up looks outward.
+        (m, 3) half its width and half its height, metres, at right angles; right x up points outward.
     tiles
         (m,) index of its tile in the atlas.
     flips
@@ -27,7 +27,7 @@ class Leaves:
     shades
         (m,) brightness, 0 to 1.
     joints
-        (m,) index of the skeleton's joint at whose edge it hangs.
+        (m,) index of the skeleton's joint whose edge it hangs on.
     """
 
     centres: Floats
@@ -49,12 +49,12 @@ class Leaves:
         return len(self.centres)
 
     def select(self, kept: Mask) -> "Leaves":
-        """Keep the marked cards (m,)."""
+        """Keep the marked cards (m,), a mask."""
         return Leaves(*(getattr(self, field.name)[kept] for field in fields(self)))
 
 
 def join_leaves(parts: Sequence[Leaves]) -> Leaves:
-    """Put cards together, in the order given; no parts give no cards."""
+    """Concatenate cards in the order given; without parts there are no cards."""
     if not parts:
         return no_leaves()
     return Leaves(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Leaves)))

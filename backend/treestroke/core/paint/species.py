@@ -1,4 +1,4 @@
-"""What one photo cannot tell of a tree: the shape of its leaves, how they sit, and the relief of its bark."""
+"""What a photo cannot show of a tree: the shape and arrangement of its leaves, its seasons' colours and its bark."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,15 +8,21 @@ from typing import Literal
 from treestroke.core.paint.leaf_shapes import LeafShapeName
 
 LeafArrangement = Literal["alternate", "opposite", "tufted"]
+"""How leaves sit on a shoot: alternating, in opposite pairs, or together at its end."""
 NeedleArrangement = Literal["long", "short", "tufts"]
+"""How needles sit: long ones in brushes at the shoots' ends, short ones all around, or in tufts."""
 Lab = tuple[float, float, float]
 Ramp = tuple[Lab, ...]
-"""Colours, CIE Lab, between which a tree's leaves lie at one season."""
+"""Colours, CIE Lab, between which a tree's leaves lie in one season."""
 
 GREEN: Ramp = ((40.0, -15.0, 22.0), (45.0, -18.0, 27.0), (51.0, -19.0, 32.0))
+"""Summer's colours of an unknown broad-leaved tree."""
 FRESH: Ramp = ((55.0, -18.0, 36.0), (62.0, -19.0, 43.0), (68.0, -17.0, 47.0))
+"""Spring's colours of an unknown broad-leaved tree."""
 MIXED: Ramp = ((47.0, -8.0, 31.0), (60.0, 2.0, 46.0), (55.0, 15.0, 43.0), (45.0, 17.0, 32.0))
+"""Autumn's colours of an unknown broad-leaved tree."""
 CONIFER: Ramp = ((34.0, -11.0, 16.0), (40.0, -13.0, 19.0), (46.0, -13.0, 23.0))
+"""Colours of evergreen needles."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +34,9 @@ class Bark:
     form
         Its pattern: one of `treestroke.core.mesh.grain.Form`.
     depth
-        Deviation of its height, as a share of the stem's radius.
+        Standard deviation of its height, as a share of the stem's radius.
     colour
-        sRGB where the photo shows no bark.
+        sRGB, 0 to 255, used where the photo shows no bark.
     """
 
     form: Literal["smooth", "furrowed", "plated", "peeling", "banded", "scaly"] = "furrowed"
@@ -44,14 +50,14 @@ class Species:
 
     Attributes
     ----------
-    blade
-        Outline of a leaf; None draws ovate leaves of many forms.
+    leaf_shape
+        Shape of a leaf; None draws ovate leaves of varying form.
     length
-        A leaf's length with its stalk, as a share of the spray's side.
-    seating
-        How leaves sit on a shoot: in turn, in pairs, or together at its end.
+        Length of a leaf with its stalk, as a share of the spray's side.
+    arrangement
+        How leaves sit on a shoot.
     shoots
-        Side shoots of a spray.
+        Number of side shoots of a spray.
     needles
         How needles sit, or None for a broad-leaved tree.
     evergreen
@@ -61,7 +67,7 @@ class Species:
     bark
         Its bark.
     spring, summer, autumn
-        Its colours.
+        Colours of its leaves, CIE Lab.
     """
 
     leaf_shape: LeafShapeName | None = None
@@ -214,4 +220,4 @@ SPECIES: Mapping[str, Species] = MappingProxyType(
         ),
     }
 )
-"""What is known of each kind of tree, by the name that the setting `species` takes; `auto` stands for AUTO."""
+"""Known kinds of trees, by the values of the setting `species`; its value `auto` means AUTO."""

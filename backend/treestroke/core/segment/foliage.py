@@ -110,6 +110,8 @@ def segment_foliage(
     """Find the foliage inside a crown stroke (n, 2), px, 3 points at least, on a photo (h, w, 3), sRGB.
 
     The mask is never empty: where nothing looks like a leaf it is the inside of the stroke.
+
+    Source: Tan et al. 2008, section 2; docs/papers.md lists where we differ.
     """
     height, width = photo.shape[:2]
     crown = fill_outline(crown_px, height, width)
