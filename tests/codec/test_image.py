@@ -191,7 +191,7 @@ def test_an_ordinary_photo_is_stored_in_the_fast_way(maple_photo: Path) -> None:
 
 def in_strips(data: bytes, monkeypatch: pytest.MonkeyPatch) -> np.ndarray:
     with monkeypatch.context() as patch:
-        patch.setattr(treestroke.codec.image, "_STRIP", 7 * 90)
+        patch.setattr(treestroke.codec.image, "_STRIP_PIXELS", 7 * 90)
         return decode_photo(data, "photo")
 
 
