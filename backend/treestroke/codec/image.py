@@ -37,7 +37,7 @@ MAX_LEAF_BYTES = 4_000_000
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 """Least and greatest side of a leaf's or a fruit's picture, px."""
 MAX_LOST = 0.002
-"""Greatest share of a photo's pixels that a truncated file may lack: under half a row of blocks in 3000 rows of pixels."""
+"""Greatest share of pixels that a truncated photo may lack: under half a row of blocks in 3000 rows of pixels."""
 _DAMAGED = (
     *(OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError),
     *(OverflowError, struct.error, zlib.error),
@@ -227,11 +227,11 @@ def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[Fru
                 raise refusal(f"{name}: {fault} {MAX_LEAF_SIDE} px; resize it", code=f"{thing}_size")
             picture = np.asarray(image.convert("RGBA"))
     except _DAMAGED as error:
-        fault = f"this is no PNG picture that can be read ({_shortened(error)}); save the {thing} as PNG"
+        fault = f"this is not a readable PNG ({_shortened(error)}); save the {thing} as PNG"
         raise refusal(f"{name}: {fault}") from error
     opaque = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
     if not 0.01 <= opaque <= 0.99:
-        lacks = f"no {thing}: all is clear" if opaque < 0.01 else f"nothing clear around the {thing}"
+        lacks = f"no {thing}: all of it is transparent" if opaque < 0.01 else f"nothing transparent around the {thing}"
         fault = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"
         raise refusal(f"{name}: {fault}", code=f"{thing}_not_cut_out")
     return np.ascontiguousarray(picture)
@@ -253,7 +253,7 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
             _check_complete(image, ending, name, warn)
     except _DAMAGED as error:
         raise PhotoError(
-            f"{name}: the photo is damaged or cut short ({_shortened(error)}); save or copy it anew"
+            f"{name}: the photo is damaged or cut short ({_shortened(error)}); save or copy it again"
         ) from error
     if image.mode in _UNSUPPORTED_MODES:
         fault = (
@@ -279,7 +279,7 @@ def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
             code="photo_too_many_pixels",
         ) from error
     except _DAMAGED as error:
-        fault = f"this {NAMES[kind]} is damaged, or of a sort that is not read; copy it anew, or save it as JPEG"
+        fault = f"this {NAMES[kind]} is damaged, or of an unsupported variant; copy it again, or save it as JPEG"
         raise PhotoError(f"{name}: {fault}") from error
 
 
@@ -318,12 +318,12 @@ def _check_complete(image: Image.Image, ending: Ending, name: str, warn: Warn) -
     else:
         missing = f"{max(1, round(100 * max(share, 1 - first / image.height)))} % of the picture"
     if share > MAX_LOST or (ending.is_coarse and not ending.marked):
-        raise PhotoError(f"{name}: the photo is cut short: {missing} is missing; save or copy it anew")
+        raise PhotoError(f"{name}: the photo is cut short: {missing} is missing; save or copy it again")
     if share > 0 or not ending.marked:
         part = (
             "nothing of its picture" if share < MAX_LOST / 100 else f"no more than {100 * share:.2f} % of its picture"
         )
-        detail = f"the photo's file is cut short, but {part} is missing; if you can, save or copy it anew"
+        detail = f"the photo's file is cut short, but {part} is missing; if you can, save or copy it again"
         warn(StrokeWarning("photo_cut_short", "photo", detail))
 
 

@@ -89,13 +89,13 @@ def is_sequence(data: bytes) -> bool:
 def refusal_of(data: bytes) -> str:
     """Return a message that says what a file that is not accepted is, and how it becomes a photo."""
     if not data:
-        return "the file is empty; choose another, or copy it anew"
+        return "the file is empty; choose another, or copy it again"
     named = (
         (name, mend) for name, beginning, mend in _OTHER_FILES if re.match(beginning, data, re.DOTALL | re.IGNORECASE)
     )
     name, mend = next(named, _RAW if re.match(_SIGNATURES["TIFF"], data) else ("", ""))
     if not name:
-        return f"this is no photo that can be read; save it as {ACCEPTED_FORMATS}"
+        return f"this is not a photo that can be read; save it as {ACCEPTED_FORMATS}"
     return f"this is {name}, and a photo must be {ACCEPTED_FORMATS}; {mend}"
 
 

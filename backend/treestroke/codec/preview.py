@@ -30,7 +30,9 @@ _SUNLIGHT = np.array([1.12, 1.05, 0.92], dtype=np.float32)
 _SKYLIGHT = np.array([0.50, 0.54, 0.60], dtype=np.float32)
 """Colour of the sky's light, linear."""
 _SKY_TOP, _SKY_LOW = np.array([0.50, 0.64, 0.80]), np.array([0.86, 0.89, 0.90])
+"""Colours of the sky at the top and at the horizon, linear."""
 _GROUND_FAR, _GROUND_NEAR = np.array([0.62, 0.62, 0.52]), np.array([0.42, 0.42, 0.32])
+"""Colours of the ground at the horizon and at the bottom, linear."""
 _GAP_PX = 6
 """Gap between the two views."""
 
@@ -46,7 +48,7 @@ class _Scene:
     is_leaf: NDArray[np.bool_]
 
     @property
-    def owners(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    def texture_masks(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """Which triangles (t,) have the bark's texture, and which the leaf's."""
         return ~self.is_leaf, self.is_leaf
 
@@ -211,7 +213,9 @@ def _draw(scene: _Scene, textures: tuple[_Texture, _Texture], view: _View, light
     """Find what each pixel of a view shows; ``light`` (t, 3, k) is interpolated along with the texture coordinates."""
     corners_px, nearness = view.project(scene.corners)
     values = planes(corners_px, np.concatenate([scene.uvs, light], axis=2))
-    fitted = [_shrunk(texture, scene.uvs[w], corners_px[w]) for texture, w in zip(textures, scene.owners, strict=True)]
+    fitted = [
+        _shrunk(texture, scene.uvs[w], corners_px[w]) for texture, w in zip(textures, scene.texture_masks, strict=True)
+    ]
     coordinates = Planes(values.origin_px, values.start[:2], values.along_x[:2], values.along_y[:2])
     opaque = fitted[1].alpha.ravel() >= fitted[1].threshold
 
@@ -261,9 +265,9 @@ def _paint(drawing: _Drawing, scene: _Scene, view: _View, sun: _Sunlight) -> NDA
     triangle = drawing.shown.ravel()[pixel]
     values = drawing.values.at(triangle, *pixel_centres(pixel, view.width))
     colours = np.empty((len(triangle), 3), dtype=np.float32)
-    for texture, owners in zip(drawing.textures, scene.owners, strict=True):
-        owned = np.flatnonzero(owners[triangle])
-        colours[owned] = texture.colours.reshape(-1, 3)[texture.texels(values[:2, owned])]
+    for texture, mask in zip(drawing.textures, scene.texture_masks, strict=True):
+        textured = np.flatnonzero(mask[triangle])
+        colours[textured] = texture.colours.reshape(-1, 3)[texture.texels(values[:2, textured])]
     direct, sky = np.clip(values[2:], 0.0, 1.0).astype(np.float32)
     layer = np.zeros((view.height * view.width, 4), dtype=np.float32)
     layer[pixel, :3] = colours * (direct[:, None] * _SUNLIGHT + sky[:, None] * _SKYLIGHT)

@@ -61,7 +61,7 @@ def read_picture(data: bytes) -> Sketch:
     red = _red(pixels)
     ink = _ink(pixels, red)
     if not ink.any():
-        fault = "the picture shows no strokes; draw dark or opaque strokes on light or clear ground"
+        fault = "the picture shows no strokes; draw dark or opaque strokes on light or transparent ground"
         raise StrokesError(fault, code="sketch_empty")
     crown = _crown(red)
     if crown is not None:
@@ -101,7 +101,7 @@ def _decoded(data: bytes) -> Picture:
         raise StrokesError(fault, code="sketch_size") from error
     except _DAMAGED as error:
         brief = " ".join(str(error).split())[:80]
-        fault = f"this is no PNG picture that can be read ({brief}); save it anew"
+        fault = f"this is not a readable PNG ({brief}); save it again"
         raise StrokesError(fault, code="sketch_unreadable") from error
 
 
@@ -130,7 +130,7 @@ def _red(pixels: Picture) -> Mask:
 
 
 def _ink(pixels: Picture, red: Mask) -> Mask:
-    """Mark the strokes (h, w) without the crown's line: opaque on transparent ground, else in contrast with the ground."""
+    """Mark the strokes (h, w), not the crown's line: opaque on transparent ground, else in contrast with the ground."""
     clear = pixels[..., 3] < OPAQUE_ALPHA
     ink = ~clear if np.count_nonzero(clear) > LEAST_HOLE * clear.size else _unlike_ground(pixels)
     if not red.any():

@@ -135,10 +135,10 @@ def _outward(points: Floats, envelope: Envelope) -> Floats:
 
 def _chosen(points: Floats, likelihood: Floats, apart: Floats, count: int, rng: np.random.Generator) -> Indices:
     """Draw up to ``count`` points (n, 3), metres, by their likelihood, no two nearer than ``apart`` (n,)."""
-    late = rng.exponential(size=len(points)) / np.maximum(likelihood, 1e-12)
+    arrival = rng.exponential(size=len(points)) / np.maximum(likelihood, 1e-12)
     found: list[int] = []
     free = likelihood > 0
-    for index in np.argsort(late, kind="stable").tolist():
+    for index in np.argsort(arrival, kind="stable").tolist():
         if len(found) == count:
             break
         if free[index]:

@@ -29,10 +29,10 @@ def opaque_part(picture: Picture) -> Picture:
     """
     if picture.ndim != 3 or picture.shape[2] != 4 or picture.dtype != np.uint8:
         given = f"{picture.shape} {picture.dtype}"
-        raise ValueError(f"a leaf's picture must be (h, w, 4) uint8, and so must a fruit's; got {given}")
+        raise ValueError(f"the picture of a leaf or a fruit must be (h, w, 4) uint8, got {given}")
     opaque = visible(picture)
     if not opaque.any():
-        raise ValueError("a leaf's picture needs pixels that are not transparent, and so does a fruit's")
+        raise ValueError("the picture of a leaf or a fruit needs pixels that are not transparent")
     rows, columns = np.flatnonzero(opaque.any(axis=1)), np.flatnonzero(opaque.any(axis=0))
     return picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
