@@ -146,7 +146,7 @@ def ftyp(*brands: bytes) -> bytes:
         (ftyp(b"heic", bytes(4), b"mif1"), "photo_unreadable", "this HEIC is damaged.*save it as JPEG$"),
         (ftyp(b"mif1", bytes(4), b"avif", b"mif1"), "photo_unreadable", "this AVIF is damaged.*save it as JPEG$"),
         (ftyp(b"isom", bytes(4)), "format_not_allowed", "save one of its frames as JPEG$"),
-        (b"RIFF\x10\0\0\0WAVEfmt ", "format_not_allowed", "no photo that can be read; save it as JPEG, PNG, WebP"),
+        (b"RIFF\x10\0\0\0WAVEfmt ", "format_not_allowed", "not a photo that can be read; save it as JPEG, PNG, WebP"),
         (b"RIFF\x10\0\0\0WEBPVP8 ", "photo_unreadable", "this WebP is damaged"),
         (b"II*\0\x08\0\0\0", "photo_unreadable", "this TIFF is damaged"),
         (b"II+\0\x08\0\0\0" + b"\xff" * 9, "photo_unreadable", "this TIFF is damaged"),
@@ -191,7 +191,7 @@ def test_an_ordinary_photo_is_stored_in_the_fast_way(maple_photo: Path) -> None:
 
 def in_strips(data: bytes, monkeypatch: pytest.MonkeyPatch) -> np.ndarray:
     with monkeypatch.context() as patch:
-        patch.setattr(treestroke.codec.image, "_STRIP", 7 * 90)
+        patch.setattr(treestroke.codec.image, "_STRIP_PIXELS", 7 * 90)
         return decode_photo(data, "photo")
 
 
@@ -298,7 +298,7 @@ def test_a_jpeg_that_lacks_part_of_its_picture_is_refused_and_told_how_much(
 ) -> None:
     data = saved(elm(), kind, **options)
     with pytest.raises(
-        PhotoError, match=r"cut short: \d+ % of the picture is missing; save or copy it anew$"
+        PhotoError, match=r"cut short: \d+ % of the picture is missing; save or copy it again$"
     ) as refused:
         cut(data, int(share * len(data)))
     assert refused.value.code == "photo_unreadable"
@@ -515,6 +515,6 @@ def test_what_is_no_leaf_cut_out_is_refused(data: bytes, code: str) -> None:
 
 def test_a_fruit_is_read_as_a_leaf_and_refused_by_its_own_name() -> None:
     assert decode_fruit(leaf_png(disc_alpha()), "fruit").shape == (64, 64, 4)
-    with pytest.raises(FruitError, match="no fruit: all is clear; cut the fruit out") as refused:
+    with pytest.raises(FruitError, match="no fruit: all of it is transparent; cut the fruit out") as refused:
         decode_fruit(leaf_png(np.zeros((64, 64))), "fruit")
     assert refused.value.code == "fruit_not_cut_out"

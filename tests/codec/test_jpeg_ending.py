@@ -5,7 +5,7 @@ from PIL import Image
 from tests.api.corpora import saved
 from tests.conftest import DATA
 
-from treestroke.codec.jpeg_ending import ending_of, ends_flat, lost
+from treestroke.codec.jpeg_ending import ending_of, ends_flat, missing_part
 
 ELM = Image.open(DATA / "elm_house.jpg").convert("RGB").resize((240, 320))
 OPTIONS = {
@@ -35,7 +35,7 @@ def test_a_whole_jpeg_has_its_end_and_all_its_passes(options: dict[str, object])
 def test_noise_behind_the_last_block_changes_nothing(options: dict[str, object]) -> None:
     ending = ending_of(saved(ELM, "JPEG", **options)[:-2])
     assert not ending.marked
-    assert lost(opened(ending.completed()), opened(ending.made_up())) == (0.0, ELM.height)
+    assert missing_part(opened(ending.completed()), opened(ending.filled_with_noise())) == (0.0, ELM.height)
 
 
 @pytest.mark.parametrize("kept", [0.3, 0.5, 0.7, 0.9])
@@ -44,15 +44,15 @@ def test_what_is_lost_begins_where_the_whole_picture_differs(name: str, kept: fl
     data = saved(ELM, "JPEG", **OPTIONS[name])
     ending = ending_of(data[: int(kept * len(data))])
     cut = opened(ending.completed())
-    _, first = lost(cut, opened(ending.made_up()))
-    _, differs = lost(cut, opened(data))
+    _, first = missing_part(cut, opened(ending.filled_with_noise()))
+    _, differs = missing_part(cut, opened(data))
     assert abs(first - differs) <= 16
 
 
 def test_a_cut_at_the_end_of_a_restart_interval_is_seen() -> None:
     data = saved(ELM, "JPEG", restart_marker_rows=1)
     ending = ending_of(data[: data.rindex(b"\xff\xd0")])
-    share, first = lost(opened(ending.completed()), opened(ending.made_up()))
+    share, first = missing_part(opened(ending.completed()), opened(ending.filled_with_noise()))
     assert share > 0.01
     assert first < ELM.height - 16
 

@@ -6,7 +6,7 @@ import pytest
 from PIL import Image
 from tests.api.corpora import saved
 
-from treestroke.codec.photo_kinds import ending_of, kind_of, refusal_of
+from treestroke.codec.photo_kinds import extension_of, kind_of, refusal_of
 
 PICTURE = Image.fromarray(np.full((64, 70, 3), (40, 120, 60), np.uint8))
 DNG_VERSION, SUB_IFDS, SUBFILE_TYPE, PHOTOMETRIC = 50706, 330, 254, 262
@@ -29,7 +29,7 @@ def box(*brands: bytes) -> bytes:
 def test_every_kind_is_told_by_its_bytes(kind: str, ending: str) -> None:
     data = saved(PICTURE, kind)
     assert kind_of(data) == kind
-    assert ending_of(data) == ending
+    assert extension_of(data) == ending
 
 
 @pytest.mark.parametrize(

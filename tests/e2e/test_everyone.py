@@ -21,7 +21,7 @@ def test_a_file_that_is_no_photo_is_told_in_place(visitor: Visitor, tmp_path: Pa
     bad.write_text("no picture")
     visitor.give(visitor.page.locator("body"), bad)
     expect(
-        visitor.page.get_by_role("alert").filter(has_text="no photo that can be read; save it as JPEG, PNG")
+        visitor.page.get_by_role("alert").filter(has_text="not a photo that can be read; save it as JPEG, PNG")
     ).to_be_visible()
     visitor.shot("bad-file")
 
@@ -34,7 +34,7 @@ def test_a_bad_file_leaves_an_open_drawing_as_it_was(visitor: Visitor, tmp_path:
     bad = tmp_path / "tree.png"
     bad.write_bytes(b"\x89PNG no picture")
     visitor.give(page.locator("body"), bad, how="paste", media_type="image/png")
-    expect(page.get_by_text("no photo that can be read").filter(visible=True)).to_be_visible()
+    expect(page.get_by_text("not a photo that can be read").filter(visible=True)).to_be_visible()
     expect(page.get_by_role("textbox", name="Name of the drawing")).to_have_value("Osage orange")
     visitor.wait_for_preview("model")
 

@@ -1,4 +1,4 @@
-"""Photos: bytes in, upright sRGB pixels out."""
+"""Photos: bytes in, upright sRGB pixels out; and pictures of leaves and fruit that are cut out."""
 
 import io
 import struct
@@ -10,38 +10,43 @@ import cv2
 import numpy as np
 from PIL import Image, ImageCms
 
-from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, lost
+from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, missing_part
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.codec.watched_bytes import WatchedBytes
 from treestroke.core.errors import FruitError, LeafError, PhotoError
+from treestroke.core.geometry.mesh import ALPHA_CUT
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
 
 Warn = Callable[[StrokeWarning], object]
-"""Called with each thing about a photo that was mended in reading it."""
+"""Called with each fault of a photo that was mended while it was read."""
 
 MAX_BYTES = 25_000_000
-"""Of an upload."""
+"""Greatest size of an upload."""
 MIN_SIDE, MAX_SIDE = 64, 16_384
+"""Least and greatest side of a photo, px."""
 MAX_PIXELS = 50_000_000
 MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
-"""A stored photo is no larger: noise that does not compress, a byte a channel, and 1 % for the PNG around it."""
+"""Greatest size of a stored photo: noise that does not compress, a byte a channel, and 1 % for the PNG around it."""
 PHOTO_HEAD = 24
-"""First bytes of a photo that `most_stored_bytes` looks at."""
+"""Number of first bytes of a photo that `most_stored_bytes` needs."""
 
 MAX_LEAF_BYTES = 4_000_000
+"""Greatest size of a leaf's or a fruit's picture."""
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
+"""Least and greatest side of a leaf's or a fruit's picture, px."""
 MAX_LOST = 0.002
-"""Share of a photo's pixels that a file cut short may lack: less than half a row of blocks of 3000 rows of pixels."""
+"""Greatest share of pixels that a truncated photo may lack: under half a row of blocks in 3000 rows of pixels."""
 _DAMAGED = (
     *(OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError),
     *(OverflowError, struct.error, zlib.error),
 )
-"""What decoders raise on files that break their format."""
-_NOT_READ = {"F": "floating-point", "I": "32-bit", "I;16S": "signed", "LAB": "Lab"}
-"""Kinds of pixels, by Pillow's modes, that have no one meaning as sRGB."""
+"""Exceptions that decoders raise for files that break their format."""
+_UNSUPPORTED_MODES = {"F": "floating-point", "I": "32-bit", "I;16S": "signed", "LAB": "Lab"}
+"""Kinds of pixels, by Pillow's modes, that have no unique meaning as sRGB."""
 _ORIENTATION = 0x0112
+"""EXIF tag of the orientation."""
 _TURNS = {
     2: Image.Transpose.FLIP_LEFT_RIGHT,
     3: Image.Transpose.ROTATE_180,
@@ -51,47 +56,49 @@ _TURNS = {
     7: Image.Transpose.TRANSVERSE,
     8: Image.Transpose.ROTATE_90,
 }
-"""What makes a picture of each EXIF orientation upright."""
+"""Transformation that makes a picture of each EXIF orientation upright."""
 _SIDEWAYS, _BACKWARD = (5, 6, 7, 8), (3, 4, 6, 7)
-"""Orientations whose rows are columns of the upright picture, and whose first row comes last."""
-_STRIP = 2_000_000
-"""Pixels that are brought to sRGB at a time."""
-_READ = 0.7
-"""Share of decoding that is done when all bytes are read."""
+"""Orientations whose rows are columns of the upright picture, and those whose first row comes last."""
+_STRIP_PIXELS = 2_000_000
+"""Pixels that are converted to sRGB at a time."""
+_READING_SHARE = 0.7
+"""Share of the decoding's progress at which all bytes are read."""
 _SRGB = ImageCms.createProfile("sRGB")
 _PNG = (cv2.IMWRITE_PNG_COMPRESSION, 1)
-_FAST = (
+_FAST_PNG = (
     *_PNG,
     cv2.IMWRITE_PNG_STRATEGY,
     cv2.IMWRITE_PNG_STRATEGY_RLE,
     cv2.IMWRITE_PNG_FILTER,
     cv2.IMWRITE_PNG_FILTER_SUB,
 )
-_THOROUGH = (
+"""OpenCV's options for a PNG that is written fast: only runs of equal values are compressed."""
+_THOROUGH_PNG = (
     *_PNG,
     cv2.IMWRITE_PNG_STRATEGY,
     cv2.IMWRITE_PNG_STRATEGY_DEFAULT,
     cv2.IMWRITE_PNG_FILTER,
     cv2.IMWRITE_PNG_ALL_FILTERS,
 )
-_STRIPS, _STRIP_ROWS = 4, 12
-"""Of a picture, by which it is judged how to store it."""
+"""OpenCV's options for a PNG in which repetitions are compressed, too."""
+_SAMPLE_STRIPS, _SAMPLE_ROWS = 4, 12
+"""Strips of a picture, and rows of each, by which the options for storing it are chosen."""
 
 
 class StoredPhoto(bytes):
-    """An encoded photo that was let in before: the limit on uploads does not hold for it."""
+    """An encoded photo that was accepted before: the limit on uploads does not apply to it."""
 
 
-def unheard(warning: StrokeWarning) -> None:
-    """Take no notice of a warning."""
+def ignore_warning(warning: StrokeWarning) -> None:
+    """Ignore a warning."""
 
 
-def decode_photo(data: bytes, name: str, report: Report = silent, warn: Warn = unheard) -> Picture:
+def decode_photo(data: bytes, name: str, report: Report = silent, warn: Warn = ignore_warning) -> Picture:
     """Decode a JPEG, PNG, WebP, HEIC, AVIF or TIFF photo to (h, w, 3) uint8 sRGB, upright, alpha over white.
 
-    An ICC profile is honoured (a broken one is ignored); 16 bits a channel become 8; ``name`` appears in messages.
-    The size is judged from the header, before any pixel is decoded. ``report("decode", fraction)`` is called as the
-    bytes are read, ``warn`` where a JPEG lacks its last bytes, but no part of the picture that could be seen.
+    An ICC profile is applied (a broken one is ignored); 16 bits a channel become 8; ``name`` appears in messages. The
+    size is judged from the header, before any pixel is decoded. ``report("decode", fraction)`` is called as the bytes
+    are read, ``warn`` if a JPEG lacks its last bytes but no visible part of the picture.
 
     Raises
     ------
@@ -100,27 +107,27 @@ def decode_photo(data: bytes, name: str, report: Report = silent, warn: Warn = u
     """
     limit = MAX_STORED_BYTES if isinstance(data, StoredPhoto) else MAX_BYTES
     if len(data) > limit:
-        what = f"the photo has more than {limit // 10**6} MB; save it smaller"
-        raise PhotoError(f"{name}: {what}", code="photo_too_large_file")
-    # Pillow speaks of odd metadata by warnings, which say nothing about the pixels.
+        fault = f"the photo has more than {limit // 10**6} MB; save it smaller"
+        raise PhotoError(f"{name}: {fault}", code="photo_too_large_file")
+    # Pillow warns of unusual metadata, which does not affect the pixels.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return _decoded(data, name, report, warn)
 
 
 def decode_stored(data: bytes, report: Report = silent) -> Picture:
-    """Decode what `encode_stored` gave, or any photo that was let in before, as `decode_photo` does.
+    """Decode a photo that `encode_stored` encoded, or any other that was accepted before, as `decode_photo` does.
 
     Raises
     ------
     PhotoError
-        As `decode_photo`, save for the file's size.
+        As `decode_photo`, except for the file's size.
     """
     return decode_photo(StoredPhoto(data), "photo", report)
 
 
 def most_stored_bytes(head: bytes) -> int:
-    """Say how many bytes a stored photo of these first bytes may have: as an upload, or as a PNG's pixels need."""
+    """Return the greatest size of a stored photo with these first bytes: an upload's, or what a PNG's pixels need."""
     if len(head) < PHOTO_HEAD or kind_of(head) != "PNG" or head[12:16] != b"IHDR":
         return MAX_BYTES
     width, height = (int.from_bytes(head[at : at + 4], "big") for at in (16, 20))
@@ -128,18 +135,18 @@ def most_stored_bytes(head: bytes) -> int:
 
 
 def decode_leaf(data: bytes, name: str) -> Picture:
-    """Decode the PNG of a leaf cut out to (h, w, 4) uint8 sRGB, straight alpha; ``name`` appears in messages.
+    """Decode the PNG of a cut-out leaf to (h, w, 4) uint8 sRGB, straight alpha; ``name`` appears in messages.
 
     Raises
     ------
     LeafError
-        Another format, damaged, too small or too large, or nothing is cut out of it.
+        Another format, damaged, too small or too large, or not cut out: no or only opaque pixels.
     """
     return _decoded_cut_out(data, name, LeafError)
 
 
 def decode_fruit(data: bytes, name: str) -> Picture:
-    """Decode the PNG of a fruit cut out, as `decode_leaf` does that of a leaf.
+    """Decode the PNG of a cut-out fruit, as `decode_leaf` does that of a leaf.
 
     Raises
     ------
@@ -150,7 +157,7 @@ def decode_fruit(data: bytes, name: str) -> Picture:
 
 
 def check_size(width: int, height: int, name: str) -> None:
-    """Refuse a photo of a size, px, that is out of bounds.
+    """Reject a photo of a width and height, px, that are out of bounds.
 
     Raises
     ------
@@ -180,55 +187,58 @@ def encode_png(picture: Picture) -> bytes:
 def encode_stored(picture: Picture) -> StoredPhoto:
     """Encode a photo (h, w, 3) uint8 without loss, as a PNG that is written fast and holds nothing but pixels.
 
-    Runs alone are compressed: a third of the time of Pillow's fastest, and 7 % smaller on 12 megapixels with noise
-    (6 % larger on 2 megapixels from a clean JPEG). What repeats in larger pieces, as no photo does, is small as an
-    upload and would be stored a thousand times as large: where strips of it tell of that, repetitions are looked for.
+    Only runs are compressed: this takes a third of the time of Pillow's fastest PNG, and is 7 % smaller on 12
+    megapixels with noise (6 % larger on 2 megapixels from a clean JPEG). Pictures that repeat in larger pieces, as
+    photos do not, may be small as uploads and a thousand times as large when stored this way: if sample strips show
+    that, repetitions are compressed, too.
     """
     colours = np.asarray(cv2.cvtColor(picture, cv2.COLOR_RGB2BGR), dtype=np.uint8)
-    return StoredPhoto(_png(colours, _THOROUGH if _repeats(colours) else _FAST))
+    return StoredPhoto(_png(colours, _THOROUGH_PNG if _repeats(colours) else _FAST_PNG))
 
 
 def _repeats(colours: Picture) -> bool:
-    """Tell by a few strips whether to look for repetitions makes a picture less than half as large."""
-    starts = np.linspace(0, max(len(colours) - _STRIP_ROWS, 0), _STRIPS).astype(int)
-    strips = [colours[top : top + _STRIP_ROWS] for top in starts]
-    fast, thorough = (sum(len(_png(strip, how)) for strip in strips) for how in (_FAST, _THOROUGH))
+    """Tell, by a few strips, whether compressing repetitions makes a picture (h, w, 3) less than half as large."""
+    starts = np.linspace(0, max(len(colours) - _SAMPLE_ROWS, 0), _SAMPLE_STRIPS).astype(int)
+    strips = [colours[top : top + _SAMPLE_ROWS] for top in starts]
+    fast, thorough = (sum(len(_png(strip, options)) for strip in strips) for options in (_FAST_PNG, _THOROUGH_PNG))
     return 2 * thorough < fast
 
 
-def _png(colours: Picture, how: Sequence[int]) -> bytes:
-    _, encoded = cv2.imencode(".png", colours, how)
+def _png(colours: Picture, options: Sequence[int]) -> bytes:
+    """Encode colours (h, w, 3), BGR, as PNG with OpenCV's options."""
+    _, encoded = cv2.imencode(".png", colours, options)
     return encoded.tobytes()
 
 
 def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[FruitError]) -> Picture:
-    """Decode the PNG of a leaf or a fruit."""
+    """Decode the PNG of a leaf or a fruit to (h, w, 4); faults are raised as this error."""
     thing = refusal.whole
     if len(data) > MAX_LEAF_BYTES:
-        what = f"the {thing}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
-        raise refusal(f"{name}: {what}", code=f"{thing}_too_large")
+        fault = f"the {thing}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
+        raise refusal(f"{name}: {fault}", code=f"{thing}_too_large")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             image = Image.open(io.BytesIO(data), formats=("PNG",))
             if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
-                what = (
+                fault = (
                     f"the {thing}'s picture is {image.width} x {image.height} px, each side must be {MIN_LEAF_SIDE} to"
                 )
-                raise refusal(f"{name}: {what} {MAX_LEAF_SIDE} px; resize it", code=f"{thing}_size")
+                raise refusal(f"{name}: {fault} {MAX_LEAF_SIDE} px; resize it", code=f"{thing}_size")
             picture = np.asarray(image.convert("RGBA"))
     except _DAMAGED as error:
-        what = f"this is no PNG picture that can be read ({_brief(error)}); save the {thing} as PNG"
-        raise refusal(f"{name}: {what}") from error
-    drawn = float((picture[..., 3] > 127).mean())
-    if not 0.01 <= drawn <= 0.99:
-        lacks = f"no {thing}: all is clear" if drawn < 0.01 else f"nothing clear around the {thing}"
-        what = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"
-        raise refusal(f"{name}: {what}", code=f"{thing}_not_cut_out")
+        fault = f"this is not a readable PNG ({_shortened(error)}); save the {thing} as PNG"
+        raise refusal(f"{name}: {fault}") from error
+    opaque = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
+    if not 0.01 <= opaque <= 0.99:
+        lacks = f"no {thing}: all of it is transparent" if opaque < 0.01 else f"nothing transparent around the {thing}"
+        fault = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"
+        raise refusal(f"{name}: {fault}", code=f"{thing}_not_cut_out")
     return np.ascontiguousarray(picture)
 
 
 def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
+    """Decode a photo of an accepted size to (h, w, 3) uint8 sRGB."""
     kind = kind_of(data)
     if kind is None:
         raise PhotoError(f"{name}: {refusal_of(data)}", code="format_not_allowed")
@@ -240,23 +250,25 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
         image.load()
         check_size(image.width, image.height, name)
         if ending is not None and (not ending.marked or ends_flat(image)):
-            _judge_cut(image, ending, name, warn)
+            _check_complete(image, ending, name, warn)
     except _DAMAGED as error:
         raise PhotoError(
-            f"{name}: the photo is damaged or cut short ({_brief(error)}); save or copy it anew"
+            f"{name}: the photo is damaged or cut short ({_shortened(error)}); save or copy it again"
         ) from error
-    if image.mode in _NOT_READ:
-        what = f"the photo has {_NOT_READ[image.mode]} pixels; save it as RGB or grey, of 8 or 16 bits a channel"
-        raise PhotoError(f"{name}: {what}", code="format_not_allowed")
+    if image.mode in _UNSUPPORTED_MODES:
+        fault = (
+            f"the photo has {_UNSUPPORTED_MODES[image.mode]} pixels; save it as RGB or grey, of 8 or 16 bits a channel"
+        )
+        raise PhotoError(f"{name}: {fault}", code="format_not_allowed")
     return _pixels(image, report)
 
 
 def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
-    """Read a photo's header."""
+    """Open a photo and read its header."""
     try:
-        file = io.BufferedReader(WatchedBytes(data, lambda share: report("decode", _READ * share)))
+        file = io.BufferedReader(WatchedBytes(data, lambda share: report("decode", _READING_SHARE * share)))
         if kind == "HEIF":
-            # It takes a while to import, and few need it. Pillow is not told of it: whoever calls may have another.
+            # Imported here because it is slow and rarely needed. It is not registered with Pillow, which callers share.
             from pillow_heif import HeifImageFile
 
             return HeifImageFile(file)  # type: ignore[no-untyped-call]
@@ -267,14 +279,15 @@ def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
             code="photo_too_many_pixels",
         ) from error
     except _DAMAGED as error:
-        what = f"this {NAMES[kind]} is damaged, or of a sort that is not read; copy it anew, or save it as JPEG"
-        raise PhotoError(f"{name}: {what}") from error
+        fault = f"this {NAMES[kind]} is damaged, or of an unsupported variant; copy it again, or save it as JPEG"
+        raise PhotoError(f"{name}: {fault}") from error
 
 
 def _check_one_frame(image: Image.Image, kind: str, data: bytes, name: str) -> None:
-    """Refuse moving pictures and documents of several pages.
+    """Reject animations and documents of several pages.
 
-    JPEG and HEIC may carry further pictures (depth, gain map, a burst's others) beside the photo; those are no frames.
+    JPEG and HEIC may hold further pictures beside the photo (depth, gain map, other shots of a burst): these do not
+    count as frames.
     """
     several = ""
     if kind == "TIFF":
@@ -288,7 +301,7 @@ def _check_one_frame(image: Image.Image, kind: str, data: bytes, name: str) -> N
 
 
 def _has_second_page(image: Image.Image) -> bool:
-    """Look for a second page; all are not counted, there may be millions."""
+    """Look for a second page; there may be millions, so they are not counted."""
     try:
         image.seek(1)
     except EOFError:
@@ -296,41 +309,41 @@ def _has_second_page(image: Image.Image) -> bool:
     return True
 
 
-def _judge_cut(image: Image.Image, ending: Ending, name: str, warn: Warn) -> None:
-    """Refuse a JPEG that lacks part of its picture; warn of one that lacks next to nothing."""
-    with Image.open(io.BytesIO(ending.made_up()), formats=("JPEG",)) as made_up:
-        share, first = lost(image, made_up)
+def _check_complete(image: Image.Image, ending: Ending, name: str, warn: Warn) -> None:
+    """Reject a JPEG that lacks part of its picture; warn of one that lacks next to nothing."""
+    with Image.open(io.BytesIO(ending.filled_with_noise()), formats=("JPEG",)) as noisy:
+        share, first = missing_part(image, noisy)
     if ending.is_coarse and not ending.marked:
         missing = "the finer detail of the picture"
     else:
         missing = f"{max(1, round(100 * max(share, 1 - first / image.height)))} % of the picture"
     if share > MAX_LOST or (ending.is_coarse and not ending.marked):
-        raise PhotoError(f"{name}: the photo is cut short: {missing} is missing; save or copy it anew")
+        raise PhotoError(f"{name}: the photo is cut short: {missing} is missing; save or copy it again")
     if share > 0 or not ending.marked:
-        what = (
+        part = (
             "nothing of its picture" if share < MAX_LOST / 100 else f"no more than {100 * share:.2f} % of its picture"
         )
-        detail = f"the photo's file is cut short, but {what} is missing; if you can, save or copy it anew"
+        detail = f"the photo's file is cut short, but {part} is missing; if you can, save or copy it again"
         warn(StrokeWarning("photo_cut_short", "photo", detail))
 
 
 def _pixels(image: Image.Image, report: Report) -> Picture:
-    """Bring a picture upright and to sRGB, (h, w, 3), strip by strip."""
+    """Convert a picture to upright sRGB (h, w, 3), strip by strip."""
     orientation, (width, height) = _orientation(image), image.size
     upright = np.empty((width, height, 3) if orientation in _SIDEWAYS else (height, width, 3), dtype=np.uint8)
-    rows = max(1, _STRIP // width)
+    rows = max(1, _STRIP_PIXELS // width)
     for top in range(0, height, rows):
         bottom = min(top + rows, height)
         strip = _over_white(image.crop((0, top, width, bottom)), image.info.get("icc_profile"))
         turned = np.asarray(strip.transpose(_TURNS[orientation]) if orientation in _TURNS else strip)
         place = slice(height - bottom, height - top) if orientation in _BACKWARD else slice(top, bottom)
         upright[(slice(None), place) if orientation in _SIDEWAYS else place] = turned
-        report("decode", _READ + (1 - _READ) * bottom / height)
+        report("decode", _READING_SHARE + (1 - _READING_SHARE) * bottom / height)
     return upright
 
 
 def _orientation(image: Image.Image) -> int:
-    """Read how a picture lies; HEIC's own turns are done already, and its EXIF does not count."""
+    """Read a picture's EXIF orientation; 1 for HEIC, which Pillow's plugin turns upright by itself."""
     if image.format == "HEIF":
         return 1
     try:
@@ -340,7 +353,7 @@ def _orientation(image: Image.Image) -> int:
 
 
 def _over_white(image: Image.Image, profile: bytes | None) -> Image.Image:
-    """Bring any mode to sRGB, 8 bit, without alpha."""
+    """Convert any mode to sRGB, 8 bit, without alpha."""
     if image.mode.startswith("I"):
         deep = np.asarray(image)
         image = Image.fromarray((np.clip(deep, 0, 65535) >> 8).astype(np.uint8))
@@ -355,6 +368,7 @@ def _over_white(image: Image.Image, profile: bytes | None) -> Image.Image:
 
 
 def _in_srgb(image: Image.Image, profile: bytes | None) -> Image.Image:
+    """Convert a picture by its ICC profile to sRGB; without one, or with a broken one, only its mode."""
     if profile:
         try:
             source = ImageCms.ImageCmsProfile(io.BytesIO(profile))
@@ -366,5 +380,6 @@ def _in_srgb(image: Image.Image, profile: bytes | None) -> Image.Image:
     return image.convert("RGB")
 
 
-def _brief(error: BaseException) -> str:
+def _shortened(error: BaseException) -> str:
+    """Return an error's message in one line of at most 80 characters."""
     return " ".join(str(error).split())[:80] or type(error).__name__

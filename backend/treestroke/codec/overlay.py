@@ -1,4 +1,4 @@
-"""What was traced, drawn over the photo."""
+"""The traced foliage and branches, drawn over the photo."""
 
 import cv2
 import numpy as np
@@ -14,10 +14,14 @@ _SUBPIXEL_BITS = 4
 def draw_overlay(
     photo: NDArray[np.uint8], foliage: NDArray[np.bool_], skeleton: Skeleton | None, stroke: NDArray[np.int64]
 ) -> NDArray[np.uint8]:
-    """Tint the foliage (h, w) and draw the skeleton, px, over a photo (h, w, 3).
+    """Tint the foliage (h, w) and draw the skeleton, px, over a photo (h, w, 3), sRGB.
 
-    Branches under a stroke (``stroke`` (n,) holds its index) are yellow, those that were found by themselves
-    (-1) are orange; lines are as wide as the wood.
+    Branches under a stroke (its index in ``stroke`` (n,)) are yellow, those found without one (-1) orange; lines are as
+    wide as the wood.
+
+    Returns
+    -------
+    (h, w, 3) uint8, sRGB.
     """
     picture = photo.astype(np.float64)
     picture[foliage] = 0.6 * picture[foliage] + 0.4 * _FOLIAGE
@@ -28,6 +32,7 @@ def draw_overlay(
 
 
 def _draw_wood(canvas: NDArray[np.uint8], skeleton: Skeleton, stroke: NDArray[np.int64]) -> None:
+    """Draw each edge of the skeleton on a canvas (h, w, 3), as wide as the wood."""
     fixed = np.round((skeleton.points - 0.5) * 2**_SUBPIXEL_BITS).astype(int).tolist()
     for joint, parent in enumerate(skeleton.parents.tolist()):
         if parent >= 0:

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO, cast
 from treestroke.codec.archive import zip_into
 from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
 from treestroke.codec.json_text import read_json
-from treestroke.codec.photo_kinds import ending_of
+from treestroke.codec.photo_kinds import extension_of
 from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.errors import SettingsError, TreestrokeError
 from treestroke.core.stroke_rules import Place
@@ -134,7 +134,7 @@ def _ending(part: str, content: BinaryIO) -> str:
     """Say what the file of a part ends in, by its first bytes."""
     beginning = content.read(_BEGINNING)
     if part in ("photo", *_PICTURES):
-        return ending_of(beginning)
+        return extension_of(beginning)
     return sketch_ending(beginning)
 
 

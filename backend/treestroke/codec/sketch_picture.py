@@ -1,4 +1,4 @@
-"""Sketches as pictures: a PNG in; where its strokes are, and its crown's outline, out."""
+"""Sketches as pictures: a PNG in, the mask of its strokes and the outline of its crown out."""
 
 import io
 import struct
@@ -14,76 +14,82 @@ from PIL import Image
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE
 from treestroke.core.errors import StrokesError
 from treestroke.core.strokes import Sketch, Stroke
-from treestroke.core.types import Floats, Mask
+from treestroke.core.types import Floats, Mask, Picture
 
-Marks = NDArray[np.uint8]
+Binary = NDArray[np.uint8]
+"""(h, w) of zeros and ones, as OpenCV takes masks."""
 
 PNG = b"\x89PNG\r\n\x1a\n"
+"""Signature of a PNG file."""
 MAX_SKETCH_BYTES = 25_000_000
+"""Greatest size of a sketch's picture."""
 MIN_SIDE = 16
-OPAQUE = 128
+"""Least side of a sketch's picture, px."""
+OPAQUE_ALPHA = 128
+"""Alpha, 0 to 255, from which a pixel of a picture on transparent ground belongs to a stroke."""
 LEAST_CONTRAST = 48
-"""Of a channel's 255: what differs less from the ground is no stroke."""
+"""Least difference from the ground, of a channel's 255, of a stroke."""
 RED, NOT_RED = 200, 80
-"""A pixel is the crown's line where red is above the one, green and blue below the other."""
+"""A pixel belongs to the crown's line if red is above the first, and green and blue are below the second."""
 REDDISH = 30
-"""Beside the crown's line, what is redder by this is its smoothed edge."""
+"""Excess of red, of a channel's 255, above which a pixel beside the crown's line is its smoothed edge."""
 WORKED_SIDE = 1000
 """Long side, px, at which the crown's line is closed and filled."""
 WIDEST_GAP = 0.04
-"""Of the long side: gaps in the crown's line are closed up to this."""
+"""Greatest gap in the crown's line that is closed, as a share of the long side."""
 LEAST_RED = 0.05
-"""Of the long side: fewer red pixels are no crown."""
+"""Number of red pixels below which there is no crown, as a share of the long side."""
 LEAST_HOLE = 0.003
-"""Of the picture's area: a crown encloses at least as much."""
+"""Least area that a crown encloses, as a share of the picture's; also that of transparent ground."""
 DIRECTIONS = 8
+"""Directions in which strokes are continued below the crown's line."""
 _DAMAGED = (OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, struct.error, zlib.error)
-"""What Pillow's decoder raises on files that break the format."""
+"""Exceptions that Pillow's decoder raises for files that break the format."""
 
 
 def read_picture(data: bytes) -> Sketch:
-    """Read a PNG of strokes: opaque on clear ground, or in any colour that stands out from its ground.
+    """Read a PNG of strokes: opaque on transparent ground, or in any colour that contrasts with the ground.
 
-    A closed, pure red line is the crown. The size is judged from the header, before any pixel is decoded.
+    A closed line of pure red is the crown. The size is judged from the header, before any pixel is decoded.
 
     Raises
     ------
     StrokesError
-        No PNG, damaged, too large or too small, nothing is drawn, or the red line is not closed.
+        Not a PNG, damaged, too large or too small, nothing is drawn, or the red line is not closed.
     """
     pixels = _decoded(data)
     red = _red(pixels)
     ink = _ink(pixels, red)
     if not ink.any():
-        what = "the picture shows no strokes; draw dark or opaque strokes on light or clear ground"
-        raise StrokesError(what, code="sketch_empty")
+        fault = "the picture shows no strokes; draw dark or opaque strokes on light or transparent ground"
+        raise StrokesError(fault, code="sketch_empty")
     crown = _crown(red)
     if crown is not None:
-        ink = _bridged(ink, red)
+        ink = _with_gaps_bridged(ink, red)
     height, width = ink.shape
     return Sketch((width, height), crown, (), ink)
 
 
-def bare_picture(data: bytes) -> bytes:
-    """Write a PNG of strokes anew, with nothing but its pixels: `read_picture` finds the same in it.
+def without_metadata(data: bytes) -> bytes:
+    """Encode a PNG of strokes anew, with nothing but its pixels: `read_picture` finds the same in it.
 
     Raises
     ------
     StrokesError
-        No PNG, damaged, too large or too small.
+        Not a PNG, damaged, too large or too small.
     """
     _, encoded = cv2.imencode(".png", cv2.cvtColor(_decoded(data), cv2.COLOR_RGBA2BGRA))
     if len(encoded) > MAX_SKETCH_BYTES:
-        what = f"the picture's pixels take more than {MAX_SKETCH_BYTES // 10**6} MB; save it smaller"
-        raise StrokesError(what, code="sketch_too_large_file")
+        fault = f"the picture's pixels take more than {MAX_SKETCH_BYTES // 10**6} MB; save it smaller"
+        raise StrokesError(fault, code="sketch_too_large_file")
     return encoded.tobytes()
 
 
-def _decoded(data: bytes) -> Marks:
-    """Decode to (h, w, 4) RGBA."""
+def _decoded(data: bytes) -> Picture:
+    """Decode a PNG to (h, w, 4) uint8 RGBA."""
     if len(data) > MAX_SKETCH_BYTES:
-        what = f"the picture has more than {MAX_SKETCH_BYTES // 10**6} MB; save it smaller"
-        raise StrokesError(what, code="sketch_too_large_file")
+        fault = f"the picture has more than {MAX_SKETCH_BYTES // 10**6} MB; save it smaller"
+        raise StrokesError(fault, code="sketch_too_large_file")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -91,40 +97,42 @@ def _decoded(data: bytes) -> Marks:
             _check_size(*image.size)
             return np.asarray(_eight_bits(image).convert("RGBA"))
     except Image.DecompressionBombError as error:
-        what = f"the picture has more than {MAX_PIXELS / 1e6:.0f} megapixels; save it smaller"
-        raise StrokesError(what, code="sketch_size") from error
+        fault = f"the picture has more than {MAX_PIXELS / 1e6:.0f} megapixels; save it smaller"
+        raise StrokesError(fault, code="sketch_size") from error
     except _DAMAGED as error:
         brief = " ".join(str(error).split())[:80]
-        what = f"this is no PNG picture that can be read ({brief}); save it anew"
-        raise StrokesError(what, code="sketch_unreadable") from error
+        fault = f"this is not a readable PNG ({brief}); save it again"
+        raise StrokesError(fault, code="sketch_unreadable") from error
 
 
 def _check_size(width: int, height: int) -> None:
+    """Reject a picture of a width and height, px, that are out of bounds."""
     if not MIN_SIDE <= min(width, height) <= max(width, height) <= MAX_SIDE:
-        what = f"the picture is {width} x {height} px, each side must be {MIN_SIDE} to {MAX_SIDE} px; resize it"
-        raise StrokesError(what, code="sketch_size")
+        fault = f"the picture is {width} x {height} px, each side must be {MIN_SIDE} to {MAX_SIDE} px; resize it"
+        raise StrokesError(fault, code="sketch_size")
     if width * height > MAX_PIXELS:
-        what = f"the picture has {width * height / 1e6:.1f} megapixels, at most {MAX_PIXELS / 1e6:.0f} are allowed"
-        raise StrokesError(f"{what}; resize it", code="sketch_size")
+        fault = f"the picture has {width * height / 1e6:.1f} megapixels, at most {MAX_PIXELS / 1e6:.0f} are allowed"
+        raise StrokesError(f"{fault}; resize it", code="sketch_size")
 
 
 def _eight_bits(image: Image.Image) -> Image.Image:
+    """Reduce a picture of 16 bits a channel to 8."""
     if not image.mode.startswith("I"):
         return image
     deep = np.asarray(image)
     return Image.fromarray((np.clip(deep, 0, 65535) >> 8).astype(np.uint8))
 
 
-def _red(pixels: Marks) -> Mask:
-    """Tell where the crown's line is, without its smoothed edges."""
+def _red(pixels: Picture) -> Mask:
+    """Mark the crown's line (h, w), without its smoothed edges."""
     r, g, b, a = (pixels[..., channel] for channel in range(4))
-    return np.asarray((r > RED) & (g < NOT_RED) & (b < NOT_RED) & (a >= OPAQUE))
+    return np.asarray((r > RED) & (g < NOT_RED) & (b < NOT_RED) & (a >= OPAQUE_ALPHA))
 
 
-def _ink(pixels: Marks, red: Mask) -> Mask:
-    """Tell where strokes are: opaque on clear ground, else far from the ground's colour; never the crown's line."""
-    clear = pixels[..., 3] < OPAQUE
-    ink = ~clear if np.count_nonzero(clear) > LEAST_HOLE * clear.size else _standing_out(pixels)
+def _ink(pixels: Picture, red: Mask) -> Mask:
+    """Mark the strokes (h, w), not the crown's line: opaque on transparent ground, else in contrast with the ground."""
+    clear = pixels[..., 3] < OPAQUE_ALPHA
+    ink = ~clear if np.count_nonzero(clear) > LEAST_HOLE * clear.size else _unlike_ground(pixels)
     if not red.any():
         return ink
     fringe = np.nonzero(cv2.dilate(red.astype(np.uint8), np.ones((5, 5), np.uint8)))
@@ -134,8 +142,8 @@ def _ink(pixels: Marks, red: Mask) -> Mask:
     return ink
 
 
-def _standing_out(pixels: Marks) -> Mask:
-    """Tell where a picture is nearer to its strokes' usual contrast than to its ground, the colour of most of it."""
+def _unlike_ground(pixels: Picture) -> Mask:
+    """Mark the pixels (h, w) nearer to the strokes' median contrast than to the ground, the colour of most pixels."""
     height, width = pixels.shape[:2]
     some = pixels[:: max(1, height // 512), :: max(1, width // 512), :3].reshape(-1, 3)
     ground = np.median(some, axis=0).astype(np.uint8)
@@ -147,7 +155,7 @@ def _standing_out(pixels: Marks) -> Mask:
 
 
 def _crown(red: Mask) -> Stroke | None:
-    """Draw the crown's outline along the middle of the red line; None where there is none."""
+    """Return the crown's outline along the middle of the red line (h, w), or None without one."""
     height, width = red.shape
     if np.count_nonzero(red) < LEAST_RED * max(height, width):
         return None
@@ -162,36 +170,38 @@ def _crown(red: Mask) -> Stroke | None:
         if np.count_nonzero(filled) - np.count_nonzero(_grown(line, reach)) > LEAST_HOLE * size[0] * size[1]:
             mended = cv2.morphologyEx(filled, cv2.MORPH_CLOSE, _disc(2 * reach)) if reach else filled
             return Stroke((_outline(np.asarray(mended, dtype=np.uint8), reach + half - 0.5) - 2 * widest) / scale)
-    what = "the red line is not closed; draw it once around the foliage, back to where it began"
-    raise StrokesError.at(("crown",), what, "crown_open")
+    fault = "the red line is not closed; draw it once around the foliage, back to where it began"
+    raise StrokesError.at(("crown",), fault, "crown_open")
 
 
-def _disc(radius: float) -> Marks:
+def _disc(radius: float) -> Binary:
+    """Return a disc of this radius, px."""
     size = 2 * round(radius) + 1
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)), dtype=np.uint8)
 
 
-def _grown(line: Marks, reach: int) -> Marks:
+def _grown(line: Binary, reach: int) -> Binary:
+    """Widen a line (h, w) by ``reach`` px."""
     return np.asarray(cv2.dilate(line, _disc(reach)) if reach else line, dtype=np.uint8)
 
 
-def _filled(line: Marks, reach: int) -> Marks:
-    """Fill what a line, widened by ``reach`` px, shuts in."""
+def _filled(line: Binary, reach: int) -> Binary:
+    """Fill the largest region that a line (h, w), widened by ``reach`` px, encloses."""
     contours, _ = cv2.findContours(_grown(line, reach), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     largest = max(contours, key=cv2.contourArea)
     return np.asarray(cv2.drawContours(np.zeros_like(line), [largest], -1, 1, thickness=cv2.FILLED), dtype=np.uint8)
 
 
-def _outline(filled: Marks, less: float) -> Floats:
-    """Draw round what is filled (k, 2), px, after taking ``less`` px off its border."""
+def _outline(filled: Binary, less: float) -> Floats:
+    """Outline (k, 2), px, of the largest filled region (h, w), after removing ``less`` px along its border."""
     inner = (cv2.distanceTransform(filled, cv2.DIST_L2, 5) > less).astype(np.uint8)
     contours, _ = cv2.findContours(inner, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     largest: Any = max(contours, key=cv2.contourArea)
     return np.asarray(cv2.approxPolyDP(largest, 0.7, closed=True)[:, 0], dtype=np.float64) + 0.5
 
 
-def _bridged(ink: Mask, red: Mask) -> Mask:
-    """Let strokes go on beneath the crown's line, where they end on both sides of it."""
+def _with_gaps_bridged(ink: Mask, red: Mask) -> Mask:
+    """Continue strokes (h, w) below the crown's line where they end on both sides of it."""
     zone = cv2.dilate(red.astype(np.uint8), np.ones((5, 5), np.uint8))
     wide = 2 * float(np.percentile(cv2.distanceTransform(zone, cv2.DIST_L2, 5)[zone > 0], 90))
     marks = ink.astype(np.uint8)
@@ -202,8 +212,8 @@ def _bridged(ink: Mask, red: Mask) -> Mask:
     return np.asarray((marks > 0) | ((closed > 0) & (zone > 0)))
 
 
-def _needle(angle: float, half: float) -> Marks:
-    """Draw a straight line through the middle of a square, at an angle."""
+def _needle(angle: float, half: float) -> Binary:
+    """Draw a straight line at an angle, rad, through the middle of a square of about twice ``half`` px."""
     size = 2 * int(np.ceil(half)) + 1
     middle, way = size // 2, half * np.array([np.cos(angle), np.sin(angle)])
     start, end = (tuple(int(v) for v in np.round(middle + sign * way)) for sign in (-1, 1))

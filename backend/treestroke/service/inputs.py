@@ -16,7 +16,7 @@ from treestroke.codec.image import (
     decode_fruit,
     decode_leaf,
     decode_photo,
-    unheard,
+    ignore_warning,
 )
 from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
@@ -67,7 +67,7 @@ def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeEr
         return file.read(limit + 1)
 
 
-def load_photo(photo: PhotoLike, report: Report = silent, warn: Warn = unheard) -> Picture:
+def load_photo(photo: PhotoLike, report: Report = silent, warn: Warn = ignore_warning) -> Picture:
     """Bring a photo (path, encoded bytes, or upright sRGB pixels (h, w, 3) uint8) to pixels.
 
     ``report("decode", fraction)`` is called as encoded ones are read, ``warn`` with what was mended in them.

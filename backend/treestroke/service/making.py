@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from treestroke import __version__
 from treestroke.codec.preview import draw_preview
 from treestroke.core.geometry.silhouette import likeness, silhouette
-from treestroke.core.leaf.fruit import fruit_among
+from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
 from treestroke.core.survey.measures import Measures

@@ -9,7 +9,7 @@ from typing import Any
 from treestroke.codec.image import MAX_LEAF_BYTES, decode_fruit, decode_leaf
 from treestroke.codec.project import VIEWS, check_parts
 from treestroke.codec.sketch import encode_sketch, parse_sketch, sketch_from
-from treestroke.codec.sketch_picture import PNG, bare_picture
+from treestroke.codec.sketch_picture import PNG, without_metadata
 from treestroke.codec.strokes import encode_strokes, strokes_from
 from treestroke.core.errors import FruitError, LeafError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import check_seed, plain_settings, settings_from
@@ -142,7 +142,7 @@ def _sketch(value: Any, place: Place) -> bytes:
     """Read a sketch from plain values; give it as a file holds it, without metadata."""
     try:
         sketch = sketch_from(value)
-        return encode_sketch(sketch) if sketch.ink is None else bare_picture(base64.b64decode(value["picture"]))
+        return encode_sketch(sketch) if sketch.ink is None else without_metadata(base64.b64decode(value["picture"]))
     except StrokesError as error:
         raise inside(place, error) from error
 
@@ -153,7 +153,7 @@ def _sketch_file(content: bytes, view: str) -> bytes:
         return _sketch(read_value(content, view), (view,))
     try:
         parse_sketch(content, view)
-        return bare_picture(content)
+        return without_metadata(content)
     except StrokesError as error:
         raise inside((view,), error) from error
 

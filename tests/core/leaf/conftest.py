@@ -1,28 +1,11 @@
-"""A round green tree before a blue sky, seen in 300 x 400 px, 10 m high."""
+"""The round tree of `tests/core/conftest.py` as a tree 10 m high."""
 
-import cv2
 import numpy as np
 import pytest
 
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.paint.atlas import Atlas, leaf_atlas
 from treestroke.core.skeleton.skeleton import Skeleton
-
-SKY, GREEN = (110, 160, 230), (70, 110, 40)
-
-
-@pytest.fixture(scope="session")
-def mask() -> np.ndarray:
-    disc = cv2.circle(np.zeros((400, 300), np.uint8), (150, 150), 120, 1, -1)
-    return disc > 0
-
-
-@pytest.fixture(scope="session")
-def photo(mask: np.ndarray) -> np.ndarray:
-    picture = np.where(mask[..., None], np.uint8(GREEN), np.uint8(SKY))
-    noise = np.random.default_rng(1).normal(0, 14, mask.shape)[..., None]
-    return np.clip(picture + noise, 0, 255).astype(np.uint8)
 
 
 @pytest.fixture(scope="session")
@@ -44,8 +27,3 @@ def tree() -> Skeleton:
     points = np.vstack([np.zeros(3), fork, fork + 0.6 * ends, fork + ends])
     radii = np.repeat([0.3, 0.2, 0.1, 0.01], [1, 1, 300, 300])
     return Skeleton(points, radii, np.concatenate([[-1, 0], np.full(300, 1), np.arange(2, 302)]))
-
-
-@pytest.fixture(scope="session")
-def atlas(photo: np.ndarray, mask: np.ndarray) -> Atlas:
-    return leaf_atlas(photo, mask, "leaves", np.random.default_rng(0))

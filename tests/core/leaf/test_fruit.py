@@ -8,12 +8,11 @@ from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.silhouette import framing, silhouettes
 from treestroke.core.geometry.views import CrownViews, View
-from treestroke.core.leaf.area import leaf_area
 from treestroke.core.leaf.cards import cards
-from treestroke.core.leaf.fruit import FruitParams, fruit_among, hang_fruit, with_fruit
-from treestroke.core.leaf.leaves import Leaves, no_leaves
+from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
+from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
-from treestroke.core.leaf.thinning import thin_leaves
+from treestroke.core.leaf.thinning import Coverage, thin_leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -128,7 +127,8 @@ def test_leaf_area_counts_no_fruit(leaves, atlas, fruit):
 def kept_of(both: Leaves, wider: Atlas, count: int) -> np.ndarray:
     surface = Surface(cards(both, wider), wider.image)
     view = framing([surface], 100)
-    kept = thin_leaves(both, wider, count, view, silhouettes([surface], view).astype(np.float64))
+    values = silhouettes([surface], view).astype(np.float64)
+    kept = thin_leaves(both, wider, count, Coverage(view, values))
     assert len(kept) == count
     return fruit_among(kept, wider)
 

@@ -5,7 +5,7 @@ from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.silhouette import Framing, framing, likeness, silhouettes
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaves import Leaves
-from treestroke.core.leaf.thinning import ThinningParams, thin_leaves
+from treestroke.core.leaf.thinning import Coverage, ThinningParams, thin_leaves
 from treestroke.core.paint.atlas import Atlas
 
 
@@ -37,7 +37,7 @@ def wanted(ball: Leaves, atlas: Atlas, view: Framing) -> np.ndarray:
 
 
 def thinned(ball: Leaves, atlas: Atlas, count: int, view: Framing, wanted: np.ndarray) -> Leaves:
-    return thin_leaves(ball, atlas, count, view, wanted.astype(np.float64))
+    return thin_leaves(ball, atlas, count, Coverage(view, wanted.astype(np.float64)))
 
 
 @pytest.mark.parametrize("count", [1, 400, 2_999])

@@ -29,6 +29,20 @@ def test_one_colour_gives_one_cluster(mask):
     assert len(foliage_palette(photo, mask, 12, np.random.default_rng(0)).shares) == 1
 
 
+def test_two_colours_give_two_clusters_by_their_areas(mask):
+    upper = np.indices(mask.shape)[0] < 120
+    photo = np.where(upper[..., None], np.uint8((60, 120, 30)), np.uint8((150, 60, 40)))
+    palette = foliage_palette(photo, mask, 2, np.random.default_rng(0))
+    assert [np.ptp(colours, axis=0).max() for colours in palette.members] == [0, 0]
+    assert palette.shares[1] == pytest.approx(upper[mask].mean(), abs=0.02)
+
+
+def test_clusters_are_the_colours_nearest_to_their_mean(photo, mask):
+    palette = foliage_palette(photo, mask, 8, np.random.default_rng(0))
+    nearest = [nearest_colour(colours, palette.centres)[0] for colours in palette.members]
+    assert np.mean([np.mean(index == label) for label, index in enumerate(nearest)]) > 0.9
+
+
 def test_flattening_keeps_the_order_of_lightness():
     lab = np.stack([np.linspace(5, 90, 30), np.zeros(30), np.zeros(30)], axis=1)
     assert (np.diff(flattened(lab)[:, 0]) > 0).all()

@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from treestroke.core.paint.atlas import Atlas, LeafLook, leaf_atlas, tile_labs
+from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas, tile_labs
 from treestroke.core.paint.palette import foliage_palette
 from treestroke.core.paint.seasons import Recolour, recolour_for, size_and_density
-from treestroke.core.paint.species import AUTO, KINDS, SPECIES
+from treestroke.core.paint.species import AUTO, SPECIES
 
-BROAD = [name for name in SPECIES if not KINDS[name].evergreen]
+BROAD = [name for name, species in SPECIES.items() if not species.evergreen]
 
 
 def coloured(photo, mask, colour) -> np.ndarray:
@@ -19,7 +19,7 @@ def coloured(photo, mask, colour) -> np.ndarray:
 
 def recoloured(photo, mask, season, species="auto") -> np.ndarray:
     """Give the mean colour (3,) of a season's leaves, without drawing them."""
-    palette, kind = foliage_palette(photo, mask, 16, np.random.default_rng(0)), KINDS[species]
+    palette, kind = foliage_palette(photo, mask, 16, np.random.default_rng(0)), SPECIES.get(species, AUTO)
     recolour = recolour_for(season, kind, palette, kind.needles is not None)
     if recolour is not None:
         palette = recolour.palette(palette, 16, np.random.default_rng(0))
@@ -27,8 +27,10 @@ def recoloured(photo, mask, season, species="auto") -> np.ndarray:
 
 
 def atlas_of(photo, mask, season, species="auto", shown=True, seed=0) -> Atlas:
-    kind = "needles" if KINDS[species].needles else "leaves"
-    return leaf_atlas(photo, mask, kind, np.random.default_rng(seed), LeafLook(KINDS[species], season, shown))
+    kind = "needles" if SPECIES.get(species, AUTO).needles else "leaves"
+    return leaf_atlas(
+        photo, mask, kind, np.random.default_rng(seed), LeafStyle(SPECIES.get(species, AUTO), season, shown)
+    )
 
 
 @pytest.mark.parametrize("name", ["auto", *BROAD])
@@ -100,7 +102,7 @@ def test_a_season_keeps_what_is_light_and_what_is_dark(photo, mask):
     assert (np.diff(light) > 4).all()
 
 
-def test_moods_run_through_the_ramp():
+def test_positions_run_through_the_ramp():
     ramp = np.array([[50.0, -10, 30], [60, 0, 40], [50, 20, 30]])
     recolour = Recolour(np.array([40.0, 0, 0]), ramp, np.zeros(3))
     assert recolour.at(np.full((3, 3), 40.0), np.array([0, 0.5, 1])) == pytest.approx(ramp)
@@ -122,6 +124,6 @@ def test_a_bare_photo_gives_the_season_s_colours_and_none_of_its_own(photo, mask
 
 def test_spring_has_fewer_and_smaller_leaves_and_evergreens_have_all():
     assert size_and_density("spring", AUTO, False) == (0.8, 0.6)
-    assert size_and_density("autumn", KINDS["oak"], False) == (1.0, 0.85)
+    assert size_and_density("autumn", SPECIES["oak"], False) == (1.0, 0.85)
     assert size_and_density("summer", AUTO, False) == size_and_density("photo", AUTO, False) == (1.0, 1.0)
-    assert size_and_density("spring", KINDS["pine"], True) == size_and_density("autumn", AUTO, True) == (1.0, 1.0)
+    assert size_and_density("spring", SPECIES["pine"], True) == size_and_density("autumn", AUTO, True) == (1.0, 1.0)

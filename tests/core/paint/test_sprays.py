@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from treestroke.core.paint.species import KINDS, SPECIES
+from treestroke.core.paint.species import AUTO, SPECIES
 from treestroke.core.paint.sprays import draw_spray
 
 MEMBERS = np.array([[45.0, -20.0, 25.0], [55.0, -18.0, 28.0], [50.0, -22.0, 20.0]])
@@ -38,8 +38,8 @@ def test_no_two_sprays_have_the_same_outline():
 
 def of(name: str, seed: int = 0) -> np.ndarray:
     """Draw a species' spray."""
-    shape = "needles" if KINDS[name].needles else "broad"
-    return draw_spray(shape, 128, MEMBERS, np.random.default_rng(seed), KINDS[name])
+    shape = "needles" if SPECIES.get(name, AUTO).needles else "broad"
+    return draw_spray(shape, 128, MEMBERS, np.random.default_rng(seed), SPECIES.get(name, AUTO))
 
 
 @pytest.mark.parametrize("name", SPECIES)

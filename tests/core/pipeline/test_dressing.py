@@ -8,7 +8,7 @@ import pytest
 from tests.conftest import DATA, EXAMPLES
 
 import treestroke
-from treestroke.core.leaf.fruit import fruit_among
+from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.growing import see

@@ -30,7 +30,7 @@ from treestroke.api.deps import (
 from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.following import TooManyFollowers, Watcher
 from treestroke.api.views import model_view
-from treestroke.codec.photo_kinds import TAKEN
+from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import models, photos
@@ -68,7 +68,7 @@ _ASK: dict[str, Any] = {
                 "schema": {
                     "type": "object",
                     "properties": {
-                        "photo": {**_BINARY, "description": TAKEN},
+                        "photo": {**_BINARY, "description": ACCEPTED_FORMATS},
                         "strokes": {**_TEXT, "description": "Strokes, as JSON; with a photo"},
                         "front": {**_SKETCH, "description": "Sketch of the front, in place of strokes: JSON or PNG"},
                         "side": {**_SKETCH, "description": "Sketch of the left side: JSON or PNG"},

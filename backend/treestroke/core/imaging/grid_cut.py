@@ -1,78 +1,91 @@
-"""Binary labels on a pixel grid by graph cut, bounded in time."""
+"""Binary labels on a pixel grid by graph cut, in bounded time."""
+
+from dataclasses import dataclass
 
 import cv2
 import maxflow
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.types import Mask, Picture
+from treestroke.core.types import Floats, Mask, Picture
 
 Energies = NDArray[np.float32]
 
 SOFTEST_STEP = 6.0
-"""Colour difference below which neighbours count as equal: bounds lambda / |I_x - I_y| (noise of a JPEG)."""
+"""Colour difference, 0 to 441, below which neighbours count as equal: bounds lambda / |I_x - I_y| (JPEG noise)."""
 BAND_PX = 3
-"""Half-width of the band around a coarse border that is cut again, in fine pixels per halving."""
+"""Half-width of the band around a coarse border that is cut again, px of the finer level."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Level:
+    """The problem at one resolution: colours (h, w, 3), log odds of True (h, w), and where labels are wanted (h, w)."""
+
+    pixels: Picture
+    odds: Energies
+    region: Mask
 
 
 def cut_grid(pixels: Picture, odds: Energies, region: Mask, smoothness: float, coarse_pixels: int) -> Mask:
-    """Label the region's pixels (h, w) so that data and smoothness cost least; outside it all is False.
+    """Label the region's pixels (h, w) so that data and smoothness cost least; False outside the region.
 
-    Data: ``odds`` (h, w), the log odds of True. Smoothness (Tan et al. 2008, section 2): 4-neighbours with
-    different labels cost ``smoothness / |I_x - I_y|`` for colours (h, w, 3). The whole is solved on a grid of
-    at most ``coarse_pixels``, then each doubling of the resolution solves just a band along the border, so
-    that time is bounded whatever the photo (a full cut of a noisy photo can take minutes).
+    Data cost: ``odds`` (h, w), the log odds of True. Smoothness cost: 4-neighbours with different labels cost
+    ``smoothness / |I_x - I_y|`` for colours (h, w, 3), sRGB, 0 to 255. The whole is solved on a grid of at most
+    ``coarse_pixels``; at each doubling of the resolution only a band along the border is solved again, so that time is
+    bounded for every photo (a full cut of a noisy photo can take minutes).
+
+    Source: Tan et al. 2008, section 2; the band is ours.
     """
-    levels = _pyramid(pixels, odds, region, coarse_pixels)
     labels: Mask | None = None
-    for level_pixels, level_odds, level_region in levels:
-        band = level_region
+    for level in _pyramid(_Level(pixels, odds, region), coarse_pixels):
+        band = level.region
         if labels is not None:
-            size = (level_region.shape[1], level_region.shape[0])
+            size = (band.shape[1], band.shape[0])
             labels = cv2.resize(labels.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST).astype(bool)
-            band = level_region & _border_band(labels)
-        labels = _cut(level_pixels, level_odds, level_region, band, labels, smoothness)
+            band = level.region & _border_band(labels)
+        labels = _cut(level, band, labels, smoothness)
     return np.zeros_like(region) if labels is None else labels
 
 
-def _pyramid(pixels: Picture, odds: Energies, region: Mask, coarse_pixels: int) -> list[tuple[Picture, Energies, Mask]]:
-    """Halve the problem until it is small enough; coarsest first."""
-    levels = [(pixels, odds, region)]
-    while levels[0][2].sum() > coarse_pixels:
-        pixels, odds, region = levels[0]
-        size = (max(1, region.shape[1] // 2), max(1, region.shape[0] // 2))
-        half = cv2.resize(region.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
-        fewer = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-        milder = np.asarray(cv2.resize(odds, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
-        levels.insert(0, (fewer, milder, half))
+def _pyramid(finest: _Level, coarse_pixels: int) -> list[_Level]:
+    """Halve the problem until its region has at most ``coarse_pixels``; coarsest first."""
+    levels = [finest]
+    while levels[0].region.sum() > coarse_pixels:
+        finer = levels[0]
+        size = (max(1, finer.region.shape[1] // 2), max(1, finer.region.shape[0] // 2))
+        region = cv2.resize(finer.region.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
+        pixels = np.asarray(cv2.resize(finer.pixels, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        odds = np.asarray(cv2.resize(finer.odds, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
+        levels.insert(0, _Level(pixels, odds, region))
     return levels
 
 
 def _border_band(labels: Mask) -> Mask:
-    """Pixels near a change of label."""
+    """Mark the pixels (h, w) within BAND_PX of a change of label."""
     kernel = np.ones((2 * BAND_PX + 1, 2 * BAND_PX + 1), np.uint8)
     grey = labels.astype(np.uint8)
     return np.asarray(cv2.dilate(grey, kernel) != cv2.erode(grey, kernel))
 
 
-def _cut(pixels: Picture, odds: Energies, region: Mask, band: Mask, known: Mask | None, smoothness: float) -> Mask:
-    """Solve the band's pixels; the others keep their known label (outside the region: False)."""
-    labels = region & known if known is not None else np.zeros_like(region)
+def _cut(level: _Level, band: Mask, known: Mask | None, smoothness: float) -> Mask:
+    """Label (h, w) the band's pixels by a cut; other pixels keep their known label, False outside the region."""
+    labels = level.region & known if known is not None else np.zeros_like(level.region)
     count = int(band.sum())
     if count == 0:
         return labels
-    index = np.full(region.shape, -1, np.int64)
+    index = np.full(band.shape, -1, np.int64)
     index[band] = np.arange(count)
-    to_true, to_false = np.maximum(odds, 0)[band].astype(np.float64), np.maximum(-odds, 0)[band].astype(np.float64)
+    to_true = np.maximum(level.odds, 0)[band].astype(np.float64)
+    to_false = np.maximum(-level.odds, 0)[band].astype(np.float64)
     graph = maxflow.Graph[float](count, 2 * count)
     nodes = graph.add_nodes(count)
     for ahead, behind in _neighbours():
-        weight = _edge_weights(pixels[behind], pixels[ahead], smoothness)
+        weight = _border_costs(level.pixels[behind], level.pixels[ahead], smoothness)
         first, second = index[behind], index[ahead]
         both = (first >= 0) & (second >= 0)
         graph.add_edges(first[both], second[both], weight[both], weight[both])
         for inner, outer in ((behind, ahead), (ahead, behind)):
-            rim = (index[inner] >= 0) & (index[outer] < 0) & region[outer]
+            rim = (index[inner] >= 0) & (index[outer] < 0) & level.region[outer]
             at, cost = index[inner][rim], weight[rim]
             side = labels[outer][rim]
             np.add.at(to_true, at[side], cost[side])
@@ -84,13 +97,13 @@ def _cut(pixels: Picture, odds: Energies, region: Mask, band: Mask, known: Mask 
 
 
 def _neighbours() -> tuple[tuple[tuple[slice, slice], tuple[slice, slice]], ...]:
-    """Slices of (next, this) for neighbours to the right and below."""
+    """Slices (next pixel, this pixel) of all neighbours to the right, then of all neighbours below."""
     every, ahead, behind = slice(None), slice(1, None), slice(None, -1)
     return ((every, ahead), (every, behind)), ((ahead, every), (behind, every))
 
 
-def _edge_weights(this: Picture, following: Picture, smoothness: float) -> NDArray[np.float64]:
-    """Cost of a border between neighbouring colours."""
+def _border_costs(this: Picture, following: Picture, smoothness: float) -> Floats:
+    """Cost (h, w) of different labels between neighbouring colours (h, w, 3)."""
     red, green, blue = (cv2.absdiff(this[..., c], following[..., c]).astype(np.float32) for c in range(3))
     step = np.sqrt(red * red + green * green + blue * blue)
     return np.asarray(smoothness / np.maximum(step, SOFTEST_STEP), dtype=np.float64)

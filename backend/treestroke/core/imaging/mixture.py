@@ -1,4 +1,4 @@
-"""Gaussian mixtures over colours."""
+"""Gaussian mixtures over colours (docs/decisions/0005 says why they are our own)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 from treestroke.core.types import Floats
 
 TABLE_BITS = 5
-"""Colours are looked up in a table of 2^5 steps a channel: 32,768 densities stand for millions of pixels."""
+"""Bits of a channel in the look-up table of colours: 32,768 densities replace those of millions of pixels."""
 FLOOR = 4.0
-"""Added to every variance: no component is narrower than the camera's noise."""
+"""Added to every variance, squared steps of 255: no component is narrower than the camera's noise."""
 MOST_ROUNDS = 60
+"""Greatest number of rounds of a fit."""
 ENOUGH = 3e-3
-"""Fitting ends when a round raises the mean log likelihood by less."""
+"""A fit ends when a round increases the mean log likelihood by less."""
 MIDDLE = 127.5
-"""Colours are taken about the middle of their range, so that squares lose no digits."""
+"""Subtracted from channels before they are squared, so that no digits are lost: the middle of their range."""
 _ROWS, _COLUMNS = np.triu_indices(3)
 
 
@@ -29,7 +30,7 @@ class Mixture:
     weights
         (k,) not negative, summing to 1.
     means
-        (k, 3).
+        (k, 3) sRGB, 0 to 255.
     covariances
         (k, 3, 3) positive definite.
     """
@@ -42,16 +43,17 @@ class Mixture:
         return len(self.weights)
 
     def select(self, kept: NDArray[np.bool_]) -> "Mixture":
-        """Keep some components (k,), their weights scaled to sum to 1 again; at least one must stay."""
+        """Keep some components, a mask (k,) with at least one, and scale their weights to sum to 1 again."""
         weights = self.weights[kept]
         return Mixture(weights / weights.sum(), self.means[kept], self.covariances[kept])
 
 
 def fit_mixture(colours: NDArray[np.uint8], components: int) -> Mixture:
-    """Fit a mixture to colours (n, 3), by expectation maximisation from a k-means++ start.
+    """Fit a mixture to colours (n, 3), sRGB, 0 to 255, by expectation maximisation from a k-means++ start.
 
-    Fewer distinct colours than components give fewer components. The start is seeded, so equal colours
+    Fewer than twice as many distinct colours as components give fewer components. The start is seeded, so equal colours
     give an equal mixture.
+
     Source: Dempster, Laird and Rubin 1977; the start: Arthur and Vassilvitskii 2007.
     """
     samples = colours.reshape(-1, 3).astype(np.float64)
@@ -72,7 +74,7 @@ def fit_mixture(colours: NDArray[np.uint8], components: int) -> Mixture:
 
 
 def _nearest_seed(samples: Floats, count: int) -> Floats:
-    """Give each sample (n, 3) whole (n, k) to the nearest of k seeds among them, drawn far from each other."""
+    """Assign each sample (n, 3) to the nearest of k samples drawn far from each other: shares (n, k), 0 or 1."""
     rng = np.random.default_rng(0)
     chosen = [int(rng.integers(len(samples)))]
     away = ((samples - samples[chosen[0]]) ** 2).sum(axis=1)[:, None]
@@ -84,7 +86,7 @@ def _nearest_seed(samples: Floats, count: int) -> Floats:
 
 
 def _most_likely(share: Floats, terms: Floats) -> Mixture:
-    """Give the mixture whose components hold these shares (n, k) of samples with these terms (10, n)."""
+    """Return the most likely mixture, given the shares (n, k) of samples in its components and their terms (10, n)."""
     count = share.sum(axis=0) + 1e-9
     moments = (terms @ share).T / count[:, None]
     means = moments[:, 1:4]
@@ -95,7 +97,7 @@ def _most_likely(share: Floats, terms: Floats) -> Mixture:
 
 
 def join_mixtures(mixtures: Sequence[Mixture], shares: Sequence[float]) -> Mixture:
-    """Add mixtures up, each with its share of the whole."""
+    """Combine mixtures, each weighted by its share of the whole."""
     total = float(sum(shares))
     weights = np.concatenate([m.weights * (share / total) for m, share in zip(mixtures, shares, strict=True)])
     means = np.concatenate([m.means for m in mixtures])
@@ -103,7 +105,7 @@ def join_mixtures(mixtures: Sequence[Mixture], shares: Sequence[float]) -> Mixtu
 
 
 def log_components(mixture: Mixture, colours: Floats) -> Floats:
-    """Logarithm of each weighted component's density (n, k) at colours (n, 3)."""
+    """Logarithm (n, k) of each weighted component's density at colours (n, 3), sRGB, 0 to 255."""
     means, inverse = mixture.means - MIDDLE, np.linalg.inv(mixture.covariances)
     twisted = np.einsum("kij,kj->ki", inverse, means)
     constant = np.log(np.maximum(mixture.weights, 1e-12)) - 0.5 * np.linalg.slogdet(mixture.covariances)[1]
@@ -120,35 +122,35 @@ def _terms(colours: Floats) -> Floats:
 
 
 def component_shares(mixture: Mixture, colours: Floats) -> Floats:
-    """Share (n, k) of each colour (n, 3) that each component explains; the shares of a colour sum to 1."""
+    """Share (n, k) of each colour (n, 3), sRGB, 0 to 255, that each component explains; a colour's shares sum to 1."""
     parts = log_components(mixture, colours)
     return np.asarray(np.exp(parts - log_sum(parts)[:, None]))
 
 
 def log_density(mixture: Mixture, colours: Floats) -> Floats:
-    """Logarithm of the mixture's density (n,) at colours (n, 3)."""
+    """Logarithm (n,) of the mixture's density at colours (n, 3), sRGB, 0 to 255."""
     return log_sum(log_components(mixture, colours))
 
 
 def log_sum(parts: Floats) -> Floats:
-    """Logarithm of the sum (n,) of the exponentials of each row (n, k)."""
+    """Logarithm (n,) of the sum of the exponentials of each row (n, k) of dimensionless logarithms."""
     peak = parts.max(axis=1)
     return np.asarray(peak + np.log(np.exp(parts - peak[:, None]).sum(axis=1)))
 
 
 def distance(mixture: Mixture, colour: Floats) -> float:
-    """Mahalanobis distance of a colour (3,) from the mixture's nearest component."""
+    """Mahalanobis distance, dimensionless, of a colour (3,), sRGB, 0 to 255, from the mixture's nearest component."""
     away = colour - mixture.means
     return float(np.sqrt(np.einsum("ki,kij,kj->k", away, np.linalg.inv(mixture.covariances), away).min()))
 
 
 def table_colours() -> Floats:
-    """Give the colours (32768, 3) at the centres of the look-up table's cells."""
+    """Return the colours (32768, 3), sRGB, 0 to 255, at the centres of the look-up table's cells."""
     steps = (np.arange(2**TABLE_BITS) + 0.5) * 2 ** (8 - TABLE_BITS)
     return np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def table_index(colours: NDArray[np.uint8]) -> NDArray[np.uint16]:
-    """Give each pixel's cell (...,) in the look-up table, for colours (..., 3)."""
+    """Return the index (...,) in the look-up table of each colour (..., 3), sRGB."""
     red, green, blue = (colours[..., channel].astype(np.uint16) >> (8 - TABLE_BITS) for channel in range(3))
     return np.asarray((red << (2 * TABLE_BITS)) | (green << TABLE_BITS) | blue, dtype=np.uint16)

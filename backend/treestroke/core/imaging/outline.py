@@ -8,14 +8,14 @@ from treestroke.core.types import Floats
 
 
 def winding_numbers(points: Floats, height: int, width: int) -> NDArray[np.int16]:
-    """Count how often a closed outline goes round each pixel's centre.
+    """Count how often a closed outline goes around each pixel's centre.
 
     Parameters
     ----------
     points
         (n, 2) px, closed by joining the last to the first.
     height, width
-        Size of the answer, px.
+        Size of the result, px.
 
     Returns
     -------
@@ -38,10 +38,10 @@ def winding_numbers(points: Floats, height: int, width: int) -> NDArray[np.int16
 
 
 def fill_outline(points: Floats, height: int, width: int) -> NDArray[np.bool_]:
-    """Fill all that a closed outline (n, 2), px, encloses: the union, where it crosses itself.
+    """Fill everything that a closed outline (n, 2), px, encloses (height, width): the union, where it crosses itself.
 
-    A pixel belongs to it when its centre does. Loops that turn against each other count too, and so
-    does what lies between them and cannot be left without crossing the line.
+    A pixel belongs to it if its centre does. Loops that turn against each other both count, and so does the area
+    between them that cannot be left without crossing the line.
     """
     return filled_and_crossing(points, height, width)[0]
 
@@ -56,12 +56,14 @@ def filled_and_crossing(points: Floats, height: int, width: int) -> tuple[NDArra
 
 
 def rings_of_mask(mask: NDArray[np.bool_]) -> list[Floats]:
-    """Draw round a mask (h, w): closed rings (n, 2), px, for the even-odd rule, holes included.
+    """Trace the border of a mask (h, w) as closed rings (n, 2), px, for the even-odd rule, holes included.
 
-    The rings follow the pixels' edges to a quarter pixel and are then simplified, so that they stay within
-    1 px of the mask's border. Specks that simplify to less than a triangle are left out.
+    The rings follow the pixels' edges to a quarter pixel and are then simplified, so that they stay within 1 px of the
+    mask's border. Specks that simplify to less than a triangle are left out.
+
+    Source: border following by Suzuki and Abe 1985, simplification by Douglas and Peucker 1973, both by OpenCV.
     """
-    # At twice the size a contour through pixel centres runs a quarter of a photo pixel inside the edge.
+    # At twice the size, a contour through pixel centres runs a quarter of a photo's pixel inside the edge.
     doubled = np.repeat(np.repeat(mask.astype(np.uint8), 2, axis=0), 2, axis=1)
     contours, _ = cv2.findContours(doubled, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
     simple = (cv2.approxPolyDP(contour, 1.5, closed=True) for contour in contours)
@@ -69,7 +71,7 @@ def rings_of_mask(mask: NDArray[np.bool_]) -> list[Floats]:
 
 
 def _without_holes(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Fill what a mask (h, w) shuts in."""
+    """Fill the holes of a mask (h, w)."""
     ground = cv2.copyMakeBorder((~mask).astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=1)
     _, outside, _, _ = cv2.floodFill(ground, None, (0, 0), 2, flags=4)
     return np.asarray(outside[1:-1, 1:-1] != 2, dtype=np.bool_)

@@ -1,4 +1,4 @@
-"""Endless textures from a small sample, by patches cut along their least visible seams."""
+"""Seamlessly repeating textures from a small sample, by patches cut along their least visible seams."""
 
 from dataclasses import dataclass
 
@@ -10,11 +10,16 @@ from numpy.typing import NDArray
 from treestroke.core.types import Floats
 
 _CANDIDATES = 24
-_LOOK = 3  # every how many px patches are compared when one is chosen
+"""Random patches that are compared for each place."""
+_STEP = 3
+"""Distance, px, of the pixels by which patches are compared."""
 _FEATHER_PX = 4.0
-_SURE = 1e9  # capacity of a link that must not be cut
+"""Standard deviation of the blur of a cut, px."""
+_UNCUTTABLE = 1e9
+"""Capacity of a link that must not be cut."""
 _RIGHT = np.array([[0, 0, 0], [0, 0, 1], [0, 0, 0]])
 _DOWN = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 0]])
+"""Links of a pixel to its neighbours, as PyMaxflow takes them."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +29,11 @@ class QuiltParams:
     Attributes
     ----------
     size
-        Of the texture.
+        Size of the texture.
     patch
-        Of a patch; the sample must be at least as large.
+        Size of a patch; the sample must be at least as large.
     overlap
-        By how much neighbours overlap at least; a patch must be more than twice as large.
+        Least overlap of neighbouring patches; a patch must be more than twice as large.
     """
 
     size: tuple[int, int] = (512, 256)
@@ -41,11 +46,10 @@ class QuiltParams:
 
 
 def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np.random.Generator) -> Floats:
-    """Fill a texture (*size, c) that repeats without seam in both directions with patches of a sample (h, w, c).
+    """Fill a texture (*size, c), px, that repeats in both directions, with patches of a sample (h, w, c).
 
-    Each patch is the best of some random ones: it fits what lies there already and shows few pixels that
-    are not ``clean`` (h, w). It is joined along a minimal cut, and the texture's opposite edges are
-    neighbours from the start, so they need no treatment of their own.
+    Each patch is the best of some random ones: it fits what is there already and shows few pixels outside ``clean``
+    (h, w). It is joined along a minimal cut. Opposite edges of the texture are treated as neighbours from the start.
 
     Raises
     ------
@@ -54,7 +58,7 @@ def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np
 
     Notes
     -----
-    Kwatra et al., "Graphcut Textures", 2003, section 3 (cost: equation 1), on a torus.
+    Kwatra et al., "Graphcut Textures", 2003, section 3 (cost: equation 1), here on a torus.
     """
     if sample.shape[0] < params.patch[0] or sample.shape[1] < params.patch[1]:
         raise ValueError(f"a sample {sample.shape[:2]} holds no patch {params.patch}")
@@ -75,12 +79,12 @@ def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np
 
 
 def _around(start: int, count: int, size: int) -> NDArray[np.int64]:
-    """Count on from ``start`` around a circle of ``size`` px."""
+    """Return ``count`` indices (count,) from ``start`` on, modulo ``size``."""
     return (start + np.arange(count)) % size
 
 
 def _starts(size: int, patch: int, overlap: int) -> list[int]:
-    """Spread patches evenly around a circle of ``size`` px."""
+    """Return evenly spaced starts of patches, px, around a circle of ``size`` px."""
     count = -(-size // (patch - overlap))
     return [size * i // count for i in range(count)]
 
@@ -88,38 +92,38 @@ def _starts(size: int, patch: int, overlap: int) -> list[int]:
 def _best_patch(
     sample: Floats, clean: NDArray[np.bool_], old: Floats, filled: NDArray[np.bool_], rng: np.random.Generator
 ) -> Floats:
-    """Choose among random patches the one that differs least from what is there."""
+    """Choose among random patches (h, w, c) the one that differs least from the old texture, where that is filled."""
     h, w = filled.shape
     row = rng.integers(0, sample.shape[0] - h + 1, _CANDIDATES)
     column = rng.integers(0, sample.shape[1] - w + 1, _CANDIDATES)
-    spread = float(sample[::_LOOK, ::_LOOK].var(axis=(0, 1)).sum())
-    seen = (slice(None, None, _LOOK), slice(None, None, _LOOK))
-    there, known = old[seen], filled[seen]
+    spread = float(sample[::_STEP, ::_STEP].var(axis=(0, 1)).sum())
+    compared = (slice(None, None, _STEP), slice(None, None, _STEP))
+    old, known = old[compared], filled[compared]
     costs = []
     for y, x in zip(row.tolist(), column.tolist(), strict=True):
-        difference = np.sum((sample[y : y + h, x : x + w][seen] - there) ** 2, axis=2)
+        difference = np.sum((sample[y : y + h, x : x + w][compared] - old) ** 2, axis=2)
         misfit = float(difference[known].mean()) if known.any() else 0.0
-        costs.append(misfit + 4.0 * spread * float(1.0 - clean[y : y + h, x : x + w][seen].mean()))
+        costs.append(misfit + 4.0 * spread * float(1.0 - clean[y : y + h, x : x + w][compared].mean()))
     best = int(np.argmin(costs))
     y, x = int(row[best]), int(column[best])
     return sample[y : y + h, x : x + w]
 
 
 def _feathered(new: NDArray[np.bool_], filled: NDArray[np.bool_]) -> Floats:
-    """Soften a cut over a few pixels, for where patches differ much even the best one shows."""
+    """Soften a cut over a few pixels: opacity (h, w), 0 to 1, of the new patch, for patches that do not match well."""
     blurred = cv2.GaussianBlur(new.astype(np.float64), (0, 0), _FEATHER_PX, borderType=cv2.BORDER_REPLICATE)
     share = np.clip((blurred - 0.2) / 0.6, 0.0, 1.0)
     return np.where(filled, share * _ramp_from_rim(new.shape), 1.0)
 
 
 def _ramp_from_rim(shape: tuple[int, ...]) -> Floats:
-    """Rise from 0 on a patch's rim to 1 a few pixels inside."""
+    """Return a ramp (h, w) from 0 on a patch's rim to 1 a few pixels inside."""
     y, x = (np.minimum(np.arange(n), np.arange(n)[::-1]) for n in shape)
     return np.minimum(np.minimum(y[:, None], x[None, :]) / (3.0 * _FEATHER_PX), 1.0)
 
 
 def _newer_side(difference: Floats, filled: NDArray[np.bool_], overlap: tuple[int, int]) -> NDArray[np.bool_]:
-    """Cut between an old and a new patch: True where the new one shows."""
+    """Cut between an old and a new patch: mask (h, w) of where the new one shows."""
     rim = np.ones_like(filled)
     rim[1:-1, 1:-1] = False
     core = np.zeros_like(filled)
@@ -129,7 +133,7 @@ def _newer_side(difference: Floats, filled: NDArray[np.bool_], overlap: tuple[in
     for structure, shift in ((_RIGHT, (0, -1)), (_DOWN, (-1, 0))):
         weight = difference + np.roll(difference, shift, axis=(0, 1)) + 1e-9
         graph.add_grid_edges(nodes, weight, structure, symmetric=True)
-    graph.add_grid_tedges(nodes, np.where(rim & filled, _SURE, 0.0), np.where(core | ~filled, _SURE, 0.0))
+    graph.add_grid_tedges(nodes, np.where(rim & filled, _UNCUTTABLE, 0.0), np.where(core | ~filled, _UNCUTTABLE, 0.0))
     graph.maxflow()
     newer: NDArray[np.bool_] = graph.get_grid_segments(nodes)
     return newer

@@ -9,7 +9,7 @@ from treestroke.core.types import Floats
 
 
 def sample_nearest(image: NDArray[Any], points_px: Floats, outside: Any) -> NDArray[Any]:
-    """Read the pixel (h, w, ...) that holds each point (..., 2), px; ``outside`` beyond the picture."""
+    """Read an image (h, w, ...) at points (..., 2), px: the value of the pixel around each; ``outside`` beyond it."""
     column = np.floor(points_px[..., 0]).astype(np.int64)
     row = np.floor(points_px[..., 1]).astype(np.int64)
     height, width = image.shape[:2]

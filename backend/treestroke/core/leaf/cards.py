@@ -12,14 +12,14 @@ from treestroke.core.types import Floats
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 """Corners of a card in half-extents, counter-clockwise from its lower left: x right, y up."""
 ROUNDNESS = 0.6
-"""Weight of the direction out of the crown in a normal, against the card's own: the crown shades as a volume."""
+"""Weight of the direction out of the crown in a normal, against the card's own: the crown is shaded as a volume."""
 
 
 def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
-    """Build two triangles a card (4 vertices each), in the order of the leaves.
+    """Build two triangles a card (4 vertices each), metres, in the order of the leaves.
 
-    Normals lean out of the crown, whose middle is that of the cards; both corners and cards differ, so that a clump
-    is rounded. Shades become vertex brightness. A card holds to its own joint.
+    Normals lean out of the crown, whose middle is that of the cards; they differ between a card's corners, so that a
+    clump looks round. Shades become vertex brightness. A card is attached to its own joint.
     """
     m = len(leaves)
     corners = leaves.centres[:, None] + CORNERS[:, :1] * leaves.rights[:, None] + CORNERS[:, 1:] * leaves.ups[:, None]
@@ -38,7 +38,7 @@ def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
 
 
 def _normals(leaves: Leaves, positions: Floats) -> Floats:
-    """Blend each card's normal with the direction out of the crown's ellipsoid (4 m, 3)."""
+    """Blend each card's normal with the direction out of the crown's ellipsoid: (4 m, 3), unit length."""
     low, high = leaves.centres.min(axis=0), leaves.centres.max(axis=0)
     outward = unit((positions - (low + high) / 2) / np.maximum((high - low) / 2, 1e-6))
     facing = np.repeat(unit(np.cross(leaves.rights, leaves.ups), UP), 4, axis=0)
@@ -46,7 +46,7 @@ def _normals(leaves: Leaves, positions: Floats) -> Floats:
 
 
 def _uvs(leaves: Leaves, atlas: Atlas) -> NDArray[np.float32]:
-    """Texture coordinates (4 m, 2): the tile's box, mirrored where the card is flipped."""
+    """Texture coordinates (4 m, 2), 0 to 1: the corners of the tile's box, mirrored where the card is flipped."""
     left, top, right, bottom = atlas.boxes[leaves.tiles].T
     left, right = np.where(leaves.flips, right, left), np.where(leaves.flips, left, right)
     u, v = np.stack([left, right, right, left], axis=1), np.stack([bottom, bottom, top, top], axis=1)

@@ -12,6 +12,7 @@ from treestroke.core.leaf.coverage import Outlines, cover, outlines_of, share_in
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
+from treestroke.core.paint.cut_outs import SOLID_ALPHA
 from treestroke.core.types import Floats
 
 SIDES = (0.015, 0.03)
@@ -104,6 +105,6 @@ def crown_of(grid: FoliageGrid, envelope: Envelope, atlas: Atlas, size: float, r
     middle[2] = envelope.middles(middle[None])[0, 2]
     columns = np.flatnonzero(grid.inside.any(axis=0))
     side = size * float(columns[-1] - columns[0] + 1) * grid.cell_m
-    area = float((alphas > 127).mean()) * (side * sum(SIDES) / 2) ** 2
+    area = float((alphas >= SOLID_ALPHA).mean()) * (side * sum(SIDES) / 2) ** 2
     colouring = colouring_of(grid, envelope, tile_labs(atlas), atlas.recolour, rng)
     return Crown(grid, envelope, colouring, outlines_of(alphas), middle, max(top, top - bottom), side, area)

@@ -1,14 +1,13 @@
 """Fruit: a picture of it on two crossed upright cards, hung below the twigs.
 
-Depth retrieval from two sketches, section 7: fruit are textured quads that follow the phyllotaxis of their twig, with
-random factors in place and direction. Ours stand apart from each other and mostly where the crown shows them.
+Source: the paper on two sketches (docs/papers.md), section 7: fruit are textured quads that follow the phyllotaxis of
+their twig, with random factors in place and direction. Ours keep a distance from each other and hang mostly where the
+crown shows them.
 """
 
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.vectors import UP, unit
@@ -16,24 +15,26 @@ from treestroke.core.geometry.views import CrownViews
 from treestroke.core.leaf.arrangement import Seats, seats_along, thin_edges
 from treestroke.core.leaf.leaves import Leaves, join_leaves
 from treestroke.core.paint.atlas import TILE_SIDE, Atlas, tile_labs
-from treestroke.core.paint.easel import MARGIN
+from treestroke.core.paint.canvas import MARGIN
+from treestroke.core.paint.cut_outs import mean_solid_colour, resized_premultiplied
 from treestroke.core.paint.palette import nearest_colour
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Picture
 
 GOLDEN_RAD = np.pi * (3 - np.sqrt(5.0))
+"""Golden angle, rad: the turn about the twig from one fruit to the next."""
 TRIED = 12
-"""Places that are tried for each fruit."""
+"""Places tried for each fruit."""
 STALK = 0.7
-"""How far a fruit's stalk leads from its twig, in widths of the fruit: around it, and as far out of the crown."""
+"""Length of a fruit's stalk, in widths of the fruit; half around the twig, half out of the crown."""
 TURN_SCATTER = 0.4
-"""Standard deviation of the turn about the twig from one fruit to the next, about the golden angle, rad."""
+"""Standard deviation of the turn about the twig, rad."""
 TALLEST = 2.0
-"""Tall pictures are clusters, or fruit that is drawn with its stalk: up to this factor larger than round ones."""
+"""Greatest factor on the width for tall pictures, which show clusters, or fruit with a stalk."""
 SHADES = (0.9, 1.0)
-"""Brightness: fruit is seen at the crown's outside, and shines."""
+"""Least and greatest brightness, 0 to 1: fruit is seen at the outside of the crown."""
 OUTWARD = 8.0
-"""Power of the reach from the crown's axis by which fruit is likelier at the outside."""
+"""Power of the reach from the crown's axis by which a place is likelier at the outside."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +44,11 @@ class FruitParams:
     Attributes
     ----------
     width
-        Narrowest and widest fruit, shares of the crown's width, for a picture no taller than wide.
+        Width of the narrowest and the widest fruit, shares of the crown's width, for a picture no taller than wide.
     per_metre
-        Fruit for each metre of the side of a square as large as the crown's outline.
+        Number of fruit for each metre of the side of a square as large as the crown's outline.
     fewest, most
-        Fruit on the smallest and the largest tree, where there is room.
+        Number of fruit on the smallest and on the largest tree, where there is room.
     apart
         Least distance between two fruit, in widths.
     """
@@ -73,10 +74,12 @@ def hang_fruit(
     params: FruitParams,
     rng: np.random.Generator,
 ) -> Leaves:
-    """Hang fruit on the twigs of a grown tree (metres): first one card of each, then, crossing it, its other one.
+    """Hang fruit on the twigs of a grown tree, metres: first one card of each fruit, then the card that crosses it.
 
     Every fruit's middle and lower end lie inside the views and its middle inside the envelope. They come in random
-    order, so that the first few stand all over the crown. Their tile is yet to be named (`with_fruit`).
+    order, so that any first few are spread over the crown. Their tiles (m,) are indices set by `with_fruit`.
+
+    Source: the paper on two sketches, section 7; we add the least distance and the likelihood by reach.
     """
     side = params.per_metre * np.sqrt(2 * envelope.radius_px.sum()) * envelope.camera.metres_per_pixel
     count = int(np.clip(round(float(side)), params.fewest, params.most))
@@ -96,11 +99,12 @@ def hang_fruit(
 
 
 def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Picture) -> tuple[Leaves, Atlas]:
-    """Add fruit to the leaves and its picture to their atlas, in place of the tile that fewest leaves show.
+    """Add fruit to the leaves and its picture (h, w, 4) to their atlas, in place of the tile that fewest leaves show.
 
-    Those leaves show the tile of the most similar colour instead. Without an atlas the fruit's tile is the only one.
+    The leaves that showed this tile show the one of the most similar colour (CIE Lab) instead. Without an atlas the
+    fruit's tile is the only one.
     """
-    tile, colour = _tile(picture), picture[picture[..., 3] > 127][:, :3].astype(np.float64).mean(axis=0)
+    tile, colour = _tile(picture), mean_solid_colour(picture)
     if atlas is None:
         alone = Atlas(tile, np.array([[0.0, 0.0, 1.0, 1.0]]), colour[None], fruit=0)
         return replace(fruit, tiles=np.zeros(len(fruit), dtype=np.int64)), alone
@@ -115,13 +119,8 @@ def with_fruit(leaves: Leaves, atlas: Atlas | None, fruit: Leaves, picture: Pict
     return join_leaves([leaves, hung]), replace(atlas, image=image, colours=colours, fruit=place)
 
 
-def fruit_among(leaves: Leaves, atlas: Atlas) -> NDArray[np.bool_]:
-    """Tell which cards (m,) are fruit."""
-    return np.zeros(len(leaves), dtype=bool) if atlas.fruit is None else leaves.tiles == atlas.fruit
-
-
 def _around(seats: Seats, rng: np.random.Generator) -> Floats:
-    """Give unit vectors (n, 3) square to the twigs, each turned by the golden angle from the one before."""
+    """Return unit vectors (n, 3) perpendicular to the twigs, each turned by the golden angle from the one before."""
     turn = GOLDEN_RAD * np.arange(len(seats)) + rng.normal(0, TURN_SCATTER, len(seats))
     side = unit(np.cross(seats.directions, UP), np.array([1.0, 0.0, 0.0]))
     across = np.cos(turn)[:, None] * side + np.sin(turn)[:, None] * np.cross(seats.directions, side)
@@ -129,17 +128,17 @@ def _around(seats: Seats, rng: np.random.Generator) -> Floats:
 
 
 def _outward(points: Floats, envelope: Envelope) -> Floats:
-    """Give level unit vectors (n, 3) away from the middles of the crown's sections."""
+    """Return level unit vectors (n, 3) away from the middles of the crown's sections."""
     middles = envelope.middles(points)
     return unit((points - middles) * np.array([1.0, 0.0, 1.0]), UP)
 
 
 def _chosen(points: Floats, likelihood: Floats, apart: Floats, count: int, rng: np.random.Generator) -> Indices:
-    """Draw up to ``count`` of the points (n, 3), by their likelihood, none nearer to another than ``apart`` (n,)."""
-    late = rng.exponential(size=len(points)) / np.maximum(likelihood, 1e-12)
+    """Draw up to ``count`` points (n, 3), metres, by their likelihood, no two nearer than ``apart`` (n,)."""
+    arrival = rng.exponential(size=len(points)) / np.maximum(likelihood, 1e-12)
     found: list[int] = []
     free = likelihood > 0
-    for index in np.argsort(late, kind="stable").tolist():
+    for index in np.argsort(arrival, kind="stable").tolist():
         if len(found) == count:
             break
         if free[index]:
@@ -149,7 +148,7 @@ def _chosen(points: Floats, likelihood: Floats, apart: Floats, count: int, rng: 
 
 
 def _crossed(feet: Floats, half: Floats, joints: Indices, rng: np.random.Generator) -> Leaves:
-    """Hang two crossed upright square cards, of half a side (n,), with the fruit's stalk at each foot (n, 3)."""
+    """Build two crossed upright square cards of half a side (n,), metres, for fruit whose stalks end at feet (n, 3)."""
     count = len(feet)
     azimuth = rng.uniform(0, 2 * np.pi, count) + np.array([[0.0], [np.pi / 2]])
     level = np.stack([np.cos(azimuth), np.zeros_like(azimuth), np.sin(azimuth)], axis=-1)
@@ -166,18 +165,15 @@ def _crossed(feet: Floats, half: Floats, joints: Indices, rng: np.random.Generat
 
 
 def _tile(picture: Picture) -> Picture:
-    """Lay a picture (h, w, 4), straight alpha, on a clear tile, its top in the middle of the upper margin.
+    """Place a picture (h, w, 4), straight alpha, on a transparent tile, its top in the middle of the upper margin.
 
-    The clear part has the fruit's mean colour, so that edges and mip levels show no halo.
+    The transparent part has the fruit's mean colour, so that edges and mip levels show no halo.
     """
     room = round(TILE_SIDE * (1 - 2 * MARGIN))
     height, width = picture.shape[:2]
     size = max(1, round(width * room / max(height, width))), max(1, round(height * room / max(height, width)))
-    alpha = picture[..., 3:].astype(np.float32) / 255
-    premultiplied = np.concatenate([alpha * picture[..., :3], alpha], axis=2).astype(np.float32)
-    filtering = cv2.INTER_AREA if max(height, width) > room else cv2.INTER_LINEAR
-    small = cv2.resize(premultiplied, size, interpolation=filtering).reshape(size[1], size[0], 4)
-    mean = picture[picture[..., 3] > 127][:, :3].mean(axis=0)
+    small = resized_premultiplied(picture, *size)
+    mean = mean_solid_colour(picture)
     colour = np.where(small[..., 3:] > 1 / 255, small[..., :3] / np.maximum(small[..., 3:], 1e-3), mean)
     tile = np.empty((TILE_SIDE, TILE_SIDE, 4), dtype=np.uint8)
     tile[:] = (*np.rint(mean).astype(int).tolist(), 0)

@@ -1,24 +1,25 @@
-"""Leaves: the cards of one tree, as arrays."""
+"""Leaves: the cards of one tree, as arrays; fruit hangs among them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.types import Floats, Indices
+from treestroke.core.geometry.mesh import ALPHA_CUT
+from treestroke.core.paint.atlas import Atlas, tile_alphas
+from treestroke.core.types import Floats, Indices, Mask
 
 
 @dataclass(frozen=True, eq=False)
 class Leaves:
-    """m flat cards; each shows one tile of the atlas, a spray that grows along ``ups``.
+    """m flat cards; each shows one tile of the atlas, a spray that grows in the direction of ``ups``.
 
     Attributes
     ----------
     centres
         (m, 3) middle of each card, metres, world.
     rights, ups
-        (m, 3) half its width and half its height, metres, at right angles; right x up looks outward.
+        (m, 3) half its width and half its height, metres, at right angles; right x up points outward.
     tiles
         (m,) index of its tile in the atlas.
     flips
@@ -26,14 +27,14 @@ class Leaves:
     shades
         (m,) brightness, 0 to 1.
     joints
-        (m,) index of the skeleton's joint at whose edge it hangs.
+        (m,) index of the skeleton's joint whose edge it hangs on.
     """
 
     centres: Floats
     rights: Floats
     ups: Floats
     tiles: Indices
-    flips: NDArray[np.bool_]
+    flips: Mask
     shades: Floats
     joints: Indices
 
@@ -47,19 +48,35 @@ class Leaves:
     def __len__(self) -> int:
         return len(self.centres)
 
-    def select(self, kept: NDArray[np.bool_]) -> "Leaves":
-        """Keep the marked cards (m,)."""
+    def select(self, kept: Mask) -> "Leaves":
+        """Keep the marked cards (m,), a mask."""
         return Leaves(*(getattr(self, field.name)[kept] for field in fields(self)))
 
 
 def join_leaves(parts: Sequence[Leaves]) -> Leaves:
-    """Put cards together, in the order given; no parts give no cards."""
+    """Concatenate cards in the order given; without parts there are no cards."""
     if not parts:
         return no_leaves()
     return Leaves(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Leaves)))
 
 
 def no_leaves() -> Leaves:
-    """Bear nothing."""
+    """Return no cards."""
     vectors, indices = np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
     return Leaves(vectors, vectors, vectors, indices, np.zeros(0, dtype=np.bool_), np.zeros(0), indices)
+
+
+def fruit_among(leaves: Leaves, atlas: Atlas) -> Mask:
+    """Tell which cards (m,) are fruit: those that show the atlas's fruit tile."""
+    return np.zeros(len(leaves), dtype=bool) if atlas.fruit is None else leaves.tiles == atlas.fruit
+
+
+def leaf_area(leaves: Leaves, atlas: Atlas) -> float:
+    """One-sided area of all leaves, square metres: what remains of their cards when cut at `ALPHA_CUT`.
+
+    Leaves that overlap within one spray count once; fruit does not count.
+    """
+    leaves = leaves.select(~fruit_among(leaves, atlas))
+    drawn = (tile_alphas(atlas) >= 255 * ALPHA_CUT).mean(axis=(1, 2))
+    card_areas = 4 * np.linalg.norm(leaves.rights, axis=1) * np.linalg.norm(leaves.ups, axis=1)
+    return float((card_areas * drawn[leaves.tiles]).sum())

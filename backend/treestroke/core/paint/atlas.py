@@ -1,46 +1,47 @@
-"""The leaf atlas: one texture of sprays, drawn in the colours of this photo."""
+"""The leaf atlas: one texture of sprays, drawn in the colours of the photo."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.paint.cut_outs import mean_solid_colour, opaque_part, reduced
+from treestroke.core.paint.leaf_picture import draw_pictured_leaves, picture_recolour
 from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
-from treestroke.core.paint.picture import draw_pictured, opaque_part, picture_recolour, reduced
-from treestroke.core.paint.seasons import LEAFY, Recolour, own_palette, recolour_bare, recolour_for
+from treestroke.core.paint.seasons import LEAFY, Recolour, grey_palette, recolour_for, recolour_grey
 from treestroke.core.paint.species import AUTO, Species
-from treestroke.core.paint.sprays import Shape, draw_spray
+from treestroke.core.paint.sprays import SprayKind, draw_spray
 from treestroke.core.types import Floats, FoliageKind
 
 COLUMNS = 4
-"""Tiles a row; the atlas has as many rows."""
+"""Tiles in a row; the atlas has as many rows."""
 TILE_SIDE = 256
-"""Side of a tile, px: a spray is seen at 20 to 60 px, so this bears a close look."""
+"""Side of a tile, px: a spray is usually seen at 20 to 60 px, so that this allows a close look."""
 BLOSSOM_LIGHTNESS, BLOSSOM_CHROMA = 62.0, 17.0
-"""Clusters that are lighter and paler than this (or pink) look like blossom."""
+"""Clusters that are lighter and of lower chroma than this, CIE Lab, look like blossom; so do pink ones."""
 BLOSSOM_SHARE = 0.3
-"""Share of the foliage that must look like blossom for the tree to be in flower (CIE Lab; told on 3 of 11 photos)."""
+"""Share of the foliage that must look like blossom for the tree to be in flower (tuned on 11 photos, 3 in flower)."""
 
 
 @dataclass(frozen=True, eq=False)
-class LeafLook:
-    """What is known of the leaves apart from the photo.
+class LeafStyle:
+    """What determines the look of leaves apart from the photo.
 
     Attributes
     ----------
     species
-        What they are drawn as.
+        Kind of tree that they are drawn as.
     season
-        One of `treestroke.core.paint.seasons.SEASONS`, or ``photo`` for their colours as they stand.
+        One of `treestroke.core.paint.seasons.SEASONS`, or ``photo`` to keep their colours.
     shown
         Whether the photo shows leaves; if not, all colours are the season's.
     picture
-        A leaf, (h, w, 4) uint8, sRGB with straight alpha, its stalk down, kept as its opaque part; None to draw one.
+        A leaf, (h, w, 4) uint8, sRGB with straight alpha, its stalk down, reduced to its opaque part; None to draw one.
 
     Raises
     ------
     ValueError
-        The picture is none, or transparent.
+        The picture has another shape or type, or is transparent.
     """
 
     species: Species = AUTO
@@ -55,20 +56,20 @@ class LeafLook:
 
 @dataclass(frozen=True, eq=False)
 class Atlas:
-    """Tiles of one texture; each holds another spray.
+    """Tiles of one texture, each with a different spray.
 
     Attributes
     ----------
     image
-        (h, w, 4) uint8, sRGB, straight alpha, sides powers of two; to be cut at alpha 0.5.
+        (h, w, 4) uint8, sRGB, straight alpha, sides powers of two; cut at `ALPHA_CUT` when it is drawn.
     boxes
         (k, 4) left, top, right, bottom of each tile in texture coordinates, 0 to 1, v down.
     colours
-        (k, 3) mean colour of each tile's opaque part, sRGB, 0 to 255.
+        (k, 3) mean colour of each tile's solid pixels, sRGB, 0 to 255.
     recolour
-        How the photo's colours became the tiles', or None where they are the same.
+        Mapping from the photo's colours to the tiles', or None where they are the same.
     fruit
-        The tile that shows a fruit, if one does; no leaf shows it.
+        Index of the tile that shows a fruit, or None; leaves do not show it.
     """
 
     image: NDArray[np.uint8]
@@ -83,96 +84,110 @@ def leaf_atlas(
     mask: NDArray[np.bool_],
     kind: FoliageKind,
     rng: np.random.Generator,
-    look: LeafLook = LeafLook(),
+    style: LeafStyle = LeafStyle(),
 ) -> Atlas:
-    """Draw sprays of leaves (or needles, or blossom) in up to 16 colours of the photo's foliage.
+    """Draw sprays of leaves, needles or blossom in up to 16 colours of a photo's foliage.
 
-    Every tile is another drawing; where the foliage has fewer colours, the common ones have several tiles.
-    Very pale clusters of a broad-leaved tree are drawn as blossom. A season other than the photo's recolours them.
+    Every tile is a different drawing; where the foliage has fewer colours, the common ones have several tiles. Very
+    pale clusters of a broad-leaved tree are drawn as blossom. A season other than the photo's recolours the leaves.
+
+    Source: Tan et al. 2008, section 4, whose quads show the photo at the place that they project to; ours show tiles,
+    so that no colour is smeared along the view.
+
+    Parameters
+    ----------
+    photo, mask
+        (h, w, 3) sRGB, and the pixels (h, w) of its foliage.
+    kind
+        What the twigs bear.
+    rng
+        Source of randomness.
+    style
+        What determines the look of leaves apart from the photo.
 
     Raises
     ------
     ValueError
-        The mask (h, w) is empty or not of the photo's size (h, w, 3).
+        The mask is empty or not of the photo's size.
     """
     tiles = COLUMNS * COLUMNS
-    palette = foliage_palette(photo, mask, tiles, rng) if look.shown else own_palette(tiles, rng)
-    flower = _in_flower(palette, kind, look)
-    recolour = None if flower and look.picture is None else _recolour(palette, kind, look)
-    shapes = _shapes(palette, kind, look, flower)
+    palette = foliage_palette(photo, mask, tiles, rng) if style.shown else grey_palette(tiles, rng)
+    flower = _in_flower(palette, kind, style)
+    recolour = None if flower and style.picture is None else _recolour(palette, kind, style)
+    kinds = _spray_kinds(palette, kind, style, flower)
     if recolour is not None:
         palette = recolour.palette(palette, tiles, rng)
     image = np.zeros((COLUMNS * TILE_SIDE, COLUMNS * TILE_SIDE, 4), dtype=np.uint8)
     for tile, window in enumerate(_windows()):
         cluster = tile % len(palette.members)
-        image[window] = _tile(shapes[cluster % len(shapes)], palette.members[cluster], look, rng)
-    return Atlas(image, _boxes(), _mean_colours(image), recolour if look.shown else _blind(recolour))
+        image[window] = _tile(kinds[cluster % len(kinds)], palette.members[cluster], style, rng)
+    return Atlas(image, _boxes(), _mean_colours(image), recolour if style.shown else _ignoring_photo(recolour))
 
 
 def tile_alphas(atlas: Atlas) -> NDArray[np.uint8]:
-    """Cut the tiles' alpha (k, side, side) out of the atlas."""
+    """Cut the tiles' alpha (k, side, side), 0 to 255, out of the atlas."""
     height, width = atlas.image.shape[:2]
     edges = np.rint(atlas.boxes * np.array([width, height, width, height])).astype(np.int64)
     return np.stack([atlas.image[top:bottom, left:right, 3] for left, top, right, bottom in edges.tolist()])
 
 
 def tile_labs(atlas: Atlas) -> Floats:
-    """Mean colour of each tile (k, 3), CIE Lab."""
+    """Mean colour (k, 3) of each tile, CIE Lab."""
     return lab_from_rgb(np.rint(atlas.colours).astype(np.uint8))
 
 
-def _in_flower(palette: Palette, kind: FoliageKind, look: LeafLook) -> bool:
-    """Tell whether much of the tree looks like blossom, at a season when it may."""
+def _in_flower(palette: Palette, kind: FoliageKind, style: LeafStyle) -> bool:
+    """Tell whether much of the tree looks like blossom, in a season that allows it."""
     lightness, red, yellow = palette.centres.T
     pale = (np.hypot(red, yellow) < BLOSSOM_CHROMA) & (lightness > BLOSSOM_LIGHTNESS)
     pink = (red > 8) & (yellow < 6) & (lightness > 45)
-    its_time = look.season == "spring" and (look.species.flowers or look.species == AUTO)
-    blooms = look.shown and kind != "needles" and (look.season not in LEAFY or its_time)
+    may_bloom = style.season == "spring" and (style.species.flowers or style.species == AUTO)
+    blooms = style.shown and kind != "needles" and (style.season not in LEAFY or may_bloom)
     return bool(blooms and palette.shares[pale | pink].sum() > BLOSSOM_SHARE)
 
 
-def _shapes(palette: Palette, kind: FoliageKind, look: LeafLook, flower: bool) -> list[Shape]:
+def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: bool) -> list[SprayKind]:
     """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
     if kind == "needles":
         return ["needles"]
-    if look.species.flowers and look.season == "spring":
+    if style.species.flowers and style.season == "spring":
         return ["blossom"]
     return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]
 
 
-def _recolour(palette: Palette, kind: FoliageKind, look: LeafLook) -> Recolour | None:
-    """Tell how the photo's colours become the leaves'."""
-    if look.picture is not None:
-        return picture_recolour(look.picture, palette)
-    if not look.shown:
-        return recolour_bare(look.season, look.species, kind == "needles")
-    return recolour_for(look.season, look.species, palette, kind == "needles")
+def _recolour(palette: Palette, kind: FoliageKind, style: LeafStyle) -> Recolour | None:
+    """Return the mapping from the photo's colours to the leaves', or None where they stay."""
+    if style.picture is not None:
+        return picture_recolour(style.picture, palette)
+    if not style.shown:
+        return recolour_grey(style.season, style.species, kind == "needles")
+    return recolour_for(style.season, style.species, palette, kind == "needles")
 
 
-def _blind(recolour: Recolour | None) -> Recolour | None:
-    """Take no notice of a photo that shows no leaves."""
+def _ignoring_photo(recolour: Recolour | None) -> Recolour | None:
+    """Make a recolouring independent of the colours of a photo that shows no leaves."""
     return None if recolour is None else replace(recolour, kept=np.zeros(3))
 
 
-def _tile(shape: Shape, members: Floats, look: LeafLook, rng: np.random.Generator) -> NDArray[np.uint8]:
-    """Draw one spray."""
-    if look.picture is not None:
-        return draw_pictured(look.picture, look.species, TILE_SIDE, members, rng)
-    return draw_spray(shape, TILE_SIDE, members, rng, look.species)
+def _tile(kind: SprayKind, colours: Floats, style: LeafStyle, rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Draw one spray (side, side, 4) in colours drawn from (m, 3), CIE Lab."""
+    if style.picture is not None:
+        return draw_pictured_leaves(style.picture, style.species, TILE_SIDE, colours, rng)
+    return draw_spray(kind, TILE_SIDE, colours, rng, style.species)
 
 
 def _windows() -> list[tuple[slice, slice]]:
-    """Rows and columns of each tile."""
+    """Rows and columns of each tile, px."""
     edges = [slice(index * TILE_SIDE, (index + 1) * TILE_SIDE) for index in range(COLUMNS)]
     return [(rows, columns) for rows in edges for columns in edges]
 
 
 def _boxes() -> Floats:
-    """Texture coordinates of the tiles (k, 4)."""
+    """Texture coordinates (k, 4) of the tiles: left, top, right, bottom, 0 to 1."""
     edges = [(columns.start, rows.start, columns.stop, rows.stop) for rows, columns in _windows()]
     return np.array(edges, dtype=np.float64) / (COLUMNS * TILE_SIDE)
 
 
 def _mean_colours(image: NDArray[np.uint8]) -> Floats:
-    """Mean opaque colour of each tile (k, 3)."""
-    return np.stack([image[window][image[window][..., 3] > 127][:, :3].mean(axis=0) for window in _windows()])
+    """Mean colour (k, 3), sRGB, of each tile's solid pixels."""
+    return np.stack([mean_solid_colour(image[window]) for window in _windows()])

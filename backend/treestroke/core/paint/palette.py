@@ -1,4 +1,4 @@
-"""The colours of one photo's foliage, as clusters of its own pixels."""
+"""Colours of one photo's foliage, as clusters of its pixels."""
 
 from dataclasses import dataclass
 
@@ -8,29 +8,33 @@ import numpy as np
 from treestroke.core.types import Floats, Indices, Mask, Picture
 
 SAMPLES = 6000
-"""Foliage pixels that are clustered; more change no cluster by more than the noise of a photo."""
-ROUNDS = 10
-"""Rounds of k-means; centres move by under one Lab unit after eight (measured on the 11 photos)."""
-RING = 0.06
+"""Foliage pixels that are clustered; more of them change no cluster by more than the photo's noise."""
+ROUNDS, RING_ROUNDS = 11, 10
+"""Steps of k-means for the foliage and for the ring; centres move by under one Lab unit after eight (11 photos)."""
+RING_WIDTH = 0.06
 """Width of the ring around the foliage that shows the background, as a share of the foliage's height."""
 RING_CLUSTERS = 4
+"""Colours that the background is reduced to."""
 DISTINCT = 20.0
-"""Lab distance from the foliage's median from which a colour of the ring can be told from it."""
-BLEND = 0.3
-"""Share of background from which a pixel counts as seen through, where it lies between the two colours."""
+"""Least distance, CIE Lab, of a background colour from the foliage's median colour to be told apart from it."""
+BLENDED = 0.3
+"""Share of background in a pixel's colour, 0 to 1, above which the pixel is seen through."""
 OFF_LINE = 18.0
-"""Lab distance from the line between foliage and background up to which a pixel is a blend of the two."""
+"""Greatest distance, CIE Lab, of a blend of foliage and background from the line between their two colours."""
 TINT_REMOVED = 0.6
-"""Share of the background's hue that is taken out of foliage that leans to it (blue sky on white petals)."""
+"""Share of the background's hue that is removed from foliage that is tinted by it (blue sky on white petals)."""
 BACKGROUND_SHARE = 0.3
-"""At most this share of the foliage's pixels is given up as background."""
+"""Greatest share of the foliage's pixels that is dropped as background."""
 SHADOWS_KEPT, LIGHTS_KEPT = 0.65, 0.95
-"""Contrast of lightness that is kept below and above the mean: the viewer shades the crown once more, so shade that is
-baked into the photo is taken back; judged on renders of 5 photos."""
+"""Share of the contrast in lightness that is kept below and above the mean.
+
+The viewer shades the crown again, so the shade that the photo already contains is reduced. Judged on renders of 5
+photos.
+"""
 GAIN = 1.1
-"""Factor on colours for the same reason: a crown under sun and sky shows about 0.8 of its leaves' lightness."""
+"""Factor on colours, for the same reason: a crown under sun and sky shows about 0.8 of its leaves' lightness."""
 LIGHTEST = 94.0
-"""Lightness, CIE Lab, up to which colours are lifted; white petals keep their drawing."""
+"""Lightness, CIE Lab, up to which colours are brightened, so that white petals keep their contrast."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +44,11 @@ class Palette:
     Attributes
     ----------
     centres
-        (k, 3) mean of each cluster, CIE Lab (L 0 to 100), light flattened.
+        (k, 3) mean of each cluster, CIE Lab (L 0 to 100), as `flattened`.
     shares
         (k,) share of the foliage pixels in each cluster, summing to 1.
     members
-        k arrays (m, 3) of the cluster's own pixels, CIE Lab, light flattened.
+        k arrays (m, 3) of the clusters' pixels, CIE Lab, as `flattened`.
     """
 
     centres: Floats
@@ -59,14 +63,14 @@ def lab_from_rgb(rgb: Picture) -> Floats:
 
 
 def rgb_from_lab(lab: Floats) -> Picture:
-    """Convert CIE Lab (..., 3) to sRGB (..., 3) uint8, clipped to what sRGB holds."""
+    """Convert CIE Lab (..., 3) to sRGB (..., 3) uint8, clipped to the colours that sRGB holds."""
     flat = np.ascontiguousarray(lab.reshape(1, -1, 3), dtype=np.float32)
     rgb = np.asarray(cv2.cvtColor(flat, cv2.COLOR_LAB2RGB)).reshape(lab.shape)
     return np.asarray(np.clip(np.rint(rgb * 255), 0, 255), dtype=np.uint8)
 
 
 def nearest_colour(lab: Floats, centres: Floats) -> tuple[Indices, Floats]:
-    """Find the nearest of the centres (k, 3) to each colour (n, 3): its index and its squared distance."""
+    """Return the index (n,) and squared distance (n,) of the nearest centre (k, 3) to each colour (n, 3), CIE Lab."""
     best = np.zeros(len(lab), dtype=np.int64)
     least = np.full(len(lab), np.inf)
     for index, centre in enumerate(centres):
@@ -78,7 +82,7 @@ def nearest_colour(lab: Floats, centres: Floats) -> tuple[Indices, Floats]:
 
 
 def flattened(lab: Floats) -> Floats:
-    """Draw the lightness of colours (n, 3), CIE Lab, towards their mean, shadows more than lights, and lift all."""
+    """Reduce the contrast in lightness of colours (n, 3), CIE Lab, shadows more than lights, then brighten all."""
     mean = lab[:, 0].mean()
     kept = np.where(lab[:, 0] < mean, SHADOWS_KEPT, LIGHTS_KEPT)
     lightness = np.minimum(GAIN * (mean + kept * (lab[:, 0] - mean)), np.maximum(lab[:, 0], LIGHTEST))
@@ -86,11 +90,10 @@ def flattened(lab: Floats) -> Floats:
 
 
 def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Generator) -> Palette:
-    """Cluster the foliage's pixels by k-means in CIE Lab.
+    """Cluster the pixels of a mask (h, w) on a photo (h, w, 3), sRGB, by k-means in CIE Lab.
 
-    Pixels at the mask's border are left out, since sky shines into them, and so are pixels that blend the
-    foliage's colour with one seen around the crown's upper half. Baked light is
-    flattened (:func:`flattened`).
+    Pixels at the mask's border are left out, since sky shines into them, and so are pixels that blend the foliage's
+    colour with one seen around the crown's upper half. The photo's light is reduced (`flattened`).
 
     Raises
     ------
@@ -101,9 +104,9 @@ def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Ge
         raise ValueError(f"a palette needs a mask with foliage of the photo's size, got {mask.shape}")
     inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
     samples = _sample(photo, inner if inner.sum() > mask.sum() // 10 else mask, rng)
-    samples = _own_colours(samples, _sample(photo, _ring(mask), rng), rng)
+    samples = _without_background(samples, _sample(photo, _background_ring(mask), rng), rng)
     samples = flattened(samples)
-    _, labels = _k_means(samples, clusters, rng)
+    labels = _k_means(samples, clusters, ROUNDS, rng)
     counts = np.bincount(labels)
     order = [int(k) for k in np.argsort(-counts, kind="stable") if counts[k] > 0]
     members = tuple(samples[labels == k] for k in order)
@@ -111,73 +114,91 @@ def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Ge
 
 
 def _sample(photo: Picture, mask: Mask, rng: np.random.Generator) -> Floats:
-    """Draw the Lab colours of up to SAMPLES pixels of the mask."""
+    """Draw the colours (n, 3), CIE Lab, of up to SAMPLES pixels of a mask (h, w)."""
     index = np.flatnonzero(mask)
     if len(index) > SAMPLES:
         index = index[np.sort(rng.choice(len(index), SAMPLES, replace=False))]
     return lab_from_rgb(photo.reshape(-1, 3)[index])
 
 
-def _ring(mask: Mask) -> Mask:
-    """Mark what lies around the foliage's upper half, a few pixels off its blurred border."""
+def _background_ring(mask: Mask) -> Mask:
+    """Mark the pixels (h, w) around the foliage's upper half, beyond its blurred border."""
     rows = np.flatnonzero(mask.any(axis=1))
-    far = max(4, round(RING * (rows[-1] - rows[0] + 1)))
+    far = max(4, round(RING_WIDTH * (rows[-1] - rows[0] + 1)))
     outside = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 3)
     outside[(rows[0] + rows[-1]) // 2 :] = 0
     return np.asarray((outside > 2.5) & (outside <= far), dtype=np.bool_)
 
 
-def _k_means(samples: Floats, clusters: int, rng: np.random.Generator) -> tuple[Floats, Indices]:
-    """Lloyd's k-means from a k-means++ start; clusters that lose all samples keep their centre."""
+def _k_means(samples: Floats, clusters: int, steps: int, rng: np.random.Generator) -> Indices:
+    """Label samples (n, 3) with up to ``clusters`` clusters (n,), by this many steps of Lloyd's algorithm.
+
+    OpenCV runs the steps: it is imported anyway, while importing scikit-learn takes longer than painting all leaves.
+    Samples are centred, so that its 32-bit floats round their distances less.
+    """
+    first = nearest_colour(samples, _seed_colours(samples, clusters, rng))[0]
+    labels = first.astype(np.int32)[:, None]
+    centred = (samples - samples.mean(axis=0)).astype(np.float32)
+    criteria = (cv2.TERM_CRITERIA_MAX_ITER, steps, 0.0)
+    cv2.kmeans(centred, int(first.max()) + 1, labels, criteria, 1, cv2.KMEANS_USE_INITIAL_LABELS)
+    return np.asarray(labels[:, 0], dtype=np.int64)
+
+
+def _seed_colours(samples: Floats, clusters: int, rng: np.random.Generator) -> Floats:
+    """Draw up to ``clusters`` of the samples (n, 3) far from each other (k, 3), fewer if there are fewer colours.
+
+    Source: k-means++, Arthur and Vassilvitskii 2007. OpenCV's own start draws from a generator that the process shares.
+    """
     centres = samples[rng.integers(len(samples))][None]
     least = nearest_colour(samples, centres)[1]
     while len(centres) < clusters and least.max() > 0:
         chosen = np.searchsorted(np.cumsum(least), rng.random() * least.sum())
         centres = np.vstack([centres, samples[min(int(chosen), len(samples) - 1)]])
         least = np.minimum(least, nearest_colour(samples, centres[-1:])[1])
-    for _ in range(ROUNDS):
-        labels, _ = nearest_colour(samples, centres)
-        counts = np.bincount(labels, minlength=len(centres))[:, None]
-        sums = np.stack([np.bincount(labels, samples[:, axis], len(centres)) for axis in range(3)], axis=1)
-        centres = np.where(counts > 0, sums / np.maximum(counts, 1), centres)
-    return centres, nearest_colour(samples, centres)[0]
+    return np.asarray(centres)
 
 
-def _own_colours(samples: Floats, ring: Floats, rng: np.random.Generator) -> Floats:
-    """Drop the samples (n, 3) that are background between leaves, and weaken its tint in the others.
+def _cluster_means(samples: Floats, labels: Indices) -> Floats:
+    """Mean colours (k, 3) of the samples (n, 3) with each label (n,)."""
+    return np.asarray([samples[labels == label].mean(axis=0) for label in range(int(labels.max()) + 1)])
 
-    Those with the largest share of background go first, up to BACKGROUND_SHARE of all.
+
+def _without_background(samples: Floats, ring: Floats, rng: np.random.Generator) -> Floats:
+    """Drop the samples (n, 3) that are background seen between leaves, and reduce its tint in the others.
+
+    ``ring`` (m, 3) samples the background; all colours are CIE Lab. Samples with the largest share of background are
+    dropped first, at most BACKGROUND_SHARE of all.
     """
     if len(ring) == 0:
         return samples
     foliage, share = np.median(samples, axis=0), np.zeros(len(samples))
-    backgrounds = _k_means(ring, RING_CLUSTERS, rng)[0]
+    backgrounds = _cluster_means(ring, _k_means(ring, RING_CLUSTERS, RING_ROUNDS, rng))
     for background in backgrounds:
         share = np.maximum(share, _background_share(samples, foliage, background))
     limit = np.sort(share)[-1 - int(BACKGROUND_SHARE * len(share))]
-    samples = samples[(share <= BLEND) | (share <= limit)]
+    samples = samples[(share <= BLENDED) | (share <= limit)]
     for background in backgrounds:
         samples = _without_tint(samples, foliage, background)
     return samples
 
 
 def _without_tint(samples: Floats, foliage: Floats, background: Floats) -> Floats:
-    """Take most of a background's hue out of samples (n, 3) that lean to it from the foliage's median."""
-    way = background - foliage
-    way[0] = 0.0
-    length = float(np.hypot(way[1], way[2]))
+    """Remove most of a background's hue (3,) from samples (n, 3) that deviate toward it from the foliage's median."""
+    offset = background - foliage
+    offset[0] = 0.0
+    length = float(np.hypot(offset[1], offset[2]))
     if length < DISTINCT:
         return samples
-    lean = ((samples - foliage) * way).sum(axis=1) / length**2
-    return np.asarray(samples - TINT_REMOVED * np.maximum(lean, 0.0)[:, None] * way)
+    share = ((samples - foliage) * offset).sum(axis=1) / length**2
+    return np.asarray(samples - TINT_REMOVED * np.maximum(share, 0.0)[:, None] * offset)
 
 
 def _background_share(samples: Floats, foliage: Floats, background: Floats) -> Floats:
-    """Share of the background's colour in each sample (n,), 0 where it is no blend of the two."""
-    way = background - foliage
-    length = float(np.sqrt((way**2).sum()))
+    """Share (n,) of the background's colour in each sample (n, 3); 0 where it is not a blend of the two colours."""
+    offset = background - foliage
+    length = float(np.sqrt((offset**2).sum()))
     if length < DISTINCT:
         return np.zeros(len(samples))
-    share = ((samples - foliage) * way).sum(axis=1) / length**2
-    off_line = np.sqrt((((samples - foliage) - share[:, None] * way) ** 2).sum(axis=1))
+    share = ((samples - foliage) * offset).sum(axis=1) / length**2
+    off_line = np.sqrt((((samples - foliage) - share[:, None] * offset) ** 2).sum(axis=1))
     return np.where(off_line < OFF_LINE, share, 0.0)

@@ -15,10 +15,10 @@ from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
 from treestroke.core.mesh.grain import bark_grain
 from treestroke.core.mesh.normal_map import ReliefParams, bark_relief
 from treestroke.core.mesh.tubes import tubes
-from treestroke.core.paint.atlas import Atlas, LeafLook, leaf_atlas
-from treestroke.core.paint.picture import opaque_part, reduced
+from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
+from treestroke.core.paint.cut_outs import opaque_part, reduced
 from treestroke.core.paint.seasons import size_and_density
-from treestroke.core.paint.species import KINDS
+from treestroke.core.paint.species import AUTO, SPECIES
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
@@ -80,9 +80,9 @@ def _leaves(
         return no_leaves(), None
     pure = portrait.leaves & leafy
     coloured = pure if pure.sum() > 0.1 * leafy.sum() else leafy
-    species = KINDS[settings.species]
-    look = LeafLook(species, settings.season, portrait.shows_leaves, picture)
-    atlas = leaf_atlas(portrait.photo, coloured, tree.kind, rng, look)
+    species = SPECIES.get(settings.species, AUTO)
+    style = LeafStyle(species, settings.season, portrait.shows_leaves, picture)
+    atlas = leaf_atlas(portrait.photo, coloured, tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind == "needles")
     least = max(LEAST_SIZE, size * settings.leaf_size)
@@ -108,7 +108,7 @@ def bark_surface(
     """Wrap the grown tree in bark that is read off the first stem's visible pixels."""
     wrapping, portrait = tubes(tree.grown.skeleton), tree.portrait
     report("mesh", 0.6)
-    bark, known = KINDS[settings.species].bark, settings.species != "auto"
+    bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
     grain = bark_grain(TEXTURE_SIZE, rng, bark.form)
     params = BarkParams(hidden_colour=bark.colour, form=bark.form if known else None)
     texture = bark_texture(portrait.photo, portrait.stem, portrait.stem_radii, params, rng, grain)

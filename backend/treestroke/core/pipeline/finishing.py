@@ -9,9 +9,7 @@ from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.grow.grown import Grown
-from treestroke.core.leaf.area import leaf_area
-from treestroke.core.leaf.fruit import fruit_among
-from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area
 from treestroke.core.paint.atlas import Atlas
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading

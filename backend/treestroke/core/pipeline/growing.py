@@ -14,7 +14,7 @@ from treestroke.core.grow.replacement import grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.lift.spread import lift
 from treestroke.core.paint.seasons import LEAFY
-from treestroke.core.paint.species import AUTO, KINDS
+from treestroke.core.paint.species import AUTO, SPECIES
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, LEAFED_SHARE, closed, drawn, drawn_depth, frayed
 from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Reading, Stature
 from treestroke.core.pipeline.settings import ModelSettings
@@ -248,7 +248,7 @@ def _shown_kind(sight: WorkingCopy, foliage: Foliage, settings: ModelSettings) -
 
 def borne_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
     """Tell what the twigs bear: what was asked for, else what season, species and photo say, in this order."""
-    species = KINDS[settings.species]
+    species = SPECIES.get(settings.species, AUTO)
     if settings.season == "bare" or settings.foliage == "bare":
         return "bare"
     if settings.foliage != "auto":

@@ -7,7 +7,7 @@ import numpy as np
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.silhouette import Framing, framing, silhouettes
 from treestroke.core.leaf.cards import cards
-from treestroke.core.leaf.thinning import thin_leaves
+from treestroke.core.leaf.thinning import Coverage, thin_leaves
 from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
 from treestroke.core.mesh.impostor import impostor
 from treestroke.core.pipeline.finishing import TreeModel
@@ -98,5 +98,5 @@ def _thinned(tree: TreeModel, count: int, view: Framing, worth: Floats) -> Surfa
     """Keep as many cards, one at least where there are any."""
     if tree.leaf is None or tree.cards is None or tree.atlas is None:
         return None
-    kept = thin_leaves(tree.cards, tree.atlas, max(1, count), view, worth)
+    kept = thin_leaves(tree.cards, tree.atlas, max(1, count), Coverage(view, worth))
     return replace(tree.leaf, mesh=cards(kept, tree.atlas))

@@ -9,39 +9,40 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.polyline import distances_to_segment
 from treestroke.core.types import Floats, FoliageKind, Mask
 
-Look = Literal["bare", "dull", "fresh"]
-"""Twigs alone; dull dark green; all else."""
+FoliageLook = Literal["bare", "dull", "fresh"]
+"""Twigs alone; dull dark green; anything else."""
 
 THIN = 0.5
-"""Share of the foliage that is lines thinner than 1 % of the crown, over which a tree is bare."""
+"""Share of the foliage that is lines thinner than 2 % of the crown, above which a tree is bare."""
 TWIG_CONTRAST = 85.0
-"""Mean height of fine lines over what is behind them, 0 to 510, over which a colourless crown is bare."""
+"""Mean contrast of fine lines with what is behind them, 0 to 510, above which a colourless crown is bare."""
 COLOURLESS, WHITE = 0.25, 0.15
-"""Greatest tint of twigs, green or red over blue; and share of a crown that is white, over which it blossoms."""
+"""Greatest tint of twigs, green or red over blue, and greatest share of white in a crown that is not in blossom."""
 UNSURE = 0.2
-"""Sureness below which the foliage may be another than it is taken for (28 photos; the wrong ones are below)."""
+"""Sureness below which the kind of foliage may be wrong (28 photos; all wrong ones are below)."""
 DARKNESS = 95.0
-"""Greatest mean brightness of needles, 0 to 255."""
+"""Greatest median brightness of needles, 0 to 255."""
 TALLNESS = 1.2
-"""Least height of a conifer's crown over its width, for a crown that does not taper."""
+"""Least height of a conifer's crown relative to its width, if it does not taper."""
 
 
-def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Look, float]:
-    """Judge how foliage looks, and how surely, by its mask (h, w) on a photo (h, w, 3) and the crown's inside (h, w).
+def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[FoliageLook, float]:
+    """Judge how foliage looks, and with what certainty, by its mask (h, w) and the crown's (h, w) on a photo (h, w, 3).
 
-    Bare: the crown is thin lines, or a web of colourless ones with something else between them. It is as sure,
-    0 to 1, as the cues are far from where they would say otherwise; blue leaves are sky rather than leaves.
+    It is bare if the crown consists of thin lines, or of a web of colourless lines with something else between them.
+    The certainty, 0 to 1, is the distance of the cues from where they would say otherwise; bluish foliage is sky rather
+    than leaves and has certainty 0.
     """
     if not mask.any():
         return "bare", 1.0
     colours = photo[mask].astype(np.float64)
-    # How much green or red outshine blue, on the whole: below 0 the colours are bluish.
+    # How much green or red exceed blue in the median pixel, relative to its brightness: below 0 it is bluish.
     warmest = np.maximum(colours[:, 0], colours[:, 1])
     brightness = np.maximum(warmest, colours[:, 2])
     tint = float(np.median((warmest - colours[:, 2]) / np.maximum(brightness, 40.0)))
     thinness = _thinness(mask, crown) / THIN - 1.0
     colourless = min(1.0 - tint / COLOURLESS, 1.0 - float((brightness > 200).mean()) / WHITE)
-    # Where it has colour, or is white, it is no web of twigs: that need not be looked for.
+    # Foliage with colour, or white foliage, is not a web of twigs: the costly search for lines is skipped.
     web = min(colourless, _lines(photo, mask, crown) / TWIG_CONTRAST - 1.0) if colourless > thinness else colourless
     bareness = float(max(thinness, web))
     if bareness >= 0.0:
@@ -49,10 +50,11 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Loo
     return "dull" if _is_dull_green(colours) else "fresh", 0.0 if tint < 0.0 else min(-bareness, 1.0)
 
 
-def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> FoliageKind:
-    """Judge by how the foliage looks, its mask (h, w) and the trunk stroke (n, 2), px.
+def foliage_kind(look: FoliageLook, mask: Mask, trunk_px: Floats) -> FoliageKind:
+    """Judge what twigs bear by the foliage's look, its mask (h, w) and the trunk stroke (n, 2), px.
 
-    Needles: dull dark green, in a crown that is tall or tapers to a top above a trunk that runs through it.
+    Needles: dull dark green, in a crown that is tall or tapers to a top above a trunk that runs through it. The rules
+    are ours, judged on 28 photos.
     """
     if look == "bare":
         return "bare"
@@ -60,13 +62,13 @@ def foliage_kind(look: Look, mask: Mask, trunk_px: Floats) -> FoliageKind:
 
 
 def _thinness(mask: Mask, crown: Mask) -> float:
-    """Share of the mask (0 to 1) that vanishes when it is opened by 1 % of the crown's size."""
+    """Share of the mask, 0 to 1, that vanishes when it is opened by a disc as wide as 2 % of the crown's size."""
     opened = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_OPEN, _disc(0.02, crown))
     return 1.0 - float(opened.sum()) / float(mask.sum())
 
 
 def _lines(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> float:
-    """Mean height of fine lines over what is behind them, 0 to 510."""
+    """Mean contrast of fine lines with what is behind them, 0 to 510."""
     grey, kernel = cv2.cvtColor(photo, cv2.COLOR_RGB2GRAY), _disc(0.012, crown)
     lines = cv2.morphologyEx(grey, cv2.MORPH_TOPHAT, kernel)[mask].astype(np.float64)
     lines += cv2.morphologyEx(grey, cv2.MORPH_BLACKHAT, kernel)[mask]
@@ -74,13 +76,13 @@ def _lines(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> float:
 
 
 def _disc(share: float, crown: Mask) -> NDArray[np.uint8]:
-    """Give a disc as wide as a share of the crown's size."""
+    """Return a disc (n, n) as wide as a share of the crown's size, the square root of its area."""
     size = max(3, int(share * np.sqrt(crown.sum())) | 1)
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)), dtype=np.uint8)
 
 
 def _is_dull_green(colours: Floats) -> bool:
-    """Tell whether colours (n, 3) are dark and green without being vivid, on the whole."""
+    """Tell whether colours (n, 3), sRGB, are dark and green, but not vivid, by their median."""
     red, green, blue = np.median(colours, axis=0)
     return bool(max(red, green, blue) < DARKNESS and green >= blue and green > 0.97 * red)
 
@@ -99,8 +101,8 @@ def _is_spire(mask: Mask, trunk_px: Floats) -> bool:
 
 
 def _is_upright(trunk_px: Floats) -> bool:
-    """Tell whether a trunk stroke is straight and leans by less than 10 degrees."""
-    way = trunk_px[-1] - trunk_px[0]
-    length = float(np.hypot(*way))
-    aside = distances_to_segment(trunk_px, trunk_px[0], trunk_px[-1]).max()
-    return bool(abs(way[0]) < 0.17 * length and aside < 0.04 * length)
+    """Tell whether a trunk stroke (n, 2), px, is straight and leans by less than 10 degrees."""
+    span = trunk_px[-1] - trunk_px[0]
+    length = float(np.hypot(*span))
+    deviation = distances_to_segment(trunk_px, trunk_px[0], trunk_px[-1]).max()
+    return bool(abs(span[0]) < 0.17 * length and deviation < 0.04 * length)

@@ -1,7 +1,7 @@
 import numpy as np
 
 from treestroke.core.imaging.mixture import Mixture, join_mixtures, log_density
-from treestroke.core.segment.height import BANDS, log_odds_by_height, weights_by_height
+from treestroke.core.segment.leaf_odds import BANDS, log_odds_by_height, weights_by_height
 
 LEAF, SKY, HAZE = (60, 120, 30), (200, 210, 230), (70, 125, 60)
 

@@ -1,4 +1,8 @@
-"""Outlines of single leaves, by hand: polygons and veins in the leaf's own length."""
+"""Shapes of single leaves, drawn by hand: polygons and veins in units of the leaf's own length.
+
+Positions have the foot of the stalk at (0, 0), the tip at (0, 1) and x to the right. A half outline runs from a leaf's
+foot to its tip along the right edge.
+"""
 
 from dataclasses import dataclass
 from functools import cache
@@ -8,7 +12,7 @@ import numpy as np
 
 from treestroke.core.types import Floats
 
-BladeName = Literal[
+LeafShapeName = Literal[
     "ash",
     "beech",
     "birch",
@@ -42,36 +46,40 @@ OAK = (
     (0.22, 0.45), (0.13, 0.46), (0.14, 0.52), (0.28, 0.58), (0.34, 0.66), (0.29, 0.72), (0.17, 0.70), (0.17, 0.76),
     (0.26, 0.83), (0.24, 0.90), (0.15, 0.90), (0.11, 0.94), (0.07, 0.99), (0.00, 1.00),
 )  # fmt: skip
-"""Right half of a white oak's leaf: round lobes that grow toward the tip."""
+"""Right half of a white oak's leaf: round lobes that grow larger toward the tip."""
 LINDEN = (
     (0.00, 0.10), (0.08, 0.02), (0.19, 0.00), (0.31, 0.04), (0.41, 0.14), (0.46, 0.28), (0.45, 0.42), (0.38, 0.57),
     (0.27, 0.71), (0.15, 0.82), (0.06, 0.89), (0.02, 0.95), (0.00, 1.00),
 )  # fmt: skip
+"""Right half of a linden's leaf: a broad heart with a drawn-out tip."""
 POPLAR = (
     (0.00, 0.03), (0.16, 0.00), (0.34, 0.05), (0.44, 0.15), (0.46, 0.24), (0.39, 0.40), (0.29, 0.56), (0.18, 0.71),
     (0.10, 0.83), (0.04, 0.93), (0.00, 1.00),
 )  # fmt: skip
+"""Right half of a poplar's leaf: a triangle with rounded corners."""
 BIRCH = (
     (0.00, 0.00), (0.14, 0.06), (0.29, 0.18), (0.37, 0.30), (0.34, 0.43), (0.26, 0.57), (0.17, 0.71), (0.09, 0.84),
     (0.03, 0.94), (0.00, 1.00),
 )  # fmt: skip
-MIDRIB = np.linspace(0.0, 1.0, 8)[:, None] * np.array([0.0, 1.0])
+"""Right half of a birch's leaf: a rhomb with a drawn-out tip."""
+_MIDRIB = np.linspace(0.0, 1.0, 8)[:, None] * np.array([0.0, 1.0])
+"""Points of a straight midrib of length 1 from the origin upward."""
 
 
 @dataclass(frozen=True, eq=False)
-class Blade:
-    """One leaf in its own length: foot of its stalk at (0, 0), tip at (0, 1), x to the right.
+class LeafShape:
+    """One leaf in units of its own length: foot of its stalk at (0, 0), tip at (0, 1), x to the right.
 
     Attributes
     ----------
     outlines
-        (n, 2) polygons, one a leaflet.
+        (n, 2) polygons, one for each leaflet.
     halves
-        (m, 2) the left half of each, as far as its midrib.
+        (m, 2) the left half of each leaflet, bounded by its midrib.
     veins
         (k, 2) lines, midribs first.
     stalk
-        (s, 2) line that bears the leaflets.
+        (s, 2) line that carries the leaflets.
     """
 
     outlines: tuple[Floats, ...]
@@ -81,8 +89,8 @@ class Blade:
 
 
 @cache
-def blade(name: BladeName) -> Blade:
-    """Build a species' leaf."""
+def leaf_shape(name: LeafShapeName) -> LeafShape:
+    """Return the shape of a species' leaf."""
     match name:
         case "maple" | "plane":
             lobes = np.array(MAPLE if name == "maple" else PLANE)
@@ -102,8 +110,8 @@ def blade(name: BladeName) -> Blade:
             return _feather(name)
 
 
-def _simple(name: Literal["beech", "elm", "cherry", "willow"]) -> Blade:
-    """Build a leaf that is one oval, from broad (beech) to narrow (willow)."""
+def _simple(name: Literal["beech", "elm", "cherry", "willow"]) -> LeafShape:
+    """Build a leaf of one oval, from broad (beech) to narrow (willow)."""
     breadth, widest, teeth, stalk, veins = {
         "beech": (0.62, 0.45, 0.008, 0.09, 6),
         "elm": (0.48, 0.5, 0.03, 0.06, 6),
@@ -116,14 +124,14 @@ def _simple(name: Literal["beech", "elm", "cherry", "willow"]) -> Blade:
 
 
 def _oval(breadth: float, widest: float, points: int = 12) -> Floats:
-    """Right half (n, 2) of an oval with a drawn-out tip."""
+    """Right half (n, 2) of an oval with a drawn-out tip, widest at this share of its length."""
     t = np.linspace(0.0, 1.0, points)
     rise = np.sin(np.pi * t ** (np.log(0.5) / np.log(widest)))
     return np.stack([0.5 * breadth * np.maximum(rise, 0.0) ** 0.85 * (1.0 - 0.12 * t), t], axis=1)
 
 
 def _toothed(half: Floats, depth: float) -> Floats:
-    """Cut saw teeth that point forward into a half outline, one between any two points."""
+    """Add forward-pointing saw teeth to a half outline (n, 2), one between any two points."""
     if depth == 0.0:
         return half
     middle = 0.5 * (half[1:] + half[:-1])
@@ -134,7 +142,7 @@ def _toothed(half: Floats, depth: float) -> Floats:
 
 
 def _side_veins(half: Floats, starts: tuple[float, ...], rise: float) -> tuple[Floats, ...]:
-    """Lines from the midrib toward the edge, to both sides."""
+    """Lines (3, 2) from the midrib toward both edges of a half outline (n, 2), rising by ``rise`` from each start."""
     veins = []
     for start in starts:
         end = start + rise
@@ -144,18 +152,18 @@ def _side_veins(half: Floats, starts: tuple[float, ...], rise: float) -> tuple[F
 
 
 def _palmate_veins(foot: float, tips: tuple[tuple[float, float], ...]) -> tuple[Floats, ...]:
-    """Lines from a palmate leaf's foot into its lobes."""
+    """Lines (2, 2) from a palmate leaf's foot into its lobes."""
     return tuple(
         np.array([[0.0, foot], [side * 0.9 * x, foot + 0.9 * (y - foot)]]) for x, y in tips for side in (-1, 1)
     )
 
 
-def _leaflet(half: Floats, veins: tuple[Floats, ...] = ()) -> Blade:
-    """Mirror the right half (n, 2) of an outline that runs from its foot to its tip."""
+def _leaflet(half: Floats, veins: tuple[Floats, ...] = ()) -> LeafShape:
+    """Build a leaf without a stalk from the right half (n, 2) of its outline, mirrored."""
     left = half * np.array([-1.0, 1.0])
     foot = np.array([0.0, half[0, 1]])
-    midrib = foot + MIDRIB * (1.0 - half[0, 1])
-    return Blade(
+    midrib = foot + _MIDRIB * (1.0 - half[0, 1])
+    return LeafShape(
         (np.vstack([left, half[::-1][1:-1]]),),
         (np.vstack([left, midrib[::-1][1:-1]]),),
         (0.96 * midrib + 0.04 * foot, *veins),
@@ -163,25 +171,26 @@ def _leaflet(half: Floats, veins: tuple[Floats, ...] = ()) -> Blade:
     )
 
 
-def _stalked(leaf: Blade, length: float) -> Blade:
-    """Set a leaf on a stalk of this share of the whole's length."""
+def _stalked(leaf: LeafShape, length: float) -> LeafShape:
+    """Put a leaf on a stalk that takes this share of the total length."""
     placed = _placed(leaf, 1.0 - length, 0.0, np.array([0.0, length]))
-    return Blade(placed.outlines, placed.halves, placed.veins, np.stack([np.zeros(2), placed.stalk[0]]))
+    return LeafShape(placed.outlines, placed.halves, placed.veins, np.stack([np.zeros(2), placed.stalk[0]]))
 
 
-def _placed(leaf: Blade, size: float, angle: float, foot: Floats) -> Blade:
-    """Scale a leaf, turn it clockwise and set it at foot (2,)."""
+def _placed(leaf: LeafShape, size: float, angle: float, foot: Floats) -> LeafShape:
+    """Scale a leaf, turn it clockwise by an angle, rad, and move its origin to a foot (2,)."""
     turn = size * np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
     def moved(lines: tuple[Floats, ...]) -> tuple[Floats, ...]:
+        """Move lines (n, 2), in units of the leaf's length."""
         return tuple(line @ turn + foot for line in lines)
 
-    return Blade(moved(leaf.outlines), moved(leaf.halves), moved(leaf.veins), leaf.stalk @ turn + foot)
+    return LeafShape(moved(leaf.outlines), moved(leaf.halves), moved(leaf.veins), leaf.stalk @ turn + foot)
 
 
-def _joined(leaflets: list[Blade], stalk: Floats) -> Blade:
-    """Make one leaf of leaflets."""
-    return Blade(
+def _joined(leaflets: list[LeafShape], stalk: Floats) -> LeafShape:
+    """Combine leaflets on a stalk (s, 2) into one leaf; of their veins only the midribs stay."""
+    return LeafShape(
         tuple(line for leaf in leaflets for line in leaf.outlines),
         tuple(line for leaf in leaflets for line in leaf.halves),
         tuple(line for leaf in leaflets for line in leaf.veins[:1]),
@@ -189,7 +198,7 @@ def _joined(leaflets: list[Blade], stalk: Floats) -> Blade:
     )
 
 
-def _fan() -> Blade:
+def _fan() -> LeafShape:
     """Build a horse chestnut's leaf: seven leaflets from one point, the middle ones longest."""
     half = np.array([(0.0, 0.0), (0.04, 0.2), (0.11, 0.45), (0.17, 0.66), (0.16, 0.8), (0.07, 0.92), (0.0, 1.0)])
     foot, leaflet = np.array([0.0, 0.38]), _leaflet(_toothed(half, 0.012))
@@ -199,8 +208,8 @@ def _fan() -> Blade:
     )
 
 
-def _feather(name: Literal["ash", "walnut", "locust"]) -> Blade:
-    """Build a leaf of leaflets in pairs along a stalk, with one at its end."""
+def _feather(name: Literal["ash", "walnut", "locust"]) -> LeafShape:
+    """Build a pinnate leaf: pairs of leaflets along a stalk, and one at its end."""
     pairs, breadth, length, stalk, lean = {
         "ash": (3, 0.4, 0.34, 0.26, 0.95),
         "walnut": (6, 0.36, 0.27, 0.14, 1.15),

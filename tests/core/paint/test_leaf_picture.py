@@ -1,26 +1,14 @@
-import cv2
 import numpy as np
 import pytest
+from tests.core.paint.drawn import PURPLE, leaf_picture
 
-from treestroke.core.paint.atlas import LeafLook, leaf_atlas, tile_alphas, tile_labs
+from treestroke.core.paint.atlas import LeafStyle, leaf_atlas, tile_alphas, tile_labs
 from treestroke.core.paint.palette import lab_from_rgb
-from treestroke.core.paint.picture import LONGEST, opaque_part, reduced
-from treestroke.core.paint.species import KINDS
-
-PURPLE = (130, 60, 140)
-
-
-def leaf_picture(side: int = 300) -> np.ndarray:
-    """A purple oval on a stalk that ends below, with clear room around it."""
-    picture = np.zeros((side, side, 4), np.uint8)
-    picture[..., 1] = 255
-    cv2.ellipse(picture, (side // 2, side * 2 // 5), (side // 5, side // 3), 0, 0, 360, (*PURPLE, 255), -1)
-    cv2.line(picture, (side // 2, side // 2), (side // 2, side * 9 // 10), (*PURPLE, 255), max(2, side // 50))
-    return picture
+from treestroke.core.paint.species import AUTO, SPECIES
 
 
 def atlas_of(photo, mask, **look):
-    return leaf_atlas(photo, mask, "leaves", np.random.default_rng(0), LeafLook(picture=leaf_picture(), **look))
+    return leaf_atlas(photo, mask, "leaves", np.random.default_rng(0), LeafStyle(picture=leaf_picture(), **look))
 
 
 def test_the_picture_s_colour_is_the_leaves_whatever_the_photo_s(photo, mask):
@@ -42,7 +30,7 @@ def test_light_and_dark_of_the_photo_stay(photo, mask):
 
 @pytest.mark.parametrize("name", ["auto", "maple", "willow"])
 def test_a_pictured_spray_fills_a_quarter_to_three_quarters_of_its_tile(name, photo, mask):
-    alphas = tile_alphas(atlas_of(photo, mask, species=KINDS[name])) > 127
+    alphas = tile_alphas(atlas_of(photo, mask, species=SPECIES.get(name, AUTO))) > 127
     assert alphas.mean(axis=(1, 2)).min() >= 0.25
     assert alphas.mean(axis=(1, 2)).max() <= 0.75
     assert not alphas[:, [0, -1]].any()
@@ -53,30 +41,18 @@ def test_a_season_leaves_the_picture_s_colour(photo, mask):
     assert autumn == pytest.approx(tile_labs(atlas_of(photo, mask)).mean(axis=0), abs=2)
 
 
-def test_the_opaque_part_is_cut_out():
-    picture = np.zeros((50, 60, 4), np.uint8)
-    picture[10:30, 20:25, 3] = 255
-    assert opaque_part(picture).shape == (20, 5, 4)
-
-
-def test_a_large_picture_is_shrunk_without_the_colour_of_what_is_clear():
-    small = reduced(opaque_part(leaf_picture(2000)))
-    assert max(small.shape) == LONGEST
-    assert np.abs(small[small[..., 3] > 10][:, :3].astype(int) - PURPLE).max() < 20
-
-
 @pytest.mark.parametrize(
     "wrong",
     [np.zeros((20, 20, 4), np.uint8), np.full((20, 20, 3), 255, np.uint8), np.ones((20, 20, 4))],
     ids=["clear", "rgb", "float"],
 )
 def test_what_shows_no_leaf_is_refused(wrong):
-    with pytest.raises(ValueError, match="leaf's picture"):
-        LeafLook(picture=wrong)
+    with pytest.raises(ValueError, match="picture of a leaf"):
+        LeafStyle(picture=wrong)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 400), (400, 1), (3, 2)])
 def test_odd_pictures_are_drawn_without_a_stop(shape, photo, mask):
     speck = np.full((*shape, 4), 200, np.uint8)
-    look = LeafLook(picture=speck)
+    look = LeafStyle(picture=speck)
     assert leaf_atlas(photo, mask, "leaves", np.random.default_rng(0), look).image.shape == (1024, 1024, 4)

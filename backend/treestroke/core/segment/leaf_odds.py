@@ -1,0 +1,178 @@
+"""How likely each pixel is a leaf: by its colour, by its height in the photo and by its place in the crown stroke.
+
+What is seen through a crown is what is seen beside it at the same height: sky above, distant trees and grass below. And
+leaves are brighter at a crown's top than in its shade. So once the components of a colour model are fitted, their
+weights follow the height.
+"""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.imaging.mixture import (
+    Mixture,
+    component_shares,
+    fit_mixture,
+    join_mixtures,
+    log_components,
+    log_density,
+    table_colours,
+    table_index,
+)
+from treestroke.core.types import Floats, Mask, Picture
+
+BANDS = 10
+"""Heights at which weights are counted; between them they are interpolated."""
+EVERYWHERE = 0.25
+"""Share of a component's weight that does not depend on the height: what a band did not show may still be there."""
+HEIGHT_SAMPLES = 8000
+"""Pixels by which the weights are counted."""
+FEWEST = 20
+"""Pixels that a band must have for weights of its own."""
+LIMIT = 8.0
+"""Greatest log odds that a colour alone gives."""
+
+
+def initial_models(pixels: Picture, inside: Mask, components: int, samples: int) -> tuple[Mixture, Mixture]:
+    """Fit colour models of leaves and of the ground, given only the inside of the crown stroke.
+
+    The components of the crown's colours are divided between leaves and ground by a belief in each; the ring around the
+    crown joins the ground.
+
+    Parameters
+    ----------
+    pixels, inside
+        Colours (h, w, 3), sRGB, 0 to 255, and the pixels (h, w) inside the stroke.
+    components, samples
+        Gaussians of the crown's mixture, and pixels that a mixture is fitted to.
+
+    Notes
+    -----
+    Tan et al. 2008, section 2, take the four most green or red of ten components for leaves. We ask where a component's
+    pixels lie, with colour as a prior (docs/decisions/0002).
+    """
+    crown, ring = _sample(pixels, inside, samples), _sample(pixels, ~inside, samples)
+    core = _sample(pixels, _depth(inside) > 0.45, samples)
+    mixture = fit_mixture(crown, components)
+    belief = _leaf_belief(mixture, crown, core, ring)
+    ground_share = float((mixture.weights * (1 - belief)).sum())
+    grounds = [(_reweighted(mixture, 1 - belief), max(ground_share, 0.15))]
+    if len(ring):
+        grounds.append((fit_mixture(ring, components // 2), 0.5))
+    ground = join_mixtures([m for m, _ in grounds], [share for _, share in grounds])
+    return _reweighted(mixture, belief), ground
+
+
+def refitted_models(pixels: Picture, leaves: Mask, components: int, samples: int) -> tuple[Mixture, Mixture]:
+    """Fit colour models anew to the pixels (h, w, 3), sRGB, that were found to be leaves (h, w), and to all others.
+
+    This makes the result stable when the hand trembles: the first models depend on where the stroke runs, the refitted
+    ones hardly do.
+    """
+    leaf, ground = _sample(pixels, leaves, samples), _sample(pixels, ~leaves, samples)
+    return fit_mixture(leaf, components // 2), fit_mixture(ground, components // 2 + 4)
+
+
+def log_odds_by_colour(leaf: Mixture, ground: Mixture, pixels: Picture) -> NDArray[np.float32]:
+    """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour, within +-LIMIT."""
+    colours = table_colours()
+    table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -LIMIT, LIMIT)
+    return table.astype(np.float32)[table_index(pixels)]
+
+
+def log_odds_by_height(leaf: Mixture, ground: Mixture, pixels: Picture, leaves: Mask) -> NDArray[np.float32]:
+    """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour and height, within +-LIMIT.
+
+    The weights of the leaf's components are counted where leaves were found before (h, w), the ground's elsewhere.
+    """
+    density = _log_density_by_height(leaf, pixels, leaves) - _log_density_by_height(ground, pixels, ~leaves)
+    return _interpolated(np.clip(density, -LIMIT, LIMIT), table_index(pixels))
+
+
+def log_odds_by_place(inside: Mask) -> NDArray[np.float32]:
+    """Log odds (h, w) that a pixel is a leaf by its place relative to the crown's inside (h, w).
+
+    Strokes are loose: their rim and what lies beyond it is more likely ground.
+    """
+    depth = _depth(inside)
+    return np.where(inside, 0.7 - 1.8 * np.exp(-depth / 0.06), -2.0).astype(np.float32)
+
+
+def weights_by_height(mixture: Mixture, pixels: Picture, where: Mask) -> Floats:
+    """Weights (bands, k) of a mixture's components, top to bottom, counted over pixels (h, w, 3) of a mask (h, w).
+
+    Each band's weights sum to 1.
+    """
+    index = np.flatnonzero(where.ravel())
+    index = index[:: max(1, len(index) // HEIGHT_SAMPLES)]
+    share = component_shares(mixture, pixels.reshape(-1, 3)[index].astype(np.float64))
+    place = (index // where.shape[1] + 0.5) / where.shape[0] * BANDS - 0.5
+    near = np.exp(-0.5 * (place[None] - np.arange(BANDS)[:, None]) ** 2)
+    count = near.sum(axis=1, keepdims=True)
+    local = np.where(count > FEWEST, near @ share / np.maximum(count, 1e-9), mixture.weights)
+    return np.asarray((1 - EVERYWHERE) * local + EVERYWHERE * mixture.weights)
+
+
+def _log_density_by_height(mixture: Mixture, pixels: Picture, where: Mask) -> Floats:
+    """Logarithm (bands, 32768) of a mixture's density at the look-up table's colours in each band."""
+    parts = log_components(mixture, table_colours())
+    peak = parts.max(axis=1)
+    change = weights_by_height(mixture, pixels, where) / np.maximum(mixture.weights, 1e-12)
+    return np.asarray(peak + np.log(change @ np.exp(parts - peak[:, None]).T))
+
+
+def _interpolated(tables: Floats, index: NDArray[np.uint16]) -> NDArray[np.float32]:
+    """Value of each pixel (h, w), by its table index (h, w): interpolated between the two nearest bands' tables."""
+    height, compact = index.shape[0], tables.astype(np.float32)
+    place = np.clip((np.arange(height) + 0.5) / height * BANDS - 0.5, 0, BANDS - 1)
+    above = np.minimum(place.astype(np.int64), BANDS - 2)
+    below = (place - above).astype(np.float32)[:, None]
+    upper, lower = compact[above[:, None], index], compact[above[:, None] + 1, index]
+    return np.asarray(upper + (lower - upper) * below)
+
+
+def _reweighted(mixture: Mixture, belief: Floats) -> Mixture:
+    """Multiply the components' weights by a belief (k,), 0 to 1, in each."""
+    weights = mixture.weights * belief
+    return Mixture(weights / weights.sum(), mixture.means, mixture.covariances)
+
+
+def _sample(pixels: Picture, where: Mask, count: int) -> Picture:
+    """Take about ``count`` pixels (n, 3) of a mask, evenly spaced in reading order; all where there are fewer."""
+    index = np.flatnonzero(where.ravel())
+    step = max(1, len(index) // count)
+    return pixels.reshape(-1, 3)[index[step // 2 :: step]]
+
+
+def _depth(inside: Mask) -> Floats:
+    """Depth (h, w) inside the crown, 0 to 1: 0 at its border and outside, 1 at its innermost pixel."""
+    padded = cv2.copyMakeBorder(inside.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
+    distance = cv2.distanceTransform(padded, cv2.DIST_L2, 5)[1:-1, 1:-1]
+    return np.asarray(distance / max(float(distance.max()), 1.0), dtype=np.float64)
+
+
+def _leaf_belief(mixture: Mixture, crown: Picture, core: Picture, ring: Picture) -> Floats:
+    """Belief (k,), 0 to 1, that a component is leaves, from colours (n, 3) of the crown, its core and its ring.
+
+    A component speaks for leaves by how much commoner it is in the crown's core than in the ring, and by its hue.
+    """
+    shares = [_shares(mixture, colours) for colours in (crown, core, ring)]
+    place = np.log((0.3 * shares[0] + 0.7 * shares[1] + 0.004) / (shares[2] + 0.004))
+    votes = np.clip(place, -2.0, 2.0) + _hue_prior(mixture.means)
+    return np.asarray(1 / (1 + np.exp(-4.0 * votes)))
+
+
+def _shares(mixture: Mixture, colours: Picture) -> Floats:
+    """Share (k,) of the colours (n, 3) that each component explains; zeros where there are no colours."""
+    if len(colours) == 0:
+        return np.zeros(len(mixture))
+    return np.asarray(component_shares(mixture, colours.astype(np.float64)).mean(axis=0))
+
+
+def _hue_prior(means: Floats) -> Floats:
+    """Log odds (k,) that colours (k, 3), sRGB, are leaves by their hue: high for green, yellow and red, low for sky."""
+    red, green, blue = means.T
+    brightness = means.max(axis=1)
+    vegetation = (np.maximum(red, green) - blue) / np.maximum(brightness, 40.0)
+    sky = (blue - np.minimum(red, green)) / np.maximum(brightness, 40.0)
+    return np.asarray(1.5 * np.clip(vegetation, 0, 0.6) - 6.0 * np.clip(sky - 0.2, 0, 0.6) * (brightness > 60))
