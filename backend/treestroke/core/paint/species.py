@@ -26,7 +26,7 @@ class Bark:
     Attributes
     ----------
     form
-        Its pattern: one of `treestroke.core.mesh.grain.Form`.
+        Its pattern: one of `treestroke.core.mesh.bark_pattern.BarkForm`.
     depth
         Deviation of its height, as a share of the stem's radius.
     colour
