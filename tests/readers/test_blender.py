@@ -45,7 +45,7 @@ def test_blender_reads_all_triangles_in_their_place(found: dict[str, Any], shelf
 def test_blender_reads_pictures_and_cuts_the_leaves(found: dict[str, Any], shelf: Shelf, name: str) -> None:
     bark, leaf = found[name]["materials"]["bark"], found[name]["materials"]["leaf"]
     assert (bark["coloured"], bark["cut"], leaf["coloured"], leaf["cut"]) == (True, False, True, True)
-    assert bark["relief"] == (shelf.tree.bark.relief is not None and name != "tree.obj")  # OBJ has none
+    assert bark["relief"] == (shelf.tree.bark.normal_map is not None and name != "tree.obj")  # OBJ has none
 
 
 def test_blender_drops_the_light_that_falls_through_leaves(found: dict[str, Any]) -> None:

@@ -78,7 +78,7 @@ def test_materials_are_whole(read: Read, shelf: Shelf, name: str) -> None:
     assert shelf.tree.leaf is not None
     assert bark["picture"] == list(shelf.tree.bark.texture.shape[1::-1])
     assert leaf["picture"] == list(shelf.tree.leaf.texture.shape[1::-1])
-    assert (bark["relief"], twigs["relief"]) == (shelf.tree.bark.relief is not None, False)
+    assert (bark["relief"], twigs["relief"]) == (shelf.tree.bark.normal_map is not None, False)
     assert twigs["picture"] == bark["picture"]
     assert (leaf["cut"], leaf["sides"], leaf["shaded"]) == (0.3, 2, True)
 

@@ -1,4 +1,4 @@
-"""ZIP archives whose bytes depend on nothing but what is in them."""
+"""ZIP archives whose bytes depend on their members alone: no times, no names of systems."""
 
 import io
 import os
@@ -11,19 +11,19 @@ from typing import BinaryIO
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 _UNIX, _READABLE = 3, 0o644
 _COMPRESSED_ALREADY = (".jpg", ".png", ".webp", ".heic", ".avif")
-_PIECE = 1_000_000
+_CHUNK = 1_000_000
 """Bytes that are copied at a time."""
 
 
 def zipped(members: Mapping[str, bytes]) -> bytes:
-    """Pack members in memory, as `zip_into` does."""
+    """Pack members, bytes by name, in memory, as `zip_into` does."""
     out = io.BytesIO()
     zip_into(out, {name: io.BytesIO(content) for name, content in members.items()})
     return out.getvalue()
 
 
 def zip_into(out: BinaryIO, members: Mapping[str, BinaryIO]) -> None:
-    """Pack members in their order, piece by piece, into a file; pictures as they are, all else deflated."""
+    """Pack members into a file in their order and in small chunks; pictures are stored, all else is deflated."""
     with zipfile.ZipFile(out, "w") as archive:
         for name, content in members.items():
             info = zipfile.ZipInfo(name, _NO_TIME)
@@ -33,4 +33,4 @@ def zip_into(out: BinaryIO, members: Mapping[str, BinaryIO]) -> None:
             info.file_size = content.seek(0, os.SEEK_END)
             content.seek(0)
             with archive.open(info, "w") as member:
-                shutil.copyfileobj(content, member, _PIECE)
+                shutil.copyfileobj(content, member, _CHUNK)

@@ -1,4 +1,6 @@
-"""A tree as binary PLY: coloured vertices, triangles that say whether they are wood or leaf."""
+"""A tree as binary PLY: coloured vertices, triangles labelled as wood or leaf."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,60 +13,52 @@ from treestroke.core.types import Floats
 
 BARK, LEAF = 0, 1
 """Labels of the faces."""
-_VERTEX = np.dtype([(name, "<f4") for name in ("x", "y", "z", "nx", "ny", "nz")] + [("rgb", "u1", 3)])
-_FACE = np.dtype([("count", "u1"), ("corners", "<i4", 3), ("label", "u1")])
-_HEAD = """ply
-format binary_little_endian 1.0
-comment treestroke: metres, right-handed, +Y up; label 0 bark, 1 leaf
-element vertex {vertices}
-property float x
-property float y
-property float z
-property float nx
-property float ny
-property float nz
-property uchar red
-property uchar green
-property uchar blue
-element face {faces}
-property list uchar int vertex_indices
-property uchar label
-end_header
-"""
+_COMMENT = b"comment treestroke: metres, right-handed, +Y up; label 0 bark, 1 leaf\n"
+_TRIMESH_COMMENT = b"comment https://github.com/mikedh/trimesh\n"
 _GAMMA = 2.2
-"""Shades are factors on light, colours are sRGB."""
+"""Shades are factors on linear light, colours are sRGB."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Triangles (t, 3) of one label over vertices (v, 3), metres, with unit normals (v, 3) and sRGB colours (v, 3)."""
+
+    positions: NDArray[np.floating]
+    normals: NDArray[np.floating]
+    colours: Floats
+    triangles: NDArray[np.integer]
+    label: int
 
 
 def encode_ply(bark: Surface, cards: Leaves | None, atlas: Atlas | None) -> bytes:
-    """Write a tree as one binary little-endian PLY.
+    """Encode a tree as one binary little-endian PLY.
 
-    Vertices have normals and 8-bit sRGB colours; faces a ``label``, 0 bark, 1 leaf. A card becomes a rhombus of two
-    triangles, as tall as its spray and of the area of the spray's opaque part, in the tile's mean colour.
+    Vertices have normals and 8-bit sRGB colours with an opaque alpha; faces have a ``label``, 0 bark, 1 leaf. A card
+    becomes a rhombus of two triangles, as tall as its spray and with the area of the spray's opaque part, in the tile's
+    mean colour. Equal input gives equal bytes.
     """
+    from trimesh import Trimesh  # imported here: it takes half a second, and most trees are not written as PLY
+    from trimesh.exchange.ply import export_ply
+
     mesh = bark.mesh
-    parts = [(_vertices(mesh.positions, mesh.normals, _bark_colours(bark)), _faces(mesh.triangles, BARK))]
+    parts = [_Part(mesh.positions, mesh.normals, _bark_colours(bark), mesh.triangles, BARK)]
     if cards is not None and atlas is not None:
         parts.append(_rhombi(cards, atlas, len(mesh.positions)))
-    vertices, faces = (np.concatenate([part[at] for part in parts]) for at in (0, 1))
-    return _HEAD.format(vertices=len(vertices), faces=len(faces)).encode() + vertices.tobytes() + faces.tobytes()
-
-
-def _vertices(positions: NDArray[np.floating], normals: NDArray[np.floating], colours: Floats) -> NDArray[np.void]:
-    rows = np.zeros(len(positions), dtype=_VERTEX)
-    for column, name in enumerate(("x", "y", "z")):
-        rows[name], rows[f"n{name}"] = positions[:, column], normals[:, column]
-    rows["rgb"] = np.rint(colours)
-    return rows
-
-
-def _faces(triangles: NDArray[np.integer], label: int) -> NDArray[np.void]:
-    rows = np.zeros(len(triangles), dtype=_FACE)
-    rows["count"], rows["corners"], rows["label"] = 3, triangles, label
-    return rows
+    whole = Trimesh(
+        np.concatenate([part.positions for part in parts]),
+        np.concatenate([part.triangles for part in parts]),
+        vertex_normals=np.concatenate([part.normals for part in parts]),
+        vertex_colors=np.rint(np.concatenate([part.colours for part in parts])).astype(np.uint8),
+        face_attributes={"label": np.concatenate([np.full(len(p.triangles), p.label, np.uint8) for p in parts])},
+        process=False,
+        validate=False,
+    )
+    content: bytes = export_ply(whole, vertex_normal=True)
+    return content.replace(_TRIMESH_COMMENT, _COMMENT, 1)
 
 
 def _bark_colours(bark: Surface) -> Floats:
-    """Read the texture at each vertex (v, 3); it repeats."""
+    """Read the texture, which repeats, at each vertex: sRGB (v, 3), 0 to 255."""
     size = np.array(bark.texture.shape[1::-1])
     column, row = (np.floor(bark.mesh.uvs.astype(np.float64) * size).astype(np.int64) % size).T
     colours = bark.texture[row, column].astype(np.float64)
@@ -72,25 +66,24 @@ def _bark_colours(bark: Surface) -> Floats:
 
 
 def _shaded(colours: Floats, shades: NDArray[np.floating]) -> Floats:
+    """Darken sRGB colours (n, 3) by factors on linear light (n,)."""
     factors: Floats = np.clip(shades, 0, 1).astype(np.float64) ** (1 / _GAMMA)
     return colours * factors[:, None]
 
 
-def _rhombi(leaves: Leaves, atlas: Atlas, first: int) -> tuple[NDArray[np.void], NDArray[np.void]]:
-    """Build a rhombus for each card, its corners below, right, above and left."""
+def _rhombi(leaves: Leaves, atlas: Atlas, first: int) -> _Part:
+    """Build a rhombus for each card, its corners below, right, above, left; ``first`` is the first vertex's index."""
     plain = _spray_corners(atlas)
     mirrored = plain[:, [0, 3, 2, 1]] * np.array([-1.0, 1.0])
     across, up = np.stack([plain, mirrored])[leaves.flips.astype(np.int64), leaves.tiles].transpose(2, 0, 1)[..., None]
     places = leaves.centres[:, None] + across * leaves.rights[:, None] + up * leaves.ups[:, None]
-    rounded = card_mesh(leaves, atlas).normals.reshape(
-        -1, 4, 3
-    )  # of the corners below left, below right, above right ...
-    normals = rounded + np.roll(rounded, -1, axis=1)
+    corner_normals = card_mesh(leaves, atlas).normals.reshape(-1, 4, 3)  # below left, below right, above right ...
+    normals = corner_normals + np.roll(corner_normals, -1, axis=1)
     normals = normals / np.maximum(np.linalg.norm(normals, axis=2, keepdims=True), 1e-9)
     colours = np.repeat(_shaded(atlas.colours[leaves.tiles], leaves.shades), 4, axis=0)
     starts = first + 4 * np.arange(len(leaves))[:, None, None]
     triangles = (starts + np.array([[0, 1, 2], [0, 2, 3]])).reshape(-1, 3)
-    return _vertices(places.reshape(-1, 3), normals.reshape(-1, 3), colours), _faces(triangles, LEAF)
+    return _Part(places.reshape(-1, 3), normals.reshape(-1, 3), colours, triangles, LEAF)
 
 
 def _spray_corners(atlas: Atlas) -> Floats:
@@ -102,9 +95,8 @@ def _spray_corners(atlas: Atlas) -> Floats:
     high = np.where(filled, rows, -1.0).max(axis=1) + 1 / side
     low = np.where(filled, rows, 1.0).min(axis=1) - 1 / side
     share = opaque.mean(axis=(1, 2))
-    half_width = np.clip(
-        4 * share / np.maximum(high - low, 1e-9), 0.0, 1.0
-    )  # a card's area is 4, a rhombus's d1 d2 / 2
+    # a card's area is 4, that of a rhombus half the product of its diagonals
+    half_width = np.clip(4 * share / np.maximum(high - low, 1e-9), 0.0, 1.0)
     middle = opaque.sum(axis=1) @ rows[::-1] / np.maximum(opaque.sum(axis=(1, 2)), 1)
     left, right = np.maximum(middle - half_width, -1.0), np.minimum(middle + half_width, 1.0)
     centre = (low + high) / 2

@@ -1,4 +1,4 @@
-"""Skeletons as plain lists, for JSON."""
+"""Skeletons as lists, for the JSON of responses."""
 
 import math
 from typing import Any
@@ -11,13 +11,13 @@ from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
 _DIGITS = 2
-"""Of a pixel: finer than any photo shows."""
+"""Decimals of a pixel: finer than any photo shows."""
 _DIGITS_AT_10_M = 4
-"""Of a metre; a tree ten times as high has one digit less."""
+"""Decimals of a metre, for a tree of 10 m; one less for a tree ten times as high."""
 
 
 def plain_skeleton(skeleton: Skeleton | None, stroke: NDArray[np.int64]) -> dict[str, list[Any]]:
-    """Write a traced skeleton, px, and each joint's stroke (its index or -1) as lists, empty without a skeleton."""
+    """Return a traced skeleton, px, and the stroke index of each joint (n,), or -1, as lists; empty without one."""
     if skeleton is None:
         return {"points": [], "radii": [], "parents": [], "stroke": []}
     return {
@@ -29,7 +29,7 @@ def plain_skeleton(skeleton: Skeleton | None, stroke: NDArray[np.int64]) -> dict
 
 
 def plain_camera(camera: Camera) -> dict[str, Any]:
-    """Write a camera as the GLB's ``extras.photo`` has it."""
+    """Return a camera as it stands in the GLB's ``extras.photo``: px and metres per pixel."""
     return {
         "width": camera.width,
         "height": camera.height,
@@ -39,7 +39,7 @@ def plain_camera(camera: Camera) -> dict[str, Any]:
 
 
 def plain_grown(tree: LiveTree) -> dict[str, Any]:
-    """Write a grown tree, metres, and the photo's camera as lists."""
+    """Return a grown tree, metres, and the photo's camera as lists."""
     skeleton, camera = tree.skeleton, tree.camera
     height_m = max(float(np.ptp(skeleton.points[:, 1])), 1e-3)
     digits = _DIGITS_AT_10_M - round(math.log10(height_m / 10))

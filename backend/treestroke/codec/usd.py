@@ -1,8 +1,9 @@
-"""A tree as USDZ, for Apple's viewers and film tools."""
+"""A tree as USDZ, for Apple's viewers and film tools, by the optional package usd-core."""
 
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
@@ -12,25 +13,34 @@ from zipfile import ZipFile, ZipInfo
 
 import numpy as np
 
-from treestroke.codec.gltf.book import RELIEF_QUALITY, encode_picture
+from treestroke.codec.gltf.document import NORMAL_MAP_QUALITY, encode_picture
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.errors import SettingsError
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
 
-_ALIGNED = 64  # bytes: where the content of each file in a package starts, by USDZ's specification
-_LOCAL_HEADER, _EXTRA_HEADER = 30, 4  # bytes of a zip file's, before the name and before the padding
-_PADDING_ID = b"\x86\x19"  # of the extra field that pads
+_ALIGNED = 64  # bytes: alignment of each file's content in a package, by the USDZ specification
+_LOCAL_HEADER, _EXTRA_HEADER = 30, 4  # bytes of the zip headers before a file's name and before the padding
+_PADDING_ID = b"\x86\x19"  # of the extra field that holds the padding
 _MISSING = "usdz needs the package usd-core; install it by `pip install treestroke[usd]` or `make usd`"
 
 
+@dataclass(frozen=True)
+class _Image:
+    """A texture file in the package, and how it is read: its wrap mode and colour space."""
+
+    file: str
+    wrap: str
+    colour_space: str
+
+
 def has_usd() -> bool:
-    """Tell whether USDZ can be written here."""
+    """Return whether USDZ can be written here."""
     return find_spec("pxr") is not None
 
 
 def require_usd() -> None:
-    """Refuse where USDZ cannot be written.
+    """Raise unless USDZ can be written here.
 
     Raises
     ------
@@ -42,10 +52,10 @@ def require_usd() -> None:
 
 
 def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) -> bytes:
-    """Write a tree as a USDZ package: metres, Y up, UsdPreviewSurface, one mesh each for bark and leaf.
+    """Encode a tree as a USDZ package: metres, Y up, UsdPreviewSurface, one mesh each for bark and leaf.
 
-    The layer's own values hold the photo's camera. Shades of leaves are left out: UsdPreviewSurface mixes no vertex
-    colours with textures. Equal input gives equal bytes.
+    The layer's custom data hold the photo's camera. Shades of leaves are left out: UsdPreviewSurface cannot multiply
+    textures by vertex colours. Equal input gives equal bytes.
 
     Raises
     ------
@@ -54,25 +64,25 @@ def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) 
     """
     require_usd()
     name = re.sub(r"^(?=\d)|\W", "_", stem, flags=re.ASCII)
-    worn = {"bark": bark} if leaf is None else {"bark": bark, "leaf": leaf}
+    surfaces = {"bark": bark} if leaf is None else {"bark": bark, "leaf": leaf}
     pictures: dict[str, bytes] = {}
-    for part, surface in worn.items():
-        pictures[_picture(part, surface)] = encode_picture(surface.texture)[1]
-        if surface.relief is not None:
-            pictures[_relief(part)] = encode_picture(surface.relief, RELIEF_QUALITY)[1]
-    return package({f"{name}.usdc": _layer(name, worn, camera), **pictures})
+    for part, surface in surfaces.items():
+        pictures[_texture_file(part, surface)] = encode_picture(surface.texture)[1]
+        if surface.normal_map is not None:
+            pictures[_normal_map_file(part)] = encode_picture(surface.normal_map, NORMAL_MAP_QUALITY)[1]
+    return package({f"{name}.usdc": _layer(name, surfaces, camera), **pictures})
 
 
-def _picture(part: str, surface: Surface) -> str:
+def _texture_file(part: str, surface: Surface) -> str:
     return f"textures/{part}.{'png' if surface.texture.shape[2] == 4 else 'jpg'}"
 
 
-def _relief(part: str) -> str:
+def _normal_map_file(part: str) -> str:
     return f"textures/{part}_relief.jpg"
 
 
-def _layer(name: str, worn: Mapping[str, Surface], camera: Camera) -> bytes:
-    """Write the scene as binary USD."""
+def _layer(name: str, surfaces: Mapping[str, Surface], camera: Camera) -> bytes:
+    """Encode the scene as binary USD."""
     from pxr import Kind, Usd, UsdGeom
 
     stage = Usd.Stage.CreateInMemory()
@@ -84,16 +94,16 @@ def _layer(name: str, worn: Mapping[str, Surface], camera: Camera) -> bytes:
     stage.SetDefaultPrim(prim)
     layer = stage.GetRootLayer()
     layer.customLayerData = {"photo": json.dumps(plain_camera(camera))}
-    for part, surface in worn.items():
-        _dress(stage, f"/{name}", part, surface)
+    for part, surface in surfaces.items():
+        _add_surface(stage, f"/{name}", part, surface)
     with TemporaryDirectory() as folder:
         path = Path(folder) / "tree.usdc"
         layer.Export(str(path))
         return path.read_bytes()
 
 
-def _dress(stage: Any, root: str, part: str, surface: Surface) -> None:
-    """Add a mesh and the material that it wears."""
+def _add_surface(stage: Any, root: str, part: str, surface: Surface) -> None:
+    """Add a mesh with its material."""
     from pxr import UsdShade
 
     material = _material(stage, f"{root}/materials/{part}", part, surface)
@@ -104,7 +114,7 @@ def _dress(stage: Any, root: str, part: str, surface: Surface) -> None:
 
 
 def _shape(stage: Any, path: str, mesh: Mesh) -> Any:
-    """Add a mesh; v is upward, as USD has it."""
+    """Add a mesh; v is upward, as in USD."""
     from pxr import Sdf, UsdGeom, Vt
 
     shape = UsdGeom.Mesh.Define(stage, path)
@@ -126,7 +136,7 @@ def _shape(stage: Any, path: str, mesh: Mesh) -> Any:
 
 
 def _material(stage: Any, path: str, part: str, surface: Surface) -> Any:
-    """Add a material of one picture, cut by its alpha where it has one, and its relief."""
+    """Add a material with a texture, cut by its alpha where it has one, and a normal map."""
     from pxr import Sdf, UsdShade
 
     kinds = Sdf.ValueTypeNames
@@ -135,33 +145,34 @@ def _material(stage: Any, path: str, part: str, surface: Surface) -> Any:
     shader = _shader(stage, f"{path}/surface", "UsdPreviewSurface")
     reader = _shader(stage, f"{path}/st", "UsdPrimvarReader_float2")
     reader.CreateInput("varname", kinds.String).Set("st")
-    place = reader.CreateOutput("result", kinds.Float2)
-    picture = _texture(stage, f"{path}/picture", _picture(part, surface), place, "clamp" if cut else "repeat", "sRGB")
+    st = reader.CreateOutput("result", kinds.Float2)
+    image = _Image(_texture_file(part, surface), "clamp" if cut else "repeat", "sRGB")
+    picture = _texture(stage, f"{path}/picture", image, st)
     shader.CreateInput("diffuseColor", kinds.Color3f).ConnectToSource(picture.CreateOutput("rgb", kinds.Float3))
     shader.CreateInput("roughness", kinds.Float).Set(1.0)
     shader.CreateInput("metallic", kinds.Float).Set(0.0)
     if cut:
         shader.CreateInput("opacity", kinds.Float).ConnectToSource(picture.CreateOutput("a", kinds.Float))
         shader.CreateInput("opacityThreshold", kinds.Float).Set(ALPHA_CUT)
-    if surface.relief is not None:
-        relief = _texture(stage, f"{path}/relief", _relief(part), place, "repeat", "raw")
-        relief.CreateInput("scale", kinds.Float4).Set((2.0, 2.0, 2.0, 1.0))
-        relief.CreateInput("bias", kinds.Float4).Set((-1.0, -1.0, -1.0, 0.0))
-        shader.CreateInput("normal", kinds.Normal3f).ConnectToSource(relief.CreateOutput("rgb", kinds.Float3))
+    if surface.normal_map is not None:
+        normals = _texture(stage, f"{path}/relief", _Image(_normal_map_file(part), "repeat", "raw"), st)
+        normals.CreateInput("scale", kinds.Float4).Set((2.0, 2.0, 2.0, 1.0))
+        normals.CreateInput("bias", kinds.Float4).Set((-1.0, -1.0, -1.0, 0.0))
+        shader.CreateInput("normal", kinds.Normal3f).ConnectToSource(normals.CreateOutput("rgb", kinds.Float3))
     material.CreateSurfaceOutput().ConnectToSource(shader.CreateOutput("surface", kinds.Token))
     return material
 
 
-def _texture(stage: Any, path: str, file: str, place: Any, wrap: str, colours: str) -> Any:
-    """Add a picture that is read at a place."""
+def _texture(stage: Any, path: str, image: _Image, st: Any) -> Any:
+    """Add a shader that reads an image at the texture coordinates ``st``."""
     from pxr import Sdf
 
     texture = _shader(stage, path, "UsdUVTexture")
-    texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(Sdf.AssetPath(file))
-    texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(place)
-    texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set(colours)
+    texture.CreateInput("file", Sdf.ValueTypeNames.Asset).Set(Sdf.AssetPath(image.file))
+    texture.CreateInput("st", Sdf.ValueTypeNames.Float2).ConnectToSource(st)
+    texture.CreateInput("sourceColorSpace", Sdf.ValueTypeNames.Token).Set(image.colour_space)
     for side in ("wrapS", "wrapT"):
-        texture.CreateInput(side, Sdf.ValueTypeNames.Token).Set(wrap)
+        texture.CreateInput(side, Sdf.ValueTypeNames.Token).Set(image.wrap)
     return texture
 
 
@@ -174,7 +185,7 @@ def _shader(stage: Any, path: str, kind: str) -> Any:
 
 
 def package(files: Mapping[str, bytes]) -> bytes:
-    """Put files, the scene first, into a USDZ: a zip without compression, each content at a multiple of 64 bytes.
+    """Pack files, the scene first, as USDZ: a zip without compression, each content at a multiple of 64 bytes.
 
     Equal files give equal bytes.
     """

@@ -8,13 +8,13 @@ import numpy as np
 
 from treestroke.codec.gltf.instances import encode_instanced
 from treestroke.codec.gltf.loose import encode_gltf
-from treestroke.codec.gltf.tree import Part, Stuff, encode_glb
+from treestroke.codec.gltf.tree import MaterialName, Part, encode_glb
 from treestroke.codec.obj import encode_obj
 from treestroke.codec.ply import encode_ply
 from treestroke.codec.skeleton_files import encode_csv, encode_skeleton_json, encode_swc
 from treestroke.codec.usd import encode_usdz, has_usd, require_usd
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.mesh.collision import collision
+from treestroke.core.mesh.collision_hulls import collision_hulls
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import Level, Levels, levels
 from treestroke.core.pipeline.settings import FILES, ModelSettings
@@ -88,7 +88,7 @@ def _chained(own: list[Part], coarser: list[list[Part]], impostor: Part) -> list
     """Let each part know those that take its place further off; the last part ends as the impostor."""
     found = []
     for part in own:
-        later = tuple(one for level in coarser for one in level if one.stuff == part.stuff)
+        later = tuple(one for level in coarser for one in level if one.material == part.material)
         found.append(replace(part, coarser=(*later, impostor) if part is own[-1] else later))
     return found
 
@@ -129,7 +129,7 @@ class _Writer:
             case "instanced":
                 return {file: self._instanced()}
             case "collision":
-                solid = Part("collision", Surface(collision(tree.grown.skeleton), PLAIN))
+                solid = Part("collision", Surface(collision_hulls(tree.grown.skeleton), PLAIN))
                 return {file: encode_glb([solid], tree.camera, generator=self._generator)}
             case "json":
                 return {file: encode_skeleton_json(tree.grown.skeleton, tree.grown.born, tree.camera)}
@@ -155,9 +155,9 @@ class _Writer:
         return encode_glb(parts, self._tree.camera, generator=self._generator, wind=moving, compress=compress)
 
     def _parts(self, level: Level, suffix: str = "") -> list[Part]:
-        worn: list[tuple[Stuff, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]
-        return [self._part(stuff, surface, suffix) for stuff, surface in worn if surface is not None]
+        worn: list[tuple[MaterialName, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]
+        return [self._part(name, surface, suffix) for name, surface in worn if surface is not None]
 
-    def _part(self, stuff: Stuff, surface: Surface, suffix: str) -> Part:
-        moved = None if self._wind is None else skin(self._wind.rig, surface.mesh, leaves=stuff == "leaf")
-        return Part(stuff, surface, moved, suffix)
+    def _part(self, name: MaterialName, surface: Surface, suffix: str) -> Part:
+        moved = None if self._wind is None else skin(self._wind.rig, surface.mesh, leaves=name == "leaf")
+        return Part(name, surface, moved, suffix)

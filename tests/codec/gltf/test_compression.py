@@ -7,8 +7,8 @@ from PIL import Image
 from tests.builders import oak
 from tests.codec.gltf.unfolding import unfold
 
-from treestroke.codec.gltf.book import Book
 from treestroke.codec.gltf.compression import compressed
+from treestroke.codec.gltf.document import Document, Material
 from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import Mesh, Surface
@@ -43,10 +43,12 @@ def opened(glb: bytes) -> tuple[dict, bytes]:
 
 def accessors(glb: bytes) -> list[np.ndarray]:
     """Read all accessors of a compressed file by a decoder that is not ours, in their own numbers."""
-    book, content = opened(glb)
-    read = unfold(content, [book["bufferViews"][row["bufferView"]]["extensions"][MESHOPT] for row in book["accessors"]])
+    document, content = opened(glb)
+    read = unfold(
+        content, [document["bufferViews"][row["bufferView"]]["extensions"][MESHOPT] for row in document["accessors"]]
+    )
     values = []
-    for row, raw in zip(book["accessors"], read, strict=True):
+    for row, raw in zip(document["accessors"], read, strict=True):
         kind = np.dtype(TYPES[row["componentType"]])
         values.append(raw[:, : WIDTHS[row["type"]] * kind.itemsize].copy().view(kind))
     return values
@@ -60,11 +62,11 @@ def corners(mesh: Mesh) -> np.ndarray:
 
 
 def meshes(glb: bytes) -> list[Mesh]:
-    book, _ = opened(glb)
+    document, _ = opened(glb)
     values = accessors(glb)
     found = []
-    for node in book["nodes"]:
-        primitive = book["meshes"][node["mesh"]]["primitives"][0]
+    for node in document["nodes"]:
+        primitive = document["meshes"][node["mesh"]]["primitives"][0]
         named = {name: values[index] for name, index in primitive["attributes"].items()}
         positions = np.array(node["translation"]) + np.array(node["scale"]) * named["POSITION"]
         faces = values[primitive["indices"]].reshape(-1, 3).astype(np.uint32)
@@ -86,97 +88,101 @@ def test_every_triangle_keeps_its_place_within_a_step() -> None:
 
 def test_shades_stay_as_they_are() -> None:
     glb = encode_glb(parts(), CAMERA, generator="x", compress=True)
-    book, _ = opened(glb)
-    shades = accessors(glb)[book["meshes"][1]["primitives"][0]["attributes"]["COLOR_0"]]
+    document, _ = opened(glb)
+    shades = accessors(glb)[document["meshes"][1]["primitives"][0]["attributes"]["COLOR_0"]]
     assert np.array_equal(shades[:, 0], np.rint(leaves().mesh.shades.astype(float) * 255))
 
 
 def test_the_document_says_what_a_reader_needs() -> None:
-    book, content = opened(encode_glb(parts(), CAMERA, generator="x", compress=True))
-    assert book["extensionsRequired"] == [MESHOPT, "EXT_texture_webp", "KHR_mesh_quantization"]
-    assert set(book["extensionsRequired"]) < set(book["extensionsUsed"])
-    stand_in = book["buffers"][1]
+    document, content = opened(encode_glb(parts(), CAMERA, generator="x", compress=True))
+    assert document["extensionsRequired"] == [MESHOPT, "EXT_texture_webp", "KHR_mesh_quantization"]
+    assert set(document["extensionsRequired"]) < set(document["extensionsUsed"])
+    stand_in = document["buffers"][1]
     assert stand_in["extensions"] == {MESHOPT: {"fallback": True}}
-    folded = [view for view in book["bufferViews"] if MESHOPT in view.get("extensions", {})]
+    folded = [view for view in document["bufferViews"] if MESHOPT in view.get("extensions", {})]
     assert max(view["byteOffset"] + view["byteLength"] for view in folded) <= stand_in["byteLength"]
     assert all(
         view["byteLength"] == view["extensions"][MESHOPT]["count"] * view["extensions"][MESHOPT]["byteStride"]
         for view in folded
     )
-    assert len(content) == book["buffers"][0]["byteLength"]
+    assert len(content) == document["buffers"][0]["byteLength"]
 
 
 def test_pictures_are_webp_of_the_same_alpha() -> None:
-    book, content = opened(encode_glb(parts(), CAMERA, generator="x", compress=True))
-    assert [image["mimeType"] for image in book["images"]] == ["image/webp"] * 2
-    assert [texture["extensions"] for texture in book["textures"]] == [
+    document, content = opened(encode_glb(parts(), CAMERA, generator="x", compress=True))
+    assert [image["mimeType"] for image in document["images"]] == ["image/webp"] * 2
+    assert [texture["extensions"] for texture in document["textures"]] == [
         {"EXT_texture_webp": {"source": k}} for k in (0, 1)
     ]
-    view = book["bufferViews"][book["images"][1]["bufferView"]]
+    view = document["bufferViews"][document["images"][1]["bufferView"]]
     picture = Image.open(BytesIO(content[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]))
     assert picture.format == "WEBP"
     assert np.array_equal(np.asarray(picture)[..., 3], leaves().texture[..., 3])
 
 
-def skinned() -> Book:
+def skinned() -> Document:
     """Write a triangle that follows one bone, which turns."""
-    book = Book()
+    document = Document()
     triangle = Mesh(
         np.array([[1, 0, 0], [3, 0, 0], [1, 2, 1]], np.float32),
         np.tile(np.array([0, 0, 1], np.float32), (3, 1)),
         np.zeros((3, 2), np.float32),
         np.array([[0, 1, 2]], np.uint32),
     )
-    worn = book.material("bark", Surface(triangle, np.zeros((4, 4, 3), np.uint8)), {"pbrMetallicRoughness": {}}, 10497)
-    shape = book.row("meshes", {"name": "bark", "primitives": [book.primitive(triangle, worn)]})
-    book.row("nodes", {"mesh": shape, "skin": 0})
-    book.row("nodes", {"name": "root"})
+    surface = Surface(triangle, np.zeros((4, 4, 3), np.uint8))
+    material = document.material("bark", surface, Material({"pbrMetallicRoughness": {}}, 10497))
+    mesh = document.row("meshes", {"name": "bark", "primitives": [document.primitive(triangle, material)]})
+    document.row("nodes", {"mesh": mesh, "skin": 0})
+    document.row("nodes", {"name": "root"})
     rest = np.eye(4, dtype=np.float32)
     rest[3, :3] = (-5, 0, 0)  # transposed: the bone's head lies at x = 5
-    book.row("skins", {"joints": [1], "inverseBindMatrices": book.accessor(rest.reshape(1, 16))})
-    turns = np.array([[0, 0, 0, 1], [0.6, 0, 0, 0.8]], np.float32)
-    sampler = {"input": book.accessor(np.array([0, 1], np.float32), bounded=True), "output": book.accessor(turns)}
+    document.row("skins", {"joints": [1], "inverseBindMatrices": document.accessor(rest.reshape(1, 16))})
+    rotations = np.array([[0, 0, 0, 1], [0.6, 0, 0, 0.8]], np.float32)
+    sampler = {
+        "input": document.accessor(np.array([0, 1], np.float32), bounded=True),
+        "output": document.accessor(rotations),
+    }
     channel = {"sampler": 0, "target": {"node": 1, "path": "rotation"}}
-    book.row("animations", {"samplers": [sampler], "channels": [channel]})
-    return book
+    document.row("animations", {"samplers": [sampler], "channels": [channel]})
+    return document
 
 
 def test_bones_at_rest_bring_their_vertices_back_to_metres() -> None:
     glb = compressed(skinned()).glb({"asset": {"version": "2.0"}})
-    book, _ = opened(glb)
+    document, _ = opened(glb)
     values = accessors(glb)
-    rest = values[book["skins"][0]["inverseBindMatrices"]].reshape(4, 4).T
-    whole = values[book["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
+    rest = values[document["skins"][0]["inverseBindMatrices"]].reshape(4, 4).T
+    whole = values[document["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
     placed = np.column_stack([whole, np.ones(3)]) @ rest.T
     assert np.allclose(placed[:, :3] + (5, 0, 0), [[1, 0, 0], [3, 0, 0], [1, 2, 1]], atol=1e-4)
-    assert "scale" not in book["nodes"][0]
+    assert "scale" not in document["nodes"][0]
 
 
-def test_turns_of_bones_become_16_bit() -> None:
+def test_rotations_of_bones_become_16_bit() -> None:
     glb = compressed(skinned()).glb({"asset": {"version": "2.0"}})
-    book, _ = opened(glb)
-    sampler = book["animations"][0]["samplers"][0]
-    row = book["accessors"][sampler["output"]]
+    document, _ = opened(glb)
+    sampler = document["animations"][0]["samplers"][0]
+    row = document["accessors"][sampler["output"]]
     assert (row["componentType"], row["normalized"]) == (5122, True)
     assert np.allclose(accessors(glb)[sampler["output"]] / 32767, [[0, 0, 0, 1], [0.6, 0, 0, 0.8]], atol=2e-5)
     assert accessors(glb)[sampler["input"]].ravel().tolist() == [0, 1]
 
 
 def test_vertices_that_two_meshes_share_keep_their_numbers() -> None:
-    book = skinned()
-    book.tables["meshes"].append(book.tables["meshes"][0])
-    book.row("nodes", {"mesh": 1})
-    before = json.dumps(book.tables)
-    values = accessors(compressed(book).glb({"asset": {"version": "2.0"}}))
-    assert values[book.tables["meshes"][0]["primitives"][0]["indices"]].ravel().tolist() == [0, 1, 2]
-    assert json.dumps(book.tables) == before
+    document = skinned()
+    document.tables["meshes"].append(document.tables["meshes"][0])
+    document.row("nodes", {"mesh": 1})
+    before = json.dumps(document.tables)
+    values = accessors(compressed(document).glb({"asset": {"version": "2.0"}}))
+    assert values[document.tables["meshes"][0]["primitives"][0]["indices"]].ravel().tolist() == [0, 1, 2]
+    assert json.dumps(document.tables) == before
 
 
 def test_a_mesh_that_is_moved_already_is_refused() -> None:
-    book = skinned()
-    book.row("nodes", {"name": "odd", "mesh": 0, "translation": [1, 0, 0]})
+    document = skinned()
+    document.row("nodes", {"name": "odd", "mesh": 0, "translation": [1, 0, 0]})
     with pytest.raises(ValueError, match="node odd"):
-        compressed(book)
+        compressed(document)
 
 
 def test_equal_trees_give_equal_bytes() -> None:

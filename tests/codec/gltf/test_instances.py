@@ -34,9 +34,9 @@ def opened(glb: bytes) -> tuple[dict, bytes]:
     return json.loads(glb[20 : 20 + length]), glb[28 + length :]
 
 
-def values(book: dict, content: bytes, index: int) -> np.ndarray:
-    row = book["accessors"][index]
-    start, kind = book["bufferViews"][row["bufferView"]]["byteOffset"], row["componentType"]
+def values(document: dict, content: bytes, index: int) -> np.ndarray:
+    row = document["accessors"][index]
+    start, kind = document["bufferViews"][row["bufferView"]]["byteOffset"], row["componentType"]
     read = np.frombuffer(content, TYPES[kind], row["count"] * WIDTHS[row["type"]], start).astype(float)
     return read.reshape(row["count"], -1) / (FULL[kind] if row.get("normalized") else 1)
 
@@ -47,13 +47,13 @@ def turned(quaternion: np.ndarray, vectors: np.ndarray) -> np.ndarray:
 
 
 def test_instances_stand_where_the_cards_stand() -> None:
-    book, content = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
+    document, content = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
     placed = []
-    for node in book["nodes"][1:-1]:
-        shape = book["meshes"][node["mesh"]]["primitives"][0]["attributes"]
-        flat, uvs = (values(book, content, shape[name]) for name in ("POSITION", "TEXCOORD_0"))
+    for node in document["nodes"][1:-1]:
+        shape = document["meshes"][node["mesh"]]["primitives"][0]["attributes"]
+        flat, uvs = (values(document, content, shape[name]) for name in ("POSITION", "TEXCOORD_0"))
         given = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]
-        columns = (values(book, content, given[name]) for name in ("TRANSLATION", "ROTATION", "SCALE", "_COLOR_0"))
+        columns = (values(document, content, given[name]) for name in ("TRANSLATION", "ROTATION", "SCALE", "_COLOR_0"))
         for place, turn, scale, colour in zip(*columns, strict=True):
             corners = place + turned(turn, flat * scale)
             placed.append(np.column_stack([corners, uvs, np.full(4, colour[0])]).ravel())
@@ -66,24 +66,24 @@ def test_instances_stand_where_the_cards_stand() -> None:
 
 
 def test_the_extension_is_used_not_required() -> None:
-    book, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
-    assert "EXT_mesh_gpu_instancing" in book["extensionsUsed"]
-    assert "extensionsRequired" not in book
-    assert [material["name"] for material in book["materials"]] == ["bark", "leaf"]
+    document, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
+    assert "EXT_mesh_gpu_instancing" in document["extensionsUsed"]
+    assert "extensionsRequired" not in document
+    assert [material["name"] for material in document["materials"]] == ["bark", "leaf"]
 
 
 def test_each_picture_and_its_mirror_image_have_a_node_under_the_leaf() -> None:
-    book, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
-    names = [node["name"] for node in book["nodes"]]
+    document, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
+    names = [node["name"] for node in document["nodes"]]
     assert names == ["bark", "leaf_00", "leaf_00_mirrored", "leaf_01", "leaf_01_mirrored", "leaf"]
-    assert book["nodes"][-1]["children"] == [1, 2, 3, 4]
-    assert book["scenes"][0]["nodes"] == [0, 5]
+    assert document["nodes"][-1]["children"] == [1, 2, 3, 4]
+    assert document["scenes"][0]["nodes"] == [0, 5]
 
 
 def test_a_bare_tree_is_its_bark() -> None:
-    book, _ = opened(encode_instanced(BARK, no_leaves(), ATLAS, CAMERA, generator="x"))
-    assert [node["name"] for node in book["nodes"]] == ["bark"]
-    assert "EXT_mesh_gpu_instancing" not in book.get("extensionsUsed", [])
+    document, _ = opened(encode_instanced(BARK, no_leaves(), ATLAS, CAMERA, generator="x"))
+    assert [node["name"] for node in document["nodes"]] == ["bark"]
+    assert "EXT_mesh_gpu_instancing" not in document.get("extensionsUsed", [])
 
 
 def test_quaternions_turn_as_their_matrices_do() -> None:

@@ -9,8 +9,8 @@ from treestroke.core.geometry.mesh import Surface
 FLAT = np.full((4, 4, 3), 128, np.uint8)
 
 
-def coarser(stuff: str, surface: Surface, names: tuple[str, ...] = ("_lod1", "_lod2")) -> tuple[Part, ...]:
-    return tuple(Part(stuff, Surface(surface.mesh, surface.texture), suffix=name) for name in names)  # type: ignore[arg-type]
+def coarser(material: str, surface: Surface, names: tuple[str, ...] = ("_lod1", "_lod2")) -> tuple[Part, ...]:
+    return tuple(Part(material, Surface(surface.mesh, surface.texture), suffix=name) for name in names)  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def test_more_levels_than_sizes_are_refused() -> None:
         encode_glb([Part("bark", wood, coarser=many)], CAMERA, generator="treestroke 1")
 
 
-def test_a_collision_body_bears_its_name() -> None:
+def test_a_collision_mesh_has_its_name() -> None:
     file = encode_glb([Part("collision", bark())], CAMERA, generator="treestroke 1")
     gltf = pygltflib.GLTF2.load_from_bytes(file)
     assert (gltf.nodes[0].name, gltf.materials[0].name) == ("collision", "collision")

@@ -86,7 +86,7 @@ def test_clips_become_animations_that_turn_joints(gltf: pygltflib.GLTF2, wind: W
         targets = [gltf.nodes[channel.target.node].name for channel in animation.channels]
         assert targets == [wind.rig.names[bone] for bone in clip.bones]
         assert {channel.target.path for channel in animation.channels} == {"rotation"}
-        for channel, times, turns in zip(animation.channels, clip.times, clip.turns, strict=True):
+        for channel, times, turns in zip(animation.channels, clip.times, clip.rotations, strict=True):
             sampler = animation.samplers[channel.sampler]
             assert np.array_equal(values(gltf, sampler.input)[:, 0], times.astype(np.float32))
             assert np.array_equal(values(gltf, sampler.output), turns.astype(np.float32))
@@ -105,7 +105,7 @@ def test_times_are_bounded_and_shared(gltf: pygltflib.GLTF2) -> None:
 
 def test_without_wind_the_file_is_as_if_nothing_held(part: Part) -> None:
     still = encode_glb([part], CAMERA, generator="treestroke 1")
-    bare = replace(part, surface=replace(part.surface, mesh=replace(part.surface.mesh, hold=None)), skin=None)
+    bare = replace(part, surface=replace(part.surface, mesh=replace(part.surface.mesh, attachment=None)), skin=None)
     assert still == encode_glb([bare], CAMERA, generator="treestroke 1")
     assert "skins" not in json.loads(still[20 : 20 + int.from_bytes(still[12:16], "little")])
 

@@ -121,14 +121,14 @@ def test_the_leaf_atlas_keeps_its_alpha_and_its_colours() -> None:
 @pytest.mark.parametrize(("count", "width"), [(16_383, 5123), (16_384, 5125)])
 def test_indices_are_as_narrow_as_they_can_be(count: int, width: int) -> None:
     glb = encode_glb([Part("bark", bark()), Part("leaf", leaves(count))], CAMERA, generator="treestroke 1")
-    book = document(glb)
-    assert book["accessors"][book["meshes"][1]["primitives"][0]["indices"]]["componentType"] == width
+    gltf = document(glb)
+    assert gltf["accessors"][gltf["meshes"][1]["primitives"][0]["indices"]]["componentType"] == width
 
 
 def test_views_are_aligned_and_positions_bounded() -> None:
-    book = document(encode_glb([Part("bark", bark(2)), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
-    assert all(view["byteOffset"] % 4 == 0 for view in book["bufferViews"])
-    positions = book["accessors"][book["meshes"][1]["primitives"][0]["attributes"]["POSITION"]]
+    gltf = document(encode_glb([Part("bark", bark(2)), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
+    assert all(view["byteOffset"] % 4 == 0 for view in gltf["bufferViews"])
+    positions = gltf["accessors"][gltf["meshes"][1]["primitives"][0]["attributes"]["POSITION"]]
     assert (positions["min"], positions["max"]) == ([0, 0, 0], [1, 1, 1])
 
 
@@ -140,23 +140,23 @@ def test_equal_surfaces_give_equal_bytes() -> None:
 
 
 def test_leaves_let_light_through_in_the_colours_of_their_picture() -> None:
-    book = document(encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
-    wood, leaf = book["materials"]
+    gltf = document(encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
+    wood, leaf = gltf["materials"]
     through = leaf["extensions"]["KHR_materials_diffuse_transmission"]
     assert through["diffuseTransmissionColorTexture"] == leaf["pbrMetallicRoughness"]["baseColorTexture"]
     assert 0.3 <= through["diffuseTransmissionFactor"] <= 0.5
-    assert book["extensionsUsed"] == ["KHR_materials_diffuse_transmission"]
+    assert gltf["extensionsUsed"] == ["KHR_materials_diffuse_transmission"]
     assert "extensions" not in wood
-    assert "extensionsRequired" not in book
+    assert "extensionsRequired" not in gltf
 
 
-def test_relief_is_a_normal_texture() -> None:
-    relief = np.full((8, 4, 3), (128, 128, 255), np.uint8)
-    surface = Surface(bark().mesh, bark().texture, relief)
-    book = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
-    texture = book["textures"][book["materials"][0]["normalTexture"]["index"]]
-    assert book["images"][texture["source"]]["name"] == "bark_relief"
-    assert book["accessors"][book["meshes"][0]["primitives"][0]["attributes"]["TANGENT"]]["type"] == "VEC4"
+def test_a_normal_map_is_a_normal_texture() -> None:
+    normal_map = np.full((8, 4, 3), (128, 128, 255), np.uint8)
+    surface = Surface(bark().mesh, bark().texture, normal_map)
+    gltf = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
+    texture = gltf["textures"][gltf["materials"][0]["normalTexture"]["index"]]
+    assert gltf["images"][texture["source"]]["name"] == "bark_relief"
+    assert gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"]["TANGENT"]]["type"] == "VEC4"
 
 
 def test_a_texture_s_sides_must_be_powers_of_two() -> None:
@@ -164,15 +164,15 @@ def test_a_texture_s_sides_must_be_powers_of_two() -> None:
         encode_glb([Part("bark", bark(7))], CAMERA, generator="treestroke 1")
 
 
-def test_twigs_wear_the_same_picture_without_relief_and_without_tangents() -> None:
-    relief = np.full((8, 4, 3), (128, 128, 255), np.uint8)
-    surface = Surface(tubes(fork(child_radius=0.004), TubeParams()), bark().texture, relief)
-    book = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
-    assert [one["name"] for one in book["materials"]] == ["bark", "bark_twigs"]
-    wood, twigs = (book["materials"][one["material"]] for one in book["meshes"][0]["primitives"])
+def test_twigs_have_the_same_picture_without_normal_map_and_tangents() -> None:
+    normal_map = np.full((8, 4, 3), (128, 128, 255), np.uint8)
+    surface = Surface(tubes(fork(child_radius=0.004), TubeParams()), bark().texture, normal_map)
+    gltf = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
+    assert [one["name"] for one in gltf["materials"]] == ["bark", "bark_twigs"]
+    wood, twigs = (gltf["materials"][one["material"]] for one in gltf["meshes"][0]["primitives"])
     assert wood["pbrMetallicRoughness"] == twigs["pbrMetallicRoughness"]
     assert [("normalTexture" in one) for one in (wood, twigs)] == [True, False]
-    assert [("TANGENT" in one["attributes"]) for one in book["meshes"][0]["primitives"]] == [True, False]
-    counts = [book["accessors"][one["indices"]]["count"] for one in book["meshes"][0]["primitives"]]
+    assert [("TANGENT" in one["attributes"]) for one in gltf["meshes"][0]["primitives"]] == [True, False]
+    counts = [gltf["accessors"][one["indices"]]["count"] for one in gltf["meshes"][0]["primitives"]]
     assert sum(counts) == surface.mesh.triangles.size
     assert min(counts) > 0

@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
+from tests.builders import fork
 
-from treestroke.core.geometry.mesh import Mesh
+from treestroke.core.geometry.mesh import Mesh, submesh
+from treestroke.core.mesh.tubes import tubes
 
 
 def columns(**changes: np.ndarray) -> dict[str, np.ndarray]:
@@ -41,5 +43,17 @@ def test_columns_that_do_not_fit_are_refused(name: str, array: np.ndarray) -> No
 
 
 def test_a_triangle_without_its_vertex_is_refused() -> None:
-    with pytest.raises(ValueError, match="names a vertex that does not exist"):
+    with pytest.raises(ValueError, match="refers to a vertex that does not exist"):
         Mesh(**columns(triangles=np.array([[0, 1, 3]], np.uint32)))
+
+
+def test_two_submeshes_make_up_the_whole() -> None:
+    mesh = tubes(fork(child_radius=0.004))
+    upper = mesh.positions[mesh.triangles].mean(axis=1)[:, 1] > 1.0
+    for kept in (upper, ~upper):
+        part, vertices = submesh(mesh, kept)
+        assert np.array_equal(part.positions[part.triangles], mesh.positions[mesh.triangles[kept]])
+        assert np.array_equal(part.positions, mesh.positions[vertices])
+        assert part.attachment is not None
+        assert mesh.attachment is not None
+        assert np.array_equal(part.attachment.joints, mesh.attachment.joints[vertices])

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.geometry.mesh import Mesh, Surface
-from treestroke.core.geometry.mipmaps import Mipmaps, stacked
+from treestroke.core.geometry.mipmaps import MipLevels, mip_texels
 
 
 def square(channels: int, reach: float = 1.0) -> Surface:
@@ -17,12 +17,12 @@ def square(channels: int, reach: float = 1.0) -> Surface:
 def texel(surface: Surface, side_px: float, x: float, y: float) -> int:
     corners_px = surface.mesh.positions[surface.mesh.triangles][..., :2].astype(np.float64) * side_px
     triangle = np.array([0 if x > y else 1])
-    return int(Mipmaps(surface, corners_px).texels(triangle, np.array([x]), np.array([y]))[0])
+    return int(MipLevels(surface, corners_px).texels(triangle, np.array([x]), np.array([y]))[0])
 
 
 def test_copies_follow_each_other_down_to_one_texel() -> None:
     pixels = np.random.default_rng(0).random((8, 8, 2)).astype(np.float32)
-    copies = stacked(pixels)
+    copies = mip_texels(pixels)
     assert len(copies) == 64 + 16 + 4 + 1
     assert copies[64] == pytest.approx(pixels[:2, :2].mean(axis=(0, 1)))
     assert copies[-1] == pytest.approx(pixels.mean(axis=(0, 1)))

@@ -27,9 +27,9 @@ def test_corners_stand_half_extents_off_the_centre(leaves, atlas):
 
 
 def test_a_card_holds_to_its_joint(leaves, atlas):
-    hold = cards(leaves, atlas).hold
-    assert hold.joints.tolist() == np.repeat([[1, 1], [2, 2], [3, 3]], 4, axis=0).tolist()
-    assert not hold.share.any()
+    attachment = cards(leaves, atlas).attachment
+    assert attachment.joints.tolist() == np.repeat([[1, 1], [2, 2], [3, 3]], 4, axis=0).tolist()
+    assert not attachment.share.any()
 
 
 def test_normals_are_unit_and_lean_outward(leaves, atlas):

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
-from treestroke.core.mesh.grain import Form, bark_grain
+from treestroke.core.mesh.bark_pattern import BarkForm, bark_pattern
 
 BROWN = np.array([120.0, 90.0, 70.0])
 
@@ -93,7 +93,7 @@ def test_a_long_trunk_that_is_seen_at_its_tip_alone_gets_the_hidden_colour() -> 
 
 def test_a_known_form_shapes_the_bark_of_a_hidden_trunk_and_mildly_that_of_a_seen_one() -> None:
     trunk = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]])
-    plates = bark_grain(TEXTURE_SIZE, np.random.default_rng(5), "plated")
+    plates = bark_pattern(TEXTURE_SIZE, np.random.default_rng(5), "plated")
 
     def likeness(radius: float) -> float:
         params, rng = BarkParams(form="plated"), np.random.default_rng(0)
@@ -105,7 +105,7 @@ def test_a_known_form_shapes_the_bark_of_a_hidden_trunk_and_mildly_that_of_a_see
 
 
 def test_smooth_bark_has_less_contrast_than_furrowed() -> None:
-    def contrast(form: Form) -> float:
+    def contrast(form: BarkForm) -> float:
         trunk, params = np.array([[150.0, 390.0], [150.0, 20.0]]), BarkParams(form=form)
         texture = bark_texture(photo_of_a_trunk(30.0), trunk, np.zeros(2), params, np.random.default_rng(0))
         return float(texture.mean(axis=2).std())

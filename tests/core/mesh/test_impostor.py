@@ -53,8 +53,8 @@ def two_balls() -> Surface:
 
 def test_the_atlas_has_sides_of_powers_of_two(two_balls: Surface) -> None:
     assert two_balls.texture.shape == (512, 1024, 4)
-    assert two_balls.relief is not None
-    assert two_balls.relief.shape == (512, 1024, 3)
+    assert two_balls.normal_map is not None
+    assert two_balls.normal_map.shape == (512, 1024, 3)
 
 
 def test_each_side_shows_what_is_nearer_there(two_balls: Surface) -> None:
@@ -76,9 +76,9 @@ def test_colours_go_on_beneath_the_clear_part(two_balls: Surface) -> None:
     assert (clear[:, 0] > clear[:, 1] + 100).all()
 
 
-def test_the_relief_bulges_to_the_viewer(two_balls: Surface) -> None:
-    assert two_balls.relief is not None
-    normals = tile(two_balls.relief, 4).astype(float) / 127.5 - 1
+def test_the_normal_map_bulges_to_the_viewer(two_balls: Surface) -> None:
+    assert two_balls.normal_map is not None
+    normals = tile(two_balls.normal_map, 4).astype(float) / 127.5 - 1
     assert normals[128, 128] == pytest.approx([0, 0, 1], abs=0.1)
     assert normals[128, 200, 0] > 0.4
     assert normals[40, 128, 1] > 0.4

@@ -55,32 +55,32 @@ def test_a_stick_is_a_closed_solid_of_the_right_volume() -> None:
 
 @given(st.integers(0, 100_000))
 @settings(max_examples=30, deadline=None)
-def test_vertices_hold_to_joints_of_one_path_to_the_root(seed: int) -> None:
+def test_vertices_are_attached_to_joints_of_one_path_to_the_root(seed: int) -> None:
     tree = any_tree(seed)
-    hold = tubes(tree, TubeParams()).hold
-    assert hold.joints.min() >= 0
-    assert ((hold.share >= 0) & (hold.share < 1)).all()
-    for near, far in np.unique(hold.joints, axis=0).tolist():
+    attachment = tubes(tree, TubeParams()).attachment
+    assert attachment.joints.min() >= 0
+    assert ((attachment.share >= 0) & (attachment.share < 1)).all()
+    for near, far in np.unique(attachment.joints, axis=0).tolist():
         while far > near:
             far = int(tree.parents[far])
         assert far == near
 
 
-def test_vertices_hold_to_where_their_rings_stand() -> None:
+def test_vertices_are_attached_where_their_rings_stand() -> None:
     tree = oak()
     mesh = tubes(tree, PLAIN)
-    share = mesh.hold.share[:, None]
-    held = tree.points[mesh.hold.joints[:, 0]] * (1 - share) + tree.points[mesh.hold.joints[:, 1]] * share
+    share = mesh.attachment.share[:, None]
+    held = tree.points[mesh.attachment.joints[:, 0]] * (1 - share) + tree.points[mesh.attachment.joints[:, 1]] * share
     away = np.linalg.norm(mesh.positions - held, axis=1)
-    thick = np.maximum(*tree.radii[mesh.hold.joints].T)
+    thick = np.maximum(*tree.radii[mesh.attachment.joints].T)
     assert (away <= 1.05 * thick).mean() > 0.9
     assert away.max() < 2 * thick.max()
 
 
-def test_a_limb_starts_from_the_joint_that_bears_it() -> None:
-    hold = tubes(fork()).hold
-    assert {(2, 2), (5, 5), (6, 6)} <= {(a, b) for a, b in hold.joints.tolist()}
-    assert not ((hold.joints == 3) | (hold.joints == 4)).any(axis=1)[hold.joints.max(axis=1) > 4].any()
+def test_a_limb_starts_from_its_parent_s_joint() -> None:
+    joints = tubes(fork()).attachment.joints
+    assert {(2, 2), (5, 5), (6, 6)} <= {(a, b) for a, b in joints.tolist()}
+    assert not ((joints == 3) | (joints == 4)).any(axis=1)[joints.max(axis=1) > 4].any()
 
 
 def _welded(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
@@ -124,7 +124,7 @@ def test_the_strongest_child_goes_on_ring_by_ring() -> None:
     assert trunk.bounds[:, 1] == pytest.approx([0.0, 3.6], abs=0.1)
 
 
-def test_a_child_starts_hidden_inside_its_bearer() -> None:
+def test_a_limb_starts_hidden_inside_its_parent() -> None:
     _, child = _pieces(tubes(fork(), TubeParams()))
     edges, count = np.unique(child.edges_sorted, axis=0, return_counts=True)
     rim = child.vertices[np.unique(edges[count == 1])]

@@ -97,13 +97,13 @@ def test_clumps_of_autumn_differ_in_hue() -> None:
 
 def test_the_bark_has_a_relief_of_its_texture_s_size() -> None:
     bark = modelled(MAPLE).tree.bark
-    assert bark.relief is not None
-    assert bark.relief.shape == bark.texture.shape
+    assert bark.normal_map is not None
+    assert bark.normal_map.shape == bark.texture.shape
 
 
 def test_a_beech_s_bark_is_smoother_than_an_oak_s() -> None:
     def tilt(species: str) -> float:
-        relief = modelled(MAPLE, species=species).tree.bark.relief
+        relief = modelled(MAPLE, species=species).tree.bark.normal_map
         assert relief is not None
         return float(np.abs(relief[..., :2].astype(float) - 128).mean())
 

@@ -46,7 +46,7 @@ def test_levels_wear_the_whole_tree_s_textures(maple: TreeModel, made: Levels) -
         assert level.leaf is not None
         assert maple.leaf is not None
         assert level.bark.texture is maple.bark.texture
-        assert level.bark.relief is maple.bark.relief
+        assert level.bark.normal_map is maple.bark.normal_map
         assert level.leaf.texture is maple.leaf.texture
 
 
@@ -54,10 +54,10 @@ def test_every_vertex_holds_to_the_grown_skeleton(maple: TreeModel, made: Levels
     points = maple.grown.skeleton.points
     height = np.ptp(points[:, 1])
     for surface in (*made.lod1.surfaces, *made.lod2.surfaces):
-        hold = surface.mesh.hold
-        assert hold is not None
-        start, end = points[hold.joints.T]
-        off = surface.mesh.positions - (start + hold.share[:, None] * (end - start))
+        attachment = surface.mesh.attachment
+        assert attachment is not None
+        start, end = points[attachment.joints.T]
+        off = surface.mesh.positions - (start + attachment.share[:, None] * (end - start))
         assert np.linalg.norm(off, axis=1).max() < 0.2 * height
 
 

@@ -9,7 +9,7 @@ from treestroke.core.sway.wind import Clip, Rig, Skin
 def turns_at(rig: Rig, clip: Clip, seconds: float) -> np.ndarray:
     """Interpolate each bone's turn (b, 3, 3)."""
     turns = np.tile([0.0, 0.0, 0.0, 1.0], (len(rig.names), 1))
-    for bone, times, keys in zip(clip.bones, clip.times, clip.turns, strict=True):
+    for bone, times, keys in zip(clip.bones, clip.times, clip.rotations, strict=True):
         turns[bone] = [np.interp(seconds, times, keys[:, k]) for k in range(4)]
     return Rotation.from_quat(turns).as_matrix()
 
@@ -44,5 +44,5 @@ def branches(rig: Rig) -> np.ndarray:
 
 def widest_turns(clip: Clip) -> dict[int, float]:
     """Greatest angle of each bone over a clip, rad."""
-    angles = [2.0 * np.arctan2(np.linalg.norm(keys[:, :3], axis=1), keys[:, 3]).max() for keys in clip.turns]
+    angles = [2.0 * np.arctan2(np.linalg.norm(keys[:, :3], axis=1), keys[:, 3]).max() for keys in clip.rotations]
     return dict(zip(clip.bones, angles, strict=True))

@@ -82,7 +82,7 @@ def test_wood_goes_over_to_a_bone_without_a_kink() -> None:
     assert np.nanmax(bends) < 0.01
 
 
-def test_limbs_that_bear_leaves_get_bones_before_bare_ones() -> None:
+def test_limbs_with_leaves_get_bones_before_bare_ones() -> None:
     tree = oak(orders=5)
     high = tips(tree)[tree.points[tips(tree), 0] > 0]
     leafy, bare = rig_of(tree, np.repeat(high, 1000)), rig_of(tree, None)

@@ -25,7 +25,7 @@ def swings(rig: Rig, clip: Clip) -> np.ndarray:
 @settings(deadline=None, max_examples=25)
 def test_loops_close_and_keys_are_unit_turns_in_order(tree: Skeleton) -> None:
     for clip in wind_of(tree, tuple(WEATHERS), np.array([len(tree) - 1])).clips:
-        for times, turns in zip(clip.times, clip.turns, strict=True):
+        for times, turns in zip(clip.times, clip.rotations, strict=True):
             assert (np.diff(times) > 0).all()
             assert times[0] == 0
             assert times[-1] == WEATHERS[clip.name].seconds
@@ -35,7 +35,7 @@ def test_loops_close_and_keys_are_unit_turns_in_order(tree: Skeleton) -> None:
 
 def test_loops_close_without_a_jerk(blown: Wind) -> None:
     for clip in blown.clips:
-        for turns in clip.turns:
+        for turns in clip.rotations:
             speed = np.diff(turns, axis=0)
             jerks = np.linalg.norm(np.diff(np.concatenate([speed, speed[:1]]), axis=0), axis=1)
             assert jerks[-1] <= jerks.max()
@@ -101,7 +101,9 @@ def test_a_tall_tree_swings_more_slowly_than_a_small_one() -> None:
 
 def test_equal_trees_get_equal_bytes() -> None:
     first, second = (wind_of(oak(), ("gust",), np.arange(20)) for _ in range(2))
-    assert [turns.tobytes() for turns in first.clips[0].turns] == [turns.tobytes() for turns in second.clips[0].turns]
+    assert [turns.tobytes() for turns in first.clips[0].rotations] == [
+        turns.tobytes() for turns in second.clips[0].rotations
+    ]
 
 
 def test_an_unknown_wind_is_refused() -> None:

@@ -7,7 +7,7 @@ from tests.builders import fork, oak
 from tests.core.sway.posing import moved
 from tests.strategies import skeletons
 
-from treestroke.core.geometry.mesh import Hold, Mesh
+from treestroke.core.geometry.mesh import Attachment, Mesh
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -23,9 +23,9 @@ def held_cards(tree: Skeleton, joints: np.ndarray) -> Mesh:
     """Build a card of 20 cm at each of some joints."""
     square = 0.1 * np.array([[-1.0, 0, 0], [1, 0, 0], [1, 2, 0], [-1, 2, 0]])
     positions = (tree.points[joints][:, None] + square).reshape(-1, 3).astype(np.float32)
-    hold = Hold(np.repeat(joints, 8).reshape(-1, 2), np.zeros(len(positions)))
+    attachment = Attachment(np.repeat(joints, 8).reshape(-1, 2), np.zeros(len(positions)))
     flat = np.zeros((len(positions), 3), np.float32)
-    return Mesh(positions, flat, flat[:, :2], np.zeros((0, 3), np.uint32), hold=hold)
+    return Mesh(positions, flat, flat[:, :2], np.zeros((0, 3), np.uint32), attachment=attachment)
 
 
 @given(skeletons())
@@ -35,9 +35,9 @@ def test_weights_sum_to_255_and_what_weighs_nothing_is_bone_0(tree: Skeleton) ->
     rig = rig_of(tree, joints)
     rng = np.random.default_rng(len(tree))
     mesh = held_cards(tree, joints)
-    pairs = np.stack([np.maximum(tree.parents, 0)[mesh.hold.joints[:, 0]], mesh.hold.joints[:, 0]], axis=1)
-    for leaves, hold in ((True, mesh.hold), (False, Hold(pairs, rng.random(len(pairs))))):
-        bound = skin(rig, replace(mesh, hold=hold), leaves=leaves)
+    pairs = np.stack([np.maximum(tree.parents, 0)[mesh.attachment.joints[:, 0]], mesh.attachment.joints[:, 0]], axis=1)
+    for leaves, attachment in ((True, mesh.attachment), (False, Attachment(pairs, rng.random(len(pairs))))):
+        bound = skin(rig, replace(mesh, attachment=attachment), leaves=leaves)
         assert (bound.weights.sum(axis=1, dtype=np.int64) == 255).all()
         assert (bound.bones[bound.weights == 0] == 0).all()
         assert bound.bones.max() < len(rig.names)
@@ -57,8 +57,8 @@ def test_a_vertex_follows_the_joints_it_stands_between() -> None:
     full = np.zeros((len(tree), len(rig.names)))
     np.add.at(full, (np.arange(len(tree)), rig.joint_bones[:, 0]), 1 - rig.joint_share)
     np.add.at(full, (np.arange(len(tree)), rig.joint_bones[:, 1]), rig.joint_share)
-    share = mesh.hold.share[:, None]
-    wanted = full[mesh.hold.joints[:, 0]] * (1 - share) + full[mesh.hold.joints[:, 1]] * share
+    share = mesh.attachment.share[:, None]
+    wanted = full[mesh.attachment.joints[:, 0]] * (1 - share) + full[mesh.attachment.joints[:, 1]] * share
     found = np.zeros(wanted.shape)
     for k in range(4):
         np.add.at(found, (np.arange(len(wanted)), bound.bones[:, k]), bound.weights[:, k] / 255)
@@ -87,18 +87,18 @@ def test_rings_stay_around_their_joints_in_a_gust(maple: TreeModel, blown: Wind)
         np.zeros((len(tree), 3), np.float32),
         np.zeros((len(tree), 2), np.float32),
         np.zeros((0, 3), np.uint32),
-        hold=Hold(np.repeat(np.arange(len(tree)), 2).reshape(-1, 2), np.zeros(len(tree))),
+        attachment=Attachment(np.repeat(np.arange(len(tree)), 2).reshape(-1, 2), np.zeros(len(tree))),
     )
-    hold = maple.bark.mesh.hold
-    on_joint = hold.joints[:, 0] == hold.joints[:, 1]
+    attachment = maple.bark.mesh.attachment
+    on_joint = attachment.joints[:, 0] == attachment.joints[:, 1]
     wood = moved(blown.rig, clip, 3.0, skin(blown.rig, joints, leaves=False), joints.positions.astype(np.float64))
     bark = moved(blown.rig, clip, 3.0, skin(blown.rig, maple.bark.mesh, leaves=False), positions)
-    before = np.linalg.norm(positions - tree.points[hold.joints[:, 0]], axis=1)
-    after = np.linalg.norm(bark - wood[hold.joints[:, 0]], axis=1)
+    before = np.linalg.norm(positions - tree.points[attachment.joints[:, 0]], axis=1)
+    after = np.linalg.norm(bark - wood[attachment.joints[:, 0]], axis=1)
     assert after[on_joint] == pytest.approx(before[on_joint], abs=0.004)
 
 
-def test_outer_corners_of_leaves_flutter_and_inner_ones_hold_to_the_wood() -> None:
+def test_outer_corners_of_leaves_flutter_and_inner_ones_follow_the_wood() -> None:
     tree = oak()
     rig = rig_of(tree, np.arange(len(tree)))
     joints = np.flatnonzero(rig.joint_share == 1)
@@ -133,7 +133,7 @@ def test_sway_is_0_at_the_foot_and_grows_outward(maple: TreeModel, blown: Wind) 
     assert ((bound.phase >= 0) & (bound.phase <= 1)).all()
 
 
-def test_a_mesh_that_holds_to_nothing_is_refused() -> None:
+def test_a_mesh_without_attachment_is_refused() -> None:
     tree = oak()
-    with pytest.raises(ValueError, match="holds to nothing"):
-        skin(wind_of(tree, (), None).rig, replace(tubes(tree), hold=None), leaves=False)
+    with pytest.raises(ValueError, match="without attachment"):
+        skin(wind_of(tree, (), None).rig, replace(tubes(tree), attachment=None), leaves=False)

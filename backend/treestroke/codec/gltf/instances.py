@@ -1,8 +1,8 @@
-"""A tree as a GLB whose leaves are instances: one card a tile, drawn many times (EXT_mesh_gpu_instancing)."""
+"""A tree as a GLB whose leaves are instances of one card for each tile (EXT_mesh_gpu_instancing)."""
 
 import numpy as np
 
-from treestroke.codec.gltf.book import Book
+from treestroke.codec.gltf.document import Document
 from treestroke.codec.gltf.tree import MATERIALS, Part, head_of
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import Mesh, Surface
@@ -14,44 +14,42 @@ from treestroke.core.types import Floats
 
 INSTANCING = "EXT_mesh_gpu_instancing"
 _BULGE = 0.5
-"""How far the normal of a card's corner leans out, as a slope: a card alone knows nothing of the crown."""
+"""Slope of the normals at a card's corners, outward: a single card does not know its place in the crown."""
 
 
 def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: Camera, *, generator: str) -> bytes:
-    """Write a tree as a GLB with a node for each tile of the atlas, and for each mirrored one, that many cards share.
+    """Encode a tree as a GLB with an instanced node for each tile of the atlas and for each mirrored one.
 
-    Each card has its place, turn, size and, as ``_COLOR_0``, its shade. The extension is named as used, not as
-    required: a reader without it shows one card a tile at the root. Equal input gives equal bytes.
+    Each instance has its translation, rotation, scale and, as ``_COLOR_0``, its shade. The extension is used, not
+    required: a reader without it shows one card for each tile at the root. Equal input gives equal bytes.
     """
-    book = Book()
-    material, wrap = MATERIALS["bark"]
-    book.add(f"bark{bark.suffix}", bark.surface, material, wrap)
-    children = _leaf_nodes(book, cards, atlas) if len(cards) else []
-    groups = [book.row("nodes", {"name": "leaf", "children": children})] if children else []
-    return book.glb(head_of([0, *groups], camera, generator))
+    document = Document()
+    document.add(f"bark{bark.suffix}", bark.surface, MATERIALS["bark"])
+    children = _leaf_nodes(document, cards, atlas) if len(cards) else []
+    groups = [document.row("nodes", {"name": "leaf", "children": children})] if children else []
+    return document.glb(head_of([0, *groups], camera, generator))
 
 
-def _leaf_nodes(book: Book, cards: Leaves, atlas: Atlas) -> list[int]:
-    """Enter a node for each picture that cards show."""
+def _leaf_nodes(document: Document, cards: Leaves, atlas: Atlas) -> list[int]:
+    """Add a node for each tile that cards show, plain and mirrored; their indices."""
     size = float(np.linalg.norm(cards.ups, axis=1).mean())
-    material, wrap = MATERIALS["leaf"]
-    worn = book.material("leaf", Surface(_card(atlas, 0, False, size), atlas.image), material, wrap)
-    book.used.add(INSTANCING)
+    material = document.material("leaf", Surface(_card(atlas, 0, False, size), atlas.image), MATERIALS["leaf"])
+    document.used.add(INSTANCING)
     nodes = []
     for tile in range(len(atlas.boxes)):
         for flip in (False, True):
             chosen = cards.select((cards.tiles == tile) & (cards.flips == flip))
             if len(chosen):
                 name = f"leaf_{tile:02d}{'_mirrored' if flip else ''}"
-                card = book.primitive(_card(atlas, tile, flip, size), worn)
-                shape = book.row("meshes", {"name": name, "primitives": [card]})
-                placed = {INSTANCING: {"attributes": _placed(book, chosen, size)}}
-                nodes.append(book.row("nodes", {"name": name, "mesh": shape, "extensions": placed}))
+                card = document.primitive(_card(atlas, tile, flip, size), material)
+                shape = document.row("meshes", {"name": name, "primitives": [card]})
+                placed = {INSTANCING: {"attributes": _placed(document, chosen, size)}}
+                nodes.append(document.row("nodes", {"name": name, "mesh": shape, "extensions": placed}))
     return nodes
 
 
 def _card(atlas: Atlas, tile: int, flip: bool, size: float) -> Mesh:
-    """Build the card of a tile, of so many metres from its middle to its sides; it faces +Z."""
+    """Build the card of a tile, facing +Z; ``size`` is half its side, metres."""
     flat = np.column_stack([CORNERS, np.zeros(4)])
     normals = unit(flat * _BULGE + np.array([0.0, 0.0, 1.0]))
     left, top, right, bottom = atlas.boxes[tile]
@@ -61,25 +59,32 @@ def _card(atlas: Atlas, tile: int, flip: bool, size: float) -> Mesh:
     return Mesh((flat * size).astype(np.float32), normals.astype(np.float32), uvs.astype(np.float32), triangles)
 
 
-def _placed(book: Book, cards: Leaves, size: float) -> dict[str, int]:
-    """Enter where the cards (m) are, how they are turned, how large and how bright."""
+def _placed(document: Document, cards: Leaves, size: float) -> dict[str, int]:
+    """Add the instance attributes of cards; ``size`` is half the side of the instanced card, metres."""
     width, height = (np.linalg.norm(sides, axis=1) for sides in (cards.rights, cards.ups))
     scale = np.stack([width, height, (width + height) / 2], axis=1) / size
     right, up = unit(cards.rights, np.array([1.0, 0.0, 0.0])), unit(cards.ups, UP)
-    turns = quaternions(np.stack([right, up, np.cross(right, up)], axis=2))
+    rotations = quaternions(np.stack([right, up, np.cross(right, up)], axis=2))
     grey = np.rint(cards.shades * 255).astype(np.uint8)
     shades = np.stack([grey, grey, grey, np.full_like(grey, 255)], axis=1)
     return {
-        "TRANSLATION": book.accessor(cards.centres.astype(np.float32)),
-        "ROTATION": book.accessor(np.rint(turns * 32767).astype(np.int16), normalized=True),
-        "SCALE": book.accessor(scale.astype(np.float32)),
-        "_COLOR_0": book.accessor(shades, normalized=True),
+        "TRANSLATION": document.accessor(cards.centres.astype(np.float32)),
+        "ROTATION": document.accessor(np.rint(rotations * 32767).astype(np.int16), normalized=True),
+        "SCALE": document.accessor(scale.astype(np.float32)),
+        "_COLOR_0": document.accessor(shades, normalized=True),
     }
 
 
-def quaternions(turns: Floats) -> Floats:
-    """Write turns (m, 3, 3), whose columns are where the axes go, as unit quaternions (m, 4): x, y, z, w."""
-    (a, b, c), (d, e, f), (g, h, i) = turns.transpose(1, 2, 0)
+def quaternions(rotations: Floats) -> Floats:
+    """Convert rotation matrices (m, 3, 3) to unit quaternions (m, 4): x, y, z, w.
+
+    Written out, because importing scipy's rotations takes five times as long as writing the whole file.
+
+    Notes
+    -----
+    Shepperd, "Quaternion from Rotation Matrix", 1978: of the four ways, the one with the largest component is used.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = rotations.transpose(1, 2, 0)
     # Four times the quaternion's products with itself; the row with the largest square is the least rounded.
     rows = [
         [1 + a - e - i, b + d, c + g, h - f],

@@ -1,11 +1,11 @@
-"""A tree as glTF in files of its own: the document, the buffer and the pictures beside it."""
+"""A tree as glTF in separate files: the document, the buffer and the pictures."""
 
 import json
 from collections.abc import Sequence
 from urllib.parse import quote
 
-from treestroke.codec.gltf.book import Book
-from treestroke.codec.gltf.tree import Part, write_book
+from treestroke.codec.gltf.document import Document
+from treestroke.codec.gltf.tree import Part, build_document
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.sway.wind import Wind
 
@@ -15,32 +15,32 @@ _ENDINGS = {"image/jpeg": "jpg", "image/png": "png"}
 def encode_gltf(
     parts: Sequence[Part], camera: Camera, *, generator: str, stem: str, wind: Wind | None = None
 ) -> dict[str, bytes]:
-    """Write a tree as ``stem.gltf``, ``stem.bin``, ``stem_bark.jpg``, ``stem_leaf.png`` ...: bytes by name.
+    """Encode a tree as ``stem.gltf``, ``stem.bin``, ``stem_bark.jpg``, ``stem_leaf.png`` ...: bytes by name.
 
-    The document says the same as `encode_glb`'s. Equal input gives equal bytes.
+    The content is that of `encode_glb`. Equal input gives equal bytes.
     """
-    book, head = write_book(parts, camera, generator, wind)
-    pictures = _take_pictures(book, stem)
-    document = book.document(head)
-    document["buffers"][0]["uri"] = quote(f"{stem}.bin")
-    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False).encode()
-    return {f"{stem}.gltf": text, f"{stem}.bin": bytes(book.binary), **pictures}
+    document, head = build_document(parts, camera, generator, wind)
+    pictures = _take_pictures(document, stem)
+    content = document.as_dict(head)
+    content["buffers"][0]["uri"] = quote(f"{stem}.bin")
+    text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False).encode()
+    return {f"{stem}.gltf": text, f"{stem}.bin": bytes(document.binary), **pictures}
 
 
-def _take_pictures(book: Book, stem: str) -> dict[str, bytes]:
-    """Move the pictures out of the buffer to files, and close the gaps."""
-    views, content = book.tables.pop("bufferViews"), bytes(book.binary)
-    book.binary.clear()
+def _take_pictures(document: Document, stem: str) -> dict[str, bytes]:
+    """Move the pictures out of the buffer into files: their bytes by name. The rest of the buffer is packed anew."""
+    views, content = document.tables.pop("bufferViews"), bytes(document.binary)
+    document.binary.clear()
     spans = [content[view["byteOffset"] : view["byteOffset"] + view["byteLength"]] for view in views]
     pictures = {}
-    for image in book.tables["images"]:
+    for image in document.tables["images"]:
         name = f"{stem}_{image['name']}.{_ENDINGS[image['mimeType']]}"
         pictures[name] = spans[image.pop("bufferView")]
         image["uri"] = quote(name)
     moved = {}
-    for row in book.tables["accessors"]:
+    for row in document.tables["accessors"]:
         old = row["bufferView"]
         if old not in moved:
-            moved[old] = book.view(spans[old], views[old].get("target"))
+            moved[old] = document.view(spans[old], views[old].get("target"))
         row["bufferView"] = moved[old]
     return pictures

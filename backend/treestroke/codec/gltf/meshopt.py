@@ -1,10 +1,10 @@
-"""Bit streams of glTF's EXT_meshopt_compression, from its published description (Khronos, Appendix A and B).
+"""Bit streams of glTF's EXT_meshopt_compression, by its specification (Khronos, appendices A and B).
 
 ======  ====================================================================
 letter  meaning
 ======  ====================================================================
 n       elements (vertices, keyframes)
-s       bytes of an element, a multiple of 4
+s       bytes in an element, a multiple of 4
 g       groups of 16 elements
 t       triangles
 ======  ====================================================================
@@ -19,28 +19,35 @@ Bytes = NDArray[np.uint8]
 
 _ATTRIBUTES, _TRIANGLES = 0xA0, 0xE1  # the streams' first bytes
 _GROUP, _GROUPS_A_BYTE, _BLOCK_BYTES, _BLOCK_ELEMENTS = 16, 4, 8192, 256
-_TAIL = 32  # least bytes after the last block; they end with the element that the first is told from
-_EDGES, _VERTICES, _EDGE_VERTICES = 15, 14, 12  # places in the queues that a code can name
-_TABLE = 16  # bytes of the table that ends the triangles; the last two stay 0
-_PAIRS = bytes.fromhex("00 76 65 75 86 45 87 56 02 03 97 67 78 a7")  # commonest second and third corners, two trees
-_NEXT, _BEFORE, _AFTER, _FAR = 0x0, 0xD, 0xE, 0xF  # how a corner is told: the next vertex, a neighbour, in full
-_TABLED, _UNTABLED, _NONE_NEXT = 0xF0, 0xFE, 0xFF  # codes of triangles that share no edge in the queue
+_TAIL = 32  # least bytes after the last block; they end with the baseline, the element before the first
+_EDGES, _VERTICES, _EDGE_VERTICES = 15, 14, 12  # entries of the FIFOs that a code can refer to
+_TABLE = 16  # bytes of the codeaux table that ends the triangles; the last two stay 0
+_PAIRS = bytes.fromhex(
+    "00 76 65 75 86 45 87 56 02 03 97 67 78 a7"
+)  # codeaux: most frequent second and third corners, on two trees
+_NEXT, _BEFORE, _AFTER, _FAR = (
+    0x0,
+    0xD,
+    0xE,
+    0xF,
+)  # codes of a corner: the next vertex, one before or after the last, in full
+_TABLED, _UNTABLED, _NONE_NEXT = 0xF0, 0xFE, 0xFF  # codes of triangles that share no edge in the FIFO
 
 _QUAD, _QUAD_CODES = np.array([0, 1, 2, 0, 2, 3]), b"\xf0\x00"
-"""A card on its own, and what says so: three next vertices, then the last edge and the next vertex."""
+"""The triangles of a card, and their codes: three next vertices, then the last edge and the next vertex."""
 
 
 def encode_attributes(elements: Bytes) -> bytes:
-    """Write elements (n, s) in the mode ATTRIBUTES, version 0: each byte by its change from the element before.
+    """Encode elements (n, s) in the mode ATTRIBUTES, version 0: each byte as its change from the element before.
 
     Raises
     ------
     ValueError
-        There are no elements, or their size is no multiple of 4 up to 256.
+        There are no elements, or their size is not a multiple of 4 up to 256.
     """
     count, stride = elements.shape
     if not count or stride % 4 or not 4 <= stride <= 256:
-        raise ValueError(f"elements must be of 4, 8 ... 256 bytes, one at least, got {elements.shape}")
+        raise ValueError(f"there must be elements of 4, 8 ... 256 bytes, got {elements.shape}")
     groups = -(-count // _GROUP)
     changes = np.zeros((groups * _GROUP, stride), dtype=np.uint8)
     changes[1:count] = np.diff(elements, axis=0)
@@ -54,10 +61,10 @@ def encode_attributes(elements: Bytes) -> bytes:
 
 
 def encode_triangles(triangles: NDArray[np.integer]) -> bytes:
-    """Write triangles (t, 3) in the mode TRIANGLES, version 1; corners may turn, never flip.
+    """Encode triangles (t, 3) in the mode TRIANGLES, version 1; corners may rotate, never flip.
 
-    One byte a triangle where vertices are numbered in the order in which triangles first name them and a triangle
-    shares an edge with one of the few before it.
+    A triangle takes one byte if vertices are numbered in the order of their first use and it shares an edge with one of
+    the few triangles before it.
     """
     quads, rest = divmod(len(triangles), 2)
     if not rest and np.array_equal(triangles.reshape(-1, 6), np.arange(quads)[:, None] * 4 + _QUAD):
@@ -70,7 +77,7 @@ def encode_triangles(triangles: NDArray[np.integer]) -> bytes:
 
 
 def octahedral(directions: NDArray[np.floating]) -> Bytes:
-    """Fold unit vectors (n, 3), or with a sign each (n, 4), to the filter OCTAHEDRAL's elements (n, 4), 8 bit."""
+    """Encode unit vectors (n, 3), or (n, 4) with a sign, as elements (n, 4) of 8 bit for the filter OCTAHEDRAL."""
     vectors = directions[:, :3].astype(np.float64)
     x, y, z = (vectors / np.maximum(np.abs(vectors).sum(axis=1, keepdims=True), 1e-9)).T
     fold = np.maximum(-z, 0.0)
@@ -81,9 +88,9 @@ def octahedral(directions: NDArray[np.floating]) -> Bytes:
 
 
 def fixed_point(values: NDArray[np.floating], bits: int) -> Bytes:
-    """Round values (n, c) to multiples of 2 to the power of -``bits``: the filter EXPONENTIAL's elements (n, 4 c).
+    """Round values (n, c) to multiples of 2 to the power of -``bits``: elements (n, 4 c) for the filter EXPONENTIAL.
 
-    Where a value is too large for 24 bits, all are rounded to larger multiples.
+    If a value needs more than 24 bits, all are rounded to larger multiples.
     """
     bits = min(bits, 22 - int(np.frexp(np.abs(values).max(initial=0))[1]))
     multiples = np.rint(values.astype(np.float64) * 2.0**bits).astype(np.int64)
@@ -91,7 +98,7 @@ def fixed_point(values: NDArray[np.floating], bits: int) -> Bytes:
 
 
 def _blocks(rows: Bytes, block: int) -> bytes:
-    """Write groups (g, s, 16) in blocks of so many groups: for each byte of the elements the modes, then the bodies."""
+    """Encode groups (g, s, 16) in blocks of ``block`` groups: for each byte of the elements headers, then data."""
     if not len(rows):
         return b""
     packed = (each.reshape(-1, block, *each.shape[1:]).swapaxes(1, 2) for each in _packed(rows))
@@ -107,7 +114,7 @@ def _blocks(rows: Bytes, block: int) -> bytes:
 
 
 def _packed(rows: Bytes) -> tuple[Bytes, Indices, Bytes]:
-    """Choose the shortest form of each row of 16 bytes (g, s, 16): (bodies, their sizes, their modes)."""
+    """Choose the shortest form of each row of 16 bytes (g, s, 16): (data, its sizes, header bits)."""
     over = [(rows >= sentinel).sum(axis=2) for sentinel in (1, 3, 15)]
     costs = np.stack([np.where(over[0] > 0, 99, 0), 4 + over[1], 8 + over[2], np.full_like(over[0], 16)], axis=2)
     modes = costs.argmin(axis=2).astype(np.uint8)
@@ -119,7 +126,7 @@ def _packed(rows: Bytes) -> tuple[Bytes, Indices, Bytes]:
 
 
 def _with_sentinels(rows: Bytes, bits: int) -> Bytes:
-    """Pack rows (k, 16) into so many bits a value, all ones for those that follow as whole bytes: (k, 16)."""
+    """Pack rows (k, 16) into ``bits`` for each value, all ones for values that follow as whole bytes: (k, 16)."""
     sentinel, each = 2**bits - 1, 8 // bits
     large = rows >= sentinel
     shifts = np.arange(8 - bits, -1, -bits, dtype=np.uint8)
@@ -129,9 +136,9 @@ def _with_sentinels(rows: Bytes, bits: int) -> Bytes:
 
 
 class _Triangles:
-    """What a reader of the mode TRIANGLES remembers, and what it is told.
+    """Encoder of the mode TRIANGLES: the state that the decoder will have, and the codes written so far.
 
-    The queues are kept as the time at which each edge and vertex was last pushed: its place is how long ago that was.
+    The FIFOs are kept as the time at which each edge and vertex was last pushed: its position is how long ago that was.
     """
 
     def __init__(self, vertices: int) -> None:
@@ -143,7 +150,7 @@ class _Triangles:
         self.pushed_vertices = 0
 
     def share_edge(self, a: int, b: int, c: int) -> bool:
-        """Write a triangle by an edge that is in the queue, if there is one."""
+        """Encode a triangle by an edge that is in the FIFO; return whether there is one."""
         edges, now = self.edges, self.pushed_edges
         for first, second, third in ((a, b, c), (b, c, a), (c, a, b)):
             ago = now - 1 - edges.get((first, second), -_GROUP)
@@ -155,31 +162,31 @@ class _Triangles:
         return False
 
     def stand_alone(self, a: int, b: int, c: int) -> None:
-        """Write a triangle by its corners, the next vertex first if it is one of them."""
+        """Encode a triangle by its corners, the next vertex first if it is one of them."""
         if self.next in (b, c):
             a, b, c = (b, c, a) if self.next == b else (c, a, b)
         start, begins = len(self.extra), self.next == a
         if begins:
             self.next += 1
         else:
-            self._tell_far(a)
+            self._encode_far(a)
         second, third = self._corner(b), self._corner(c)
         tabled = _PAIRS.find(second << 4 | third) if begins else -1
         if tabled < 0:
             self.extra.insert(start, second << 4 | third)
         self.codes.append(_TABLED | tabled if tabled >= 0 else _UNTABLED if begins else _NONE_NEXT)
-        for vertex, how in ((a, _NEXT), (b, second), (c, third)):
-            if how in (_NEXT, _FAR):
+        for vertex, code in ((a, _NEXT), (b, second), (c, third)):
+            if code in (_NEXT, _FAR):
                 self._push(vertex)
         self.edges[b, a], self.edges[c, b], self.edges[a, c] = range(self.pushed_edges, self.pushed_edges + 3)
         self.pushed_edges += 3
 
     def stream(self) -> bytes:
-        """Join what was told."""
+        """Join the parts of the stream."""
         return bytes([_TRIANGLES]) + self.codes + self.extra + _PAIRS.ljust(_TABLE, b"\0")
 
     def _third(self, c: int) -> int:
-        """Tell the corner across from a shared edge."""
+        """Encode the corner opposite to a shared edge and return its code."""
         ago = self.pushed_vertices - 1 - self.vertices[c]
         if 0 < ago <= _EDGE_VERTICES:
             return ago
@@ -188,25 +195,25 @@ class _Triangles:
             self.next += 1
             return _NEXT
         if c in (self.last - 1, self.last + 1):
-            how = _BEFORE if c < self.last else _AFTER
+            code = _BEFORE if c < self.last else _AFTER
             self.last = c
-            return how
-        self._tell_far(c)
+            return code
+        self._encode_far(c)
         return _FAR
 
     def _corner(self, vertex: int) -> int:
-        """Tell a further corner of a triangle that stands alone."""
+        """Encode the second or third corner of a triangle without a shared edge and return its code."""
         if vertex == self.next:
             self.next += 1
             return _NEXT
         ago = self.pushed_vertices - 1 - self.vertices[vertex]
         if ago < _VERTICES:
             return ago + 1
-        self._tell_far(vertex)
+        self._encode_far(vertex)
         return _FAR
 
-    def _tell_far(self, vertex: int) -> None:
-        """Tell a vertex in full, by its distance from the last one told so."""
+    def _encode_far(self, vertex: int) -> None:
+        """Encode a vertex in full, by its distance from the last one encoded so."""
         change = vertex - self.last
         folded = change * 2 if change >= 0 else -change * 2 - 1
         while folded > 0x7F:

@@ -1,41 +1,42 @@
-"""Wind in a glTF document: bones as nodes, what vertices follow them, and clips as animations."""
+"""Wind in a glTF document: bones as nodes, a skin, and clips as animations."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.codec.gltf.book import Book
+from treestroke.codec.gltf.document import Document
 from treestroke.core.sway.wind import Clip, Rig, Wind
 
 _DIGITS = 6
-"""Of a bone's place in metres, so that the ways from bone to bone add up to what the vertices are bound to."""
+"""Decimals of a bone's position, metres: rounded, translations add up exactly to the inverse bind matrices."""
 
 
-def add_wind(book: Book, wind: Wind) -> int:
-    """Enter bones, the document's only skin and the clips; give the root bone's node, which is to stand in the scene.
+def add_wind(document: Document, wind: Wind) -> int:
+    """Add bones, the document's only skin and the clips; return the index of the root bone's node.
 
-    Bones are unturned at rest. A branch bone's ``extras.radius`` is that of its wood, metres.
+    That node belongs into the scene. Bones have no rotation at rest. A branch bone's ``extras.radius`` is that of its
+    wood, metres.
     """
-    first = len(book.tables.get("nodes", []))
+    first = len(document.tables.get("nodes", []))
     rig = wind.rig
     for node in _joints(rig, first):
-        book.row("nodes", node)
+        document.row("nodes", node)
     joints = list(range(first, first + len(rig.names)))
-    bound = book.accessor(_inverse_binds(rig))
-    book.row("skins", {"name": "wind", "inverseBindMatrices": bound, "skeleton": first, "joints": joints})
+    bound = document.accessor(_inverse_binds(rig))
+    document.row("skins", {"name": "wind", "inverseBindMatrices": bound, "skeleton": first, "joints": joints})
     for clip in wind.clips:
-        book.row("animations", _animation(book, clip, first))
+        document.row("animations", _animation(document, clip, first))
     return first
 
 
 def _joints(rig: Rig, first: int) -> list[dict[str, Any]]:
-    """Make a node of each bone, the root's at ``first``."""
+    """Return a node for each bone; the root bone's has the index ``first``."""
     heads = np.round(rig.heads, _DIGITS)
     nodes = []
     for bone, (name, parent) in enumerate(zip(rig.names, rig.parents.tolist(), strict=True)):
-        way = heads[bone] - heads[parent] if parent >= 0 else heads[bone]
-        node: dict[str, Any] = {"name": name, "translation": np.round(way, _DIGITS).tolist()}
+        offset = heads[bone] - heads[parent] if parent >= 0 else heads[bone]
+        node: dict[str, Any] = {"name": name, "translation": np.round(offset, _DIGITS).tolist()}
         children = (first + np.flatnonzero(rig.parents == bone)).tolist()
         if children:
             node["children"] = children
@@ -46,23 +47,23 @@ def _joints(rig: Rig, first: int) -> list[dict[str, Any]]:
 
 
 def _inverse_binds(rig: Rig) -> NDArray[np.float32]:
-    """Give the matrices (b, 16), columns one after the other, that bring the world's points into a bone's frame."""
+    """Return the inverse bind matrices (b, 16), column-major, from the world to each bone's frame, metres."""
     matrices = np.tile(np.eye(4, dtype=np.float32), (len(rig.names), 1, 1))
     matrices[:, 3, :3] = -np.round(rig.heads, _DIGITS)
     return matrices.reshape(-1, 16)
 
 
-def _animation(book: Book, clip: Clip, first: int) -> dict[str, Any]:
-    """Enter a clip's times and turns; bones with the same times share them."""
+def _animation(document: Document, clip: Clip, first: int) -> dict[str, Any]:
+    """Add a clip's keyframes and return its animation; bones with the same times share them."""
     inputs: dict[bytes, int] = {}
     samplers: list[dict[str, int]] = []
     channels: list[dict[str, Any]] = []
-    for bone, times, turns in zip(clip.bones, clip.times, clip.turns, strict=True):
+    for bone, times, rotations in zip(clip.bones, clip.times, clip.rotations, strict=True):
         seconds = times.astype(np.float32)
         key = seconds.tobytes()
         if key not in inputs:
-            inputs[key] = book.accessor(seconds, bounded=True)
+            inputs[key] = document.accessor(seconds, bounded=True)
         target = {"node": first + bone, "path": "rotation"}
         channels.append({"sampler": len(samplers), "target": target})
-        samplers.append({"input": inputs[key], "output": book.accessor(turns.astype(np.float32))})
+        samplers.append({"input": inputs[key], "output": document.accessor(rotations.astype(np.float32))})
     return {"name": clip.name, "channels": channels, "samplers": samplers}

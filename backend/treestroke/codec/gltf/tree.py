@@ -1,11 +1,11 @@
-"""A tree as glTF 2.0: which nodes, materials and movements its file holds."""
+"""A tree as glTF 2.0: the nodes, materials and animations of its file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from treestroke.codec.gltf.book import TRANSLUCENT, Book
 from treestroke.codec.gltf.compression import compressed
+from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
 from treestroke.codec.gltf.rig import add_wind
 from treestroke.codec.skeleton import plain_camera
@@ -13,31 +13,33 @@ from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.sway.wind import Skin, Wind
 
-_CLAMP, _REPEAT = 33071, 10497
-BARK_MATERIAL = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.95}}
-LEAF_MATERIAL = {
-    "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0},
-    "alphaMode": "MASK",
-    "alphaCutoff": ALPHA_CUT,
-    "doubleSided": True,
-    "extensions": {
-        TRANSLUCENT: {"diffuseTransmissionFactor": 0.4, "diffuseTransmissionColorFactor": [1.0, 1.0, 0.6]},
-    },
-}
-"""A leaf lets through nearly as much light as it throws back, of less blue (Woolley 1971)."""
-IMPOSTOR_MATERIAL = {
-    "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0},
-    "alphaMode": "MASK",
-    "alphaCutoff": ALPHA_CUT,
-}
-"""Seen from the front only: each picture belongs to one side of its plane."""
-COLLISION_MATERIAL = {"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}}
-Stuff = Literal["bark", "leaf", "impostor", "collision"]
-MATERIALS: Mapping[Stuff, tuple[Mapping[str, Any], int]] = {
-    "bark": (BARK_MATERIAL, _REPEAT),
-    "leaf": (LEAF_MATERIAL, _CLAMP),
-    "impostor": (IMPOSTOR_MATERIAL, _CLAMP),
-    "collision": (COLLISION_MATERIAL, _REPEAT),
+_CLAMP, _REPEAT = 33071, 10497  # a sampler's wrapS and wrapT
+MaterialName = Literal["bark", "leaf", "impostor", "collision"]
+MATERIALS: Mapping[MaterialName, Material] = {
+    "bark": Material({"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.95}}, _REPEAT),
+    # A leaf transmits nearly as much light as it reflects, with less blue (Woolley 1971).
+    "leaf": Material(
+        {
+            "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0},
+            "alphaMode": "MASK",
+            "alphaCutoff": ALPHA_CUT,
+            "doubleSided": True,
+            "extensions": {
+                TRANSLUCENT: {"diffuseTransmissionFactor": 0.4, "diffuseTransmissionColorFactor": [1.0, 1.0, 0.6]},
+            },
+        },
+        _CLAMP,
+    ),
+    # Single-sided: each picture belongs to one side of its plane.
+    "impostor": Material(
+        {
+            "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0},
+            "alphaMode": "MASK",
+            "alphaCutoff": ALPHA_CUT,
+        },
+        _CLAMP,
+    ),
+    "collision": Material({"pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 1.0}}, _REPEAT),
 }
 
 
@@ -47,19 +49,19 @@ class Part:
 
     Attributes
     ----------
-    stuff
-        What it is made of.
+    material
+        The name of its material, which also names its node and mesh.
     surface
         Its triangles and textures.
     skin
-        How it follows the wind's bones, or None where nothing moves.
+        How its vertices follow the wind's bones, or None where nothing moves.
     suffix
-        Stands behind the name of its node, mesh and material: ``_lod1``.
+        Added to the names of its node, mesh and material, such as ``_lod1``.
     coarser
-        What readers of MSFT_lod show in its place where it is small, from finer to coarser.
+        The nodes that readers of MSFT_lod show in its place where it is small, from finer to coarser.
     """
 
-    stuff: Stuff
+    material: MaterialName
     surface: Surface
     skin: Skin | None = None
     suffix: str = ""
@@ -69,41 +71,42 @@ class Part:
 def encode_glb(
     parts: Sequence[Part], camera: Camera, *, generator: str, wind: Wind | None = None, compress: bool = False
 ) -> bytes:
-    """Write a tree as a self-contained GLB.
+    """Encode a tree as a self-contained GLB.
 
-    Nodes, meshes and materials are named by their stuff; the scene's ``extras.photo`` holds the camera. The bark's
+    Nodes, meshes and materials are named by their material; the scene's ``extras.photo`` holds the camera. The bark's
     texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at `ALPHA_CUT`. Texture coordinates within
-    0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Compressed, the file is about a third as large and asks
-    readers for three extensions (`compression`). Equal input gives equal bytes.
+    0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Compressed, the file is about a third as large and requires
+    three extensions of its readers (`compression`). Equal input gives equal bytes.
     """
-    book, head = write_book(parts, camera, generator, wind)
-    return (compressed(book) if compress else book).glb(head)
+    document, head = build_document(parts, camera, generator, wind)
+    return (compressed(document) if compress else document).glb(head)
 
 
-def write_book(parts: Sequence[Part], camera: Camera, generator: str, wind: Wind | None) -> tuple[Book, dict[str, Any]]:
-    """Fill the tables, and give what stands before them."""
-    book = Book()
-    roots = [_add(book, part, wind) for part in parts]
+def build_document(
+    parts: Sequence[Part], camera: Camera, generator: str, wind: Wind | None
+) -> tuple[Document, dict[str, Any]]:
+    """Build the document of a tree, and the entries of its JSON that come before the tables."""
+    document = Document()
+    roots = [_add(document, part, wind) for part in parts]
     for part, node in zip(parts, roots, strict=True):
         if part.coarser:
-            ends = part.coarser[-1].stuff == "impostor"
-            add_levels(book, node, [_add(book, level, wind) for level in part.coarser], ends)
+            ends = part.coarser[-1].material == "impostor"
+            add_levels(document, node, [_add(document, level, wind) for level in part.coarser], ends)
     if wind is not None:
-        # a mesh that follows bones stands beside them, for nothing else may move it
-        roots.append(add_wind(book, wind))
-    return book, head_of(roots, camera, generator)
+        # a skinned mesh stands beside its bones, for no other node may move it
+        roots.append(add_wind(document, wind))
+    return document, head_of(roots, camera, generator)
 
 
-def _add(book: Book, part: Part, wind: Wind | None) -> int:
-    """Enter a part and give its node."""
-    material, wrap = MATERIALS[part.stuff]
-    name = part.stuff + part.suffix
-    # An impostor is as clear between its leaves as they are: readers that go by names take it for leaves.
-    worn = f"leaf_{name}" if part.stuff == "impostor" else name
-    return book.add(name, part.surface, material, wrap, part.skin if wind else None, worn)
+def _add(document: Document, part: Part, wind: Wind | None) -> int:
+    """Add a part and return the index of its node."""
+    name = part.material + part.suffix
+    # An impostor is transparent between its leaves: readers that recognise leaves by name must cut it as they do those.
+    material_name = f"leaf_{name}" if part.material == "impostor" else name
+    return document.add(name, part.surface, MATERIALS[part.material], part.skin if wind else None, material_name)
 
 
 def head_of(roots: list[int], camera: Camera, generator: str) -> dict[str, Any]:
-    """Give what stands before the tables: one scene, and how the photo saw it."""
+    """Return the entries before the tables: the asset, and one scene with the photo's camera."""
     scene = {"nodes": roots, "extras": {"photo": plain_camera(camera)}}
     return {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [scene]}

@@ -1,4 +1,4 @@
-"""Textures as a viewer shows them small: averaged to half the size again and again."""
+"""Mipmaps: the copies of a texture, each half as large, that a viewer reads where the texture is drawn small."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,10 +8,11 @@ from treestroke.core.geometry.raster import planes
 from treestroke.core.types import Floats, Indices
 
 
-class Mipmaps:
-    """Tells which texel of a texture's ever smaller copies a triangle shows, by the size at which it is drawn."""
+class MipLevels:
+    """The mipmap level of each triangle, by the size at which it is drawn, and the texels that it shows."""
 
     def __init__(self, surface: Surface, corners_px: Floats) -> None:
+        """Choose the levels for triangles drawn at corners (t, 3, 2), px."""
         height, width, channels = surface.texture.shape
         self.repeats = channels == 3
         uvs = surface.mesh.uvs[surface.mesh.triangles].astype(np.float64)
@@ -24,7 +25,7 @@ class Mipmaps:
         self.start = np.cumsum(np.append(0, self.sizes.prod(axis=1)))
 
     def texels(self, triangle: Indices, x: Floats, y: Floats) -> Indices:
-        """Find the row (m,) of `stacked` that points x, y (m,), px, of the given triangles show."""
+        """Find the row index (m,) in `mip_texels` that points x, y (m,), px, of triangles with index (m,) show."""
         level = self.level[triangle]
         u, v = self.coordinates.at(triangle, x, y)
         height, width = self.sizes[level].T
@@ -36,8 +37,8 @@ class Mipmaps:
         return np.asarray(self.start[level] + row * width + column)
 
 
-def stacked(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Average (h, w, c), sides powers of two, to half the size down to a side of one: all copies' texels (n, c)."""
+def mip_texels(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Halve pixels (h, w, c), any unit, sides powers of two, by averaging until a side is 1: all texels (n, c)."""
     copies = [pixels]
     while min(copies[-1].shape[:2]) > 1:
         last = copies[-1]
@@ -47,15 +48,16 @@ def stacked(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 class Cutout:
-    """Tells where textured triangles are not cut away at `ALPHA_CUT`, at the size at which they are drawn."""
+    """Alpha test at `ALPHA_CUT` of textured triangles, at the size at which they are drawn."""
 
     def __init__(self, surface: Surface, corners_px: Floats) -> None:
-        self.maps = None if surface.texture.shape[2] == 3 else Mipmaps(surface, corners_px)
-        if self.maps is not None:
-            self.there = stacked(surface.texture[:, :, 3:].astype(np.float32))[:, 0] >= 255 * ALPHA_CUT
+        """Prepare the test for triangles drawn at corners (t, 3, 2), px."""
+        self.levels = None if surface.texture.shape[2] == 3 else MipLevels(surface, corners_px)
+        if self.levels is not None:
+            self.opaque = mip_texels(surface.texture[:, :, 3:].astype(np.float32))[:, 0] >= 255 * ALPHA_CUT
 
     def __call__(self, triangle: Indices, x: Floats, y: Floats) -> NDArray[np.bool_]:
-        """Tell which points (m,), px, of the triangles named are there."""
-        if self.maps is None:
+        """Return the mask (m,) of the points x, y, px, of triangles with index (m,) that pass."""
+        if self.levels is None:
             return np.ones(len(triangle), dtype=bool)
-        return np.asarray(self.there[self.maps.texels(triangle, x, y)])
+        return np.asarray(self.opaque[self.levels.texels(triangle, x, y)])

@@ -1,4 +1,4 @@
-"""Chains of points."""
+"""Polylines: points (n, d) in order, joined by straight segments; d is 2 (px) or 3 (metres)."""
 
 import cv2
 import numpy as np
@@ -7,13 +7,13 @@ from treestroke.core.types import Floats, Indices
 
 
 def arc_lengths(points: Floats) -> Floats:
-    """Length along a chain (n, d) up to each of its points (n,), 0 at the first."""
+    """Compute the length along a polyline (n, d) up to each of its points (n,), 0 at the first, in the points' unit."""
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def resample(points: Floats, step: float) -> Floats:
-    """Walk a chain (n, d), n >= 1, in equal steps of about ``step``; both ends stay."""
+    """Resample a polyline (n, d), n >= 1, in equal steps of about ``step``; both ends stay. Unit: px or metres."""
     arc = arc_lengths(points)
     count = max(1, round(float(arc[-1]) / step))
     at = np.linspace(0.0, arc[-1], count + 1)
@@ -21,7 +21,7 @@ def resample(points: Floats, step: float) -> Floats:
 
 
 def smoothed(values: Floats, sigma: float) -> Floats:
-    """Smooth values (n,) or (n, d) along a chain by a Gaussian of ``sigma`` places; the ends go on as they are."""
+    """Smooth values (n,) or (n, d) of any unit by a Gaussian of ``sigma`` index steps; end values are repeated."""
     if len(values) == 0:
         return values
     size = (1, 2 * int(np.ceil(4.0 * sigma)) + 1)
@@ -31,19 +31,24 @@ def smoothed(values: Floats, sigma: float) -> Floats:
 
 
 def directions(points: Floats) -> Floats:
-    """Give the unit tangents (n, d) of a chain of two points or more, by central differences."""
+    """Compute the unit tangents (n, d) of a polyline of two points or more, by central differences."""
     tangents = np.gradient(points, axis=0)
     return np.asarray(tangents / np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-12))
 
 
 def normals(points: Floats) -> Floats:
-    """Give the unit normals (n, 2) of a chain in the plane: its tangents turned a quarter from x toward y."""
+    """Compute the unit normals (n, 2) of a plane polyline: its tangents turned a quarter from x toward y."""
     tangents = directions(points)
     return np.stack([-tangents[:, 1], tangents[:, 0]], axis=1)
 
 
 def simplified(points: Floats, tolerance: float) -> Indices:
-    """Choose the points of a chain (n, d) that keep it within ``tolerance`` (Douglas and Peucker 1973); ends stay."""
+    """Return the index of the points of a polyline (n, d) that keep it within ``tolerance`` (px or metres); ends stay.
+
+    Notes
+    -----
+    Douglas and Peucker 1973.
+    """
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
     spans = [(0, len(points) - 1)]
@@ -61,16 +66,20 @@ def simplified(points: Floats, tolerance: float) -> Indices:
 
 
 def distances_to_segment(points: Floats, start: Floats, end: Floats) -> Floats:
-    """Distance of points (n, d) from the straight piece between two points (n,)."""
-    way = end - start
-    along = np.clip((points - start) @ way / max(float(way @ way), 1e-12), 0.0, 1.0)
-    return np.asarray(np.linalg.norm(points - start - along[:, None] * way, axis=1))
+    """Distances (n,) of points (n, d) from the segment between two points (d,), in the points' unit (px or metres)."""
+    chord = end - start
+    along = np.clip((points - start) @ chord / max(float(chord @ chord), 1e-12), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(points - start - along[:, None] * chord, axis=1))
 
 
 def places_along(line: Floats, points: Floats, missing: Indices | None = None) -> tuple[Floats, Floats]:
-    """Find how far along a chain (n, d), n >= 2, the place nearest to each point (m, d) lies, and their gap (m,).
+    """Find the point of a polyline (n, d), n >= 2, that is nearest to each point (m, d).
 
-    Of pieces that are ``missing``, named by the point where they begin, no place is nearest.
+    Segments listed in ``missing``, by the index of their first point, are ignored.
+
+    Returns
+    -------
+    The lengths (m,) along the polyline at which these points lie, and their distances (m,); px or metres.
     """
     start, along = line[:-1], np.diff(line, axis=0)
     square = np.maximum((along**2).sum(axis=1), 1e-12)
@@ -85,6 +94,6 @@ def places_along(line: Floats, points: Floats, missing: Indices | None = None) -
 
 
 def place_at(line: Floats, arcs: Floats | float) -> Floats:
-    """Give the points (..., d) of a chain (n, d) at lengths along it (...)."""
+    """Interpolate the points (..., d) of a polyline (n, d) at lengths along it (...), px or metres."""
     known = arc_lengths(line)
     return np.stack([np.interp(arcs, known, column) for column in line.T], axis=-1)

@@ -1,4 +1,4 @@
-"""A small software rasteriser: which triangle each pixel of a picture shows."""
+"""A small software rasteriser: the triangle that each pixel of a picture shows."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from treestroke.core.types import Floats, Indices
 
 Cut = Callable[[Indices, Floats, Floats], NDArray[np.bool_]]
-"""Called with triangles' indices and the x and y, px, of points on them; true where they are not cut away."""
+"""Alpha test: called with the index (m,) of triangles, and the x and y (m,), px, of points on them; true if opaque."""
 
 _CHUNK = 2_000
 """Triangles at a time: enough for numpy, few enough for the cache."""
@@ -19,14 +19,14 @@ _GOLDEN = 0.6180339887
 
 @dataclass(frozen=True, eq=False)
 class Planes:
-    """Values at each triangle's corners, carried on linearly over the picture.
+    """Plane equations of k vertex attributes over t triangles: linear functions of the pixel.
 
     Attributes
     ----------
     origin_px
-        (2, t) each triangle's first corner.
+        (2, t) x and y of each triangle's first corner.
     start, along_x, along_y
-        (k, t) values there, and their change by px.
+        (k, t) values there, and their change per px to the right and down.
     """
 
     origin_px: Floats
@@ -35,7 +35,7 @@ class Planes:
     along_y: Floats
 
     def at(self, triangle: Indices, x: Floats, y: Floats) -> Floats:
-        """Give the values (k, m) at points x, y (m,), px, of the given triangles (m,)."""
+        """Interpolate the attributes (k, m) at points x, y (m,), px, of the triangles with index (m,)."""
         across, down = x - self.origin_px[0].take(triangle), y - self.origin_px[1].take(triangle)
         found = np.empty((len(self.start), len(triangle)))
         for row, (start, by_x, by_y) in enumerate(zip(self.start, self.along_x, self.along_y, strict=True)):
@@ -44,7 +44,7 @@ class Planes:
 
 
 def planes(corners_px: Floats, values: Floats) -> Planes:
-    """Carry values (t, 3, k) at corners (t, 3, 2), px, over the picture; constant on a triangle without area."""
+    """Fit planes through values (t, 3, k) at corners (t, 3, 2), px; constant on a triangle without area."""
     first, second = corners_px[:, 1] - corners_px[:, 0], corners_px[:, 2] - corners_px[:, 0]
     area = first[:, 0] * second[:, 1] - second[:, 0] * first[:, 1]
     inverse = np.where(np.abs(area) > 1e-9, 1.0 / np.where(area == 0.0, 1.0, area), 0.0)[:, None]
@@ -56,24 +56,24 @@ def planes(corners_px: Floats, values: Floats) -> Planes:
 
 
 def pixel_centres(pixel: Indices, width: int) -> tuple[Floats, Floats]:
-    """Give the x and y, px, of flat pixels in a picture of the given width."""
+    """Return the x (m,) and the y (m,), px, of the centres of pixels, by their flat index (m,) in a picture."""
     return (pixel % width).astype(np.float64) + 0.5, (pixel // width).astype(np.float64) + 0.5
 
 
 def visible_triangles(corners_px: Floats, nearness: Floats, cut: Cut, height: int, width: int) -> Indices:
     """Find the triangle that each pixel's centre shows.
 
-    Triangles are taken whole, the nearest first, so small ones that cross each other may hide wrongly; nothing
-    that a preview shows.
+    Triangles are sorted by depth as a whole, so the hidden parts of triangles that cross each other may come out
+    wrong; a preview does not show it.
 
     Parameters
     ----------
     corners_px
-        (t, 3, 2).
+        (t, 3, 2) corners of the triangles, px.
     nearness
-        (t,) greater is nearer; a triangle at minus infinity is not drawn.
+        (t,) greater is nearer, any unit; a triangle at minus infinity is not drawn.
     cut
-        Tells which points of a triangle are there, for textures with holes.
+        Alpha test, for textures with holes.
     height, width
         Size of the picture, px.
 
@@ -96,9 +96,10 @@ def visible_triangles(corners_px: Floats, nearness: Floats, cut: Cut, height: in
 
 
 def covered_pixels(corners_px: Floats, cut: Cut, seen: NDArray[np.bool_]) -> None:
-    """Mark in ``seen`` (height, width) the pixels whose centres triangles (t, 3, 2) cover, as far as they are not cut.
+    """Mark in the mask ``seen`` (height, width) the pixels whose centres lie on opaque points of triangles.
 
-    Triangles come in an order that spreads them; those that lie wholly within what is marked are skipped.
+    The triangles' corners (t, 3, 2) are px. They are drawn in an order that spreads them over the picture, and those
+    that lie wholly on marked pixels are skipped.
     """
     height, width = seen.shape
     columns = np.ascontiguousarray(corners_px.transpose(2, 1, 0))
@@ -112,16 +113,16 @@ def covered_pixels(corners_px: Floats, cut: Cut, seen: NDArray[np.bool_]) -> Non
         needed = free[bottom, right] - free[top, right] - free[bottom, left] + free[top, left] > 0
         order = order[needed[order]]
         triangle, pixel = _fragments(columns, order[:_CHUNK], height, width)
-        open_ = ~seen.ravel()[pixel]
-        triangle, pixel = triangle[open_], pixel[open_]
+        unmarked = ~seen.ravel()[pixel]
+        triangle, pixel = triangle[unmarked], pixel[unmarked]
         seen.ravel()[pixel[cut(triangle, *pixel_centres(pixel, width))]] = True
         order = order[_CHUNK:]
 
 
 def _fragments(columns: Floats, chosen: Indices, height: int, width: int) -> tuple[Indices, Indices]:
-    """List the pixels whose centres the chosen triangles cover, in the triangles' order: (triangle, flat pixel).
+    """List the pixels whose centres the chosen triangles cover, in the triangles' order: (triangle, flat pixel) index.
 
-    ``columns`` (2, 3, t) holds x and y of each corner.
+    ``columns`` (2, 3, t) holds x and y of each corner, px.
     """
     first, second, third = columns[1][:, chosen]
     highest, lowest = (pick(pick(first, second), third) for pick in (np.minimum, np.maximum))
@@ -137,7 +138,7 @@ def _fragments(columns: Floats, chosen: Indices, height: int, width: int) -> tup
 
 
 def _row_span(columns: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """Cut triangles, x and y of each corner (2, 3, m), by the lines at y (m,): the x where each enters and leaves."""
+    """Intersect triangles, x and y of each corner (2, 3, m), with the rows at y (m,): leftmost and rightmost x, px."""
     left, right = np.full(len(y), np.inf), np.full(len(y), -np.inf)
     for start, end in ((0, 1), (1, 2), (2, 0)):
         (x0, y0), (x1, y1) = columns[:, start], columns[:, end]
@@ -150,7 +151,7 @@ def _row_span(columns: Floats, y: Floats) -> tuple[Floats, Floats]:
 
 
 def _runs(start: Indices, end: Indices) -> tuple[Indices, Indices]:
-    """Count from each start to before its end: (which run, number)."""
+    """Enumerate half-open ranges one after the other: the range (m,) and the number (m,) in it of each entry."""
     lengths = np.maximum(end - start, 0)
     which = np.repeat(np.arange(len(start)), lengths)
     return which, np.arange(len(which)) + (start - np.cumsum(lengths) + lengths).take(which)

@@ -1,4 +1,4 @@
-"""What a finished tree hides of its background: in its photo, and from all around."""
+"""Silhouettes of a finished tree: in its photo, and from all around."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ from treestroke.core.geometry.raster import covered_pixels, planes, visible_tria
 from treestroke.core.types import Floats, Indices, Mask
 
 AZIMUTHS_RAD = np.radians(np.arange(0.0, 360.0, 45.0))
-"""From where a tree is looked at: 0 is the photo's side (+Z), a quarter turn +X."""
+"""Directions from which a tree is seen: 0 is the photo's side (+Z), a quarter turn is +X."""
 HALF_AZIMUTHS_RAD = AZIMUTHS_RAD[:4]
 """Seen from behind, a silhouette is the mirror image of that from the front: four stand for eight."""
 FINER = 3
-"""Samples a side of a pixel."""
+"""Supersampling: samples along each side of a pixel."""
 _MARGIN_PX = 2
 
 
 @dataclass(frozen=True, eq=False)
 class Framing:
-    """Pictures of one size and scale that hold a tree from any azimuth; the world's axis +Y stands in their middle.
+    """Size and scale of pictures that hold a tree from any azimuth; the world's +Y axis stands in their middle.
 
     Attributes
     ----------
     px_per_m
-        Scale.
+        Scale, pixels per metre.
     bottom_px
-        Row of the height 0.
+        Row of the world's height 0.
     height, width
         Size, px.
     """
@@ -41,18 +41,18 @@ class Framing:
     width: int
 
     def project(self, points: Floats, azimuth_rad: float) -> Floats:
-        """Give pixels (..., 2) of world points (..., 3), seen level and orthographic from the azimuth."""
+        """Project world points (..., 3), metres, to pixels (..., 2) of an orthographic, level view from an azimuth."""
         across = points[..., 0] * np.cos(azimuth_rad) - points[..., 2] * np.sin(azimuth_rad)
         x, y = 0.5 * self.width + across * self.px_per_m, self.bottom_px - points[..., 1] * self.px_per_m
         return np.stack([x, y], axis=-1)
 
     def finer(self, factor: int) -> "Framing":
-        """Frame the same with ``factor`` pixels a side for each."""
+        """Return the same framing at ``factor`` times the resolution."""
         return Framing(self.px_per_m * factor, self.bottom_px * factor, self.height * factor, self.width * factor)
 
 
 def framing(surfaces: Sequence[Surface], height_px: int) -> Framing:
-    """Frame surfaces (one vertex at least) so that they stand ``height_px`` tall."""
+    """Frame surfaces with at least one vertex so that they stand ``height_px`` pixels tall."""
     points = np.concatenate([surface.mesh.positions for surface in surfaces]).astype(np.float64)
     low, high = float(points[:, 1].min()), float(points[:, 1].max())
     px_per_m = height_px / max(high - low, 1e-9)
@@ -61,7 +61,7 @@ def framing(surfaces: Sequence[Surface], height_px: int) -> Framing:
 
 
 def silhouette(bark: Surface, leaf: Surface | None, camera: Camera, height: int) -> Mask:
-    """Draw the front view's silhouette at the photo's framing, ``height`` px tall: (height, width).
+    """Draw the silhouette mask (height, width) in the photo's framing, scaled to ``height`` px.
 
     Textures with alpha are cut at `ALPHA_CUT`, as a viewer does.
     """
@@ -71,17 +71,17 @@ def silhouette(bark: Surface, leaf: Surface | None, camera: Camera, height: int)
     for surface in (bark,) if leaf is None else (bark, leaf):
         mesh = surface.mesh
         corners_px = camera.pixels_from_world(mesh.positions.astype(np.float64))[mesh.triangles] * scale
-        there = _Opaque(surface, corners_px)
-        shown = visible_triangles(corners_px, np.zeros(len(corners_px)), there, height, width)
+        opaque = _Opaque(surface, corners_px)
+        shown = visible_triangles(corners_px, np.zeros(len(corners_px)), opaque, height, width)
         seen |= shown >= 0
     return seen
 
 
 def silhouette_from(surfaces: Sequence[Surface], view: Framing, azimuth_rad: float) -> Mask:
-    """Draw the silhouette from an azimuth as a viewer that smooths edges shows it: (height, width).
+    """Draw the antialiased silhouette mask (height, width) from an azimuth, radians.
 
-    A pixel counts where half of its samples hit something. Textures with alpha are averaged to the size at which
-    each triangle shows them, then cut at `ALPHA_CUT`.
+    A pixel counts where half of its samples hit the tree. Textures with alpha are read at the mipmap level that fits
+    each triangle's size on the picture, then cut at `ALPHA_CUT`.
     """
     fine = view.finer(FINER)
     seen = np.zeros((fine.height, fine.width), dtype=bool)
@@ -93,25 +93,25 @@ def silhouette_from(surfaces: Sequence[Surface], view: Framing, azimuth_rad: flo
 
 
 def silhouettes(surfaces: Sequence[Surface], view: Framing) -> Mask:
-    """Draw the silhouettes (4, height, width) from `HALF_AZIMUTHS_RAD`."""
+    """Draw the silhouette masks (4, height, width) from `HALF_AZIMUTHS_RAD`."""
     return np.stack([silhouette_from(surfaces, view, azimuth) for azimuth in HALF_AZIMUTHS_RAD.tolist()])
 
 
 def likeness(seen: Mask, wanted: Mask) -> float:
-    """Intersection over union of two masks of one shape; 1 where both are empty."""
+    """Return the intersection over union, 0 to 1, of two masks (h, w) of one shape; 1 where both are empty."""
     union = int((seen | wanted).sum())
     return float((seen & wanted).sum()) / union if union else 1.0
 
 
 class _Opaque:
-    """Tells where a textured triangle is not cut away."""
+    """Alpha test at `ALPHA_CUT` on a texture at full size."""
 
     def __init__(self, surface: Surface, corners_px: Floats) -> None:
         self.texture = surface.texture
         self.coordinates = planes(corners_px, surface.mesh.uvs[surface.mesh.triangles].astype(np.float64))
 
     def __call__(self, triangle: Indices, x: Floats, y: Floats) -> Mask:
-        """Tell which points (m,), px, of the triangles named are there."""
+        """Return the mask (m,) of the points x, y, px, of triangles with index (m,) that pass."""
         height, width, channels = self.texture.shape
         if channels == 3:
             return np.ones(len(triangle), dtype=bool)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.mesh import Hold, Mesh
+from treestroke.core.geometry.mesh import Attachment, Mesh
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas
@@ -33,7 +33,7 @@ def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
         _uvs(leaves, atlas),
         triangles,
         np.repeat(leaves.shades, 4).astype(np.float32),
-        Hold(np.repeat(leaves.joints, 8).reshape(-1, 2), np.zeros(4 * m)),
+        Attachment(np.repeat(leaves.joints, 8).reshape(-1, 2), np.zeros(4 * m)),
     )
 
 

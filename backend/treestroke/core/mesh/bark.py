@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import smoothed
 from treestroke.core.imaging.quilting import QuiltParams, quilt
-from treestroke.core.mesh.grain import Form, bark_grain
+from treestroke.core.mesh.bark_pattern import BarkForm, bark_pattern
 from treestroke.core.types import Floats
 
 TEXTURE_SIZE = (512, 256)
@@ -24,7 +24,7 @@ _OUTLIER = 3.5  # deviations from the trunk's colour, from which on a pixel is l
 _COLOUR_KEPT = 0.5  # of the differences in hue; much of them is the camera's noise and light through leaves
 _GRAIN = 0.22  # deviation of log light of fissures that are our own
 _MILD = 0.3  # of that, for a known form on bark that the photo shows
-_STRENGTH: dict[Form | None, float] = {None: 1.0, "smooth": 0.4, "furrowed": 1.35, "plated": 1.25, "peeling": 0.8}
+_STRENGTH: dict[BarkForm | None, float] = {None: 1.0, "smooth": 0.4, "furrowed": 1.35, "plated": 1.25, "peeling": 0.8}
 _CONTRAST = (0.16, 0.42)  # least and greatest deviation of log light in the texture
 
 
@@ -44,7 +44,7 @@ class BarkParams:
 
     smallest_radius_px: float = 2.5
     hidden_colour: tuple[int, int, int] = (104, 93, 82)
-    form: Form | None = None
+    form: BarkForm | None = None
 
     def __post_init__(self) -> None:
         if not self.smallest_radius_px > 0 or not all(0 <= c <= 255 for c in self.hidden_colour):
@@ -73,9 +73,9 @@ def bark_texture(
     trunk_px, radii_px
         (n, 2) the visible trunk's axis from the root up, photo points, and (n,) its radius there, px; n >= 2.
     grain
-        (512, 256) the pattern of our own, as `bark_grain` draws it; None draws one of ``params.form``.
+        (512, 256) the pattern of our own, as `bark_pattern` draws it; None draws one of ``params.form``.
     """
-    own = bark_grain(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
+    own = bark_pattern(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
     grain = _STRENGTH.get(params.form, 1.0) * own[..., None]
     found = _unrolled(photo, trunk_px, radii_px, params)
     hidden = _linear(np.array(params.hidden_colour, dtype=np.float64))

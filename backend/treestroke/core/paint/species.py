@@ -32,7 +32,7 @@ class Bark:
     Attributes
     ----------
     form
-        Its pattern: one of `treestroke.core.mesh.grain.Form`.
+        Its pattern: one of `treestroke.core.mesh.bark_pattern.BarkForm`.
     depth
         Standard deviation of its height, as a share of the stem's radius.
     colour

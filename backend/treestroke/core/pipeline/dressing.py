@@ -12,8 +12,8 @@ from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.leaf.placement import LEAST_SIZE, LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
-from treestroke.core.mesh.grain import bark_grain
-from treestroke.core.mesh.normal_map import ReliefParams, bark_relief
+from treestroke.core.mesh.bark_pattern import bark_pattern
+from treestroke.core.mesh.normal_map import NormalMapParams, bark_normal_map
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
 from treestroke.core.paint.cut_outs import opaque_part, reduced
@@ -109,7 +109,7 @@ def bark_surface(
     wrapping, portrait = tubes(tree.grown.skeleton), tree.portrait
     report("mesh", 0.6)
     bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
-    grain = bark_grain(TEXTURE_SIZE, rng, bark.form)
+    grain = bark_pattern(TEXTURE_SIZE, rng, bark.form)
     params = BarkParams(hidden_colour=bark.colour, form=bark.form if known else None)
     texture = bark_texture(portrait.photo, portrait.stem, portrait.stem_radii, params, rng, grain)
-    return Surface(wrapping, texture, bark_relief(texture, grain, ReliefParams(bark.depth)))
+    return Surface(wrapping, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))

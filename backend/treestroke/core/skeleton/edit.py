@@ -4,7 +4,7 @@ import numpy as np
 
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.types import Indices
+from treestroke.core.types import Indices, Mask
 
 
 def densified(skeleton: Skeleton, step: float) -> tuple[Skeleton, Indices]:
@@ -27,3 +27,16 @@ def densified(skeleton: Skeleton, step: float) -> tuple[Skeleton, Indices]:
     parents = np.where(order == 0, first, np.arange(len(owner)) - 1)
     points[root], radii[root] = skeleton.points[owner[root]], skeleton.radii[owner[root]]
     return Skeleton(points, radii, parents), owner
+
+
+def subskeleton(skeleton: Skeleton, kept: Mask) -> tuple[Skeleton, Indices]:
+    """Select joints by a mask (n,) that marks the parent of every marked joint, except of roots.
+
+    Returns
+    -------
+    The skeleton of these joints in the same unit, and their index (m,) in the whole one, ascending.
+    """
+    joints, number = np.flatnonzero(kept), np.cumsum(kept) - 1
+    parents = skeleton.parents[joints]
+    part = Skeleton(skeleton.points[joints], skeleton.radii[joints], np.where(parents < 0, -1, number[parents]))
+    return part, joints

@@ -1,67 +1,67 @@
-"""Which bones each vertex of a mesh follows, and by how much."""
+"""Skinning: the bones that each vertex of a mesh follows, and their weights."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.mesh import Hold, Mesh
+from treestroke.core.geometry.mesh import Attachment, Mesh
 from treestroke.core.sway.stiffness import softness
 from treestroke.core.sway.wind import Rig, Skin
 from treestroke.core.types import Floats, Indices
 
 FLUTTER = 0.5
-"""How much a leaf's outer corners follow the flutter bone of their own bone; its inner ones hold to the wood."""
+"""Weight of the flutter bone of a leaf's own bone at its outer corners; its inner ones follow the wood alone."""
 FURTHER_FLUTTER = 0.15
-"""The same where only a bone nearer to the root has one: more would tear at cards when the bones between turn."""
-_GOLDEN = 0.6180339887498949
+"""The same where only a bone nearer to the root has one: more would distort cards when the bones between turn."""
+_GOLDEN = 0.6180339887498949  # golden ratio: its multiples spread evenly over 0 to 1
 _OUTER = np.array([False, False, True, True])  # corners of a card
 
 
 def skin(rig: Rig, mesh: Mesh, *, leaves: bool) -> Skin:
-    """Bind a mesh that holds to the rig's skeleton; ``leaves`` says that its vertices are cards', four each.
+    """Bind a mesh that is attached to the rig's skeleton; ``leaves`` means that it consists of cards of four vertices.
 
-    A vertex between two joints mixes what they follow. Weights are whole 255ths; sway and phase vary smoothly along
+    A vertex between two joints blends the bones of both. Weights are whole 255ths; sway and phase vary smoothly along
     the wood.
 
     Raises
     ------
     ValueError
-        The mesh does not say where it holds.
+        The mesh has no attachment.
     """
-    if mesh.hold is None:
-        raise ValueError("a mesh that holds to nothing cannot follow bones")
-    bones, weights = _held(rig, mesh.hold)
+    if mesh.attachment is None:
+        raise ValueError("a mesh without attachment cannot follow bones")
+    bones, weights = _joint_weights(rig, mesh.attachment)
     if leaves:
-        bones, weights = _fluttering(rig, mesh.hold, bones, weights)
-    bones, weights = _four_best(bones, weights)
-    whole = _whole(weights)
-    swayed = _sway(rig, mesh.positions.astype(np.float64), bones, weights)
+        bones, weights = _fluttering(rig, mesh.attachment, bones, weights)
+    bones, weights = _four_greatest(bones, weights)
+    quantised = _quantised(weights)
+    sway = _sway(rig, mesh.positions.astype(np.float64), bones, weights)
     phase = (weights * _phases(rig)[bones]).sum(axis=1)
-    kept = np.where(whole > 0, bones, 0).astype(np.uint8)
-    return Skin(kept, whole, swayed.astype(np.float32), phase.astype(np.float32))
+    kept = np.where(quantised > 0, bones, 0).astype(np.uint8)
+    return Skin(kept, quantised, sway.astype(np.float32), phase.astype(np.float32))
 
 
-def _held(rig: Rig, hold: Hold) -> tuple[Indices, Floats]:
-    """Give the bones and weights (v, 4) of the joints on both sides."""
-    second = rig.joint_share[hold.joints]
-    at = np.stack([1.0 - hold.share, hold.share], axis=1)
+def _joint_weights(rig: Rig, attachment: Attachment) -> tuple[Indices, Floats]:
+    """Return the bones (v, 4) of both joints of each vertex, and their weights (v, 4)."""
+    second = rig.joint_share[attachment.joints]
+    at = np.stack([1.0 - attachment.share, attachment.share], axis=1)
     weights = np.stack([at * (1.0 - second), at * second], axis=2)
-    return rig.joint_bones[hold.joints].reshape(-1, 4), weights.reshape(-1, 4)
+    return rig.joint_bones[attachment.joints].reshape(-1, 4), weights.reshape(-1, 4)
 
 
-def _fluttering(rig: Rig, hold: Hold, bones: Indices, weights: Floats) -> tuple[Indices, Floats]:
-    """Let the outer corners of cards follow flutter bones in part (v, 5)."""
-    own = rig.joint_bones[hold.joints[:, 0], 1]
-    flutter = rig.flutter[own]
-    near = rig.parents[flutter] == own
-    outer = np.resize(_OUTER, len(own))
-    part = np.where(near, FLUTTER * rig.joint_share[hold.joints[:, 0]], FURTHER_FLUTTER)
+def _fluttering(rig: Rig, attachment: Attachment, bones: Indices, weights: Floats) -> tuple[Indices, Floats]:
+    """Add a flutter bone for the outer corners of cards: bones and weights (v, 5)."""
+    wood = rig.joint_bones[attachment.joints[:, 0], 1]
+    flutter = rig.flutter[wood]
+    near = rig.parents[flutter] == wood
+    outer = np.resize(_OUTER, len(wood))
+    part = np.where(near, FLUTTER * rig.joint_share[attachment.joints[:, 0]], FURTHER_FLUTTER)
     part = np.where(outer & (flutter >= 0), part, 0.0)
     bones = np.concatenate([bones, np.maximum(flutter, 0)[:, None]], axis=1)
     return bones, np.concatenate([weights * (1.0 - part)[:, None], part[:, None]], axis=1)
 
 
-def _four_best(bones: Indices, weights: Floats) -> tuple[Indices, Floats]:
-    """Add up what a bone is named for twice, and keep the four of greatest weight (v, 4), greatest first."""
+def _four_greatest(bones: Indices, weights: Floats) -> tuple[Indices, Floats]:
+    """Merge bones that occur twice, and keep the four (v, 4) of greatest weight, greatest first."""
     weights = weights.copy()
     for later in range(1, bones.shape[1]):
         for earlier in range(later):
@@ -73,8 +73,8 @@ def _four_best(bones: Indices, weights: Floats) -> tuple[Indices, Floats]:
     return np.take_along_axis(bones, best, axis=1), kept / kept.sum(axis=1, keepdims=True)
 
 
-def _whole(weights: Floats) -> NDArray[np.uint8]:
-    """Round weights (v, 4), greatest first, to 255ths that sum to 1: the greatest remainders go up."""
+def _quantised(weights: Floats) -> NDArray[np.uint8]:
+    """Round weights (v, 4), greatest first, to 255ths that sum to 1: the greatest remainders are rounded up."""
     parts = weights * 255.0
     low = np.floor(parts)
     missing = 255.0 - low.sum(axis=1, keepdims=True)
@@ -83,7 +83,7 @@ def _whole(weights: Floats) -> NDArray[np.uint8]:
 
 
 def _sway(rig: Rig, positions: Floats, bones: Indices, weights: Floats) -> Floats:
-    """Estimate how far vertices (v,) move, over the most of any bone's end: turns add up on the way from the root."""
+    """Estimate how far vertices (v,) move, 0 to 1 of the farthest end of a bone: turns add up from the root on."""
     soft = softness(rig)
     level = np.zeros(len(soft))
     for bone in range(1, len(soft)):
@@ -96,5 +96,5 @@ def _sway(rig: Rig, positions: Floats, bones: Indices, weights: Floats) -> Float
 
 
 def _phases(rig: Rig) -> Floats:
-    """Spread the bones' phases evenly over 0 to 1 (b,), neighbours far apart."""
+    """Spread the bones' phases (b,) evenly over 0 to 1, with neighbours far apart."""
     return np.asarray(np.arange(len(rig.names)) * _GOLDEN, dtype=np.float64) % 1.0

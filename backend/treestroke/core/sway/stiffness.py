@@ -1,4 +1,4 @@
-"""How much a tree's bones give in the wind."""
+"""How far a tree's bones turn and swing in the wind, by the thickness of their wood."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -6,30 +6,33 @@ from numpy.typing import NDArray
 from treestroke.core.sway.wind import Rig
 from treestroke.core.types import Floats
 
-_SLENDER = 1.25  # power of the radius at which the turn falls: twigs move some centimetres where the trunk moves one
-_THIN = 0.03  # of the greatest radius: thinner wood is no longer much softer
+_SLENDER = 1.25  # exponent of the radius by which angles fall: twigs move some centimetres where the trunk moves one
+_THIN = 0.03  # of the greatest radius: thinner wood is hardly softer
 
 
 def thickness(rig: Rig) -> Floats:
-    """Radius of each bone's wood over the tree's greatest, 0 to 1 (b,)."""
+    """Return the radius of each bone's wood (b,) as a share of the tree's greatest, 0 to 1."""
     return rig.radii / max(float(rig.radii.max()), 1e-9)
 
 
 def softness(rig: Rig) -> Floats:
-    """Give relative angles (b,) that bones turn by: 1 the thickest wood, more thinner, 0 the root and flutter."""
+    """Return the relative angle (b,) by which each bone turns, a factor: 1 for the thickest wood, more for thinner.
+
+    The root and flutter bones have 0.
+    """
     soft = ((1.0 + _THIN) / (thickness(rig) + _THIN)) ** _SLENDER
     return np.where(moving_branches(rig), soft, 0.0)
 
 
 def moving_branches(rig: Rig) -> NDArray[np.bool_]:
-    """Tell which bones (b,) are branches that turn: neither the root nor flutter."""
+    """Mark the bones (b,) that are branches: neither the root nor for flutter."""
     return np.array([name.startswith("branch") for name in rig.names])
 
 
-def swing(rig: Rig, turns: Floats) -> Floats:
-    """Estimate how far each bone's end swings, metres (b,), where bones turn by ``turns`` (b,), rad.
+def swing_amplitudes(rig: Rig, turns: Floats) -> Floats:
+    """Estimate how far each bone's end swings (b,), metres, when bones turn by ``turns`` (b,), radians.
 
-    Each turns in its own time, so of what the bones on the way to the root add the squares add up.
+    Bones turn independently, so the squares of what the bones on the path to the root contribute add up.
     """
     squares = np.zeros(len(turns))
     for bone in range(1, len(turns)):

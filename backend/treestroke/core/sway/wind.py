@@ -1,4 +1,4 @@
-"""Wind: bones in a tree, how its vertices follow them, and clips that move them."""
+"""The values of a tree's motion: bones, animation clips, and the skinning of vertices."""
 
 from dataclasses import dataclass
 
@@ -10,12 +10,12 @@ from treestroke.core.types import Floats, Indices
 
 @dataclass(frozen=True, eq=False)
 class Rig:
-    """Bones of a tree at rest, all unturned: their axes are the world's.
+    """The bones of a tree at rest, all without rotation: their axes are the world's.
 
     ======  ====================================================================
     letter  meaning
     ======  ====================================================================
-    b       bones: the root first, then branches, then those that let leaves flutter
+    b       bones: the root first, then branches, then those for the flutter of leaves
     n       joints of the skeleton
     ======  ====================================================================
 
@@ -24,20 +24,20 @@ class Rig:
     names
         b names, ``root``, ``branch_01`` ..., ``flutter_01`` ...
     parents
-        (b,) -1 for the root, else smaller than the bone's own index.
+        (b,) index of each bone's parent, smaller than its own; -1 for the root.
     heads
-        (b, 3) where each bone starts and turns about, metres, world.
+        (b, 3) the point where each bone starts and that it turns about, metres, world.
     ends
-        (b, 3) where it ends: at the next bone of its limb or at the limb's tip; the root where it starts.
+        (b, 3) the point where it ends, metres: the next bone of its limb or the limb's tip; for the root its head.
     radii
-        (b,) radius of the wood at the head, metres; 0 for flutter.
+        (b,) radius of the wood at the head, metres; 0 for flutter bones.
     joint_bones
-        (n, 2) the two bones that each joint of the skeleton follows.
+        (n, 2) index of the two bones that each joint of the skeleton follows.
     joint_share
         (n,) weight of the second of them, 0 to 1.
     flutter
-        (b,) the flutter bone that the outer corners of leaves on a bone follow, or -1: its own child, or that of its
-        nearest ancestor with one.
+        (b,) index of the flutter bone that the outer corners of leaves on a bone follow: a child of the bone or of its
+        nearest ancestor that has one; -1 without any.
     """
 
     names: tuple[str, ...]
@@ -52,24 +52,24 @@ class Rig:
 
 @dataclass(frozen=True, eq=False)
 class Clip:
-    """A looping movement: bones turn about their heads, the root never.
+    """A looping animation clip: keyframes of rotations of bones about their heads; the root never moves.
 
     Attributes
     ----------
     name
         ``breeze`` or ``gust``.
     bones
-        The bones that move, each with its own times.
+        Index of the bones that move, each with its own keyframes.
     times
-        For each such bone (k,) seconds from 0 to the clip's length, the same at both ends.
-    turns
-        For each such bone (k, 4) unit quaternions x, y, z, w; the last equals the first.
+        For each such bone the times (k,) of its keyframes, seconds, from 0 to the clip's length.
+    rotations
+        For each such bone the unit quaternions (k, 4) x, y, z, w of its keyframes; the last equals the first.
     """
 
     name: str
     bones: tuple[int, ...]
     times: tuple[Floats, ...]
-    turns: tuple[Floats, ...]
+    rotations: tuple[Floats, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,18 +82,18 @@ class Wind:
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """How the vertices of one mesh follow a rig.
+    """The skinning of one mesh: the bones that each vertex follows, and their weights.
 
     Attributes
     ----------
     bones
-        (v, 4) uint8; a bone of weight 0 is bone 0.
+        (v, 4) uint8 index; where the weight is 0, bone 0.
     weights
-        (v, 4) uint8, summing to 255.
+        (v, 4) uint8, 255ths, summing to 255.
     sway
-        (v,) float32, 0 at the root to 1 at what moves most: for engines with a wind of their own.
+        (v,) float32 amplitude, 0 at the root to 1 at the vertex that moves most: for engines with a wind of their own.
     phase
-        (v,) float32, 0 to 1, when in a swing a vertex moves.
+        (v,) float32 share of a swing by which a vertex is ahead, 0 to 1.
     """
 
     bones: NDArray[np.uint8]
@@ -102,5 +102,5 @@ class Skin:
     phase: NDArray[np.float32]
 
     def at(self, vertices: Indices) -> "Skin":
-        """Pick some of the vertices."""
+        """Select vertices by their index (j,)."""
         return Skin(self.bones[vertices], self.weights[vertices], self.sway[vertices], self.phase[vertices])

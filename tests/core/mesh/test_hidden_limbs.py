@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from tests.builders import fork, oak
 from tests.pieces import touching_pieces
 
-from treestroke.core.mesh.chains import chains_of
-from treestroke.core.mesh.touching import without_hidden
+from treestroke.core.mesh.hidden_limbs import without_hidden_limbs
+from treestroke.core.mesh.limb_axes import limb_axes
 from treestroke.core.mesh.tubes import TubeParams, tubes
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -32,23 +32,23 @@ def hooked(turn: float) -> Skeleton:
 
 
 @pytest.mark.parametrize("end", [[0.1, 2.05, 0], [0.0, 2.9, 0.1]])
-def test_a_limb_that_ends_inside_its_bearer_has_no_tube(end: list[float]) -> None:
-    assert len(without_hidden(chains_of(trunk_with([end]), 1e-4)).bearer) == 1
+def test_a_limb_that_ends_inside_its_parent_has_no_tube(end: list[float]) -> None:
+    assert len(without_hidden_limbs(limb_axes(trunk_with([end]), 1e-4)).parent_radius) == 1
     assert touching_pieces(tubes(trunk_with([end]))) == 1
 
 
-def test_what_comes_out_of_its_bearer_stays_with_all_that_leads_to_it() -> None:
+def test_a_limb_that_leaves_its_parent_stays_with_all_limbs_that_lead_to_it() -> None:
     tree = trunk_with([[0.1, 2.05, 0], [0.1, 2.1, 0], [1.0, 2.4, 0]])
     parents = tree.parents.copy()
     parents[7] = 5  # a hidden stub of two joints, and a limb out of its middle
-    chains = chains_of(Skeleton(tree.points, tree.radii, parents), 1e-4)
-    assert len(without_hidden(chains).bearer) == len(chains.bearer)
+    axes = limb_axes(Skeleton(tree.points, tree.radii, parents), 1e-4)
+    assert len(without_hidden_limbs(axes).parent_radius) == len(axes.parent_radius)
 
 
 @pytest.mark.parametrize("tree", [fork(), oak()])
-def test_limbs_that_are_seen_stay(tree: Skeleton) -> None:
-    chains = chains_of(tree, 1e-4)
-    assert np.array_equal(without_hidden(chains).joint, chains.joint)
+def test_visible_limbs_stay(tree: Skeleton) -> None:
+    axes = limb_axes(tree, 1e-4)
+    assert np.array_equal(without_hidden_limbs(axes).joint, axes.joint)
 
 
 @pytest.mark.parametrize("turn", [-1.2, -1.6, -2.4])
@@ -56,7 +56,7 @@ def test_twigs_stand_on_a_limb_that_turns_sharply_after_a_straight_stretch(turn:
     assert touching_pieces(tubes(hooked(turn))) == 1
 
 
-def hasty_tree(seed: int) -> Skeleton:
+def any_tapering_tree(seed: int) -> Skeleton:
     """Build a tree of joints near and far, straight on and back again, that gets thinner outward."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(2, 50))
@@ -71,4 +71,4 @@ def hasty_tree(seed: int) -> Skeleton:
 @given(st.integers(0, 100_000))
 @settings(max_examples=20, deadline=None)
 def test_bark_is_one_piece_whatever_the_tree(seed: int) -> None:
-    assert touching_pieces(tubes(hasty_tree(seed), TubeParams(max_triangles=4_000))) == 1
+    assert touching_pieces(tubes(any_tapering_tree(seed), TubeParams(max_triangles=4_000))) == 1

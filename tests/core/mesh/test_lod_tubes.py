@@ -6,7 +6,7 @@ from tests.builders import oak, stick
 from tests.levels import silhouette_ious
 
 from treestroke.core.geometry.mesh import Mesh, Surface
-from treestroke.core.mesh.coarse import LEAST_TRIANGLES, CoarseParams, coarse_tubes
+from treestroke.core.mesh.lod_tubes import LEAST_TRIANGLES, LodParams, lod_tubes
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -30,51 +30,51 @@ def length(mesh: Mesh) -> float:
 
 @given(st.integers(0, 100_000))
 @settings(max_examples=40, deadline=None)
-def test_any_tree_has_coarse_bark(seed: int) -> None:
-    mesh = coarse_tubes(any_tree(seed), CoarseParams(LEAST_TRIANGLES, 100))
+def test_any_tree_has_reduced_bark(seed: int) -> None:
+    mesh = lod_tubes(any_tree(seed), LodParams(LEAST_TRIANGLES, 100))
     assert len(mesh.triangles) > 0
     assert np.isfinite(mesh.positions).all()
     assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(1.0, abs=1e-5)
 
 
 @pytest.mark.parametrize("most", [150, 400, 1_000])
-def test_the_triangles_suffice(most: int) -> None:
-    mesh = coarse_tubes(oak(orders=5), CoarseParams(most, 200))
+def test_the_triangle_budget_is_kept_and_used(most: int) -> None:
+    mesh = lod_tubes(oak(orders=5), LodParams(most, 200))
     assert 0.7 * most < len(mesh.triangles) <= most
 
 
-def test_vertices_hold_to_joints_of_the_whole_tree_that_are_near() -> None:
+def test_vertices_are_attached_to_near_joints_of_the_whole_tree() -> None:
     tree = oak(orders=5)
-    mesh = coarse_tubes(tree, CoarseParams(400, 200))
-    assert mesh.hold is not None
-    start, end = tree.points[mesh.hold.joints.T]
-    place = start + mesh.hold.share[:, None] * (end - start)
+    mesh = lod_tubes(tree, LodParams(400, 200))
+    assert mesh.attachment is not None
+    start, end = tree.points[mesh.attachment.joints.T]
+    place = start + mesh.attachment.share[:, None] * (end - start)
     assert np.linalg.norm(mesh.positions - place, axis=1).max() < 0.6
 
 
 def test_a_stick_stays_one_and_as_tall() -> None:
-    mesh = coarse_tubes(stick(), CoarseParams(LEAST_TRIANGLES, 100))
+    mesh = lod_tubes(stick(), LodParams(LEAST_TRIANGLES, 100))
     assert length(mesh) == pytest.approx(4.0, rel=0.02)
 
 
 def test_the_trunk_outlives_the_twigs() -> None:
     tree = oak(orders=5)
-    mesh = coarse_tubes(tree, CoarseParams(LEAST_TRIANGLES, 200))
-    assert mesh.hold is not None
-    gone = set(range(len(tree))) - set(mesh.hold.joints.ravel().tolist())
+    mesh = lod_tubes(tree, LodParams(LEAST_TRIANGLES, 200))
+    assert mesh.attachment is not None
+    gone = set(range(len(tree))) - set(mesh.attachment.joints.ravel().tolist())
     assert {0, 3}.isdisjoint(gone)
     assert len(gone) > len(tree) / 2
 
 
-def test_a_third_of_the_triangles_hides_nearly_the_same() -> None:
+def test_a_third_of_the_triangles_covers_nearly_the_same() -> None:
     tree = oak(orders=5)
     whole = tubes(tree)
-    coarse = coarse_tubes(tree, CoarseParams(len(whole.triangles) // 3, 200))
+    coarse = lod_tubes(tree, LodParams(len(whole.triangles) // 3, 200))
     assert silhouette_ious([Surface(whole, WOOD)], [Surface(coarse, WOOD)], 200).min() > 0.88
 
 
 def test_params_out_of_range_are_refused() -> None:
     with pytest.raises(ValueError, match="triangles"):
-        CoarseParams(LEAST_TRIANGLES - 1, 100)
-    with pytest.raises(ValueError, match="thinned"):
-        CoarseParams(LEAST_TRIANGLES, 100, most_thickened=0.9)
+        LodParams(LEAST_TRIANGLES - 1, 100)
+    with pytest.raises(ValueError, match="most_thickened"):
+        LodParams(LEAST_TRIANGLES, 100, most_thickened=0.9)
