@@ -8,21 +8,21 @@ from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 
 Pair = tuple[Branched, Branched]
-ProgressEstimate = Callable[[float], tuple[float, float]]
+Curve = Callable[[float], tuple[float, float]]
 Stroke = tuple[int, int, Sequence[tuple[float, float]]]
-"""Branch that bears it, joint of that branch, and its further points."""
+"""Parent branch, joint of that branch, and the further points."""
 
 
 def sketched(stem: Sequence[tuple[float, float]], *strokes: Stroke, radii: Sequence[float] = ()) -> Branched:
     """Draw by hand: a stem from the root, then strokes; ``radii`` by branch, 0 where there is none."""
     points, parents, branch = [(0.0, 0.0), *stem], list(range(-1, len(stem))), [0] * (len(stem) + 1)
     chains = [list(range(len(points)))]
-    for number, (bearer, joint, way) in enumerate(strokes, start=1):
+    for number, (parent, joint, line) in enumerate(strokes, start=1):
         first = len(points)
-        points += way
-        parents += [chains[bearer][joint], *range(first, first + len(way) - 1)]
-        branch += [number] * len(way)
-        chains.append(list(range(first, first + len(way))))
+        points += line
+        parents += [chains[parent][joint], *range(first, first + len(line) - 1)]
+        branch += [number] * len(line)
+        chains.append(list(range(first, first + len(line))))
     widths = np.array([radii[b] if b < len(radii) else 0.0 for b in branch])
     return Branched(Skeleton(np.array(points, dtype=np.float64), widths, np.array(parents)), np.array(branch))
 
@@ -46,23 +46,23 @@ class Pen:
 
     def stroke(
         self,
-        bearer: int,
+        parent: int,
         share: float,
-        course: ProgressEstimate,
+        curve: Curve,
         length: float,
         radius: float = 0.0,
     ) -> int:
-        """Draw a branch from a share of its bearer along ``course`` (t from 0 to 1 -> offset); bearer -1: the stem."""
-        joint = 0 if bearer < 0 else self.chains[bearer][round(share * (len(self.chains[bearer]) - 1))]
-        number = 0 if bearer < 0 else len(self.chains)
-        if bearer >= 0:
+        """Draw a branch from a share of its parent along ``curve`` (t from 0 to 1 -> offset); parent -1: the stem."""
+        joint = 0 if parent < 0 else self.chains[parent][round(share * (len(self.chains[parent]) - 1))]
+        number = 0 if parent < 0 else len(self.chains)
+        if parent >= 0:
             self.chains.append([])
         start, phase = self.points[joint], self.rng.uniform(0, 2 * np.pi, 4)
         steps = max(int(length / self.spacing), 3)
         for t in np.arange(1, steps + 1) / steps:
             waves = np.sin(phase + t * length / np.array([35.0, 60.0, 45.0, 90.0]))
             shake = self.tremble * min(1.0, 4 * t) * np.array([waves[0] + 2 * waves[1], waves[2] + 2 * waves[3]])
-            self.points.append(start + np.array(course(float(t))) + shake)
+            self.points.append(start + np.array(curve(float(t))) + shake)
             self.parents.append(self.chains[number][-1] if self.chains[number] else joint)
             self.branch.append(number)
             self.radii.append(radius * (1 - 0.7 * t))
@@ -96,23 +96,23 @@ def broadleaf(limbs: int, seed: int, twigs: int = 2, radius: float = 0.0) -> Bra
     return pen.drawn()
 
 
-def _arch(out: float, rise: float, droop: float) -> ProgressEstimate:
+def _arch(out: float, rise: float, droop: float) -> Curve:
     return lambda t: (out * t, rise * np.sin(0.5 * np.pi * t) - droop * t**3)
 
 
-def _bough(out: float, tilt: float, lift: float) -> ProgressEstimate:
+def _bough(out: float, tilt: float, lift: float) -> Curve:
     return lambda t: (out * t, abs(out) * tilt * t + lift * t**3)
 
 
-def _willow(out: float, rise: float, hang: float) -> ProgressEstimate:
+def _willow(out: float, rise: float, hang: float) -> Curve:
     return lambda t: (out * np.sin(0.5 * np.pi * t), 2.2 * rise * np.sin(np.pi * t) - hang * t**2)
 
 
-def _cordon(out: float) -> ProgressEstimate:
+def _cordon(out: float) -> Curve:
     return lambda t: (out * t, 30 * np.sin(2 * t))
 
 
-def _shoot(aside: float, up: float) -> ProgressEstimate:
+def _shoot(aside: float, up: float) -> Curve:
     return lambda t: (aside * t * t, up * t)
 
 
@@ -156,8 +156,8 @@ def vine(side: bool, seed: int) -> Branched:
     return pen.drawn()
 
 
-def pairs() -> dict[str, Pair]:
-    """Draw all pairs that retrieval is judged on, by name."""
+def tuning_pairs() -> dict[str, Pair]:
+    """Draw the pairs that the costs of retrieval were tuned on, by name."""
     return {
         "neat": neat(),
         "broad 9/6": (broadleaf(9, 1), broadleaf(6, 2)),
@@ -169,4 +169,17 @@ def pairs() -> dict[str, Pair]:
         "vine": (vine(False, 13), vine(True, 14)),
         "same": (broadleaf(8, 15), broadleaf(8, 15)),
         "broad 30/30": (broadleaf(10, 16), broadleaf(10, 17)),
+    }
+
+
+def held_out_pairs(seed: int) -> dict[str, Pair]:
+    """Draw pairs of the same kinds that nothing was tuned on, by name; take seeds from 100 on."""
+    return {
+        f"broad 9/6, {seed}": (broadleaf(9, seed), broadleaf(6, seed + 1)),
+        f"broad 7/7, {seed}": (broadleaf(7, seed + 2), broadleaf(7, seed + 3)),
+        f"broad 5/11, {seed}": (broadleaf(5, seed + 4, twigs=3), broadleaf(11, seed + 5, twigs=1)),
+        f"brush 8/7, {seed}": (broadleaf(8, seed + 6, radius=16.0), broadleaf(7, seed + 7, radius=14.0)),
+        f"pine 24/18, {seed}": (pine(24, seed + 8), pine(18, seed + 9)),
+        f"weeping 9/7, {seed}": (weeping(9, seed + 10), weeping(7, seed + 11)),
+        f"vine, {seed}": (vine(False, seed + 12), vine(True, seed + 13)),
     }

@@ -6,10 +6,11 @@ from tests.core.grow.crowns import trunk_case
 
 from treestroke.core.grow.compiled import CompiledEvaluator
 from treestroke.core.grow.crown import Crown, crown_of
-from treestroke.core.grow.evaluator import evaluator_for, turn_library
+from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.growing import rules_for
 from treestroke.core.grow.library import TYPE_1, TYPE_2
 from treestroke.core.grow.params import GrowthParams
+from treestroke.core.grow.placements import turn_library
 from treestroke.core.grow.reference import PlainEvaluator
 
 

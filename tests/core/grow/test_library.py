@@ -3,8 +3,8 @@ import pytest
 from tests.builders import oak, stick
 from tests.core.grow.crowns import limbed_case
 
-from treestroke.core.grow.evaluator import turn_library
 from treestroke.core.grow.library import SPRAYS, TYPE_1, TYPE_2, WHORLS, Subtree, choose_library, visible_subtrees
+from treestroke.core.grow.placements import turn_library
 
 NAMES = ("auto", "visible", "type1", "type2", "both")
 
@@ -32,8 +32,8 @@ def test_auto_takes_visible_subtrees_where_there_are_enough() -> None:
 def test_a_conifer_gets_whorls_on_its_stem_and_sprays_on_its_limbs() -> None:
     library = choose_library("auto", "needles", oak())
     assert library[: len(WHORLS + SPRAYS)] == WHORLS + SPRAYS
-    assert {tree.bearer for tree in WHORLS} == {"stem"}
-    assert {tree.bearer for tree in SPRAYS} == {"limb"}
+    assert {tree.replaces for tree in WHORLS} == {"stem"}
+    assert {tree.replaces for tree in SPRAYS} == {"limb"}
     assert len(library) <= 8
 
 

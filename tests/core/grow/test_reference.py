@@ -4,10 +4,10 @@ from tests.core.grow.crowns import limbed_case
 
 from treestroke.core.grow.compiled import CompiledEvaluator
 from treestroke.core.grow.crown import Crown, crown_of, pixels_of
-from treestroke.core.grow.evaluator import Evaluator
 from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.library import TYPE_1, TYPE_2, visible_subtrees
 from treestroke.core.grow.params import GrowthParams
+from treestroke.core.grow.placements import Evaluator
 from treestroke.core.grow.reference import PlainEvaluator
 from treestroke.core.grow.stem import foot_of
 from treestroke.core.progress import silent

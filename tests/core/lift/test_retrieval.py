@@ -5,14 +5,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tests.sketched import Pair, broadleaf, neat, pairs, sketched
+from tests.sketched import Pair, broadleaf, neat, sketched, tuning_pairs
 
-from treestroke.core.lift.retrieval import COMPLEMENTED, LONE, PAIRED, RetrievalParams, Retrieved, retrieve_depth
+from treestroke.core.lift.params import RetrievalParams
+from treestroke.core.lift.retrieval import COMPLEMENTED, LONE, PAIRED, Retrieved, retrieve_depth
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.survey.fidelity import Fidelity, fidelity
 
-PAIRS = pairs()
+PAIRS = tuning_pairs()
 STEM = [(0.0, 300.0), (0.0, 500.0), (0.0, 1000.0)]
 IN_PLANES = {
     # The front has half again as many limbs as the side, and higher ones, so that for some only the stem is left.

@@ -1,9 +1,12 @@
-/* The compiled evaluator of growth: see reference.py for the same mathematics written plainly.
+/* The compiled evaluator of growth; reference.py has the same mathematics in plain numpy.
  *
- * What makes it fast: only attractors that a branch can reach are looked at; the nearest of the evenly spaced
- * samples of a segment has a closed form; a gain of an earlier iteration stays an upper bound (the sum of distances
- * is submodular and pruning only ever takes away), so few placements are evaluated again; the closeness test waits
- * until a placement reaches the top. Compiled without contraction or fast-math, so every processor gives the same bits.
+ * Why it is fast: only attractors within reach of a branch are measured; the nearest of the evenly spaced samples of
+ * a segment has a closed form; a gain of an earlier iteration remains an upper bound (the sum of distances is
+ * submodular and pruning only removes shoots), so few placements are evaluated again (lazy evaluation, Minoux 1978);
+ * the closeness test is done last, for placements with the greatest bound. Compiled without contraction or fast-math,
+ * so every processor computes the same bits.
+ *
+ * "flat" is the image (2D), "solid" is space (3D); lengths are px of the crown's frame.
  */
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
@@ -19,9 +22,9 @@
 
 #define MAX_SHOOTS 16
 #define BUCKETS 65536
-#define ROUND 6755399441055744.0 /* 1.5 * 2^52: adding and taking it away rounds to the nearest integer, ties to even */
+#define ROUND 6755399441055744.0 /* 1.5 * 2^52: adding and subtracting it rounds to the nearest integer, ties to even */
 #define TIE 1e-9
-#define COARSE 1.0 /* groups bound gains well where attractors are farther off than groups are wide */
+#define COARSE 1.0 /* least ratio of attractors' distance to groups' width at which groups bound gains well */
 
 typedef struct { double x, y, z; } Vec;
 typedef struct { Vec base, step; int samples, kept; } Segment;
@@ -41,10 +44,10 @@ typedef struct {
     int *count;
     Shoot *library;
     Points points[2]; /* 0 in the image, 1 in space */
-    double *away; /* of each image attractor from its group's middle */
-    int *first; /* index of each group's first attractor, then their count */
+    double *away; /* distance of each image attractor from its group's middle */
+    int *first; /* index of each group's first attractor, then the number of attractors */
     Groups groups, near_groups;
-    Segment *wood;
+    Segment *segments;
     Visit **visits;
     int branches, room;
     Vec *grid;
@@ -59,7 +62,7 @@ typedef struct {
 
 static int failed(void) { PyErr_NoMemory(); return -1; }
 
-/* ---- small geometry, operation by operation as in reference.py ---- */
+/* ---- vectors: the same order of operations as in reference.py ---- */
 
 static Vec add(Vec a, Vec b) { Vec v = {a.x + b.x, a.y + b.y, a.z + b.z}; return v; }
 static Vec sub(Vec a, Vec b) { Vec v = {a.x - b.x, a.y - b.y, a.z - b.z}; return v; }
@@ -87,7 +90,7 @@ static int inside(const Engine *e, Vec p) {
     return x * x + p.z * p.z <= e->radius[r] * e->radius[r];
 }
 
-/* The shoot's leading samples inside the crown; 0 where it grows inward or too little of it stays. */
+/* Number of the shoot's leading samples inside the crown; 0 where it grows inward or too little of it is kept. */
 static int kept_samples(const Engine *e, const Segment *s, Vec along) {
     Vec out = sub(add(s->base, times(along, 0.5)), e->foot);
     if (dot(along, out) < e->cosine * (norm(along) * norm(out))) return 0;
@@ -109,8 +112,8 @@ static void frame(const Engine *e, int branch, Vec *u, Vec *a, Vec *v, double *l
     *v = cross(*a, *u);
 }
 
-/* Lay a placement's shoots over its branch; fill `kept` where it is not known yet. */
-static void lay(const Engine *e, int branch, int placement, uint16_t *kept, int known, Segment *out) {
+/* Compute a placement's shoots on its branch; fill `kept` where it is not known yet. */
+static void compute_shoots(const Engine *e, int branch, int placement, uint16_t *kept, int known, Segment *out) {
     int subtree = placement / e->angles;
     Vec u, a, v, along[MAX_SHOOTS];
     double length;
@@ -123,8 +126,8 @@ static void lay(const Engine *e, int branch, int placement, uint16_t *kept, int 
         along[i].x = ((t.x * u.x + t.y * a.x) + t.z * v.x) * size;
         along[i].y = ((t.x * u.y + t.y * a.y) + t.z * v.y) * size;
         along[i].z = ((t.x * u.z + t.y * a.z) + t.z * v.z) * size;
-        Vec bearer = p < 0 ? sub(e->tip[branch], e->base[branch]) : along[p];
-        out[i] = segment(e, add(p < 0 ? e->base[branch] : out[p].base, times(bearer, shoot->fraction)), along[i]);
+        Vec parent = p < 0 ? sub(e->tip[branch], e->base[branch]) : along[p];
+        out[i] = segment(e, add(p < 0 ? e->base[branch] : out[p].base, times(parent, shoot->fraction)), along[i]);
         if (!known) {
             int torn = p >= 0 && (kept[p] == 0 || shoot->fraction * out[p].samples > kept[p]);
             kept[i] = size > 0 && !torn ? (uint16_t)kept_samples(e, &out[i], along[i]) : 0;
@@ -156,8 +159,8 @@ static Visit *new_visit(const Engine *e) {
     return v;
 }
 
-/* The ball about a branch's middle that holds every placement. */
-static void ball(const Engine *e, int branch, Vec *centre, double *radius) {
+/* The sphere about a branch's middle that contains every placement on it. */
+static void bounding_sphere(const Engine *e, int branch, Vec *centre, double *radius) {
     Vec d = sub(e->tip[branch], e->base[branch]);
     double length = norm(d), far = 0.5;
     for (int s = 0; s < e->subtrees; s++)
@@ -201,7 +204,7 @@ WIDE static void nearest_solid(const double *x, const double *y, const double *z
     }
 }
 
-/* Pick the attractors that come nearer, as most do not and roots are dear; then measure by how much. */
+/* Select the attractors that come nearer, as most do not and square roots are slow; return their number. */
 static int nearer(const double *d, double *best, double *before, int n) {
     int count = 0;
     for (int i = 0; i < n; i++) {
@@ -257,14 +260,14 @@ static int scratch_for(Engine *e, int n) {
     return 0;
 }
 
-/* Collect the attractors that some placement of the slot's branch can bring nearer; sum an upper bound of all. */
+/* Collect the attractors that a placement on the slot's branch may come nearer to; sum upper bounds of their gains. */
 static int gather(Engine *e, Slot *slot, int solid) {
     const Points *all = &e->points[solid];
     Points *near = &slot->near;
     Vec c;
     double r, bound = 0;
     if (room_for(near, all->n)) return -1;
-    ball(e, slot->branch, &c, &r);
+    bounding_sphere(e, slot->branch, &c, &r);
     int n = 0;
     for (int i = 0; i < all->n; i++) {
         double x = all->x[i] - c.x, y = all->y[i] - c.y, z = solid ? all->z[i] - c.z : 0, reach = all->d[i] + r;
@@ -295,9 +298,9 @@ static double gain_of(Engine *e, const Points *near, int solid, const Segment *s
 
 /* ---- a coarse bound: groups of neighbouring image attractors instead of each ----
  *
- * With D the distance of a group's middle to a placement, an attractor `away` from the middle gains at most
- * d + away - D, or nothing. Summed over a group that is sum - size * D up to low = min(d + away), 0 from
- * high = max(d + away) on, and convex between: below the chord.
+ * With D the distance of a group's middle to a placement, an attractor at distance d from the tree and `away` from the
+ * middle gains at most max(0, d + away - D). Summed over a group this is sum - size * D up to low = min(d + away), 0
+ * from high = max(d + away) on, and convex between, hence below the chord.
  */
 
 static void middle_of(Engine *e, int k) {
@@ -309,7 +312,7 @@ static void middle_of(Engine *e, int k) {
     e->groups.x[k] = x; e->groups.y[k] = y; e->groups.size[k] = size;
 }
 
-static void weigh_groups(Engine *e) {
+static void update_groups(Engine *e) {
     Groups *g = &e->groups;
     const double *d = e->points[0].d;
     for (int k = 0; k < g->n; k++) {
@@ -325,13 +328,13 @@ static void weigh_groups(Engine *e) {
     }
 }
 
-/* Collect the groups within reach of a branch; none where they are too coarse to tell anything. */
+/* Collect the groups within reach of a branch; none where they are too coarse to bound gains well. */
 static int gather_groups(Engine *e, int branch) {
     const Groups *all = &e->groups;
     Groups *near = &e->near_groups;
     Vec c;
     double r, total = 0, loose = 0;
-    ball(e, branch, &c, &r);
+    bounding_sphere(e, branch, &c, &r);
     near->n = 0;
     for (int k = 0; k < all->n; k++) {
         double x = all->x[k] - c.x, y = all->y[k] - c.y, reach = all->high[k] + r;
@@ -370,13 +373,13 @@ static double most_gain(Engine *e, const Segment *shoots, int count) {
 
 /* ---- closeness ---- */
 
-static int down(double x) { int i = (int)x; return i - (x < i); }
+static int floor_int(double x) { int i = (int)x; return i - (x < i); }
 
 static unsigned cell(int x, int y, int z) {
     return ((unsigned)x * 73856093u ^ (unsigned)y * 19349663u ^ (unsigned)z * 83492791u) % BUCKETS;
 }
 
-static int remember(Engine *e, Vec p) {
+static int add_sample(Engine *e, Vec p) {
     if (e->filled == e->grid_room) {
         int room = e->grid_room * 2 + 1024;
         Vec *grid = realloc(e->grid, sizeof(Vec) * room);
@@ -386,7 +389,7 @@ static int remember(Engine *e, Vec p) {
         if (!grid || !next) return failed();
         e->grid_room = room;
     }
-    unsigned at = cell(down(p.x / e->closeness), down(p.y / e->closeness), down(p.z / e->closeness));
+    unsigned at = cell(floor_int(p.x / e->closeness), floor_int(p.y / e->closeness), floor_int(p.z / e->closeness));
     e->grid[e->filled] = p;
     e->next[e->filled] = e->bucket[at];
     e->bucket[at] = e->filled++;
@@ -394,7 +397,7 @@ static int remember(Engine *e, Vec p) {
 }
 
 static int crowded(const Engine *e, Vec p) {
-    int x = down(p.x / e->closeness), y = down(p.y / e->closeness), z = down(p.z / e->closeness);
+    int x = floor_int(p.x / e->closeness), y = floor_int(p.y / e->closeness), z = floor_int(p.z / e->closeness);
     double limit = e->closeness * e->closeness;
     for (int i = 0; i < 27; i++)
         for (int k = e->bucket[cell(x + i % 3 - 1, y + i / 3 % 3 - 1, z + i / 9 - 1)]; k >= 0; k = e->next[k]) {
@@ -404,7 +407,7 @@ static int crowded(const Engine *e, Vec p) {
     return 0;
 }
 
-/* Drop the shoots whose outer half crowds the tree, and what they bear; the tree only grows, so for good. */
+/* Drop the shoots whose outer half is too close to the tree, and their children; final, as the tree only grows. */
 static void drop_crowded(const Engine *e, int subtree, Segment *shoots, uint16_t *kept) {
     for (int i = 0; i < e->count[subtree]; i++) {
         const Shoot *shoot = &e->library[subtree * e->shoots + i];
@@ -421,7 +424,7 @@ static double evaluate(Engine *e, Slot *slot, int solid, int placement, int exac
     Segment shoots[MAX_SHOOTS];
     uint16_t *kept = slot->visit->kept + (size_t)placement * e->shoots;
     int subtree = placement / e->angles;
-    lay(e, slot->branch, placement, kept, slot->visit->placed, shoots);
+    compute_shoots(e, slot->branch, placement, kept, slot->visit->placed, shoots);
     if (exact) drop_crowded(e, subtree, shoots, kept);
     double gain = gain_of(e, &slot->near, solid, shoots, e->count[subtree]);
     slot->visit->bound[solid][placement] = gain;
@@ -444,19 +447,19 @@ static void rescan(const Engine *e, Slot *slot, int solid) {
 static int first_visit(Engine *e, Slot *slot, int solid) {
     if (!slot->visit) slot->visit = e->visits[slot->branch] = new_visit(e);
     if (!slot->visit) return failed();
-    ball(e, slot->branch, &slot->visit->centre, &slot->visit->radius);
+    bounding_sphere(e, slot->branch, &slot->visit->centre, &slot->visit->radius);
     int coarse = !solid && gather_groups(e, slot->branch);
     for (int i = 0; i < e->subtrees * e->angles; i++) {
         Segment shoots[MAX_SHOOTS];
         if (!coarse) { evaluate(e, slot, solid, i, 0); continue; }
-        lay(e, slot->branch, i, slot->visit->kept + (size_t)i * e->shoots, slot->visit->placed, shoots);
+        compute_shoots(e, slot->branch, i, slot->visit->kept + (size_t)i * e->shoots, slot->visit->placed, shoots);
         slot->visit->bound[solid][i] = most_gain(e, shoots, e->count[i / e->angles]);
     }
     slot->visit->seen[solid] = slot->visit->placed = 1;
     return 0;
 }
 
-static int note(Engine *e, int branch, int placement, double gain) {
+static int record(Engine *e, int branch, int placement, double gain) {
     if (e->found_count == e->found_room) {
         Found *found = realloc(e->found, sizeof(Found) * (e->found_room * 2 + 64));
         if (!found) return failed();
@@ -476,7 +479,7 @@ static int open_slots(Engine *e, const int64_t *candidates, int n, int solid) {
         e->slots = slots;
         e->slot_count = n;
     }
-    if (!solid) weigh_groups(e);
+    if (!solid) update_groups(e);
     for (int i = 0; i < n; i++) {
         Slot *slot = &e->slots[i];
         slot->branch = (int)candidates[i];
@@ -488,7 +491,7 @@ static int open_slots(Engine *e, const int64_t *candidates, int n, int solid) {
     return 0;
 }
 
-/* Evaluate one step further what now has the greatest bound. */
+/* Evaluate the placement with the greatest bound one step further: its gain, then also its closeness. */
 static int advance(Engine *e, Slot *slot, int solid, double *best) {
     Visit *v = slot->visit;
     if (!v || !v->seen[solid]) {
@@ -500,7 +503,7 @@ static int advance(Engine *e, Slot *slot, int solid, double *best) {
         int exact = v->fresh[solid][top] == e->turn;
         double gain = evaluate(e, slot, solid, top, exact);
         v->bound[solid][top] = fmin(gain, bound);
-        if (exact && note(e, slot->branch, top, gain)) return -1;
+        if (exact && record(e, slot->branch, top, gain)) return -1;
         if (exact && gain > *best) *best = gain;
     }
     rescan(e, slot, solid);
@@ -529,7 +532,7 @@ static int search(Engine *e, int n, int solid, Found *winner) {
 
 /* ---- the Python type ---- */
 
-/* Borrow a C-contiguous buffer of the given item size and at least n items (any length where n < 0). */
+/* Borrow a C-contiguous buffer of the given item size and exactly n items (any number where n < 0). */
 static int borrow(PyObject *object, Py_buffer *view, Py_ssize_t item, Py_ssize_t n) {
     if (PyObject_GetBuffer(object, view, PyBUF_C_CONTIGUOUS | PyBUF_FORMAT)) return -1;
     if (view->itemsize == item && (n < 0 || view->len == item * n)) return 0;
@@ -554,12 +557,12 @@ static int add_point(Engine *e, int solid, Vec p) {
     double best = 1e300;
     Points one = {&p.x, &p.y, &p.z, NULL, 1, 1};
     if (room_for(all, all->n + 1)) return -1;
-    for (int b = 0; b < e->branches; b++) nearest(&one, solid, &best, e->wood[b]);
+    for (int b = 0; b < e->branches; b++) nearest(&one, solid, &best, e->segments[b]);
     all->x[all->n] = p.x; all->y[all->n] = p.y; all->z[all->n] = p.z; all->d[all->n++] = sqrt(best);
     return 0;
 }
 
-/* A new attractor may raise old gains: raise their bounds by the most that it can give. */
+/* A new attractor may raise old gains: raise their bounds by the greatest gain that it allows. */
 static void raise_bounds(Engine *e, const Points *p, int i) {
     for (int b = 0; b < e->branches; b++) {
         Visit *v = e->visits[b];
@@ -615,7 +618,7 @@ static int read_library(Engine *e, PyObject *counts, PyObject *parents, PyObject
 static int engine_init(PyObject *self, PyObject *args, PyObject *Py_UNUSED(keywords)) {
     Engine *e = (Engine *)self;
     PyObject *mask, *middle, *radius, *counts, *parents, *fractions, *vectors;
-    if (e->mask) { PyErr_SetString(PyExc_ValueError, "an engine starts once"); return -1; }
+    if (e->mask) { PyErr_SetString(PyExc_ValueError, "an engine is initialised once"); return -1; }
     if (!PyArg_ParseTuple(args, "(ii)OOO(ddd)ddddOOOO", &e->height, &e->width, &mask, &middle, &radius, &e->foot.x,
                           &e->foot.y, &e->foot.z, &e->spacing, &e->closeness, &e->keep, &e->cosine, &counts, &parents,
                           &fractions, &vectors)) return -1;
@@ -637,7 +640,7 @@ static void engine_free(PyObject *self) {
         Groups *g = i ? &e->near_groups : &e->groups;
         free(g->x); free(g->y); free(g->low); free(g->high); free(g->slope); free(g->sum); free(g->size);
     }
-    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->scale, e->turned, e->base, e->tip, e->count, e->library, e->wood,
+    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->scale, e->turned, e->base, e->tip, e->count, e->library, e->segments,
                      e->visits, e->grid, e->next, e->slots, e->best, e->gain, e->found};
     for (size_t i = 0; i < sizeof(owned) / sizeof(*owned); i++) free(owned[i]);
     PyTypeObject *type = Py_TYPE(self);
@@ -649,7 +652,7 @@ static int room_for_branches(Engine *e, int n) {
     if (n <= e->room) return 0;
     int room = n * 2 + 64;
     struct { void **at; size_t size; } columns[] = {
-        {(void **)&e->base, sizeof(Vec)}, {(void **)&e->tip, sizeof(Vec)}, {(void **)&e->wood, sizeof(Segment)},
+        {(void **)&e->base, sizeof(Vec)}, {(void **)&e->tip, sizeof(Vec)}, {(void **)&e->segments, sizeof(Segment)},
         {(void **)&e->visits, sizeof(Visit *)}, {(void **)&e->scale, sizeof(double) * e->subtrees}};
     for (int i = 0; i < 5; i++) {
         void *grown = realloc(*columns[i].at, columns[i].size * room);
@@ -665,22 +668,22 @@ static int add_branch(Engine *e, const double *base, const double *tip, const do
     if (room_for_branches(e, b + 1)) return -1;
     e->base[b] = (Vec){base[0], base[1], base[2]};
     e->tip[b] = (Vec){tip[0], tip[1], tip[2]};
-    e->wood[b] = segment(e, e->base[b], sub(e->tip[b], e->base[b]));
+    e->segments[b] = segment(e, e->base[b], sub(e->tip[b], e->base[b]));
     e->visits[b] = NULL;
     memcpy(e->scale + (size_t)b * e->subtrees, scale, sizeof(double) * e->subtrees);
     e->branches++;
-    for (int k = 1; k <= e->wood[b].samples; k++)
-        if (remember(e, add(e->base[b], times(e->wood[b].step, k)))) return -1;
+    for (int k = 1; k <= e->segments[b].samples; k++)
+        if (add_sample(e, add(e->base[b], times(e->segments[b].step, k)))) return -1;
     return 0;
 }
 
-/* Bring the attractors' distances up to date with the branches from `first` on. */
-static int shorten(Engine *e, int first) {
+/* Update the attractors' distances with the branches from `first` on. */
+static int update_distances(Engine *e, int first) {
     for (int solid = 0; solid < 2; solid++) {
         Points *p = &e->points[solid];
         if (scratch_for(e, p->n + 4)) return -1;
         clear(e->best, p->n);
-        for (int b = first; b < e->branches; b++) nearest(p, solid, e->best, e->wood[b]);
+        for (int b = first; b < e->branches; b++) nearest(p, solid, e->best, e->segments[b]);
         for (int i = 0; i < p->n; i++) p->d[i] = fmin(p->d[i], sqrt(e->best[i]));
     }
     return 0;
@@ -696,7 +699,7 @@ static PyObject *add_branches(PyObject *self, PyObject *args) {
     int first = e->branches;
     for (int i = 0; good && i < n / 3; i++)
         good = !add_branch(e, base + 3 * i, tip + 3 * i, scale + (size_t)i * e->subtrees);
-    good = good && !shorten(e, first);
+    good = good && !update_distances(e, first);
     free(base); free(tip); free(scale);
     if (!good) return NULL;
     Py_RETURN_NONE;
@@ -720,7 +723,7 @@ static PyObject *add_attractors(PyObject *self, PyObject *args) {
     Py_RETURN_NONE;
 }
 
-/* Take the image attractors in groups of neighbours: each group's first index, and the count of all at the end. */
+/* Set the groups of neighbouring image attractors: each group's first index, then the number of attractors. */
 static PyObject *group(PyObject *self, PyObject *args) {
     Engine *e = (Engine *)self;
     const Points *p = &e->points[0];
@@ -758,12 +761,12 @@ static PyObject *best(PyObject *self, PyObject *args) {
     for (int i = 0; i < n; i++) bad |= chosen[i] < 0 || chosen[i] >= e->branches;
     if (!bad && n) status = open_slots(e, chosen, (int)n, solid) || search(e, (int)n, solid, &f);
     free(chosen);
-    if (bad) PyErr_SetString(PyExc_ValueError, "a candidate is no branch");
+    if (bad) PyErr_SetString(PyExc_ValueError, "a candidate is not the index of a branch");
     if (bad || status) return NULL;
     return Py_BuildValue("(iiid)", f.branch, f.placement / e->angles, f.placement % e->angles, f.gain);
 }
 
-/* List the shoots that a placement leaves standing; its branch is never asked for again. */
+/* List the shoots of a placement that pruning leaves; its branch is no candidate any more. */
 static PyObject *place(PyObject *self, PyObject *args) {
     Engine *e = (Engine *)self;
     Segment shoots[MAX_SHOOTS];
@@ -771,8 +774,8 @@ static PyObject *place(PyObject *self, PyObject *args) {
     int branch, subtree, angle, order[MAX_SHOOTS], n = 0;
     if (!PyArg_ParseTuple(args, "iii", &branch, &subtree, &angle)) return NULL;
     if (branch < 0 || branch >= e->branches || subtree < 0 || subtree >= e->subtrees || angle < 0 || angle >= e->angles)
-        return PyErr_Format(PyExc_ValueError, "no such placement");
-    lay(e, branch, subtree * e->angles + angle, kept, 0, shoots);
+        return PyErr_Format(PyExc_ValueError, "branch, subtree or angle is out of range");
+    compute_shoots(e, branch, subtree * e->angles + angle, kept, 0, shoots);
     drop_crowded(e, subtree, shoots, kept);
     free_visit(e->visits[branch]);
     e->visits[branch] = NULL;
@@ -797,12 +800,12 @@ static PyObject *distances(PyObject *self, PyObject *Py_UNUSED(args)) {
 }
 
 static PyMethodDef methods[] = {
-    {"add_branches", add_branches, METH_VARARGS, "Add wood: bases (k, 3), tips (k, 3), scales (k, subtrees)."},
-    {"add_attractors", add_attractors, METH_VARARGS, "Add attractors (m, 3), in space or in the image."},
-    {"group", group, METH_VARARGS, "Take the image attractors in groups: first indices, then their count."},
+    {"add_branches", add_branches, METH_VARARGS, "Add branches: bases and tips (k, 3), px; factors (k, subtrees)."},
+    {"add_attractors", add_attractors, METH_VARARGS, "Add attractors (m, 3), px, in space or in the image."},
+    {"group", group, METH_VARARGS, "Set the groups of image attractors: first indices, then their number."},
     {"best", best, METH_VARARGS, "Find (branch, subtree, angle, gain) of the best placement; branch -1 without gain."},
-    {"place", place, METH_VARARGS, "List (parent, fraction, base, tip) of the shoots of a placement."},
-    {"distances", distances, METH_NOARGS, "Give the image attractors' distances as bytes of float64."},
+    {"place", place, METH_VARARGS, "List (parent, fraction, base, tip) of a placement's remaining shoots."},
+    {"distances", distances, METH_NOARGS, "Return the image attractors' distances, px, as bytes of float64."},
     {NULL, NULL, 0, NULL}};
 
 static PyType_Slot slots[] = {{Py_tp_init, engine_init}, {Py_tp_dealloc, engine_free}, {Py_tp_methods, methods},

@@ -1,4 +1,4 @@
-"""Branches: the straight pieces that growth sees instead of the skeleton's dense joints."""
+"""The visible tree as straight branches, which growth replaces, instead of the skeleton's dense joints."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,23 +12,24 @@ from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_child
 from treestroke.core.types import Floats, Indices
 
 TURN_DEG = 30.0
-STRAIGHT_SHARE = 0.03
-"""Of the longest chain's limit: how far ahead a turn is measured, as the sharp bends of a traced stroke are noise."""
+"""Turn that ends a branch, degrees (Tan et al. 2008, section 2)."""
+TURN_REACH = 0.03
+"""Distance ahead over which a turn is measured, relative to the longest chain: sharp bends of a stroke are noise."""
 
 
 @dataclass(frozen=True, eq=False)
 class Chain:
-    """A piece of a visible limb: joints from its base to its tip, and the limb's order (1 on a stem)."""
+    """A piece of a visible limb: joint indices (m,) from its base to its tip, and the limb's order (1 on a stem)."""
 
     joints: Indices
     generation: int
 
 
 def successors_by_wood(skeleton: Skeleton) -> Indices:
-    """Give the child with which each joint's limb goes on (n,), -1 at a tip, in a frame with y down.
+    """Return the index of the child that continues each joint's limb (n,), -1 at a tip; px or metres, y down.
 
-    A limb follows the most wood (length times radius); the stems follow the way to their highest joint, so that a
-    long low limb does not take the leader's place.
+    A limb follows the most wood (length times radius); each stem leads to its highest joint, so that a long low limb
+    does not take the leader's place.
     """
     wood = edge_lengths(skeleton) * (skeleton.radii + 1e-3 * skeleton.radii.max())
     successors = heaviest_children(skeleton, accumulate_to_root(skeleton, wood))
@@ -49,9 +50,9 @@ def successors_by_wood(skeleton: Skeleton) -> Indices:
 def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[float, float]) -> list[Chain]:
     """Split a skeleton (any unit) where it forks, turns, enters the crown, or has gone on for long.
 
-    ``inside`` (n,) marks the joints in the crown, ``longest`` (the skeleton's unit) bounds a chain there, first of a
-    stem, second of a limb; a joint where the direction turns by 30 degrees ends a chain. No chain is shorter than a
-    tenth of ``longest`` for the sake of a fork or a turn. Chains come parents first.
+    ``inside`` (n,) is the mask of the joints in the crown; ``longest`` is the greatest length there of a stem's and of
+    a limb's chain, in the skeleton's unit. A turn of 30 degrees ends a chain. No fork or turn makes a chain shorter
+    than a tenth of ``longest``. Chains come parents first. Source: Tan et al. 2008, section 2 (simplification).
     """
     successors = successors_by_wood(skeleton)
     order: dict[int, int] = {}
@@ -66,7 +67,7 @@ def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[f
 
 
 def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest: float) -> list[int]:
-    """Place the ends of a limb's chains, as positions in ``limb``."""
+    """Return the ends of a limb's chains, as positions in ``limb``."""
     if len(limb) < 2:
         return []
     arc = path_lengths(skeleton)[limb]
@@ -82,15 +83,15 @@ def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest:
 
 
 def _turn(points: Floats, arc: Floats, start: int, at: int, longest: float) -> float:
-    """Measure the angle between the way since ``start`` and the way ahead of ``at``, degrees."""
-    ahead = min(int(np.searchsorted(arc, arc[at] + STRAIGHT_SHARE * longest)), len(arc) - 1)
+    """Return the angle, degrees, between the line from ``start`` to ``at`` and the line ahead of ``at``."""
+    ahead = min(int(np.searchsorted(arc, arc[at] + TURN_REACH * longest)), len(arc) - 1)
     before, after = points[at] - points[start], points[max(ahead, at + 1)] - points[at]
     lengths = np.sqrt((before**2).sum() * (after**2).sum())
     return float(np.degrees(np.arccos(np.clip(before @ after / lengths, -1, 1)))) if lengths > 0 else 0.0
 
 
 def _even(cuts: list[int], arc: Floats, inside: NDArray[np.bool_], longest: float) -> list[int]:
-    """Cut what is too long and lies inside into equal parts, at joints."""
+    """Cut chains inside the crown that are too long into equal parts, at joints."""
     found = [0]
     for a, b in pairwise(cuts):
         parts = int(np.ceil((arc[b] - arc[a]) / longest)) if inside[(a + b) // 2] else 1

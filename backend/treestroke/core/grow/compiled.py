@@ -1,24 +1,24 @@
-"""The compiled evaluator: same choices as `reference`, some hundred times faster."""
+"""The compiled evaluator: the same choices as `reference`, some hundred times faster."""
 
 import numpy as np
 
 from treestroke.core.grow._engine import Engine
 from treestroke.core.grow.crown import Crown
-from treestroke.core.grow.evaluator import Choice, Rules, Shoot, turn_library
 from treestroke.core.grow.library import Subtree
+from treestroke.core.grow.placements import Choice, Rules, Shoot, turn_library
 from treestroke.core.types import Floats, Indices
 
 GROUP_SIDE = 2.0
-"""Side of the cells that group the image attractors, in mean distances between them."""
+"""Side of the cells that group the image attractors, relative to the mean distance between them."""
 
 
-def _floats(array: Floats) -> Floats:
-    """Make an array fit for the extension."""
+def _contiguous(array: Floats) -> Floats:
+    """Return an array as the extension takes it: float64, in C order."""
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
-def _neighbours(points: Floats) -> tuple[Indices, Indices]:
-    """Order points (m, 2) so that neighbours stand together; give the order and where each group starts, and m."""
+def _group(points: Floats) -> tuple[Indices, Indices]:
+    """Group neighbouring points (m, 2), px: return their order (m,), and where each group starts in it, then m."""
     side = max(GROUP_SIDE * float(np.sqrt(np.prod(np.ptp(points, axis=0)) / len(points))), 1e-9)
     cells = np.floor((points - points.min(axis=0)) / side).astype(np.int64)
     order = np.lexsort((cells[:, 0], cells[:, 1]))
@@ -27,7 +27,7 @@ def _neighbours(points: Floats) -> tuple[Indices, Indices]:
 
 
 class CompiledEvaluator:
-    """An `Evaluator` on the extension ``_engine``; how it saves work stands at the head of ``_engine.c``."""
+    """An `Evaluator` on the extension ``_engine``; the head of ``_engine.c`` says how it saves work."""
 
     def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
         turned = turn_library(library, rules.angles)
@@ -35,8 +35,8 @@ class CompiledEvaluator:
         self._engine = Engine(
             crown.mask.shape,
             np.ascontiguousarray(crown.mask, dtype=np.uint8),
-            _floats(crown.middle),
-            _floats(crown.radius),
+            _contiguous(crown.middle),
+            _contiguous(crown.radius),
             tuple(crown.foot.tolist()),
             rules.spacing,
             rules.closeness,
@@ -49,30 +49,30 @@ class CompiledEvaluator:
         )
 
     def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
-        """Add branches, see `Evaluator`."""
-        self._engine.add_branches(_floats(bases), _floats(tips), _floats(scales))
+        """Add branches, bases and tips (k, 3) px, factors (k, subtrees); see `Evaluator`."""
+        self._engine.add_branches(_contiguous(bases), _contiguous(tips), _contiguous(scales))
 
     def add_attractors(self, points: Floats) -> None:
-        """Add attractors, see `Evaluator`; those of the image once, at the start."""
+        """Add attractors, px, in space (m, 3), or, once at the start, those of the image (m, 2)."""
         if points.shape[1] == 3:
-            self._engine.add_attractors(_floats(points), True)
+            self._engine.add_attractors(_contiguous(points), True)
         elif len(points):
-            self._order, starts = _neighbours(points)
+            self._order, starts = _group(points)
             ordered = points[self._order]
-            self._engine.add_attractors(_floats(np.column_stack([ordered, np.zeros(len(points))])), False)
+            self._engine.add_attractors(_contiguous(np.column_stack([ordered, np.zeros(len(points))])), False)
             self._engine.group(starts)
 
     def best(self, candidates: Indices, in_space: bool) -> Choice:
-        """Find the best placement, see `Evaluator`."""
+        """Find the best placement on the candidates, branch indices (c,); see `Evaluator`."""
         return Choice(*self._engine.best(np.ascontiguousarray(candidates, dtype=np.int64), in_space))
 
     def place(self, choice: Choice) -> list[Shoot]:
-        """List the shoots that stand, see `Evaluator`."""
+        """List the shoots that remain; see `Evaluator`."""
         rows = self._engine.place(choice.branch, choice.subtree, choice.angle)
         return [Shoot(row[0], row[1], np.array(row[2:5]), np.array(row[5:8])) for row in rows]
 
     def image_distances(self) -> Floats:
-        """Give the image attractors' distances, see `Evaluator`."""
+        """Return each image attractor's distance (m,), px, to the tree's projection."""
         distances = np.empty(len(self._order))
         distances[self._order] = np.frombuffer(self._engine.distances(), dtype=np.float64)
         return distances

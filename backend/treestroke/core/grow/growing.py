@@ -6,10 +6,10 @@ import numpy as np
 
 from treestroke.core.grow.branches import Chain, split_chains
 from treestroke.core.grow.crown import Crown, in_mask
-from treestroke.core.grow.evaluator import Choice, Evaluator, Rules, Shoot
 from treestroke.core.grow.form import BranchTable
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.params import GrowthParams
+from treestroke.core.grow.placements import Choice, Evaluator, Rules, Shoot
 from treestroke.core.progress import Report
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
@@ -129,7 +129,7 @@ class Growing:
     def _tell_evaluator(self, first: int) -> None:
         """Hand the branches from ``first`` on to the evaluator."""
         own = slice(first, self.count)
-        scales = np.array([[tree.bearer != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
+        scales = np.array([[tree.replaces != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
         for stem in np.flatnonzero(self.generation[own] == 1).tolist():
             scales[stem] = self._stem_scales(first + stem)
         self.evaluator.add_branches(self.bases[own], self.tips[own], scales)
@@ -140,7 +140,7 @@ class Growing:
         row = int(np.clip(middle[1], 0, len(self.crown.radius) - 1))
         reach = float(self.crown.radius[row]) / max(math.sqrt(float(way @ way)), 1e-9)
         stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
-        return np.where([tree.bearer != "limb" for tree in self.library], stretch, 0.0)
+        return np.where([tree.replaces != "limb" for tree in self.library], stretch, 0.0)
 
     def _turn_tips(self, first: int) -> None:
         """Add the tips from ``first`` on, turned by a quarter, to the attractors in space."""

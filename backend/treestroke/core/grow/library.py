@@ -10,14 +10,20 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
 from treestroke.core.types import Floats, FoliageKind, Indices
 
-Bearer = Literal["any", "stem", "limb"]
+Order = Literal["any", "stem", "limb"]
+"""Which branches a subtree may replace."""
 
 MOST_SUBTREES = 8
+"""Greatest size of a library (Tan et al. 2008, section 3.1)."""
 MOST_SHOOTS = 8
+"""Greatest number of shoots of a visible subtree."""
 LONGEST_SHOOT = 0.85
-"""Of the support, for subtrees of visible branches: longer ones would grow from generation to generation."""
-FEW_VISIBLE = 3
+"""Length of a visible subtree's longest shoot relative to its support: with longer ones each generation would be
+longer than the one before."""
+ENOUGH_VISIBLE = 3
+"""Number of visible subtrees from which on ``auto`` uses them."""
 Row = tuple[int, float, float, float, float]
+"""A shoot: parent, fraction, angle from the support and azimuth, degrees, and length relative to the support."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,12 +33,12 @@ class Subtree:
     Attributes
     ----------
     parents
-        (k,) the shoot that bears each shoot, -1 for the support; smaller than its own index.
+        (k,) index of each shoot's parent, smaller than its own; -1 for the support.
     fractions
-        (k,) where on its bearer each shoot stands, 0 at the base, 1 at the tip.
+        (k,) where on its parent each shoot begins, 0 at the base, 1 at the tip.
     vectors
         (k, 3) from each shoot's base to its tip, in lengths of the support.
-    bearer
+    replaces
         Which branches it may replace: stems, limbs or any.
 
     Raises
@@ -44,7 +50,7 @@ class Subtree:
     parents: Indices
     fractions: Floats
     vectors: Floats
-    bearer: Bearer = "any"
+    replaces: Order = "any"
 
     def __post_init__(self) -> None:
         k = len(self.parents)
@@ -59,12 +65,12 @@ class Subtree:
         return float(np.sqrt((self.vectors[self.parents < 0] ** 2).sum(axis=1)).max())
 
 
-def _subtree(rows: tuple[Row, ...], bearer: Bearer = "any") -> Subtree:
-    """Build a subtree from rows of (parent, fraction, angle from the support, azimuth, length), degrees."""
+def _subtree(rows: tuple[Row, ...], replaces: Order = "any") -> Subtree:
+    """Build a subtree from its shoots."""
     parent, fraction, lean, azimuth, length = (np.array(column) for column in zip(*rows, strict=True))
     lean, azimuth = np.radians(lean), np.radians(azimuth)
     directions = np.array([np.sin(lean) * np.cos(azimuth), np.cos(lean), np.sin(lean) * np.sin(azimuth)])
-    return Subtree(parent.astype(np.int64), fraction.astype(np.float64), (directions * length).T.copy(), bearer)
+    return Subtree(parent.astype(np.int64), fraction.astype(np.float64), (directions * length).T.copy(), replaces)
 
 
 # New branches at the end of the support. No two shoots mirror each other: symmetric forks would tie between angles.
@@ -157,27 +163,27 @@ SPRAYS = (
 
 
 def visible_subtrees(skeleton: Skeleton) -> tuple[Subtree, ...]:
-    """Take a subtree from each visible limb (3D, metres) that bears others, the one that bears most first.
+    """Make a subtree of each visible limb with at least two child limbs (3D, metres), the one with most children first.
 
-    A limb's support is its chord; its shoots are the chords of the limbs it bears. All are scaled so that the
-    longest shoot has 0.85 of the support.
+    A limb's support is its chord; its shoots are the chords of its child limbs. All are scaled so that the longest
+    shoot has 0.85 of the support. Source: Tan et al. 2008, section 3.1, where subtrees keep their size.
     """
     successors = heaviest_children(skeleton, accumulate_to_root(skeleton, edge_lengths(skeleton)))
     chains = [chain for chain in limbs(skeleton, successors) if len(chain) > 1]
     found = []
     for chain in chains:
-        borne = [other for other in chains if other is not chain and other[0] in set(chain[1:].tolist())]
-        subtree = _subtree_of(skeleton, chain, borne[:MOST_SHOOTS]) if len(borne) >= 2 else None
+        children = [other for other in chains if other is not chain and other[0] in set(chain[1:].tolist())]
+        subtree = _subtree_of(skeleton, chain, children[:MOST_SHOOTS]) if len(children) >= 2 else None
         if subtree is not None:
             found.append(subtree)
     return tuple(sorted(found, key=lambda subtree: -len(subtree.parents)))
 
 
-def _subtree_of(skeleton: Skeleton, chain: Indices, borne: list[Indices]) -> Subtree | None:
-    """Carry a limb and the limbs it bears to the unit support; None where a chord has no length."""
+def _subtree_of(skeleton: Skeleton, chain: Indices, children: list[Indices]) -> Subtree | None:
+    """Transform a limb and its child limbs to the unit support; None where a chord has no length."""
     start, chord = skeleton.points[chain[0]], skeleton.points[chain[-1]] - skeleton.points[chain[0]]
     length = float(np.sqrt((chord**2).sum()))
-    vectors = np.array([skeleton.points[other[-1]] - skeleton.points[other[0]] for other in borne])
+    vectors = np.array([skeleton.points[other[-1]] - skeleton.points[other[0]] for other in children])
     if length <= 0 or not (np.abs(vectors).max(axis=1) > 0).all():
         return None
     up = chord / length
@@ -186,16 +192,16 @@ def _subtree_of(skeleton: Skeleton, chain: Indices, borne: list[Indices]) -> Sub
     frame = np.array([side, up, np.cross(side, up)])
     local = vectors @ frame.T
     local *= LONGEST_SHOOT / np.sqrt((local**2).sum(axis=1)).max()
-    fractions = [float((skeleton.points[other[0]] - start) @ up) / length for other in borne]
-    return Subtree(np.full(len(borne), -1), np.clip(fractions, 0.05, 1.0), local)
+    fractions = [float((skeleton.points[other[0]] - start) @ up) / length for other in children]
+    return Subtree(np.full(len(children), -1), np.clip(fractions, 0.05, 1.0), local)
 
 
 def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton) -> tuple[Subtree, ...]:
-    """Choose at most 8 subtrees by the setting's name, what the twigs bear and the visible tree (3D, metres).
+    """Choose at most 8 subtrees by the setting's name, the kind of foliage and the visible tree (3D, metres).
 
-    ``auto`` takes up to three visible subtrees beside the predefined ones, and none where fewer than three are
-    visible; ``visible`` falls back to the predefined ones where nothing visible forks. A conifer has whorls and
-    sprays of its own, with both types beside them: by those alone its crown stays half empty.
+    ``auto`` takes two visible subtrees beside the predefined ones if at least three are visible, else none;
+    ``visible`` falls back to the predefined ones where nothing visible forks. A conifer gets whorls and sprays and both
+    types beside them: with whorls and sprays alone its crown stays half empty. Source: Tan et al. 2008, section 3.1.
 
     Raises
     ------
@@ -212,4 +218,4 @@ def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton) -> tuple[Su
         raise ValueError(f"the library is auto, visible, type1, type2 or both, not {name!r}")
     if kind == "needles":
         return WHORLS + SPRAYS + TYPE_1[:2] + TYPE_2
-    return ((visible[:2] if len(visible) >= FEW_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]
+    return ((visible[:2] if len(visible) >= ENOUGH_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import successors_by_wood
 from treestroke.core.grow.crown import Crown
-from treestroke.core.grow.form import UP
+from treestroke.core.grow.form import UP_IN_PICTURE
 from treestroke.core.skeleton.measure import path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import limbs
@@ -90,7 +90,7 @@ def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
     before = limb[max(len(limb) - len(last) - 1, 0)]
     radius = float(skeleton.radii[last].max())
     reach = float(np.clip(SLENDER * radius, LEAST_REACH * height, MOST_REACH * height))
-    return _End(int(limb[-1]), unit(skeleton.points[limb[-1]] - skeleton.points[before], UP), radius, reach)
+    return _End(int(limb[-1]), unit(skeleton.points[limb[-1]] - skeleton.points[before], UP_IN_PICTURE), radius, reach)
 
 
 def _best_path(skeleton: Skeleton, end: _End, crown: Crown, height: float) -> Floats:
@@ -114,7 +114,7 @@ def _best_path(skeleton: Skeleton, end: _End, crown: Crown, height: float) -> Fl
 
 def _paths(start: Floats, end: _End, step: float) -> list[Floats]:
     """Draw curves (k, 3) that begin the way a limb was going, swerve to all sides, and rise to their end."""
-    side = unit(np.cross(end.way, UP if abs(end.way[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
+    side = unit(np.cross(end.way, UP_IN_PICTURE if abs(end.way[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
     other = np.cross(side, end.way)
     ways = []
     for swerve in SWERVES:
@@ -129,7 +129,7 @@ def _curve(start: Floats, way: Floats, chord: Floats, step: float) -> Floats:
     length = float(np.sqrt((chord**2).sum()))
     count = max(int(np.ceil(length / step)), 2)
     t = (np.arange(1, count + 1) / count)[:, None]
-    rising = unit(unit(chord) + RISE * UP)
+    rising = unit(unit(chord) + RISE * UP_IN_PICTURE)
     inner = t * (1 - t) ** 2 * way * length - t**2 * (1 - t) * rising * length
     return np.asarray(start + t**2 * (3 - 2 * t) * chord + inner)
 

@@ -1,4 +1,4 @@
-"""The figures of growth, and what fits which kind of tree."""
+"""Parameters of growth, and their values for each kind of foliage."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,34 +10,36 @@ from treestroke.core.types import FoliageKind
 class GrowthParams:
     """How to grow; px are those of a crown 1,000 px wide.
 
+    Source: Tan et al. 2008, section 3, which gives about 100 iterations and 12 angles and no other figure.
+
     Attributes
     ----------
     iterations
-        Replacements tried.
+        Number of branches that are replaced.
     attractors
-        Image attractors, about.
+        Approximate number of image attractors.
     candidates
-        Branches compared in an iteration.
+        Number of branches compared in an iteration.
     angles
-        Turns of each subtree about its branch.
+        Number of turns of each subtree about its branch.
     mode
-        Attractors in use: those of the image, those in space, or both in alternation.
+        Attractors in use: those of the image (E2D), those in space (E3D), or both in alternation.
     spacing_px
-        Between the samples of a branch.
+        Distance between the samples of a branch.
     closeness_px
         Least distance of a shoot's outer half from the rest of the tree.
     keep_share
         A shoot clipped at the crown's edge to less than this share of its length is dropped.
     inward_cosine
-        Least cosine between a shoot and the way from the crown's foot to its middle.
+        Least cosine between a shoot and the direction from the crown's foot to the shoot's middle.
     stem_piece, limb_piece
-        Longest piece of a visible stem or limb that is one branch, as a share of the crown's height.
+        Greatest length of a piece of a visible stem or limb that is one branch, as a share of the crown's height.
     leader
-        Share of the crown's height to which the first stem is carried on where no visible limb reaches it.
+        Share of the crown's height to which the first stem is extended where no visible limb reaches it.
     tip_px
         Radius of the thinnest twigs.
     twigs
-        Most twigs added to the grown branches.
+        Greatest number of twigs added to the grown branches.
     """
 
     iterations: int = 300
@@ -67,7 +69,7 @@ class GrowthParams:
 
 
 def growth_for(kind: FoliageKind, iterations: int = 300) -> GrowthParams:
-    """Fit the figures to what the twigs bear: a conifer has one leader and many whorls, a bare tree finer twigs."""
+    """Return the parameters for a kind of foliage: conifers have one leader and many whorls, bare trees finer twigs."""
     if kind == "needles":
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":

@@ -1,4 +1,4 @@
-"""Branches that bear smaller ones, as flat arrays, so that a whole level grows at a time."""
+"""Parent branches of small branches, as flat arrays, so that a whole level grows at a time."""
 
 from dataclasses import dataclass
 
@@ -9,33 +9,35 @@ from treestroke.core.skeleton.branched import Branched
 from treestroke.core.types import Floats, Indices
 
 BARE, BARE_STEM = 0.1, 0.35
-"""Share of a branch, from its bud on, that bears nothing; and of a stem without limbs: else it is bare below them."""
+"""Share of a branch, from its bud on, without small branches; and of a stem that has no limb (else it is bare up to its
+lowest limb)."""
 STEM_WEIGHT = 0.4
-"""Small branches on a stem, over those on a limb of the same length."""
-WIDEST = 0.25
-"""How far a copy may stand off its own chord, over its length: a limb that begins with a hook is copied less bent."""
+"""Number of small branches on a stem relative to a limb of the same length."""
+MAX_OFFSET = 0.25
+"""Greatest distance of a copy from its own chord, relative to its length: a limb that begins with a hook is copied less
+bent."""
 _WINDOW = 2
-"""Joints to both sides by which a branch's direction is taken."""
+"""Joints to both sides over which a branch's direction is measured."""
 
 
 @dataclass(frozen=True, eq=False)
-class Bearers:
-    """k branches with n nodes in all that may bear a small branch.
+class ParentBranches:
+    """k branches with n nodes in all from which a small branch may grow.
 
     Attributes
     ----------
     points, along
-        (n, 3) each node's place, metres, and unit direction of its branch there.
+        (n, 3) position of each node, metres, and unit direction of its branch there.
     joints, branch
-        (n,) its joint in the tree, and its branch, 0 to k - 1.
+        (n,) index of its joint in the tree, and of its branch, 0 to k - 1.
     place
         (n,) share of its branch's length that lies before it.
     weight
-        (n,) metres of branch that it stands for; less where few small branches are to grow, 0 where none.
+        (n,) metres of branch that it represents; less where few small branches are to grow, 0 where none.
     lengths
-        (k,) of the branches, metres.
+        (k,) lengths of the branches, metres.
     shapes
-        (k, m + 1, 3) their first parts, of length 1, from the bud at 0: along the chord, and to two sides of it.
+        (k, m + 1, 3) first part of each branch, scaled to length 1, from the bud at 0; axes: its chord and two sides.
     """
 
     points: Floats
@@ -48,8 +50,11 @@ class Bearers:
     shapes: Floats
 
 
-def bearers_of_main(main: Branched, share: float, pieces: int) -> Bearers:
-    """Let the drawn branches bear copies of their first ``share``, in so many pieces."""
+def parents_from_main(main: Branched, share: float, pieces: int) -> ParentBranches:
+    """Make parents of the drawn branches (n joints, metres); their first ``share`` is copied in so many ``pieces``.
+
+    Source: two-sketches paper, section 6.
+    """
     chains, points = main.chains(), main.skeleton.points
     places, steps, along, lengths, shapes = [], [], [], [], []
     for chain in chains:
@@ -67,7 +72,7 @@ def bearers_of_main(main: Branched, share: float, pieces: int) -> Bearers:
     place, first = np.concatenate(places), _bare_shares(main, places)
     weight = np.concatenate(steps) * (place >= first[branch]) * np.where(branch == 0, STEM_WEIGHT, 1.0)
     own = (main.branch[joints] == branch) & (main.skeleton.parents[joints] >= 0)
-    return Bearers(
+    return ParentBranches(
         points[joints[own]],
         np.concatenate(along)[own],
         joints[own],
@@ -79,8 +84,12 @@ def bearers_of_main(main: Branched, share: float, pieces: int) -> Bearers:
     )
 
 
-def bearers_of_small(points: Floats, joints: Indices, share: float, pieces: int) -> Bearers:
-    """Let k small branches bear: points (k, m + 1, 3) from the bud on; joints (k, m + 1) in the tree, -1 where cut."""
+def parents_from_small(points: Floats, joints: Indices, share: float, pieces: int) -> ParentBranches:
+    """Make parents of k small branches: points (k, m + 1, 3), metres, from the bud on.
+
+    ``joints`` (k, m + 1) are indices of joints in the tree, -1 where the branch was cut; ``share`` and ``pieces`` as in
+    `parents_from_main`.
+    """
     k, m = len(points), points.shape[1] - 1
     steps = np.sqrt((np.diff(points, axis=1) ** 2).sum(axis=2))
     own = joints[:, 1:] >= 0
@@ -88,7 +97,7 @@ def bearers_of_small(points: Floats, joints: Indices, share: float, pieces: int)
     at = np.linspace(0, share * m, pieces + 1)
     low = np.minimum(at.astype(np.int64), m - 1)
     part = points[:, low] + (at - low)[:, None] * (points[:, low + 1] - points[:, low])
-    return Bearers(
+    return ParentBranches(
         points[:, 1:][own],
         _directions(points)[:, 1:][own],
         joints[:, 1:][own],
@@ -101,20 +110,20 @@ def bearers_of_small(points: Floats, joints: Indices, share: float, pieces: int)
 
 
 def across(directions: Floats) -> tuple[Floats, Floats]:
-    """Give two unit vectors (..., 3) square to each unit direction (..., 3) and to each other."""
+    """Return two unit vectors (..., 3) perpendicular to each unit direction (..., 3) and to each other."""
     side = unit(np.cross(directions, UP), np.array([1.0, 0.0, 0.0]))
     return side, np.cross(directions, side)
 
 
 def _directions(lines: Floats) -> Floats:
-    """Directions (k, m, 3) at the points of lines (k, m, 3), over some joints to both sides."""
+    """Return the unit directions (k, m, 3) at the points of lines (k, m, 3), over some joints to both sides."""
     m = lines.shape[1]
     after, before = np.minimum(np.arange(m) + _WINDOW, m - 1), np.maximum(np.arange(m) - _WINDOW, 0)
     return unit(lines[:, after] - lines[:, before], UP)
 
 
 def _bare_shares(main: Branched, places: list[Floats]) -> Floats:
-    """Share of each branch (k,) that bears nothing: a stem below its lowest limb."""
+    """Return the share of each branch (k,) without small branches; of a stem, the part below its lowest limb."""
     bare = np.full(len(places), BARE)
     stem, parents = np.flatnonzero(main.branch == 0), main.skeleton.parents
     limbed = parents[(main.branch > 0) & (main.branch[np.maximum(parents, 0)] == 0)]
@@ -123,7 +132,7 @@ def _bare_shares(main: Branched, places: list[Floats]) -> Floats:
 
 
 def _shapes(parts: Floats) -> Floats:
-    """Bring first parts (k, m + 1, 3) to length 1 and into the frame of their own chords."""
+    """Scale first parts (k, m + 1, 3) to length 1 and rotate them into the frames of their own chords."""
     parts = parts - parts[:, :1]
     length = np.sqrt((np.diff(parts, axis=1) ** 2).sum(axis=2)).sum(axis=1)
     parts = parts / np.maximum(length, 1e-12)[:, None, None]
@@ -131,5 +140,5 @@ def _shapes(parts: Floats) -> Floats:
     frame = np.stack([chord, *across(chord)], axis=1)
     local = np.einsum("kmi,kji->kmj", parts, frame)
     off = np.sqrt((local[..., 1:] ** 2).sum(axis=2)).max(axis=1, initial=0.0)
-    local[..., 1:] *= np.minimum(1, WIDEST / np.maximum(off, 1e-12))[:, None, None]
+    local[..., 1:] *= np.minimum(1, MAX_OFFSET / np.maximum(off, 1e-12))[:, None, None]
     return np.asarray(local)

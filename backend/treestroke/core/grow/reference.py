@@ -1,9 +1,9 @@
-"""The plain evaluator: growth's mathematics in component-wise numpy, every placement every iteration.
+"""The plain evaluator: growth's mathematics in component-wise numpy, every placement in every iteration.
 
-It keeps the paper's cache (each attractor remembers its distance, so just the new shoots are measured) and nothing
-else. `compiled` must choose the same sequence; the arithmetic that decides (placing, clipping, closeness) is written
-in the same order of operations in both, so that it agrees to the last bit. It is the fallback where the extension
-was not built.
+It has only the cache of Tan et al. 2008 (section 3.2): each attractor keeps its distance, so only new shoots are
+measured. `compiled` must choose the same sequence; the arithmetic that decides (placing, clipping, closeness) has the
+same order of operations in both, so that the results agree to the last bit. It is used where the extension is not
+built, and in tests as the reference.
 """
 
 from typing import NamedTuple
@@ -12,16 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.grow.crown import Crown
-from treestroke.core.grow.evaluator import TIE, Choice, Rules, Shoot, turn_library
 from treestroke.core.grow.library import Subtree
+from treestroke.core.grow.placements import TIE, Choice, Rules, Shoot, turn_library
 from treestroke.core.types import Floats, Indices
 
 BLOCK = 12_000
-"""Point pairs measured at a time: their scratch fits the first cache levels."""
+"""Point pairs measured at a time: their scratch arrays fit into the processor's first cache levels."""
 
 
 class _Laid(NamedTuple):
-    """All placements on one branch: base, step (s, a, k, 3), samples and kept samples (s, a, k)."""
+    """All placements on one branch: base and step, px (s, a, k, 3), counts of samples and of kept samples (s, a, k)."""
 
     base: Floats
     step: Floats
@@ -30,17 +30,17 @@ class _Laid(NamedTuple):
 
 
 def _dot(a: Floats, b: Floats) -> Floats:
-    """Multiply vectors (..., 3) in a fixed order of operations."""
+    """Return the dot products of vectors (..., 3), in a fixed order of operations."""
     return (a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1]) + a[..., 2] * b[..., 2]
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
-    """Cross two vectors (3,) in a fixed order of operations."""
+    """Return the cross product of two vectors (3,), in a fixed order of operations."""
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
-    """Stand a right-angled frame on a chord (3,): side, along, other side, and the chord's length."""
+    """Return an orthonormal frame of a chord (3,): side, along, other side; and the chord's length."""
     length = float(np.sqrt(_dot(chord, chord)))
     along = chord / length
     across = _cross(along, np.array([1.0, 0, 0]) if abs(along[2]) > 0.9 else np.array([0, 0, 1.0]))
@@ -49,7 +49,7 @@ def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
 
 
 class PlainEvaluator:
-    """An `Evaluator` that keeps no more than each attractor's distance."""
+    """An `Evaluator` that keeps each attractor's distance and nothing else."""
 
     def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
         self._crown, self._rules = crown, rules
@@ -62,7 +62,7 @@ class PlainEvaluator:
         self.pairs = 0
 
     def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
-        """Add branches, see `Evaluator`."""
+        """Add branches, bases and tips (k, 3) px, factors (k, subtrees); see `Evaluator`."""
         self._bases, self._tips = np.vstack([self._bases, bases]), np.vstack([self._tips, tips])
         self._scales = np.vstack([self._scales, scales])
         chords = tips - bases
@@ -77,14 +77,14 @@ class PlainEvaluator:
             self._distances[in_space] = np.minimum(self._distances[in_space], nearer)
 
     def add_attractors(self, points: Floats) -> None:
-        """Add attractors, see `Evaluator`."""
+        """Add attractors, px: those of the image (m, 2), or in space (m, 3)."""
         in_space = points.shape[1] == 3
         self._points[in_space] = np.vstack([self._points[in_space], points])
         distances = self._nearest(points, self._wood)
         self._distances[in_space] = np.concatenate([self._distances[in_space], distances])
 
     def best(self, candidates: Indices, in_space: bool) -> Choice:
-        """Find the best placement, see `Evaluator`."""
+        """Find the best placement on the candidates, branch indices (c,); see `Evaluator`."""
         gains = [self._gains(branch, in_space) for branch in sorted(candidates.tolist())]
         limit = max((float(gain.max()) for gain in gains), default=0.0) * (1 - TIE)
         for branch, gain in zip(sorted(candidates.tolist()), gains, strict=True):
@@ -95,7 +95,7 @@ class PlainEvaluator:
         return Choice(-1, 0, 0, 0.0)
 
     def place(self, choice: Choice) -> list[Shoot]:
-        """List the shoots that stand, see `Evaluator`."""
+        """List the shoots that remain; see `Evaluator`."""
         laid, at = self._lay(choice.branch), (choice.subtree, choice.angle)
         kept = self._uncrowded(laid, at, self._surroundings(laid))
         standing = np.flatnonzero(kept)
@@ -112,15 +112,15 @@ class PlainEvaluator:
         return shoots
 
     def image_distances(self) -> Floats:
-        """Give the image attractors' distances, see `Evaluator`."""
+        """Return each image attractor's distance (m,), px, to the tree's projection."""
         return self._distances[False]
 
     def _sample_counts(self, along: Floats) -> Indices:
-        """Count the samples of vectors (..., 3)."""
+        """Return the number of samples of vectors (..., 3), px."""
         return np.clip(np.rint(np.sqrt(_dot(along, along)) / self._rules.spacing), 1, 60000).astype(np.int64)
 
     def _lay(self, branch: int) -> _Laid:
-        """Lay every subtree at every angle over a branch and clip the shoots at the crown."""
+        """Place every subtree at every angle on a branch and clip the shoots at the crown's edge."""
         turned, base = self._library, self._bases[branch]
         chord = self._tips[branch] - base
         side, axis, other, length = _frame(chord)
@@ -143,7 +143,7 @@ class PlainEvaluator:
         return _Laid(bases, along / samples[..., None], samples, kept)
 
     def _kept(self, base: Floats, along: Floats, samples: Indices) -> Indices:
-        """Count the leading samples of shoots (a,) inside the crown; 0 where inward or clipped too short."""
+        """Return the number of leading samples of shoots (a,) in the crown; 0 where inward or clipped too short."""
         count = np.arange(1, samples.max() + 1)
         points = base[:, None] + count[:, None] * (along / samples[:, None])[:, None]
         inside = self._crown.inside(points) & (count <= samples[:, None])
@@ -153,14 +153,14 @@ class PlainEvaluator:
         return np.asarray(np.where((_dot(along, out) >= limit) & (kept >= self._rules.keep * samples), kept, 0))
 
     def _surroundings(self, laid: _Laid) -> Floats:
-        """Take the tree's samples near the shoots of a branch."""
+        """Return the tree's samples (q, 3) near the shoots of a branch."""
         ends = laid.base + laid.step * laid.kept[..., None]
         low = np.minimum(laid.base, ends)[laid.kept > 0].min(axis=0, initial=np.inf) - self._rules.closeness
         high = np.maximum(laid.base, ends)[laid.kept > 0].max(axis=0, initial=-np.inf) + self._rules.closeness
         return np.asfortranarray(self._wood[((self._wood >= low) & (self._wood <= high)).all(axis=1)])
 
     def _uncrowded(self, laid: _Laid, at: tuple[int, int], near: Floats) -> Indices:
-        """Drop the shoots (k,) of a placement whose outer half crowds the tree, and what they bear."""
+        """Return the kept samples of a placement's shoots (k,): 0 if the outer half, or the parent's, is too close."""
         kept = laid.kept[at].copy()
         shoot, order, points = _samples(laid, at, kept)
         outer = 2 * order >= kept[shoot]
@@ -172,7 +172,7 @@ class PlainEvaluator:
         return np.asarray(kept)
 
     def _crowded(self, points: Floats, near: Floats) -> NDArray[np.bool_]:
-        """Tell which points (q, 3) lie too close to one of the tree's samples."""
+        """Return a mask of the points (q, 3) that are too close to one of the tree's samples."""
         if len(points) == 0 or len(near) == 0:
             return np.zeros(len(points), dtype=bool)
         limit = self._rules.closeness
@@ -183,7 +183,7 @@ class PlainEvaluator:
         return np.asarray((_squares(columns, points, scratch) < limit * limit).any(axis=1))
 
     def _gains(self, branch: int, in_space: bool) -> Floats:
-        """Measure the gain of every placement (s, a) on a branch."""
+        """Return the gain of every placement (s, a) on a branch, px."""
         laid = self._lay(branch)
         near = self._surroundings(laid)
         gains = np.zeros(laid.kept.shape[:2])
@@ -196,7 +196,7 @@ class PlainEvaluator:
         return gains
 
     def _nearest(self, points: Floats, samples: Floats) -> Floats:
-        """Measure each point's (m, 2 or 3) distance to the nearest of the samples (q, 3)."""
+        """Return the distance of each point (m, 2 or 3) to the nearest of the samples (q, 3), px."""
         nearest = np.full(len(points), np.inf)
         step = max(BLOCK // max(len(points), 1), 1)
         self.pairs += len(points) * len(samples)
@@ -209,14 +209,14 @@ class PlainEvaluator:
 
 
 def _samples(laid: _Laid, at: tuple[int, int], kept: Indices) -> tuple[Indices, Indices, Floats]:
-    """Place the kept samples (q,) of a placement: their shoot, their number on it from 1, their points (q, 3)."""
+    """Return a placement's kept samples: their shoots (q,), numbers on these from 1 (q,), and points (q, 3), px."""
     shoot = np.repeat(np.arange(len(kept)), kept)
     order = np.arange(1, len(shoot) + 1) - np.repeat(np.cumsum(kept) - kept, kept)
     return shoot, order, laid.base[at][shoot] + order[:, None] * laid.step[at][shoot]
 
 
 def _squares(columns: list[Floats], samples: Floats, scratch: NDArray[np.float64]) -> Floats:
-    """Square the distances (q, m) of points, given by columns (m,), to samples (q, 3), component by component."""
+    """Return the squared distances (q, m) of points, given by columns (m,), to samples (q, 3), axis by axis."""
     total, part = scratch
     for axis, column in enumerate(columns):
         target = total if axis == 0 else part

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.grow.crown import crown_of, pixels_of, world_of
 from treestroke.core.grow.evaluator import evaluator_for
-from treestroke.core.grow.form import curved
+from treestroke.core.grow.form import VisibleTree, curve_shoots
 from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import Subtree
@@ -59,7 +59,7 @@ def grow(
     evaluator = evaluator_for(crown, library, rules_for(params, crown.unit))
     growth = Growing(visible, crown, library, params, evaluator)
     choices = growth.run(rng, report)
-    form = curved(visible, len(skeleton), growth.chains, growth.table(), crown, rng)
+    form = curve_shoots(VisibleTree(visible, len(skeleton), growth.chains), growth.table(), crown, rng)
     form = with_twigs(form, crown, params.twigs if choices else 0, rng)
     radii = pipe_radii(form.points, form.parents, form.measured, params.tip_px * crown.unit)
     distances = growth.evaluator.image_distances()

@@ -19,7 +19,7 @@ from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.geometry.views import CrownViews
 from treestroke.core.grow.crown_cells import CrownCells, crown_cells
 from treestroke.core.grow.grown import Grown
-from treestroke.core.grow.parent_branches import Bearers, across, bearers_of_main, bearers_of_small
+from treestroke.core.grow.parent_branches import ParentBranches, across, parents_from_main, parents_from_small
 from treestroke.core.grow.radii import pipe_radii
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.branched import Branched
@@ -142,7 +142,7 @@ def grow_small(
     skeleton, cells = main.skeleton, crown_cells(views, envelope)
     cells.lay(skeleton.points, edge_lengths(skeleton) * views.inside(skeleton.points))
     points, parents, born = [skeleton.points], [skeleton.parents], [np.zeros(len(main), dtype=np.int64)]
-    left, count, bearers = params.most, len(main), bearers_of_main(main, params.share, _pieces(1, len(main), params))
+    left, count, bearers = params.most, len(main), parents_from_main(main, params.share, _pieces(1, len(main), params))
     for number in range(1, params.levels + 1 if cells.count else 1):
         quota = int(np.ceil(left / (FAN ** np.arange(params.levels - number + 1)).sum()))
         shoots = _sprouted(bearers, cells, number, quota, params, rng)
@@ -152,7 +152,7 @@ def grow_small(
         parents.append(joints[:, :-1][own])
         born.append(np.full(len(points[-1]), number))
         left, count = left - len(shoots.nodes), count + len(points[-1])
-        bearers = bearers_of_small(shoots.points, joints, params.share, _pieces(number + 1, len(points[-1]), params))
+        bearers = parents_from_small(shoots.points, joints, params.share, _pieces(number + 1, len(points[-1]), params))
         report("grow", number / params.levels)
     return _finished(np.concatenate(points), np.concatenate(parents), np.concatenate(born), skeleton)
 
@@ -165,7 +165,7 @@ def _pieces(level: int, bearing: int, params: SelfSimilarParams) -> int:
     return int(np.clip(SPARE * params.most / max(usual, 1), PIECES >> (level - 1), MOST_PIECES))
 
 
-def _numbered(shoots: _Shoots, bearers: Bearers, first: int) -> Indices:
+def _numbered(shoots: _Shoots, bearers: ParentBranches, first: int) -> Indices:
     """Give numbers to joints (n, m + 1) of small branches, from ``first`` on, behind their node's; -1 where cut."""
     joints = np.full((len(shoots.nodes), shoots.points.shape[1]), -1, dtype=np.int64)
     joints[:, 0] = bearers.joints[shoots.nodes]
@@ -184,7 +184,12 @@ def _finished(points: Floats, parents: Indices, born: Indices, main: Skeleton) -
 
 
 def _sprouted(
-    bearers: Bearers, cells: CrownCells, number: int, quota: int, params: SelfSimilarParams, rng: np.random.Generator
+    bearers: ParentBranches,
+    cells: CrownCells,
+    number: int,
+    quota: int,
+    params: SelfSimilarParams,
+    rng: np.random.Generator,
 ) -> _Shoots:
     """Let up to ``quota`` small branches of a level grow, on all bearers at a time, each from its tip down."""
     buds = _buds(bearers, cells, round(SPARE * quota), params.spacing * cells.size * 0.5 ** (number - 1))
@@ -200,7 +205,9 @@ def _sprouted(
     return _Shoots(*(np.concatenate([getattr(one, name) for one in grown]) for name in ("nodes", "points", "kept")))
 
 
-def _ruled(bearers: Bearers, branch: Indices, cells: CrownCells, number: int, params: SelfSimilarParams) -> _Level:
+def _ruled(
+    bearers: ParentBranches, branch: Indices, cells: CrownCells, number: int, params: SelfSimilarParams
+) -> _Level:
     """Set the lengths of a level, longer where branches stand far apart, and what wood is fair in the cells they reach.
 
     ``branch`` (b,) is that of each bud.
@@ -215,7 +222,7 @@ def _ruled(bearers: Bearers, branch: Indices, cells: CrownCells, number: int, pa
     return _Level(lengths, longest, float(cells.wood.sum() + likely) / min(reached, cells.count), params)
 
 
-def _buds(bearers: Bearers, cells: CrownCells, count: int, spacing: float) -> Indices:
+def _buds(bearers: ParentBranches, cells: CrownCells, count: int, spacing: float) -> Indices:
     """Choose up to so many nodes, the closer to each other the emptier the crown is around them."""
     inside = cells.inside(bearers.points, np.inf)
     around = cells.at(bearers.points, cells.around())
@@ -236,7 +243,7 @@ def _ranks(branch: Indices) -> Indices:
 
 
 def _best(
-    nodes: Indices, bearers: Bearers, before: Floats, cells: CrownCells, level: _Level, rng: np.random.Generator
+    nodes: Indices, bearers: ParentBranches, before: Floats, cells: CrownCells, level: _Level, rng: np.random.Generator
 ) -> _Shoots:
     """Try copies at each node (b,), take the one that reaches the emptiest part of the crown, and drop poor ones."""
     params, wood = level.params, cells.around()
@@ -269,7 +276,9 @@ def _directions(along: Floats, before: Floats, params: SelfSimilarParams, rng: n
     return np.asarray(cos_t[..., None] * along[:, None] + np.sqrt(1 - cos_t**2)[..., None] * out)
 
 
-def _copies(nodes: Indices, bearers: Bearers, directions: Floats, level: _Level, rng: np.random.Generator) -> Floats:
+def _copies(
+    nodes: Indices, bearers: ParentBranches, directions: Floats, level: _Level, rng: np.random.Generator
+) -> Floats:
     """Copy the bearers' first parts to nodes (b,) in directions (b, TRIED, 3): points (b, TRIED, m + 1, 3)."""
     tries, shapes = directions.shape[:2], bearers.shapes[bearers.branch[nodes]]
     share = np.linspace(0, 1, shapes.shape[1])
