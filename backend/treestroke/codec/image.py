@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from PIL import Image, ImageCms
 
+from treestroke.codec.inputs import CUTOUT_PNG, MAX_PHOTO_BYTES
 from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, lost
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.codec.watched_bytes import WatchedBytes
@@ -21,7 +22,7 @@ from treestroke.core.types import Picture
 Warn = Callable[[StrokeWarning], object]
 """Called with each thing about a photo that was mended in reading it."""
 
-MAX_BYTES = 25_000_000
+MAX_BYTES = MAX_PHOTO_BYTES
 """Of an upload."""
 MIN_SIDE, MAX_SIDE = 64, 16_384
 MAX_PIXELS = 50_000_000
@@ -30,7 +31,7 @@ MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
 PHOTO_HEAD = 24
 """First bytes of a photo that `most_stored_bytes` looks at."""
 
-MAX_LEAF_BYTES = 4_000_000
+MAX_LEAF_BYTES = CUTOUT_PNG.max_bytes
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 MAX_LOST = 0.002
 """Share of a photo's pixels that a file cut short may lack: less than half a row of blocks of 3000 rows of pixels."""

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE
+from treestroke.codec.inputs import SKETCH_PNG
 from treestroke.core.errors import StrokesError
 from treestroke.core.strokes import Sketch, Stroke
 from treestroke.core.types import Floats, Mask
@@ -19,7 +20,7 @@ from treestroke.core.types import Floats, Mask
 Marks = NDArray[np.uint8]
 
 PNG = b"\x89PNG\r\n\x1a\n"
-MAX_SKETCH_BYTES = 25_000_000
+MAX_SKETCH_BYTES = SKETCH_PNG.max_bytes
 MIN_SIDE = 16
 OPAQUE = 128
 LEAST_CONTRAST = 48

@@ -13,7 +13,7 @@ import PIL
 from treestroke import __version__
 
 PACKAGES = ("core", "codec")
-MODULES = ("clock", "evidence", "files", "inputs", "jobs", "making", "model", "sketch", "threads")
+MODULES = ("clock", "files", "inputs", "jobs", "model", "report", "threads")
 """Of this package: what brings input to a tree and a tree to files."""
 LIBRARIES = {
     "numpy": np.__version__,
