@@ -26,5 +26,5 @@ def planned() -> Iterator[list[str]]:
 
 def scans(steps: list[str]) -> list[str]:
     """Give the steps that read a whole table."""
-    tables = ("models", "photos", "files", "replays", "strays", "workers")
+    tables = ("models", "model_parts", "photos", "files", "replays", "strays", "workers")
     return [step for step in steps if any(step == f"SCAN {table}" for table in tables)]

@@ -1,21 +1,23 @@
 """Rows written by hand, without a service."""
 
 import time
+from collections.abc import Mapping
 from typing import Any
 
+from treestroke.codec.inputs import part_of
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
-from treestroke.store.tables import ModelRow
+from treestroke.store.tables import ModelPart, ModelRow
+
+PARTS = {"photo": "a" * 64, "strokes": "b" * 64}
 
 
-def add_model(database: Database, **values: Any) -> ModelRow:
-    """Write the row of a queued model and give it."""
+def add_model(database: Database, parts: Mapping[str, str] = PARTS, **values: Any) -> ModelRow:
+    """Write the row of a queued model, and those of its ``parts``, blobs by name; return the model's."""
     usual: dict[str, Any] = {
         "id": new_id("mdl"),
         "name": "",
         "photo": "pho_1",
-        "photo_blob": "a" * 64,
-        "strokes_blob": "b" * 64,
         "settings": {},
         "seed": 0,
         "engine": "treestroke",
@@ -32,10 +34,13 @@ def add_model(database: Database, **values: Any) -> ModelRow:
     row = ModelRow(**{**usual, **values})
     with database.writing() as session:
         session.add(row)
+        session.flush()
+        for name, blob in parts.items():
+            session.add(ModelPart(model=row.id, name=name, blob=blob, media_type=part_of(name).formats[0].media_type))
     return row
 
 
 def find(database: Database, id: str) -> ModelRow:
-    """Read a model's row."""
+    """Return a model's row."""
     with database.reading() as session:
         return session.query(ModelRow).filter_by(id=id).one()

@@ -318,6 +318,13 @@ def test_a_damaged_file_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_option_that_there_is_not_is_the_programmer_s_mistake(client: Client, photo: Photo) -> None:
+    with pytest.raises(TypeError, match="colour"):
+        client.grow(photo, STROKES, QUICK, colour="red")
+    with pytest.raises(TypeError, match="bark"):
+        client.grow_sketches(sketched.FRONT, None, QUICK, photo=photo, bark=b"")
+
+
 def test_the_client_needs_none_of_the_modelling_packages() -> None:
     heavy = (
         "numpy",

@@ -13,9 +13,7 @@ if TYPE_CHECKING:
     from treestroke.core.pipeline.grown_tree import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
     from treestroke.core.strokes import Sketch, Stroke, Strokes
-    from treestroke.service.making import Model
-    from treestroke.service.model import model
-    from treestroke.service.sketch import sketch
+    from treestroke.service.model import Model, model, sketch
     from treestroke.service.trace import Trace, trace
 
 __version__ = "0.1.0"
@@ -51,9 +49,7 @@ _HOMES = {
     "treestroke.core.pipeline.grown_tree": ("LiveTree",),
     "treestroke.core.pipeline.settings": ("ModelSettings",),
     "treestroke.core.strokes": ("Sketch", "Stroke", "Strokes"),
-    "treestroke.service.making": ("Model",),
-    "treestroke.service.model": ("model",),
-    "treestroke.service.sketch": ("sketch",),
+    "treestroke.service.model": ("Model", "model", "sketch"),
     "treestroke.service.trace": ("Trace", "trace"),
 }
 

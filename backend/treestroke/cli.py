@@ -8,19 +8,23 @@ import traceback
 import warnings
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
-from dataclasses import fields, replace
+from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from treestroke import __version__
+from treestroke.codec.inputs import CUTOUTS, PARTS, SOURCES, Inputs, Source
+from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
 from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
-    from treestroke.service.evidence import Evidence
+    from treestroke.service.inputs import PartLike
+
+    Commands = argparse._SubParsersAction["Parser"]
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
@@ -97,78 +101,107 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    model = commands.add_parser("model", help="make a GLB of a photo", allow_abbrev=False)
-    model.add_argument(
-        "photo", metavar="PHOTO", help="JPEG, PNG, WebP, HEIC, AVIF or TIFF; or a NAME.treestroke project"
-    )
-    model.add_argument("--strokes", metavar="STROKES.json", help="needed with a photo")
-    model.add_argument("--side", metavar="SIDE", help="sketch of the tree's left side: stroke JSON or PNG")
-    sketch = commands.add_parser("sketch", help="make a GLB of sketches", allow_abbrev=False)
-    sketch.add_argument("front", metavar="FRONT", help="stroke JSON or PNG; or a NAME.treestroke project")
-    sketch.add_argument("side", metavar="SIDE", nargs="?", help="the same tree from its left")
-    sketch.add_argument("--photo", metavar="PHOTO", help="what FRONT was drawn over; it lends its colours")
-    for maker, first in ((model, "photo"), (sketch, "front")):
-        maker.set_defaults(first=first)
-        _add_making(maker)
-    trace = commands.add_parser("trace", help="find foliage and branches", allow_abbrev=False)
-    trace.add_argument("photo", metavar="PHOTO", help="JPEG, PNG, WebP, HEIC, AVIF or TIFF")
-    trace.add_argument("--strokes", metavar="STROKES.json", required=True)
-    trace.add_argument("--out", metavar="TRACE.json", type=Path, help="standard output where absent")
-    trace.add_argument(
-        "--overlay", metavar="OVERLAY.png", type=Path, help="the photo with what was found drawn over it"
-    )
-    serve = commands.add_parser("serve", help="answer over HTTP, with a page", allow_abbrev=False)
-    serve.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
-    serve.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
-    worker = commands.add_parser("worker", help="grow models for a service elsewhere", allow_abbrev=False)
-    doctor = commands.add_parser("doctor", help="say what is missing or broken", allow_abbrev=False)
-    for command in (serve, worker, doctor):
-        command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
-    for command, action in (
-        (model, _make),
-        (sketch, _make),
-        (trace, _trace),
-        (serve, _serve),
-        (worker, _worker),
-        (doctor, _doctor),
-    ):
-        command.add_argument("--debug", action="store_true", help="show the trace of an error")
-        command.set_defaults(command=action, reads=action in (_make, _trace))
+    for add in (_add_model, _add_sketch, _add_trace, _add_serve, _add_worker, _add_doctor):
+        add(commands)
     return parser
 
 
-def _add_making(maker: argparse.ArgumentParser) -> None:
-    """Add what is common to all commands that make a tree."""
-    maker.add_argument("--out", metavar="TREE.glb", type=Path, required=True)
-    maker.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
-    maker.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
-    maker.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
-    maker.add_argument("--leaf", metavar="LEAF.png", help="a leaf cut out, stalk down, that the tree is to bear")
-    maker.add_argument("--fruit", metavar="FRUIT.png", help="a fruit cut out, stalk up, that the tree is to bear")
+def _add_model(commands: "Commands") -> None:
+    command = _add_command(commands, "model", _make, "make a GLB of a photo")
+    _add_inputs(command, SOURCES["photo"], ("photo",))
+
+
+def _add_sketch(commands: "Commands") -> None:
+    command = _add_command(commands, "sketch", _make, "make a GLB of sketches")
+    _add_inputs(command, SOURCES["sketches"], ("front", "side"))
+
+
+def _add_trace(commands: "Commands") -> None:
+    command = _add_command(commands, "trace", _trace, "find foliage and branches")
+    command.add_argument("photo", metavar="PHOTO", help=ACCEPTED_FORMATS)
+    command.add_argument("--strokes", metavar="STROKES.json", required=True)
+    command.add_argument("--out", metavar="TRACE.json", type=Path, help="standard output where absent")
+    command.add_argument(
+        "--overlay", metavar="OVERLAY.png", type=Path, help="the photo with what was found drawn over it"
+    )
+
+
+def _add_serve(commands: "Commands") -> None:
+    command = _add_command(commands, "serve", _serve, "answer over HTTP, with a page")
+    command.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
+    command.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
+    _add_data(command)
+
+
+def _add_worker(commands: "Commands") -> None:
+    _add_data(_add_command(commands, "worker", _worker, "grow models for a service elsewhere"))
+
+
+def _add_doctor(commands: "Commands") -> None:
+    _add_data(_add_command(commands, "doctor", _doctor, "say what is missing or broken"))
+
+
+def _add_command(
+    commands: "Commands", name: str, action: Callable[[argparse.Namespace], None], about: str
+) -> argparse.ArgumentParser:
+    command = commands.add_parser(name, help=about, allow_abbrev=False)
+    command.add_argument("--debug", action="store_true", help="show the trace of an error")
+    command.set_defaults(command=action, reads=action in (_make, _trace))
+    return command
+
+
+def _add_data(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
+
+
+def _add_inputs(command: argparse.ArgumentParser, source: Source, by_position: Sequence[str]) -> None:
+    """Add the parts of a source, some ``by_position``; a project may stand in place of the first."""
+    command.set_defaults(first=by_position[0])
+    for name in (*source.needs, *source.options):
+        part = PARTS[name]
+        metavar = f"{name.upper()}.{part.formats[0].ending}" if len(part.formats) == 1 else name.upper()
+        if name == by_position[0]:
+            command.add_argument(name, metavar=metavar, help=f"{part.help}; or a NAME.treestroke project")
+        elif name in by_position:
+            command.add_argument(name, metavar=metavar, help=part.help, nargs="?")
+        else:
+            command.add_argument(f"--{name}", metavar=metavar, help=part.help)
+    _add_outputs(command)
+    _add_settings(command)
+
+
+def _add_outputs(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--out", metavar="TREE.glb", type=Path, required=True)
+    command.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
+    command.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
+
+
+def _add_settings(command: argparse.ArgumentParser) -> None:
+    command.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
     for entry in fields(ModelSettings):
         names = dict.fromkeys(f"--{entry.name.replace('_', mark)}" for mark in "-_")
         allowed, meaning = entry.metadata["allowed"], entry.metadata["meaning"]
         if isinstance(allowed, Toggle):
-            maker.add_argument(*names, dest=entry.name, action=argparse.BooleanOptionalAction, help=meaning)
+            command.add_argument(*names, dest=entry.name, action=argparse.BooleanOptionalAction, help=meaning)
             continue
         several = isinstance(allowed, Several)
         about = f"{meaning}: {allowed} (default {'none' if several else entry.default})"
-        maker.add_argument(*names, dest=entry.name, metavar="A,B" if several else "VALUE", help=about)
+        command.add_argument(*names, dest=entry.name, metavar="A,B" if several else "VALUE", help=about)
 
 
 def _make(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "report", "preview"))
-    given, settings = _evidence(options)
+    inputs, settings = _inputs(options)
     settings |= _chosen(options)
     from treestroke.codec.image import encode_png
-    from treestroke.service.evidence import make_of
-    from treestroke.service.inputs import load_settings
+    from treestroke.service.model import Options, make_tree
     from treestroke.store.atomic_write import write_atomically
 
-    seed, chosen = settings.pop("seed", 0), load_settings(settings)
-    line = ProgressLine(sys.stderr, chosen.iterations) if sys.stderr.isatty() else None
+    seed = settings.pop("seed", 0)
+    wanted = Options.of(settings, seed, _stem(options.out))
+    line = ProgressLine(sys.stderr, wanted.settings.iterations) if sys.stderr.isatty() else None
     try:
-        result = make_of(given, chosen, seed, line or silent, name=_stem(options.out))
+        result = make_tree(inputs, wanted, line or silent)
     finally:
         if line:
             line.clear()
@@ -190,7 +223,7 @@ def _say_aloud(warnings: Sequence[Mapping[str, str]]) -> None:
 
 
 def _stem(out: Path) -> str:
-    """Give the name that all files beside OUT begin with."""
+    """Return what the names of all files beside OUT begin with."""
     return out.stem if out.suffix.lower() == ".glb" else out.name
 
 
@@ -257,28 +290,27 @@ def _service_settings(options: argparse.Namespace) -> Any:
     return read_settings(**{name: value for name, value in given.items() if value is not None})
 
 
-def _evidence(options: argparse.Namespace) -> tuple["Evidence", dict[str, Any]]:
-    """Collect what the tree is made of, and a project's settings, the seed among them."""
-    from treestroke.service.evidence import Evidence
-    from treestroke.service.inputs import load_project
-
+def _inputs(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str, Any]]:
+    """Return what the tree is made of, and a project's settings, the seed among them."""
     parts = _parts(options)
     if not parts[options.first].endswith(".treestroke"):
         if options.first == "photo" and "strokes" not in parts:
             raise UsageError("--strokes is missing; name the strokes' JSON file")
-        return Evidence(**parts), {}
-    pictures = {part: parts.pop(part) for part in ("leaf", "fruit") if part in parts}
+        return Inputs.of(parts), {}
+    from treestroke.service.inputs import load_project
+
     path = parts.pop(options.first)
-    for part in parts:
-        raise UsageError(f"--{part}: a project has its own {part}; leave the flag out")
+    for name in parts:
+        if name not in CUTOUTS:
+            raise UsageError(f"--{name}: a project has its own {name}; leave the flag out")
     project = load_project(path)
-    return replace(Evidence.of(project), **pictures), project.settings
+    return Inputs.of({**project.inputs.parts, **parts}), project.settings
 
 
 def _parts(options: argparse.Namespace) -> dict[str, str]:
-    """Give the files that the tree is made of, by part."""
-    parts = {part: getattr(options, part, None) for part in ("photo", "strokes", "front", "side", "leaf", "fruit")}
-    return {part: path for part, path in parts.items() if path is not None}
+    """Return the paths of the files that the tree is made of, by part."""
+    paths = {name: getattr(options, name, None) for name in PARTS}
+    return {name: path for name, path in paths.items() if path is not None}
 
 
 def _read(options: argparse.Namespace) -> set[str]:

@@ -1,4 +1,4 @@
-"""A client of the service: photos and sketches up, traces and trees down. It needs none of the modelling packages."""
+"""A client of the service: uploads photos and sketches, downloads traces and trees; needs no modelling package."""
 
 import base64
 import hashlib
@@ -11,7 +11,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import closing, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeVar
+from typing import Any, Self, TypedDict, TypeVar, Unpack
 from urllib.parse import quote
 
 import httpx
@@ -20,7 +20,16 @@ from treestroke.responses import Again, Event, ServiceError, checked, events_of,
 from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, PhotoPage, SketchTraceAnswer, TraceAnswer
 from treestroke.wire_strokes import Sketch, Strokes
 
-__all__ = ["Client", "PictureLike", "ServiceError", "SketchLike", "StrokesLike"]
+__all__ = [
+    "Client",
+    "PhotoOptions",
+    "PictureLike",
+    "ServiceError",
+    "SketchLike",
+    "SketchOptions",
+    "StrokesLike",
+    "TreeOptions",
+]
 
 StrokesLike = Strokes | Mapping[str, Any] | str | os.PathLike[str]
 """Strokes, the same as a plain mapping, or the path of their JSON file."""
@@ -31,30 +40,65 @@ Done = TypeVar("Done")
 Page = TypeVar("Page", ModelPage, PhotoPage)
 
 _PAUSES_S = (0.2, 0.4, 0.8, 1.6, 3.2)
-"""Between tries; a service that restarts is back within them."""
+"""Pauses between tries; a service that restarts is back within them."""
 _SILENCE_S = 20.0
-"""An event stream that does not even ping for so long is broken."""
+"""An event stream without even a ping for this long is broken."""
 _POLL_S = 0.5
 _PNG = b"\x89PNG"
 _ENDS = ("succeeded", "failed", "canceled")
 
 
+class Cutouts(TypedDict, total=False):
+    """Pictures of what the tree is to bear: a path or the bytes of a PNG of a leaf, or of a fruit, cut out."""
+
+    leaf: PictureLike | None
+    fruit: PictureLike | None
+
+
+class TreeOptions(Cutouts, total=False):
+    """Options of a request for a tree, all of which may be left out; `Cutouts` among them.
+
+    Attributes
+    ----------
+    name
+        The tree's name.
+    idempotency_key
+        The same key with the same request returns the same model, for a day, from another process too; a new key by
+        default.
+    """
+
+    name: str
+    idempotency_key: str | None
+
+
+class PhotoOptions(TreeOptions, total=False):
+    """Options of `Client.grow`: also a sketch of the tree's left ``side``, from which its branches have their depth."""
+
+    side: SketchLike | None
+
+
+class SketchOptions(TreeOptions, total=False):
+    """Options of `Client.grow_sketches`: also the ``photo`` that the front was drawn over, which gives the colours."""
+
+    photo: Photo | str | None
+
+
 class Client:
     """A connection to one service; threads may share it.
 
-    A request that the service is too busy for, or that a broken connection cut off, is sent again, as long as that can
-    do no harm, for some seconds.
+    A request is sent again, for some seconds, where the service was too busy for it or the connection broke and sending
+    it twice does no harm.
 
     Parameters
     ----------
     address
-        Where `treestroke serve` listens.
+        The address on which `treestroke serve` listens.
     timeout
         Seconds that the service may take for one answer.
     """
 
     def __init__(self, address: str = "http://127.0.0.1:8000", timeout: float = 60.0) -> None:
-        # The service answers on its own machine only: no proxy leads there.
+        # The service listens on this machine only: no proxy leads there.
         self._timeout = timeout
         self._http = httpx.Client(base_url=address, timeout=timeout, trust_env=False)
 
@@ -83,11 +127,11 @@ class Client:
         return read(Photo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
 
     def photo(self, photo: Photo | str) -> Photo:
-        """Look a photo up."""
+        """Return a photo."""
         return read(Photo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
 
     def photos(self) -> Iterator[Photo]:
-        """Give all photos, newest first, page by page as they are taken."""
+        """Yield all photos, newest first; pages are requested as they are needed."""
         for page in self._pages(PhotoPage, "/v1/photos"):
             yield from page.photos
 
@@ -103,9 +147,9 @@ class Client:
         grow: bool = False,
         side: SketchLike | None = None,
     ) -> TraceAnswer:
-        """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too. ``rev`` comes back.
+        """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too.
 
-        A sketch of the tree's left ``side`` gives that skeleton its depth.
+        The answer repeats ``rev``. A sketch of the tree's left ``side`` gives the skeleton its depth.
 
         Raises
         ------
@@ -135,34 +179,21 @@ class Client:
         strokes: StrokesLike,
         settings: Mapping[str, Any] | None = None,
         seed: int = 0,
-        name: str = "",
-        idempotency_key: str | None = None,
-        leaf: PictureLike | None = None,
-        fruit: PictureLike | None = None,
-        side: SketchLike | None = None,
+        **options: Unpack[PhotoOptions],
     ) -> Model:
         """Ask for a tree; `wait` for it. The request may be cut off and sent again: it makes one model.
 
-        Parameters
-        ----------
-        leaf, fruit
-            A path or the bytes of a PNG of a leaf, or of a fruit, cut out, that the tree is to bear.
-        side
-            A sketch of the tree's left side, by which its branches have their depth.
-        idempotency_key
-            The same key with the same request gives the same model, for a day, from another process too; a new key by
-            default.
+        ``options`` are the names of `PhotoOptions`.
 
         Raises
         ------
         ServiceError
             There is no such photo, or a stroke or a setting cannot be used.
         """
-        body = {"photo": _id(photo), "strokes": _plain(strokes)}
-        if side is not None:
-            body["sketches"] = {"side": _plain_sketch(side)}
-        wish = {"settings": dict(settings or {}), "seed": seed, "name": name, **_pictures(leaf, fruit)}
-        return self._wish({**body, **wish}, idempotency_key)
+        side = options.pop("side", None)
+        sketches = {} if side is None else {"sketches": {"side": _plain_sketch(side)}}
+        inputs = {"photo": _id(photo), "strokes": _plain(strokes), **sketches}
+        return self._ask_for_tree(inputs, settings, seed, options)
 
     def grow_sketches(
         self,
@@ -170,35 +201,27 @@ class Client:
         side: SketchLike | None = None,
         settings: Mapping[str, Any] | None = None,
         seed: int = 0,
-        name: str = "",
-        idempotency_key: str | None = None,
-        leaf: PictureLike | None = None,
-        fruit: PictureLike | None = None,
-        photo: Photo | str | None = None,
+        **options: Unpack[SketchOptions],
     ) -> Model:
-        """Ask for a tree of sketches of its front and, where there is one, of its left side; else as `grow`.
+        """Ask for a tree from sketches of its front and, where there is one, of its left side; else as `grow`.
 
-        Parameters
-        ----------
-        photo
-            What the front was drawn over, which lends the tree its colours.
+        ``options`` are the names of `SketchOptions`.
 
         Raises
         ------
         ServiceError
             A sketch or a setting cannot be used, or there is no such photo.
         """
-        body: dict[str, Any] = {} if photo is None else {"photo": _id(photo)}
-        body["sketches"] = _plain_sketches(front, side)
-        wish = {"settings": dict(settings or {}), "seed": seed, "name": name, **_pictures(leaf, fruit)}
-        return self._wish({**body, **wish}, idempotency_key)
+        photo = options.pop("photo", None)
+        inputs = {"sketches": _plain_sketches(front, side), **({} if photo is None else {"photo": _id(photo)})}
+        return self._ask_for_tree(inputs, settings, seed, options)
 
     def model(self, model: Model | str) -> Model:
-        """Look a model up."""
+        """Return a model."""
         return read(Model, self._ask("GET", f"/v1/models/{_id(model)}").content)
 
     def models(self) -> Iterator[Model]:
-        """Give all models, newest first, page by page as they are taken."""
+        """Yield all models, newest first; pages are requested as they are needed."""
         for page in self._pages(ModelPage, "/v1/models"):
             yield from page.models
 
@@ -209,26 +232,25 @@ class Client:
         on_progress: Callable[[Model], None] | None = None,
         on_preview: Callable[[GrownSkeleton], None] | None = None,
     ) -> Model:
-        """Follow a model until it has succeeded, failed or been canceled, and give it.
+        """Follow a model until it has succeeded, failed or been canceled, and return it.
 
-        A stream of events that breaks is taken up again where it broke; where none comes through, the model is looked
-        up now and then.
+        A stream of events that breaks is resumed; where none comes through, the model is requested now and then.
 
         Parameters
         ----------
         timeout
-            Seconds; without end by default.
+            Seconds; no limit by default.
         on_progress
-            Is called with the model, at once and whenever it has got on.
+            Called with the model, at once and after every change.
         on_preview
-            Is called with the grown skeleton when growth ends, unless the stream of events does not come through.
+            Called with the grown skeleton when growth ends, if the stream of events comes through.
 
         Raises
         ------
         TimeoutError
             It took longer than ``timeout``; the model goes on.
         ServiceError
-            There is no such model, or the service stays away.
+            There is no such model, or the service cannot be reached.
         """
         deadline = math.inf if timeout is None else time.monotonic() + timeout
         last, shown = "", None
@@ -249,7 +271,7 @@ class Client:
             time.sleep(min(_POLL_S, _left(deadline)))
 
     def download(self, model: Model | str, path: str | os.PathLike[str], file: str = "tree.glb") -> Path:
-        """Download one of a model's files, whole or not at all, checked against its SHA-256; give its path.
+        """Download one of a model's files, whole or not at all, checked against its SHA-256; return its path.
 
         Raises
         ------
@@ -276,11 +298,11 @@ class Client:
         return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
 
     def delete(self, model: Model | str) -> None:
-        """Delete a model; for 24 hours `restore` takes it back."""
+        """Delete a model; for 24 hours `restore` undoes that."""
         self._ask("DELETE", f"/v1/models/{_id(model)}")
 
     def restore(self, model: Model | str) -> Model:
-        """Take a model's deletion back."""
+        """Undo a model's deletion."""
         return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
 
     def _pages(self, kind: type[Page], path: str) -> Iterator[Page]:
@@ -292,16 +314,23 @@ class Client:
                 return
             cursor = {"cursor": page.next}
 
-    def _wish(self, body: Mapping[str, Any], key: str | None) -> Model:
-        headers = {"Idempotency-Key": key or secrets.token_hex(16)}
-        return read(Model, self._ask("POST", "/v1/models", json=body, headers=headers).content)
+    def _ask_for_tree(
+        self, inputs: Mapping[str, Any], settings: Mapping[str, Any] | None, seed: int, options: Mapping[str, Any]
+    ) -> Model:
+        if unknown := options.keys() - TreeOptions.__annotations__.keys():
+            raise TypeError(f"there are no options {', '.join(sorted(unknown))}")
+        headers = {"Idempotency-Key": options.get("idempotency_key") or secrets.token_hex(16)}
+        cutouts = {part: _base64(options[part]) for part in Cutouts.__annotations__ if options.get(part) is not None}
+        wanted = {"settings": dict(settings or {}), "seed": seed, "name": options.get("name", "")}
+        answer = self._ask("POST", "/v1/models", json={**inputs, **cutouts, **wanted}, headers=headers)
+        return read(Model, answer.content)
 
     def _ask(self, method: str, path: str, **request: Any) -> httpx.Response:
-        # A deletion that was cut off may have happened; sent again it would find nothing.
+        # A deletion that was cut off may have happened; sent again it would fail.
         return self._repeat(lambda: checked(self._http.request(method, path, **request)), harmless=method != "DELETE")
 
     def _repeat(self, attempt: Callable[[], Done], harmless: bool = True) -> Done:
-        """Make an attempt, and again after a pause where the service is busy or a ``harmless`` one was cut off."""
+        """Make an attempt; after a pause another one, if the service was busy or a ``harmless`` attempt was cut off."""
         for pause in (*_PAUSES_S, None):
             try:
                 return attempt()
@@ -330,7 +359,7 @@ class Client:
             raise Again(response.status_code, "damaged", "the file arrived damaged; download it again")
 
     def _events(self, id: str, last: str, seconds: float) -> Generator[Event]:
-        """Give a model's events until the stream ends, however it ends; silence for ``seconds`` ends it too."""
+        """Yield a model's events until the stream ends, however it ends; silence for ``seconds`` ends it too."""
         headers = {"Last-Event-ID": last} if last else {}
         timeout = httpx.Timeout(self._timeout, read=seconds)
         path = f"/v1/models/{id}/events"
@@ -363,9 +392,8 @@ def _plain_sketches(front: SketchLike, side: SketchLike | None) -> dict[str, Any
     return {"front": _plain_sketch(front)} | ({} if side is None else {"side": _plain_sketch(side)})
 
 
-def _pictures(leaf: PictureLike | None, fruit: PictureLike | None) -> dict[str, str]:
-    given = {"leaf": leaf, "fruit": fruit}
-    return {name: base64.b64encode(_content(one)).decode() for name, one in given.items() if one is not None}
+def _base64(picture: PictureLike) -> str:
+    return base64.b64encode(_content(picture)).decode()
 
 
 def _content(file: str | os.PathLike[str] | bytes) -> bytes:
@@ -377,7 +405,13 @@ def _id(thing: Photo | Model | str) -> str:
 
 
 def _left(deadline: float) -> float:
-    """Give the seconds until a deadline."""
+    """Return the seconds until a deadline.
+
+    Raises
+    ------
+    TimeoutError
+        It has passed.
+    """
     left = deadline - time.monotonic()
     if left <= 0:
         raise TimeoutError("the model is not finished yet; wait for it again, or cancel it")

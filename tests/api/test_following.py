@@ -6,8 +6,8 @@ import pytest
 from tests.rows import add_model
 
 from treestroke.api.following import Follower, TooManyFollowers, Watcher
-from treestroke.service import models
-from treestroke.service.models import Seen
+from treestroke.service import stored_models
+from treestroke.service.stored_models import StoredModel
 from treestroke.store.database import Database
 
 SECONDS = 10.0
@@ -23,12 +23,12 @@ def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable
     asyncio.run(run())
 
 
-async def news(follower: Follower) -> Seen | None:
+async def news(follower: Follower) -> StoredModel | None:
     return await asyncio.wait_for(follower.next_change(), SECONDS)
 
 
-def added(database: Database) -> Seen:
-    return models.see(database, add_model(database).id)
+def added(database: Database) -> StoredModel:
+    return stored_models.find_model(database, add_model(database).id)
 
 
 def test_a_change_wakes_those_who_follow_that_model_and_nobody_else(database: Database) -> None:
@@ -37,7 +37,7 @@ def test_a_change_wakes_those_who_follow_that_model_and_nobody_else(database: Da
     async def story(watcher: Watcher) -> None:
         with ExitStack() as places:
             one, same, other = (places.enter_context(watcher.follow(seen)) for seen in (first, first, second))
-            models.rename(database, first.row.id, "Oak")
+            stored_models.rename(database, first.row.id, "Oak")
             for told in [await news(one), await news(same)]:
                 assert told is not None
                 assert told.row.name == "Oak"
@@ -53,7 +53,7 @@ def test_who_queues_is_told_a_new_place_and_who_comes_late_what_changed_since_it
 
     async def story(watcher: Watcher) -> None:
         with watcher.follow(second) as early:
-            models.cancel(database, first.row.id)
+            stored_models.cancel(database, first.row.id)
             told = await news(early)
             with watcher.follow(second) as late:  # it looked before the other left the queue
                 assert [one and one.queue_position for one in (told, await news(late))] == [1, 1]

@@ -1,7 +1,7 @@
 """How long a store of many models answers, and holds the one lock of writers; `make bench` prints it.
 
-Half of the models were answered from others, the newest among them; each has a report and three files. What is timed
-runs in this process, on a database of its own.
+Half of the models were answered from others, the newest among them; each has a report, two parts and three files. What
+is timed runs in this process, on a database of its own.
 """
 
 import json
@@ -20,7 +20,7 @@ from sqlalchemy import Engine, event
 from sqlalchemy.pool import Pool
 from tests.api import drawn
 
-from treestroke.service import models, photos
+from treestroke.service import photos, stored_models
 from treestroke.service.engine_version import engine_version
 from treestroke.service.photos import Shelf
 from treestroke.service.retention import Sweeper
@@ -34,8 +34,8 @@ ASKED, DELETED, REPEATS = 40, 1000, 20
 PROMISED_MS = 20
 REPORT = json.dumps({"score": {"silhouette_iou": 0.9}, "measures": {f"figure_{at}": "x" * 60 for at in range(40)}})
 _COLUMNS = (
-    "id, name, photo, photo_blob, strokes_blob, settings, seed, engine, fingerprint, status, phase_fraction, progress,"
-    " seq, attempt, beat, created, started, finished, report"
+    "id, name, photo, settings, seed, engine, fingerprint, status, phase_fraction, progress, seq, attempt, beat,"
+    " created, started, finished, report"
 )
 _DAY = 86_400.0
 
@@ -47,20 +47,7 @@ def fill(path: Path, count: int) -> None:
         blob = f"{at * 2654435761 % 2**32:08x}" * 8
         started = None if at % 2 or at > count - 1000 else float(at)
         return (
-            *(
-                f"mdl_{at:024x}",
-                f"Tree {at}",
-                "pho_1",
-                blob,
-                blob[::-1],
-                "{}",
-                at,
-                engine_version(),
-                blob,
-                "succeeded",
-                0,
-                1,
-            ),
+            *(f"mdl_{at:024x}", f"Tree {at}", "pho_1", "{}", at, engine_version(), blob, "succeeded", 0, 1),
             *(5, 1, 9, float(at), started, at + 6.0, REPORT),
         )
 
@@ -70,8 +57,10 @@ def fill(path: Path, count: int) -> None:
         files = [(name, f"{number}") for number, name in enumerate(("tree.glb", "preview.png", "growth.json"))]
         for name, digit in files:
             database.execute(
-                "INSERT INTO files SELECT id, ?, substr(photo_blob, 1, 63) || ?, 1000 FROM models", (name, digit)
+                "INSERT INTO files SELECT id, ?, substr(fingerprint, 1, 63) || ?, 1000 FROM models", (name, digit)
             )
+        for name, media_type in (("photo", "image/png"), ("strokes", "application/json")):
+            database.execute("INSERT INTO model_parts SELECT id, ?, fingerprint, ? FROM models", (name, media_type))
         database.commit()
 
 
@@ -119,10 +108,10 @@ def answer(database: Database, count: int) -> None:
     with database.reading() as session:
         row = queries.model(session, f"mdl_{count - 1:024x}")
         assert row is not None
-        say("a twin that there is", times(lambda: queries.twin(session, row.fingerprint, row.engine)))
-        say("a twin that there is not", times(lambda: queries.twin(session, "0" * 64, row.engine)))
+        say("an equal model that there is", times(lambda: queries.finished_model(session, row.fingerprint, row.engine)))
+        say("an equal model that there is not", times(lambda: queries.finished_model(session, "0" * 64, row.engine)))
         say("the usual time of late", times(lambda: queries.usual_seconds(session)))
-    say("a page of 20 models", times(lambda: models.list_models(database, None, 20)))
+    say("a page of 20 models", times(lambda: stored_models.list_models(database, None, 20)))
 
 
 def ask(shelf: Shelf) -> bool:
@@ -130,8 +119,8 @@ def ask(shelf: Shelf) -> bool:
     photo = photos.add_photo(shelf, drawn.encoded()).id
     with held() as took:
         for seed in range(ASKED):
-            wish = models.read_wish(shelf, json.dumps(drawn.wish(photo, seed=seed)).encode())
-            assert models.ask_for_model(shelf, wish, f"key-{seed}").row.status == "queued"
+            wish = stored_models.read_wish(shelf, json.dumps(drawn.wish(photo, seed=seed)).encode())
+            assert stored_models.accept_model(shelf, wish, f"key-{seed}").row.status == "queued"
     say(f"the lock, held by POST /v1/models (< {PROMISED_MS})", took)
     return bool(np.median(took) * 1000 < PROMISED_MS)
 

@@ -31,7 +31,7 @@ from treestroke.core.strokes import Strokes
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
 from treestroke.service.inputs import load_strokes
-from treestroke.service.making import Model
+from treestroke.service.model import Model
 from treestroke.service.trace import Trace
 
 pytestmark = pytest.mark.parametrize("subject", ["burr_oak_dusk", "oak_02"], indirect=True)

@@ -3,8 +3,8 @@ import json
 import struct
 import tracemalloc
 import zipfile
-from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from tests.api.corpora import saved
 import treestroke
 from treestroke.cli import main
 from treestroke.codec.image import MAX_BYTES, MAX_PIXELS, MAX_STORED_BYTES, decode_photo, encode_stored
-from treestroke.codec.project import Project, read_project, write_project
+from treestroke.codec.project import Project, read_project, stored_inputs, write_project
 from treestroke.core.errors import TreestrokeError
 
 
@@ -31,18 +31,21 @@ def opened(data: bytes) -> Project:
     return read_project(io.BytesIO(data), "oak.treestroke")
 
 
+def project_of(settings: dict[str, Any], **parts: bytes) -> Project:
+    return Project(stored_inputs(parts), settings)
+
+
 def written(project: Project) -> bytes:
-    out, parts = io.BytesIO(), {field.name: getattr(project, field.name) for field in fields(Project)}
-    settings = parts.pop("settings")
-    given = {part: io.BytesIO(content) for part, content in parts.items() if content is not None}
-    write_project(out, given, settings)
+    out = io.BytesIO()
+    write_project(out, {name: io.BytesIO(part) for name, part in project.inputs.parts.items()}, project.settings)
     return out.getvalue()
 
 
 def test_a_project_gives_back_its_parts() -> None:
     settings = json.dumps({"height": 12, "seed": 3}).encode()
     project = opened(packed(photo_jpg=b"P", strokes_json=b"S", settings_json=settings))
-    assert (project.photo, project.strokes, project.settings) == (b"P", b"S", {"height": 12, "seed": 3})
+    assert project == project_of({"height": 12, "seed": 3}, photo=b"P", strokes=b"S")
+    assert project.inputs.source == "photo"
 
 
 def test_settings_may_be_absent() -> None:
@@ -82,7 +85,7 @@ def png_of(width: int, height: int, size: int) -> bytes:
 
 def test_a_photo_may_be_as_large_as_a_stored_one_of_its_pixels() -> None:
     size = 3 * 5000 * 5000
-    assert len(opened(packed(photo_png=png_of(5000, 5000, size), strokes_json=b"S")).photo) == size
+    assert len(opened(packed(photo_png=png_of(5000, 5000, size), strokes_json=b"S")).inputs.parts["photo"]) == size
 
 
 @pytest.mark.parametrize("photo", [png_of(2000, 2000, MAX_BYTES + 1), b"\xff\xd8\xff" + bytes(MAX_BYTES)])
@@ -146,17 +149,17 @@ def test_no_stored_photo_is_larger_than_is_allowed(side: int) -> None:
 
 
 def test_what_is_written_is_read_back() -> None:
-    project = Project(b"\xff\xd8P", b"S", {"height": 12.0, "seed": 3})
+    project = project_of({"height": 12.0, "seed": 3}, photo=b"\xff\xd8P", strokes=b"S")
     assert opened(written(project)) == project
 
 
 @pytest.mark.parametrize(
     "project",
     [
-        Project(None, None, {}, front=b"{}"),
-        Project(None, None, {"seed": 1}, front=b"\x89PNG", side=b"{}", leaf=b"L", fruit=b"F"),
-        Project(b"P", None, {}, front=b"{}", side=b"\x89PNG"),
-        Project(b"P", b"S", {}, side=b"{}", fruit=b"F"),
+        project_of({}, front=b"{}"),
+        project_of({"seed": 1}, front=b"\x89PNG", side=b"{}", leaf=b"L", fruit=b"F"),
+        project_of({}, photo=b"P", front=b"{}", side=b"\x89PNG"),
+        project_of({}, photo=b"P", strokes=b"S", side=b"{}", fruit=b"F"),
     ],
 )
 def test_sketches_are_read_back_with_or_without_a_photo(project: Project) -> None:
@@ -164,15 +167,15 @@ def test_sketches_are_read_back_with_or_without_a_photo(project: Project) -> Non
 
 
 def test_a_sketch_is_named_by_its_content() -> None:
-    data = written(Project(None, None, {}, front=b"{}", side=b"\x89PNG"))
+    data = written(project_of({}, front=b"{}", side=b"\x89PNG", leaf=b"\x89PNG"))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        assert archive.namelist() == ["front.json", "side.png", "settings.json"]
+        assert archive.namelist() == ["front.json", "side.png", "settings.json", "leaf.png"]
 
 
 def test_either_command_opens_a_project_of_sketches(tmp_path: Path) -> None:
     front, side = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SIDE))
     project, settings = tmp_path / "drawn.treestroke", {"iterations": 5, "leaf_density": 0.1}
-    project.write_bytes(written(Project(None, None, {**settings, "seed": 4}, front=front, side=side)))
+    project.write_bytes(written(project_of({**settings, "seed": 4}, front=front, side=side)))
     for command in ("model", "sketch"):
         assert main([command, str(project), "--out", str(tmp_path / f"{command}.glb")]) == 0
     by_library = treestroke.sketch(front, side, settings, 4).glb
@@ -180,7 +183,10 @@ def test_either_command_opens_a_project_of_sketches(tmp_path: Path) -> None:
 
 
 def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:
-    one, other = (Project(b"P", b"S", settings) for settings in ({"height": 1, "seed": 2}, {"seed": 2, "height": 1}))
+    one, other = (
+        project_of(settings, photo=b"P", strokes=b"S")
+        for settings in ({"height": 1, "seed": 2}, {"seed": 2, "height": 1})
+    )
     assert written(one) == written(other)
     with zipfile.ZipFile(io.BytesIO(written(one))) as archive:
         assert {info.date_time for info in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
@@ -191,7 +197,7 @@ def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:
 )
 def test_a_photo_is_named_by_its_content_and_not_compressed_again(kind: str, ending: str) -> None:
     content = saved(Image.new("RGB", (64, 64)), kind)
-    with zipfile.ZipFile(io.BytesIO(written(Project(content, b"S", {})))) as archive:
+    with zipfile.ZipFile(io.BytesIO(written(project_of({}, photo=content, strokes=b"S")))) as archive:
         photo = archive.infolist()[0]
     assert (photo.filename, photo.compress_type) == (f"photo.{ending}", zipfile.ZIP_STORED)
 
@@ -202,7 +208,7 @@ def test_the_command_line_opens_what_is_written(
     stored = encode_stored(decode_photo(maple_photo.read_bytes(), "photo"))
     settings = {"iterations": 3, "leaf_density": 0.1}
     project = tmp_path / "maple.treestroke"
-    project.write_bytes(written(Project(stored, maple_strokes.read_bytes(), {**settings, "seed": 4})))
+    project.write_bytes(written(project_of({**settings, "seed": 4}, photo=stored, strokes=maple_strokes.read_bytes())))
     monkeypatch.setattr("treestroke.codec.image.MAX_BYTES", len(stored) - 1)
     assert main(["model", str(project), "--out", str(tmp_path / "a.glb")]) == 0
     assert (tmp_path / "a.glb").read_bytes() == treestroke.model(stored, maple_strokes, settings, 4).glb

@@ -28,7 +28,7 @@ def test_the_engine_is_named_by_version_and_digest_wherever_it_lies(copied: Path
 
 
 @pytest.mark.parametrize(
-    "file", ["core/grow/form.py", "core/grow/_engine.c", "codec/gltf/book.py", "service/making.py", "core/leaf/new.txt"]
+    "file", ["core/grow/form.py", "core/grow/_engine.c", "codec/gltf/book.py", "service/report.py", "core/leaf/new.txt"]
 )
 def test_another_byte_of_what_makes_the_tree_is_another_engine(copied: Path, file: str) -> None:
     before = digest(copied, LIBRARIES)
@@ -54,7 +54,7 @@ def test_another_version_of_a_library_is_another_engine(library: str) -> None:
 def test_every_module_that_makes_a_tree_counts() -> None:
     """Whatever is imported on the way from input to files is hashed, but for the package's own first file."""
     code = (
-        "import sys, treestroke.service.evidence; "
+        "import sys, treestroke.service.model; "
         "print(*(m.__file__ for n, m in sys.modules.items() if n.startswith('treestroke')), sep='\\n')"
     )
     environment = {**os.environ, "PYTHONPATH": str(BACKEND)}

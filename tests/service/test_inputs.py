@@ -6,9 +6,10 @@ import pytest
 from tests.api import sketched
 
 from treestroke.codec.image import decode_stored, encode_stored
+from treestroke.codec.inputs import Inputs
 from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError
 from treestroke.core.strokes import same_stroke
-from treestroke.service.inputs import load_fruit, load_leaf, load_photo, load_settings, load_sketch, load_strokes
+from treestroke.service.inputs import load_cutout, load_parts, load_photo, load_settings, load_sketch, load_strokes
 
 
 def test_path_bytes_and_pixels_give_the_same_photo(maple_photo: Path) -> None:
@@ -73,19 +74,24 @@ def test_a_sketch_that_is_none_is_refused_by_its_name(sketch: dict[str, object] 
         load_sketch(sketch, "side")
 
 
-def test_no_leaf_and_no_fruit_are_none() -> None:
-    assert load_leaf(None) is None
-    assert load_fruit(None) is None
-
-
 def test_leaf_and_fruit_are_read_alike(tmp_path: Path) -> None:
     path = tmp_path / "berry.png"
     path.write_bytes(sketched.berry())
-    assert np.array_equal(load_fruit(path), load_leaf(sketched.berry()))
-    for load, kind in ((load_fruit, FruitError), (load_leaf, LeafError)):
-        for given in (b"no picture", tmp_path / "missing.png"):
-            with pytest.raises(kind):
-                load(given)
+    assert np.array_equal(load_cutout(path, "fruit"), load_cutout(sketched.berry(), "leaf"))
+    for name, refusal in (("fruit", FruitError), ("leaf", LeafError)):
+        for picture in (b"no picture", tmp_path / "missing.png"):
+            with pytest.raises(refusal):
+                load_cutout(picture, name)
+
+
+def test_all_parts_are_decoded_the_photo_last(maple_photo: Path, maple_strokes: Path) -> None:
+    inputs = Inputs.of(
+        {"photo": maple_photo, "strokes": maple_strokes, "side": sketched.SIDE, "leaf": sketched.berry()}
+    )
+    loaded = load_parts(inputs)
+    assert list(loaded) == ["strokes", "side", "leaf", "photo"]
+    assert np.array_equal(loaded["photo"], load_photo(maple_photo))
+    assert loaded["side"].canvas == load_sketch(sketched.SIDE, "side").canvas
 
 
 @pytest.mark.parametrize("path", ["missing.jpg", ".", "with\0zero"])

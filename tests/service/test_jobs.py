@@ -3,7 +3,7 @@ import json
 import pytest
 from tests.api import drawn
 
-from treestroke.service import models, photos
+from treestroke.service import photos, stored_models
 from treestroke.service.engine_version import engine_version
 from treestroke.service.jobs import grow_model
 from treestroke.service.photos import Shelf
@@ -12,13 +12,13 @@ from treestroke.service.photos import Shelf
 @pytest.mark.parametrize("part", ["photo", "strokes"])
 def test_a_model_whose_input_is_damaged_fails_and_says_so(shelf: Shelf, part: str) -> None:
     photo = photos.add_photo(shelf, drawn.encoded(seed=3))
-    wish = models.read_wish(shelf, json.dumps(drawn.wish(photo.id)).encode())
-    row = models.ask_for_model(shelf, wish, None).row
-    place = shelf.blobs.path(row.parts[part])
+    wish = stored_models.read_wish(shelf, json.dumps(drawn.wish(photo.id)).encode())
+    model = stored_models.accept_model(shelf, wish, None)
+    row, place = model.row, shelf.blobs.path(model.parts[part].blob)
     content = bytearray(place.read_bytes())
     content[-1] ^= 1
     place.write_bytes(content)
     grow_model(shelf.database, shelf.blobs, row.id, "token", "worker", 60)
-    after = models.see(shelf.database, row.id).row
+    after = stored_models.find_model(shelf.database, row.id).row
     assert (after.status, after.error and after.error["code"]) == ("failed", "input_damaged")
     assert after.engine == engine_version()

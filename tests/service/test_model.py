@@ -6,7 +6,8 @@ import pytest
 from tests.conftest import DATA
 
 import treestroke
-from treestroke.service.making import STAGES, Model
+from treestroke.service.model import Model
+from treestroke.service.report import STAGES
 
 QUICK = {"iterations": 5}
 

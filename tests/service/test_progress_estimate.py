@@ -8,8 +8,8 @@ GROWING = ["lift", "grow", "leaf", "mesh"]
 
 
 def walked(settings: ModelSettings, phases: list[str]) -> list[float]:
-    course = ProgressEstimate(settings)
-    return [course.progress(phase, fraction) for phase in phases for fraction in (0.0, 0.5, 1.0)]
+    estimate = ProgressEstimate(settings)
+    return [estimate.progress(phase, fraction) for phase in phases for fraction in (0.0, 0.5, 1.0)]
 
 
 @pytest.mark.parametrize("variants", [1, 3])
@@ -22,18 +22,18 @@ def test_progress_rises_from_nothing_to_all(variants: int, lod: str) -> None:
 
 
 def test_the_progress_of_sketches_rises_from_nothing_to_all() -> None:
-    course = ProgressEstimate(ModelSettings(), of_sketches=True)
+    estimate = ProgressEstimate(ModelSettings(), "sketches")
     phases = ["decode", "trace", *GROWING, "write", "preview"]
-    told = [course.progress(phase, fraction) for phase in phases for fraction in (0.0, 0.5, 1.0)]
+    told = [estimate.progress(phase, fraction) for phase in phases for fraction in (0.0, 0.5, 1.0)]
     assert told == sorted(told)
     assert (told[0], told[-1]) == (0.0, pytest.approx(1.0))
 
 
 def test_the_second_of_two_trees_begins_after_the_first() -> None:
-    course = ProgressEstimate(ModelSettings(variants=2))
-    first = [course.progress(phase, 1.0) for phase in [*SEEING, *GROWING, "write"]][-1]
-    assert course.progress("lift", 0.0) == pytest.approx(first)
-    assert course.progress("write", 1.0) > 0.8
+    estimate = ProgressEstimate(ModelSettings(variants=2))
+    first = [estimate.progress(phase, 1.0) for phase in [*SEEING, *GROWING, "write"]][-1]
+    assert estimate.progress("lift", 0.0) == pytest.approx(first)
+    assert estimate.progress("write", 1.0) > 0.8
 
 
 def test_more_to_write_leaves_more_to_do() -> None:
@@ -44,6 +44,6 @@ def test_more_to_write_leaves_more_to_do() -> None:
 
 
 def test_a_phase_that_nobody_knows_changes_nothing() -> None:
-    course = ProgressEstimate(ModelSettings())
-    before = course.progress("grow", 0.0)
-    assert course.progress("dance", 0.0) == before
+    estimate = ProgressEstimate(ModelSettings())
+    before = estimate.progress("grow", 0.0)
+    assert estimate.progress("dance", 0.0) == before

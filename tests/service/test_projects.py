@@ -12,12 +12,12 @@ from tests.api import drawn, sketched
 from tests.rows import add_model
 
 from treestroke.codec.project import Project, read_project
-from treestroke.service import models, photos
+from treestroke.service import photos, stored_models
 from treestroke.service.photos import Shelf
 from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
+from treestroke.service.stored_models import StoredModel
 from treestroke.service.tracing_pool import Overloaded
 from treestroke.store.blobs import Damaged
-from treestroke.store.tables import ModelRow
 
 SECONDS = 30
 
@@ -29,41 +29,43 @@ def projects(shelf: Shelf) -> Iterator[Projects]:
     made.close()
 
 
-def packed(projects: Projects, row: ModelRow) -> Packed:
-    return projects.ask(row).result(SECONDS)
+def packed(projects: Projects, model: StoredModel) -> Packed:
+    return projects.pack(model).result(SECONDS)
 
 
-def project_of(projects: Projects, row: ModelRow) -> Project:
-    with packed(projects, row).path.open("rb") as file:
+def project_of(projects: Projects, model: StoredModel) -> Project:
+    with packed(projects, model).path.open("rb") as file:
         return read_project(file, "x")
 
 
-def model_of(shelf: Shelf, content: bytes, **values: object) -> ModelRow:
-    """Write the row of a model whose photo has this content, whatever it is."""
-    blobs = {"photo_blob": shelf.blobs.put(content), "strokes_blob": shelf.blobs.put(b"{}")}
-    return add_model(shelf.database, **{**blobs, **values})
+def model_of(shelf: Shelf, content: bytes, seed: int = 0) -> StoredModel:
+    """Write the rows of a model whose photo has this content, whatever it is."""
+    blobs = {"photo": shelf.blobs.put(content), "strokes": shelf.blobs.put(b"{}")}
+    return stored_models.find_model(shelf.database, add_model(shelf.database, blobs, seed=seed).id)
 
 
 def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: Projects) -> None:
     photo = photos.add_photo(shelf, drawn.encoded())
-    asked = models.read_wish(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
-    row = models.ask_for_model(shelf, asked, None).row
-    project = project_of(projects, row)
-    assert project.photo == shelf.blobs.get(photo.blob)
-    assert json.loads(project.strokes or b"") == {**drawn.STROKES, "erase": []}
-    assert project.settings == {**row.settings, "seed": 7}
+    asked = stored_models.read_wish(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
+    model = stored_models.accept_model(shelf, asked, None)
+    project = project_of(projects, model)
+    assert list(project.inputs.parts) == ["photo", "strokes"]
+    assert project.inputs.parts["photo"] == shelf.blobs.get(photo.blob)
+    assert json.loads(project.inputs.parts["strokes"]) == {**drawn.STROKES, "erase": []}
+    assert project.settings == {**model.row.settings, "seed": 7}
 
 
 def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projects: Projects) -> None:
     sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
     fruit = base64.b64encode(sketched.berry()).decode()
-    asked = models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
-    row = models.ask_for_model(shelf, asked, None).row
-    assert list(row.drawings) == ["front.json", "side.png"]
-    project = project_of(projects, row)
-    assert (project.photo, project.strokes, project.leaf, project.fruit) == (None, None, None, sketched.berry())
-    assert json.loads(project.front or b"") == sketched.FRONT
-    assert (project.side or b"").startswith(b"\x89PNG")
+    asked = stored_models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
+    model = stored_models.accept_model(shelf, asked, None)
+    assert list(model.drawings) == ["front.json", "side.png"]
+    parts = project_of(projects, model).inputs.parts
+    assert list(parts) == ["front", "side", "fruit"]
+    assert json.loads(parts["front"]) == sketched.FRONT
+    assert parts["side"].startswith(b"\x89PNG")
+    assert parts["fruit"] == sketched.berry()
 
 
 def test_models_of_the_same_parts_settings_and_seed_share_a_project_that_is_packed_once(
@@ -79,9 +81,9 @@ def test_models_of_the_same_parts_settings_and_seed_share_a_project_that_is_pack
 
 
 def test_a_large_project_is_never_in_memory(shelf: Shelf, projects: Projects) -> None:
-    row = model_of(shelf, bytes(60_000_000))
+    model = model_of(shelf, bytes(60_000_000))
     tracemalloc.start()
-    made = packed(projects, row)
+    made = packed(projects, model)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert made.size > 60_000_000
@@ -91,27 +93,27 @@ def test_a_large_project_is_never_in_memory(shelf: Shelf, projects: Projects) ->
 def test_what_was_asked_for_longest_ago_goes_first(
     shelf: Shelf, projects: Projects, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("treestroke.service.projects.MAX_KEPT_BYTES", 250_000)
-    rows = [model_of(shelf, bytes([at]) * 100_000) for at in range(3)]
-    first, second = (packed(projects, row) for row in rows[:2])
-    packed(projects, rows[0])
-    third = packed(projects, rows[2])
+    monkeypatch.setattr("treestroke.service.projects.MAX_CACHE_BYTES", 250_000)
+    models = [model_of(shelf, bytes([at]) * 100_000) for at in range(3)]
+    first, second = (packed(projects, model) for model in models[:2])
+    packed(projects, models[0])
+    third = packed(projects, models[2])
     assert [one.path.exists() for one in (first, second, third)] == [True, False, True]
-    assert packed(projects, rows[1]).sha256 == second.sha256
+    assert packed(projects, models[1]).sha256 == second.sha256
 
 
 def test_what_is_gone_changed_or_failed_is_packed_anew(shelf: Shelf, projects: Projects) -> None:
-    row = model_of(shelf, b"photo")
-    blob = shelf.blobs.path(row.parts["photo"])
+    model = model_of(shelf, b"photo")
+    blob = shelf.blobs.path(model.parts["photo"].blob)
     blob.rename(blob.with_suffix(".away"))
     with pytest.raises(Damaged):
-        packed(projects, row)
+        packed(projects, model)
     assert list((shelf.blobs.folder.parent / "projects").iterdir()) == []
     blob.with_suffix(".away").rename(blob)
-    made = packed(projects, row)
+    made = packed(projects, model)
     for harm in (made.path.unlink, lambda: made.path.write_bytes(b"")):
         harm()
-        again = packed(projects, row)
+        again = packed(projects, model)
         assert (again.sha256, again.size) == (made.sha256, made.size)
         assert hashlib.sha256(made.path.read_bytes()).hexdigest() == made.sha256
 
@@ -123,20 +125,23 @@ def test_what_is_kept_goes_at_the_next_start(shelf: Shelf, projects: Projects) -
 
 
 def test_few_are_packed_at_once_more_wait_and_still_more_are_refused(shelf: Shelf, projects: Projects) -> None:
-    row = model_of(shelf, b"photo")
-    blob = shelf.blobs.path(row.parts["photo"])
+    model = model_of(shelf, b"photo")
+    blob = shelf.blobs.path(model.parts["photo"].blob)
     blob.unlink()
     os.mkfifo(blob)  # whoever opens it to read waits for somebody who writes
-    rows = [model_of(shelf, b"", seed=seed, photo_blob=row.parts["photo"]) for seed in range(WAITING + 1)]
-    promised = [projects.ask(row) for row in rows[:WAITING]]
+    rows = [
+        add_model(shelf.database, {"photo": blob.name, "strokes": "b" * 64}, seed=seed) for seed in range(WAITING + 1)
+    ]
+    models = [stored_models.find_model(shelf.database, row.id) for row in rows]
+    promised = [projects.pack(model) for model in models[:WAITING]]
     try:
         deadline = time.monotonic() + SECONDS
         while sum(one.running() for one in promised) < AT_ONCE and time.monotonic() < deadline:
             time.sleep(0.01)
         assert [one.running() for one in promised] == [True] * AT_ONCE + [False] * (WAITING - AT_ONCE)
-        assert projects.ask(rows[0]) is promised[0]
+        assert projects.pack(models[0]) is promised[0]
         with pytest.raises(Overloaded, match="too many projects"):
-            projects.ask(rows[WAITING])
+            projects.pack(models[WAITING])
     finally:
         while wait(promised, 0.01).not_done:
             os.close(os.open(blob, os.O_RDWR | os.O_NONBLOCK))

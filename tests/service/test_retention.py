@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from tests.plans import planned, scans
 from tests.rows import add_model
 
-from treestroke.service import models, retention
+from treestroke.service import retention, stored_models
 from treestroke.service.photos import NotFound
 from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
 from treestroke.store.blobs import Blobs
@@ -65,15 +65,15 @@ class Kept:
         return row
 
     def model(self, status: str = "succeeded", **parts: str) -> ModelRow:
-        blobs = {"photo_blob": self.blobs.put(b"photo"), "strokes_blob": self.blobs.put(b"strokes")}
-        row = add_model(self.database, status=status, created=self.clocks.wall, **{**blobs, **parts})
+        blobs = {"photo": self.blobs.put(b"photo"), "strokes": self.blobs.put(b"strokes"), **parts}
+        row = add_model(self.database, blobs, status=status, created=self.clocks.wall)
         tree = self.blobs.put(b"tree of " + row.id.encode())
         with self.database.writing() as session:
             session.add(File(model=row.id, name="tree.glb", blob=tree, bytes=4))
         return row
 
     def delete(self, row: ModelRow) -> None:
-        models.delete(self.database, row.id)
+        stored_models.delete(self.database, row.id)
 
     def count(self, table: type[ModelRow] | type[PhotoRow] | type[File] | type[Replay] | type[Stray]) -> int:
         with self.database.reading() as session:
@@ -105,12 +105,12 @@ def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
     row = kept.model()
     kept.delete(row)
     assert kept.sweep_for(23 * HOUR) == NOTHING
-    assert models.restore(kept.database, row.id).files["tree.glb"]
+    assert stored_models.restore(kept.database, row.id).files["tree.glb"]
     kept.delete(row)
     assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 3)
     assert (kept.count(ModelRow), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
     with pytest.raises(NotFound):
-        models.restore(kept.database, row.id)
+        stored_models.restore(kept.database, row.id)
 
 
 @pytest.mark.parametrize("jump", [25 * HOUR, -25 * HOUR, 400 * DAY])
@@ -171,7 +171,7 @@ def test_ages_go_on_after_a_clock_that_was_far_ahead_is_set_right(kept: Kept, ag
 @pytest.mark.parametrize("part", ["front", "side", "leaf", "fruit"])
 def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str) -> None:
     blob = kept.blobs.put(part.encode())
-    row = kept.model(**{f"{part}_blob": blob})
+    row = kept.model(**{part: blob})
     assert blob in kept.named()
     assert kept.sweep_for(2 * HOUR) == NOTHING
     kept.delete(row)
@@ -196,7 +196,7 @@ def test_a_deleted_photo_goes_after_a_day_and_its_models_keep_their_copy(kept: K
         session.execute(update(PhotoRow).values(deleted=kept.clocks.wall))
     assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 1)
     assert not kept.blobs.path(photo.blob).exists()
-    assert kept.blobs.path(model.photo_blob or "").exists()
+    assert kept.blobs.path(stored_models.find_model(kept.database, model.id).parts["photo"].blob).exists()
 
 
 def test_a_deleted_model_that_still_grows_is_left_to_its_worker(kept: Kept) -> None:
@@ -209,12 +209,12 @@ def test_what_is_older_than_the_days_is_deleted_and_goes_a_day_later(kept: Kept)
     old, growing, photo = kept.model(), kept.model(status="running"), kept.photo("pho_1")
     assert kept.sweep_for(47 * HOUR) == NOTHING
     young = kept.model()
-    assert models.see(kept.database, old.id)
+    assert stored_models.find_model(kept.database, old.id)
     assert kept.sweep_for(2 * HOUR) == NOTHING
     with pytest.raises(NotFound):
-        models.see(kept.database, old.id)
+        stored_models.find_model(kept.database, old.id)
     for row in (young, growing):
-        assert models.see(kept.database, row.id).row.id == row.id
+        assert stored_models.find_model(kept.database, row.id).row.id == row.id
     assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 2)
     assert not kept.blobs.path(photo.blob).exists()
     assert kept.count(ModelRow) == 2
@@ -224,9 +224,9 @@ def test_a_model_that_is_restored_is_kept_for_as_long_again(kept: Kept) -> None:
     kept.restart(keep_days=1)
     row = kept.model()
     kept.sweep_for(26 * HOUR)
-    models.restore(kept.database, row.id)
+    stored_models.restore(kept.database, row.id)
     kept.sweep_for(20 * HOUR)
-    assert models.see(kept.database, row.id)
+    assert stored_models.find_model(kept.database, row.id)
 
 
 def test_keys_are_forgotten_after_a_day(kept: Kept) -> None:
@@ -274,7 +274,7 @@ def test_a_stray_that_a_row_names_at_the_last_moment_stays(kept: Kept, monkeypat
 
     def named_meanwhile(paths: Iterator[Path]) -> dict[Path, str]:
         found = states(paths)
-        add_model(kept.database, strokes_blob=name)
+        add_model(kept.database, {"strokes": name})
         return found
 
     monkeypatch.setattr(kept.blobs, "remove", seen)

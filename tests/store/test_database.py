@@ -20,7 +20,7 @@ from tests.running import BACKEND
 
 from treestroke.service.failures import code_of
 from treestroke.store.database import Database
-from treestroke.store.tables import File, ModelRow, PhotoRow, Replay, Table, Worker
+from treestroke.store.tables import File, ModelPart, ModelRow, PhotoRow, Replay, Table, Worker
 
 
 def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
@@ -111,17 +111,16 @@ def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) ->
     database.migrate()
     assert database.current()
     row = find(database, "mdl_1")
-    assert (row.name, row.photo, row.parts, row.drawings) == (
-        "Oak",
-        "pho_1",
-        {"photo": "a", "strokes": "b"},
-        {"strokes.json": "b"},
-    )
+    assert (row.name, row.photo) == ("Oak", "pho_1")
     with database.reading() as session:
+        assert [(part.name, part.blob, part.media_type) for part in session.scalars(select(ModelPart))] == [
+            ("photo", "a", "image/png"),
+            ("strokes", "b", "application/json"),
+        ]
         assert [(file.name, file.blob) for file in session.scalars(select(File))] == [("tree.glb", "c")]
-    with database.writing() as session:  # and a file still goes with its model
+    with database.writing() as session:  # and parts and files are still removed with their model
         session.execute(delete(ModelRow))
-        assert session.scalars(select(File)).all() == []
+        assert session.scalars(select(File)).all() == session.scalars(select(ModelPart)).all() == []
     database.close()
 
 

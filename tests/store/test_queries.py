@@ -49,18 +49,18 @@ def test_only_a_finished_model_answers_for_another(database: Database) -> None:
     for status in ("queued", "running", "failed", "canceled"):
         add_model(database, status=status, fingerprint="same")
     with database.reading() as session:
-        assert queries.twin(session, "same", "treestroke") is None
+        assert queries.finished_model(session, "same", "treestroke") is None
     made = add_model(database, status="succeeded", fingerprint="same")
     with database.reading() as session:
-        found = queries.twin(session, "same", "treestroke")
-        assert queries.twin(session, "same", "another engine") is None
+        found = queries.finished_model(session, "same", "treestroke")
+        assert queries.finished_model(session, "same", "another engine") is None
     assert found is not None
     assert found.id == made.id
 
 
 def test_blobs_that_rows_refer_to_are_found_by_how_their_names_begin(database: Database) -> None:
     photo = PhotoRow(id="pho_1", sha256="", width=1, height=1, blob=f"ab{'0' * 62}", created=0.0)
-    model = add_model(database, photo_blob=f"ab{'1' * 62}", strokes_blob=f"cd{'2' * 62}", fruit_blob=f"ff{'f' * 62}")
+    model = add_model(database, parts={"photo": f"ab{'1' * 62}", "strokes": f"cd{'2' * 62}", "fruit": f"ff{'f' * 62}"})
     with database.writing() as session:
         session.add_all([photo, File(model=model.id, name="tree.glb", blob=f"ab{'3' * 62}", bytes=1)])
     with database.reading() as session:
@@ -74,17 +74,18 @@ def test_blobs_that_rows_refer_to_are_found_by_how_their_names_begin(database: D
 def test_no_question_reads_a_whole_table(database: Database) -> None:
     row = add_model(database)
     with planned() as steps, database.reading() as session:
-        queries.twin(session, row.fingerprint, row.engine)
+        queries.finished_model(session, row.fingerprint, row.engine)
         queries.usual_seconds(session)
         queries.queue_positions(session, [row.number])
         queries.page(session, ModelRow, "10", 20)
         queries.model(session, row.id)
         queries.photo(session, "pho_1")
         queries.files(session, [row.id])
+        queries.parts(session, [row.id])
         queries.referenced(session, "ab")
     assert len(steps) > 7
     assert scans(steps) == []
-    assert any("ix_models_twins (fingerprint=? AND engine=? AND status=?)" in step for step in steps)
+    assert any("ix_models_fingerprint (fingerprint=? AND engine=? AND status=?)" in step for step in steps)
     assert any("ix_models_times (status=? AND started>?)" in step for step in steps)
 
 

@@ -19,7 +19,7 @@ from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, Sec
 from treestroke.api.routes import events, files, models, photos, sketches, status
 from treestroke.api.routes.page import add_page
 from treestroke.codec.image import MAX_BYTES
-from treestroke.codec.project import MAX_TEXT_BYTES
+from treestroke.codec.inputs import MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_job_message
 from treestroke.schemas import ModelRequest, Problem, Rename, SketchTraceRequest, TraceRequest
 from treestroke.service.dispatch import Dispatcher

@@ -19,8 +19,8 @@ from treestroke.api.following import TooManyFollowers
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.failures import code_of, problem_of
-from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
+from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracing import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
 from treestroke.store.blobs import Damaged

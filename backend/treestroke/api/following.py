@@ -8,7 +8,7 @@ import structlog
 from fastapi.concurrency import run_in_threadpool
 from sqlalchemy.exc import SQLAlchemyError
 
-from treestroke.service.models import Mark, Seen, see_changed
+from treestroke.service.stored_models import StoredModel, Version, find_changed
 from treestroke.store.database import Database
 
 _LOOK_SECONDS = 0.25
@@ -22,21 +22,21 @@ class TooManyFollowers(Exception):
 class Follower:
     """One request that follows a model, from what it saw of it on."""
 
-    def __init__(self, seen: Seen) -> None:
-        self.model, self.mark = seen.row.id, seen.mark
-        self._latest: Seen | None = seen
+    def __init__(self, seen: StoredModel) -> None:
+        self.model, self.version = seen.row.id, seen.version
+        self._latest: StoredModel | None = seen
         self._news = asyncio.Event()
 
-    async def next_change(self) -> Seen | None:
+    async def next_change(self) -> StoredModel | None:
         """Wait until the model looks different, and give it; None where nothing more comes."""
         await self._news.wait()
         self._news.clear()
         return self._latest
 
-    def tell(self, seen: Seen | None) -> None:
+    def tell(self, seen: StoredModel | None) -> None:
         """Wake the request where this is news to it; None is the end."""
-        if seen is None or seen.mark != self.mark:
-            self.mark = seen.mark if seen else self.mark
+        if seen is None or seen.version != self.version:
+            self.version = seen.version if seen else self.version
             self._latest = seen
             self._news.set()
 
@@ -51,7 +51,7 @@ class Watcher:
         self._looking: asyncio.Task[None] | None = None
 
     @contextmanager
-    def follow(self, seen: Seen) -> Iterator[Follower]:
+    def follow(self, seen: StoredModel) -> Iterator[Follower]:
         """Follow a model on, from what was seen of it.
 
         Raises
@@ -87,11 +87,11 @@ class Watcher:
 
     async def _look(self) -> None:
         followers = list(self._followers)
-        marks: dict[str, Mark | None] = {}
+        versions: dict[str, Version | None] = {}
         for one in followers:
-            marks[one.model] = one.mark if marks.get(one.model, one.mark) == one.mark else None
+            versions[one.model] = one.version if versions.get(one.model, one.version) == one.version else None
         try:
-            changed = await run_in_threadpool(see_changed, self._database, marks)
+            changed = await run_in_threadpool(find_changed, self._database, versions)
         except SQLAlchemyError as error:
             log.warning("look_failed", error=str(error))
             return

@@ -1,17 +1,17 @@
-"""Rows as their readers see them."""
+"""Stored photos and models as the API shows them."""
 
 from datetime import UTC, datetime
 from typing import Any
 
 from treestroke import schemas
 from treestroke.service.jobs import GROWTH
-from treestroke.service.models import Seen
+from treestroke.service.stored_models import StoredModel
 from treestroke.store.tables import PhotoRow
 from treestroke.wire_strokes import StrokeWarning
 
 
 def photo_view(row: PhotoRow) -> schemas.Photo:
-    """Show a photo."""
+    """Return a photo as the API shows it."""
     return schemas.Photo(
         id=row.id,
         width=row.width,
@@ -23,10 +23,10 @@ def photo_view(row: PhotoRow) -> schemas.Photo:
     )
 
 
-def model_view(seen: Seen) -> schemas.Model:
-    """Show a model."""
-    row, place = seen.row, f"/v1/models/{seen.row.id}"
-    names = [*row.drawings, "project", *(seen.files if row.status == "succeeded" else ())]
+def model_view(model: StoredModel) -> schemas.Model:
+    """Return a model as the API shows it."""
+    row, path = model.row, f"/v1/models/{model.row.id}"
+    names = [*model.drawings, "project", *(model.files if row.status == "succeeded" else ())]
     return schemas.Model(
         id=row.id,
         name=row.name,
@@ -35,13 +35,13 @@ def model_view(seen: Seen) -> schemas.Model:
         phase=row.phase,
         phase_fraction=row.phase_fraction,
         progress=round(row.progress, 4),
-        queue_position=seen.queue_position,
-        eta_s=None if seen.eta_s is None else round(seen.eta_s, 1),
+        queue_position=model.queue_position,
+        eta_s=None if model.eta_s is None else round(model.eta_s, 1),
         attempt=row.attempt,
         error=schemas.Failure(**row.error) if row.error else None,
         score=_score(row.report),
         report=row.report,
-        files={name: f"{place}/{name}" for name in names if name != GROWTH},
+        files={name: f"{path}/{name}" for name in names if name != GROWTH},
         settings=row.settings,
         seed=row.seed,
         engine=row.engine,

@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 from PIL import Image, ImageCms
 
+from treestroke.codec.inputs import CUTOUT_PNG, MAX_PHOTO_BYTES
 from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, missing_part
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.codec.watched_bytes import WatchedBytes
@@ -22,8 +23,8 @@ from treestroke.core.types import Picture
 Warn = Callable[[StrokeWarning], object]
 """Called with each fault of a photo that was mended while it was read."""
 
-MAX_BYTES = 25_000_000
-"""Greatest size of an upload."""
+MAX_BYTES = MAX_PHOTO_BYTES
+"""Of an upload."""
 MIN_SIDE, MAX_SIDE = 64, 16_384
 """Least and greatest side of a photo, px."""
 MAX_PIXELS = 50_000_000
@@ -32,8 +33,7 @@ MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
 PHOTO_HEAD = 24
 """Number of first bytes of a photo that `most_stored_bytes` needs."""
 
-MAX_LEAF_BYTES = 4_000_000
-"""Greatest size of a leaf's or a fruit's picture."""
+MAX_LEAF_BYTES = CUTOUT_PNG.max_bytes
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 """Least and greatest side of a leaf's or a fruit's picture, px."""
 MAX_LOST = 0.002

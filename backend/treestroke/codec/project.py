@@ -1,112 +1,71 @@
-"""Project files: NAME.treestroke, a ZIP of photo, strokes.json or sketches, settings.json and own pictures."""
+"""Project files: NAME.treestroke, a ZIP of a tree's inputs and settings.json."""
 
 import io
 import json
 import shutil
 import zipfile
 import zlib
-from collections.abc import Container, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import Any, BinaryIO, cast
 
 from treestroke.codec.archive import zip_into
-from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
+from treestroke.codec.image import MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
+from treestroke.codec.inputs import (
+    BEGINNING,
+    MAX_TEXT_BYTES,
+    PARTS,
+    TEXT,
+    Format,
+    Inputs,
+    Part,
+    check_parts,
+    part_of,
+)
 from treestroke.codec.json_text import read_json
-from treestroke.codec.photo_kinds import extension_of
-from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.errors import SettingsError, TreestrokeError
-from treestroke.core.stroke_rules import Place
 
-MAX_TEXT_BYTES = 64_000_000
-"""More than the longest strokes that are allowed ever need; of all texts of a project together."""
 MAX_SETTINGS_BYTES = 100_000
-
-VIEWS = ("front", "side")
-_PNG = b"\x89PNG"
-_BEGINNING = 128
-"""Bytes by which the kind of a photo or a sketch is told."""
-_PICTURES = ("leaf", "fruit")
-_NAMES = {
-    **{f"{part}.json": part for part in ("strokes", "settings", *VIEWS)},
-    **{f"{part}.png": part for part in (*VIEWS, *_PICTURES)},
-}
-"""Which part each member is, but the photo."""
-_ORDER = ("photo", "strokes", *VIEWS, "settings", *_PICTURES)
+_SETTINGS = "settings"
+_ORDER = ("photo", "strokes", "front", "side", _SETTINGS)
+"""Members that come first, in this order; all other parts follow in theirs."""
 _PIECE = 1_000_000
-"""Bytes that are read at once; also of the table of members."""
+"""Bytes that are read at once, and the longest table of members that is read."""
 
 
 @dataclass(frozen=True)
 class Project:
-    """What a tree is made of: photo and strokes, sketches, or both.
+    """What a project file holds: a tree's inputs, and its settings by name, ``seed`` perhaps among them."""
 
-    What a service stored may be larger than an upload, so the photo in a project may be, too.
-
-    Attributes
-    ----------
-    photo
-        The photo's bytes.
-    strokes
-        The strokes' JSON text.
-    settings
-        By name; ``seed`` may be among them.
-    leaf, fruit
-        PNGs of what the tree is to bear.
-    front, side
-        Sketches, each JSON text or a PNG.
-    """
-
-    photo: bytes | None
-    strokes: bytes | None
+    inputs: Inputs[bytes]
     settings: dict[str, Any]
-    leaf: bytes | None = None
-    fruit: bytes | None = None
-    front: bytes | None = None
-    side: bytes | None = None
 
 
-def check_parts(given: Container[str], within: Place = ()) -> None:
-    """Refuse photo, strokes, front and side that make no tree together; ``within`` leads to front and side.
+def stored_inputs(parts: Mapping[str, bytes]) -> Inputs[bytes]:
+    """Return the inputs that a service or a project file keeps.
 
-    Together they are photo and strokes, perhaps with a side; or a front, perhaps with a side and with a photo.
+    Their photo may be larger than an upload: it is stored without loss.
 
     Raises
     ------
     TreestrokeError
-        One is missing, or one too many.
+        As `check_parts`.
     """
-    needs = "a tree is made of photo and strokes, or of a front sketch"
-    if "front" in given:
-        if "strokes" in given:
-            what = f"there is a front sketch too, and {needs}; leave one of them out"
-            raise TreestrokeError.at(("strokes",), what, "strokes_and_sketch")
-        return
-    if "strokes" in given:
-        if "photo" not in given:
-            raise TreestrokeError.at(("photo",), "it is missing; strokes need the photo under them", "missing_key")
-        return
-    if "photo" in given:
-        raise TreestrokeError.at(("strokes",), f"they are missing: {needs}; send one of these", "missing_key")
-    place: Place = (*within, "front") if "side" in given else ("photo",)
-    raise TreestrokeError.at(place, f"it is missing: {needs}; send one of these", "missing_key")
-
-
-def sketch_ending(sketch: bytes) -> str:
-    """Name what the file of a sketch ends in: json or png."""
-    return "png" if sketch.startswith(_PNG) else "json"
+    return Inputs.of(
+        {name: StoredPhoto(part) if part_of(name).kind == "photo" else part for name, part in parts.items()}
+    )
 
 
 def read_project(file: BinaryIO, name: str) -> Project:
     """Open a project file; ``name`` appears in messages.
 
-    The photo is the one member called ``photo`` with any ending; sketches are ``front`` and ``side`` with .json or
-    .png; settings.json, leaf.png and fruit.png may be absent. How large each part is, is judged before it is unpacked.
+    Each part is a member ``name.ending`` with one of the endings of its formats (a photo: with any); other members are
+    ignored. The size of every part is checked before it is unpacked.
 
     Raises
     ------
     TreestrokeError
-        No ZIP, damaged, without what makes a tree, or with a part that is too large.
+        Not a ZIP file, damaged, without the parts of a tree, or with a part that is too large.
     SettingsError
         settings.json holds no JSON object.
     """
@@ -119,27 +78,27 @@ def read_project(file: BinaryIO, name: str) -> Project:
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
         what = f"this is no project file that can be read ({error}); export it anew"
         raise TreestrokeError(f"{name}: {what}", code="project_unreadable") from error
-    settings = _settings(contents.pop("settings", b"{}"), name)
-    photo = StoredPhoto(contents.pop("photo")) if "photo" in contents else None
-    return Project(photo, contents.pop("strokes", None), settings, **contents)
+    settings = _settings(contents.pop(_SETTINGS, b"{}"), name)
+    return Project(stored_inputs(contents), settings)
 
 
 def write_project(out: BinaryIO, parts: Mapping[str, BinaryIO], settings: Mapping[str, Any]) -> None:
-    """Write parts, by name, as a project file that `read_project` reads back; equal ones give equal bytes."""
-    given = {**parts, "settings": io.BytesIO(json.dumps(settings, indent=2, sort_keys=True).encode())}
-    zip_into(out, {f"{part}.{_ending(part, given[part])}": given[part] for part in _ORDER if part in given})
+    """Write parts and settings as a project file that `read_project` reads back.
+
+    The file's bytes depend on nothing else.
+    """
+    members = {**parts, _SETTINGS: io.BytesIO(json.dumps(settings, indent=2, sort_keys=True).encode())}
+    order = [*_ORDER, *(name for name in PARTS if name not in _ORDER)]
+    names = sorted(members, key=lambda name: order.index(name.partition("/")[0]))
+    zip_into(out, {f"{name}.{_format(name, members[name]).ending}": members[name] for name in names})
 
 
-def _ending(part: str, content: BinaryIO) -> str:
-    """Say what the file of a part ends in, by its first bytes."""
-    beginning = content.read(_BEGINNING)
-    if part in ("photo", *_PICTURES):
-        return extension_of(beginning)
-    return sketch_ending(beginning)
+def _format(name: str, content: BinaryIO) -> Format:
+    return TEXT if name == _SETTINGS else part_of(name).format_of(content.read(BEGINNING))
 
 
 class _Pieces:
-    """A file that is read in pieces: a table of members that is longer than one is no project's."""
+    """A file that is read in pieces; a table of members that is longer than one piece is refused."""
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
@@ -151,7 +110,7 @@ class _Pieces:
         Raises
         ------
         zipfile.BadZipFile
-            There is more, and all of it is asked for.
+            All that is left is asked for, and it is longer than one piece.
         """
         if size < 0 or size > _PIECE:
             found = self._file.read(_PIECE + 1)
@@ -162,10 +121,10 @@ class _Pieces:
 
 
 def _members(archive: zipfile.ZipFile, name: str) -> dict[str, zipfile.ZipInfo]:
-    """Find a project's parts; no part may be there twice."""
+    """Find a project's members by the names of their parts; no part may be there twice."""
     found: dict[str, zipfile.ZipInfo] = {}
     for info in archive.infolist():
-        part = "photo" if PurePosixPath(info.filename).stem == "photo" else _NAMES.get(info.filename)
+        part = _part_name(info.filename)
         if part in found:
             what = f"{info.filename} is not its only {part}; export it anew"
             raise TreestrokeError(f"{name}: {what}", code="project_unreadable")
@@ -174,37 +133,53 @@ def _members(archive: zipfile.ZipFile, name: str) -> dict[str, zipfile.ZipInfo]:
     return found
 
 
-def _check_whole(parts: Container[str], name: str) -> None:
+def _part_name(member: str) -> str | None:
+    """Return the part (or ``settings``) that a member holds; None where it holds neither."""
+    name, dot, ending = member.rpartition(".")
+    name = name if dot else member
+    if member == f"{_SETTINGS}.{TEXT.ending}":
+        return _SETTINGS
     try:
-        check_parts(parts)
+        part = part_of(name)
+    except ValueError:
+        return None
+    return name if part.kind == "photo" or ending in _endings(part) else None
+
+
+def _endings(part: Part) -> set[str]:
+    return {form.ending for form in part.formats}
+
+
+def _check_whole(names: Iterable[str], name: str) -> None:
+    try:
+        check_parts(names)
     except TreestrokeError as error:
         raise TreestrokeError(f"{name}: in the project, {error}", code="project_unreadable") from error
 
 
 def _check_sizes(archive: zipfile.ZipFile, members: Mapping[str, zipfile.ZipInfo], name: str) -> None:
-    """Judge from the table of members, and from a photo's first bytes, what unpacking would take."""
-    room = MAX_TEXT_BYTES
+    """Check the sizes that the table of members tells; all texts together may have `MAX_TEXT_BYTES`."""
+    text_bytes_left = MAX_TEXT_BYTES
     for part, info in members.items():
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise NotImplementedError(f"{info.filename} is neither stored nor deflated")
-        text = info.filename.endswith(".json")
-        limit = min(_limit(archive, part, info), room if text else MAX_STORED_BYTES)
+        text = info.filename.endswith(TEXT.ending)
+        limit = min(_limit(archive, part, info), text_bytes_left if text else MAX_STORED_BYTES)
         if info.file_size > limit:
             what = f"{info.filename} has {info.file_size / 1e6:.1f} MB, more than the {limit / 1e6:.1f} MB"
             raise TreestrokeError(f"{name}: {what} that it may have; make it smaller", code="project_too_large")
-        room -= info.file_size if text else 0
+        text_bytes_left -= info.file_size if text else 0
 
 
-def _limit(archive: zipfile.ZipFile, part: str, info: zipfile.ZipInfo) -> int:
-    """Say how many bytes a part may have: a photo as many as its pixels need, where it was stored by a service."""
-    if part == "photo":
+def _limit(archive: zipfile.ZipFile, name: str, info: zipfile.ZipInfo) -> int:
+    """Return the most bytes that a member may have; for a photo, as many as its pixels need to be stored."""
+    if name == _SETTINGS:
+        return MAX_SETTINGS_BYTES
+    part = part_of(name)
+    if part.kind == "photo":
         with archive.open(info) as member:
             return most_stored_bytes(member.read(PHOTO_HEAD))
-    if part == "settings":
-        return MAX_SETTINGS_BYTES
-    if part in _PICTURES:
-        return MAX_LEAF_BYTES
-    return MAX_SKETCH_BYTES if info.filename.endswith(".png") else MAX_TEXT_BYTES
+    return next(form.max_bytes for form in part.formats if info.filename.endswith(form.ending))
 
 
 def _content(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:

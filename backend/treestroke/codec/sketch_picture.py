@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE
+from treestroke.codec.inputs import SKETCH_PNG
 from treestroke.core.errors import StrokesError
 from treestroke.core.strokes import Sketch, Stroke
 from treestroke.core.types import Floats, Mask, Picture
@@ -20,9 +21,7 @@ Binary = NDArray[np.uint8]
 """(h, w) of zeros and ones, as OpenCV takes masks."""
 
 PNG = b"\x89PNG\r\n\x1a\n"
-"""Signature of a PNG file."""
-MAX_SKETCH_BYTES = 25_000_000
-"""Greatest size of a sketch's picture."""
+MAX_SKETCH_BYTES = SKETCH_PNG.max_bytes
 MIN_SIDE = 16
 """Least side of a sketch's picture, px."""
 OPAQUE_ALPHA = 128

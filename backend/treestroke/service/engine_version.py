@@ -13,7 +13,7 @@ import PIL
 from treestroke import __version__
 
 PACKAGES = ("core", "codec")
-MODULES = ("evidence", "execution", "files", "inputs", "jobs", "making", "model", "sketch")
+MODULES = ("execution", "files", "inputs", "jobs", "model", "report")
 """Of this package: what brings input to a tree and a tree to files."""
 LIBRARIES = {
     "numpy": np.__version__,

@@ -1,4 +1,4 @@
-"""What a caller may hand in as photo, strokes, sketches and settings, brought to values."""
+"""Decoding of what a caller hands in: the parts of `Inputs`, and settings."""
 
 import os
 from collections.abc import Callable, Iterator, Mapping
@@ -8,88 +8,84 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from treestroke.codec.image import (
-    MAX_BYTES,
-    MAX_LEAF_BYTES,
-    Warn,
-    check_size,
-    decode_fruit,
-    decode_leaf,
-    decode_photo,
-    ignore_warning,
-)
-from treestroke.codec.project import MAX_TEXT_BYTES, Project, read_project
+from treestroke.codec.image import Warn, check_size, decode_fruit, decode_leaf, decode_photo, ignore_warning
+from treestroke.codec.inputs import Inputs, part_of
+from treestroke.codec.project import Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
+from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import Sketch, Strokes
 from treestroke.core.types import Picture
 
-PhotoLike = str | os.PathLike[str] | bytes | Picture
-StrokesLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Strokes
-SketchLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Sketch
-LeafLike = str | os.PathLike[str] | bytes | None
-FruitLike = LeafLike
+FileLike = str | os.PathLike[str] | bytes
+"""A path, or the bytes of a file."""
+PhotoLike = FileLike | Picture
+StrokesLike = FileLike | Mapping[str, Any] | Strokes
+SketchLike = FileLike | Mapping[str, Any] | Sketch
+PartLike = FileLike | Mapping[str, Any] | Picture | Strokes | Sketch
+"""Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
+_CUTOUTS: Mapping[str, Callable[[bytes, str], Picture]] = {"leaf": decode_leaf, "fruit": decode_fruit}
 
 
 @contextmanager
-def open_input(path: str | os.PathLike[str], kind: type[TreestrokeError]) -> Iterator[BinaryIO]:
+def open_input(path: str | os.PathLike[str], refusal: type[TreestrokeError]) -> Iterator[BinaryIO]:
     """Open a file that the person named.
 
     Raises
     ------
     TreestrokeError
-        Of the given kind, where the file does not exist or may not be read.
+        Of the type ``refusal``: the file does not exist or may not be read.
     """
     try:
         with Path(path).open("rb") as file:
             yield file
     except FileNotFoundError as error:
-        raise kind(f"{os.fspath(path)}: there is no such file; check the path") from error
+        raise refusal(f"{os.fspath(path)}: there is no such file; check the path") from error
     except (IsADirectoryError, NotADirectoryError, PermissionError) as error:
-        raise kind(f"{os.fspath(path)}: it cannot be read ({error.strerror}); name a file that can") from error
+        raise refusal(f"{os.fspath(path)}: it cannot be read ({error.strerror}); name a file that can") from error
     except ValueError as error:
-        raise kind(f"{os.fspath(path)!r}: this is no path ({error}); check it") from error
+        raise refusal(f"{os.fspath(path)!r}: this is not a path ({error}); check it") from error
 
 
-def read_input(path: str | os.PathLike[str], limit: int, kind: type[TreestrokeError]) -> bytes:
-    """Read a file that the person named, at most one byte more than ``limit``.
+def read_part(name: str, file: FileLike) -> tuple[bytes, str]:
+    """Return a part's bytes (at most one more than its limit), and what messages call it: its path or its name.
 
     Raises
     ------
     TreestrokeError
         As `open_input`.
     """
-    with open_input(path, kind) as file:
-        return file.read(limit + 1)
+    if isinstance(file, bytes):
+        return file, name
+    part = part_of(name)
+    with open_input(file, part.refusal) as opened:
+        return opened.read(part.max_bytes + 1), os.fspath(file)
 
 
 def load_photo(photo: PhotoLike, report: Report = silent, warn: Warn = ignore_warning) -> Picture:
-    """Bring a photo (path, encoded bytes, or upright sRGB pixels (h, w, 3) uint8) to pixels.
+    """Decode a photo (path, encoded bytes, or upright sRGB pixels) to upright sRGB pixels (h, w, 3) uint8.
 
-    ``report("decode", fraction)`` is called as encoded ones are read, ``warn`` with what was mended in them.
+    ``report("decode", fraction)`` is called while encoded photos are read, ``warn`` with each thing that was mended.
 
     Raises
     ------
     PhotoError
-        As `decode_photo`; or the file cannot be read; or the array is no such picture.
+        As `decode_photo`; or the file cannot be read; or the array has another shape or type.
     """
     if isinstance(photo, np.ndarray):
         if photo.ndim != 3 or photo.shape[2] != 3 or photo.dtype != np.uint8:
-            what = f"an array must be (h, w, 3) uint8, not {photo.shape} {photo.dtype}; convert it"
-            raise PhotoError.at((), what, "wrong_type")
+            problem = f"an array must be (h, w, 3) uint8, not {photo.shape} {photo.dtype}; convert it"
+            raise PhotoError.at((), problem, "wrong_type")
         check_size(photo.shape[1], photo.shape[0], "photo")
         return np.ascontiguousarray(photo)
-    if isinstance(photo, bytes):
-        return decode_photo(photo, "photo", report, warn)
-    return decode_photo(read_input(photo, MAX_BYTES, PhotoError), os.fspath(photo), report, warn)
+    return decode_photo(*read_part("photo", photo), report, warn)
 
 
 def load_strokes(strokes: StrokesLike) -> Strokes:
-    """Bring strokes (path, JSON bytes, plain mapping or values) to values.
+    """Read strokes (path, JSON bytes, plain mapping or values).
 
     Raises
     ------
@@ -100,13 +96,11 @@ def load_strokes(strokes: StrokesLike) -> Strokes:
         return strokes
     if isinstance(strokes, Mapping):
         return strokes_from(strokes)
-    if isinstance(strokes, bytes):
-        return parse_strokes(strokes, "strokes")
-    return parse_strokes(read_input(strokes, MAX_TEXT_BYTES, StrokesError), os.fspath(strokes))
+    return parse_strokes(*read_part("strokes", strokes))
 
 
 def load_sketch(sketch: SketchLike, name: str) -> Sketch:
-    """Bring a sketch (path, JSON or PNG bytes, plain mapping or values) to values; ``name`` says which it is.
+    """Read a sketch (path, JSON or PNG bytes, plain mapping or values); ``name`` is its part: front or side.
 
     Raises
     ------
@@ -120,35 +114,49 @@ def load_sketch(sketch: SketchLike, name: str) -> Sketch:
             return sketch_from(sketch)
         except StrokesError as error:
             raise error.within(name) from error
-    if isinstance(sketch, bytes):
-        return parse_sketch(sketch, name)
-    return parse_sketch(read_input(sketch, MAX_TEXT_BYTES, StrokesError), os.fspath(sketch))
+    return parse_sketch(*read_part(name, sketch))
 
 
-def load_leaf(leaf: LeafLike) -> Picture | None:
-    """Bring the picture of a leaf (path or PNG bytes, or absent) to pixels (h, w, 4).
+def load_cutout(picture: FileLike, name: str) -> Picture:
+    """Decode the picture of something cut out (path or PNG bytes) to (h, w, 4) uint8, sRGB with straight alpha.
+
+    ``name`` is its part: leaf or fruit.
 
     Raises
     ------
-    LeafError
+    LeafError, FruitError
         As `decode_leaf`; or the file cannot be read.
     """
-    return _cut_out(leaf, "leaf", LeafError, decode_leaf)
+    return _CUTOUTS[name](*read_part(name, picture))
 
 
-def load_fruit(fruit: FruitLike) -> Picture | None:
-    """Bring the picture of a fruit (path or PNG bytes, or absent) to pixels (h, w, 4).
+def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore_warning) -> dict[str, Any]:
+    """Decode all parts of a tree's inputs, by name: photos to pixels, drawings to strokes and sketches.
+
+    Photos, which take longest, come last.
 
     Raises
     ------
-    FruitError
-        As `decode_fruit`; or the file cannot be read.
+    TreestrokeError
+        As the function that decodes each part.
     """
-    return _cut_out(fruit, "fruit", FruitError, decode_fruit)
+
+    def load(name: str) -> Any:
+        match part_of(name).kind:
+            case "photo":
+                return load_photo(inputs.parts[name], report, warn)
+            case "strokes":
+                return load_strokes(inputs.parts[name])
+            case "sketch":
+                return load_sketch(inputs.parts[name], name)
+            case "cutout":
+                return load_cutout(inputs.parts[name], name)
+
+    return {name: load(name) for name in sorted(inputs.parts, key=lambda name: part_of(name).kind == "photo")}
 
 
 def load_settings(settings: SettingsLike) -> ModelSettings:
-    """Bring settings (names and values, or absent) to values.
+    """Check settings (names and values); those that are absent have their defaults.
 
     Raises
     ------
@@ -159,7 +167,7 @@ def load_settings(settings: SettingsLike) -> ModelSettings:
 
 
 def load_project(path: str | os.PathLike[str]) -> Project:
-    """Open a project file.
+    """Read a project file.
 
     Raises
     ------
@@ -168,11 +176,3 @@ def load_project(path: str | os.PathLike[str]) -> Project:
     """
     with open_input(path, TreestrokeError) as file:
         return read_project(file, os.fspath(path))
-
-
-def _cut_out(
-    picture: LeafLike, name: str, refusal: type[TreestrokeError], decode: Callable[[bytes, str], Picture]
-) -> Picture | None:
-    if picture is None or isinstance(picture, bytes):
-        return None if picture is None else decode(picture, name)
-    return decode(read_input(picture, MAX_LEAF_BYTES, refusal), os.fspath(picture))

@@ -1,32 +1,101 @@
-"""Model a tree: photo and strokes in, perhaps with a sketch of its left side, GLB out."""
+"""Make trees: a photo and strokes, or sketches, in; a model and its report out."""
 
-from dataclasses import asdict
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
+import numpy as np
+
+from treestroke import __version__
+from treestroke.codec.inputs import CUTOUTS, Inputs
+from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.dressing import OwnPictures
-from treestroke.core.pipeline.finishing import OnGrown, unseen
+from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
 from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo
-from treestroke.core.pipeline.settings import check_seed
+from treestroke.core.pipeline.settings import ModelSettings, check_seed
+from treestroke.core.pipeline.sketching import model_sketches, see_sketches
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
+from treestroke.core.types import Picture
 from treestroke.service.execution import Stopwatch, one_thread
-from treestroke.service.files import check_files
+from treestroke.service.files import Bundle, check_files, tree_files
 from treestroke.service.inputs import (
-    FruitLike,
-    LeafLike,
+    FileLike,
+    PartLike,
     PhotoLike,
     SettingsLike,
     SketchLike,
     StrokesLike,
-    load_fruit,
-    load_leaf,
-    load_photo,
+    load_parts,
     load_settings,
-    load_sketch,
-    load_strokes,
 )
-from treestroke.service.making import Model, make
+from treestroke.service.report import tree_report, variant_seeds
+
+GENERATOR = f"treestroke {__version__}"
+"""The generator that files name; without the engine's digest, so that the same tree has the same bytes."""
+
+GrowTree = Callable[[np.random.Generator, OnGrown], TreeModel]
+"""Grows one tree by the given random numbers and shows it when growth ends."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A finished tree.
+
+    Attributes
+    ----------
+    bundles
+        All files by their names; those of one format are together, under the first one's name.
+    report
+        Engine, seed, settings, seconds by stage, counts, score, measures, variants, files and warnings, as plain
+        values for JSON.
+    tree
+        The parts that the files were made from; of several variants the first.
+    """
+
+    bundles: Mapping[str, Bundle]
+    report: dict[str, Any]
+    tree: TreeModel
+
+    @property
+    def glb(self) -> bytes:
+        """The glTF 2.0 binary file's bytes."""
+        return next(iter(self.files.values()))
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """Each file's bytes by its name, the GLB first."""
+        return {name: content for bundle in self.bundles.values() for name, content in bundle.items()}
+
+    def with_warnings(self, warnings: Iterable[Mapping[str, str]]) -> "Model":
+        """Return the same model with further warnings before the report's own."""
+        return replace(self, report={**self.report, "warnings": [*warnings, *self.report["warnings"]]})
+
+    def preview(self) -> Picture:
+        """Draw the front view at the photo's framing beside a 3/4 view, (h, w, 3) sRGB."""
+        return draw_preview(self.tree.bark, self.tree.leaf, self.tree.camera)
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a tree is asked for beside its inputs: settings, seed, and the beginning of its files' names."""
+
+    settings: ModelSettings
+    seed: int
+    name: str = "tree"
+
+    @classmethod
+    def of(cls, settings: SettingsLike, seed: int, name: str = "tree") -> "Options":
+        """Check settings and seed.
+
+        Raises
+        ------
+        SettingsError
+            One of them is unknown or out of range.
+        """
+        return cls(load_settings(settings), check_seed(seed), name)
 
 
 def model(
@@ -38,35 +107,121 @@ def model(
     on_grown: OnGrown = unseen,
     *,
     side: SketchLike | None = None,
-    leaf: LeafLike = None,
-    fruit: FruitLike = None,
+    leaf: FileLike | None = None,
+    fruit: FileLike | None = None,
     name: str = "tree",
 ) -> Model:
     """Turn one photo and a few strokes into a 3D tree.
 
-    ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
-    mapping or values; ``settings`` holds any of `ModelSettings`' names. ``side`` is a sketch of the tree's left side,
-    as `sketch` takes it, by which its branches have their depth. ``leaf`` and ``fruit`` are paths or the bytes of PNGs
-    of what the tree is to bear, cut out: a leaf with its stalk down, a fruit with its stalk up.
-    ``report(stage, fraction)`` is called as the work goes on, ``on_grown(tree)`` once, with the (first) grown tree
-    before it has leaves and bark. ``name`` begins the files' names. The same input and seed give the same bytes.
+    Parameters
+    ----------
+    photo
+        A path, encoded bytes or upright sRGB pixels (h, w, 3) uint8.
+    strokes
+        A path, JSON bytes, a plain mapping or values.
+    settings
+        Any of `ModelSettings`' names with their values.
+    seed
+        The same input and seed give the same bytes.
+    report
+        Called as ``report(stage, fraction)`` while the work goes on.
+    on_grown
+        Called once, with the (first) grown tree before it has leaves and bark.
+    side
+        A sketch of the tree's left side, as `sketch` takes it, from which its branches have their depth.
+    leaf, fruit
+        Paths or bytes of PNGs of what the tree is to bear, cut out: a leaf with its stalk down, a fruit with its stalk
+        up.
+    name
+        The beginning of the files' names.
 
     Raises
     ------
     PhotoError, StrokesError, LeafError, FruitError, SettingsError
         An input cannot be used; the message says what, where and how to mend it.
     """
-    chosen, seed, given = load_settings(settings), check_seed(seed), load_strokes(strokes)
-    beside = None if side is None else load_sketch(side, "side")
-    pictures = OwnPictures(load_leaf(leaf), load_fruit(fruit))
-    require_trunk(given)
-    check_files(chosen)
+    parts = {"photo": photo, "strokes": strokes, "side": side, "leaf": leaf, "fruit": fruit}
+    return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
+
+
+def sketch(
+    front: SketchLike,
+    side: SketchLike | None = None,
+    settings: SettingsLike = None,
+    seed: int = 0,
+    report: Report = silent,
+    on_grown: OnGrown = unseen,
+    *,
+    photo: PhotoLike | None = None,
+    leaf: FileLike | None = None,
+    fruit: FileLike | None = None,
+    name: str = "tree",
+) -> Model:
+    """Turn a sketch of a tree's front, and perhaps one of its left side, into a 3D tree.
+
+    Parameters not listed here are those of `model`.
+
+    Parameters
+    ----------
+    front, side
+        A path or the bytes of stroke JSON or of a PNG, a plain mapping, or values. Without a side the limbs' depth is
+        assumed, and a warning says so.
+    photo
+        What the front was drawn over, as `model` takes it: it gives the tree its colours.
+
+    Raises
+    ------
+    PhotoError, StrokesError, LeafError, FruitError, SettingsError
+        An input cannot be used; the message says what, where and how to mend it.
+    """
+    parts = {"front": front, "side": side, "photo": photo, "leaf": leaf, "fruit": fruit}
+    return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
+
+
+def make_tree(inputs: Inputs[PartLike], options: Options, report: Report = silent, on_grown: OnGrown = unseen) -> Model:
+    """Make a tree of any source; ``report`` and ``on_grown`` as for `model`.
+
+    Raises
+    ------
+    TreestrokeError
+        An input cannot be used.
+    """
+    check_files(options.settings)
     watch, mended = Stopwatch(report), list[StrokeWarning]()
     with one_thread():
         with watch.stage("decode"):
-            picture = load_photo(photo, watch, mended.append)
-        seen = see(picture, given, None, watch, beside)
-        made = make(
-            lambda rng, show: model_photo(seen, chosen, rng, watch, show, pictures), chosen, seed, watch, on_grown, name
-        )
+            parts = load_parts(inputs, watch, mended.append)
+        match inputs.source:
+            case "photo":
+                grow = _photo_recipe(parts, options.settings, watch)
+            case "sketches":
+                grow = _sketch_recipe(parts, options.settings, watch)
+        made = _make_variants(grow, options, watch, on_grown)
     return made.with_warnings(asdict(warning) for warning in mended)
+
+
+def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
+    require_trunk(parts["strokes"])
+    seen = see(parts["photo"], parts["strokes"], None, report, parts.get("side"))
+    return lambda rng, on_grown: model_photo(seen, settings, rng, report, on_grown, _own_pictures(parts))
+
+
+def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
+    seen = see_sketches(parts["front"], parts.get("side"), parts.get("photo"), report)
+    return lambda rng, on_grown: model_sketches(seen, settings, rng, report, on_grown, _own_pictures(parts))
+
+
+def _own_pictures(parts: Mapping[str, Any]) -> OwnPictures:
+    return OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
+
+
+def _make_variants(grow: GrowTree, options: Options, watch: Stopwatch, on_grown: OnGrown) -> Model:
+    """Grow as many trees as the settings ask for, each by the next seed, and write their files."""
+    trees: list[TreeModel] = []
+    bundles: dict[str, Bundle] = {}
+    settings, seed, name = options.settings, options.seed, options.name
+    for index, variant_seed in enumerate(variant_seeds(seed, settings.variants)):
+        trees.append(grow(np.random.default_rng(variant_seed), unseen if trees else on_grown))
+        variant_name = name if index == 0 else f"{name}.v{index + 1}"
+        bundles |= tree_files(trees[-1], settings, variant_name, GENERATOR, watch)
+    return Model(bundles, tree_report(trees, bundles, settings, seed, watch), trees[0])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from treestroke.codec.image import MAX_LEAF_BYTES, decode_fruit, decode_leaf
-from treestroke.codec.project import VIEWS, check_parts
+from treestroke.codec.inputs import VIEWS, check_parts
 from treestroke.codec.sketch import encode_sketch, parse_sketch, sketch_from
 from treestroke.codec.sketch_picture import PNG, without_metadata
 from treestroke.codec.strokes import encode_strokes, strokes_from

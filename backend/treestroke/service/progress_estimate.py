@@ -1,33 +1,35 @@
-"""How far a job is: the phases that its settings lead it through, and about how long each takes."""
+"""An estimate of how far a job is, by the phases that it goes through and about how long each takes."""
 
 from collections.abc import Mapping
 from itertools import accumulate
 
+from treestroke.codec.inputs import SourceName
 from treestroke.core.pipeline.settings import ModelSettings
 
-_SEEING: Mapping[str, float] = {"decode": 0.06, "foliage": 0.45, "trace": 0.14}
-_SEEING_SKETCHES: Mapping[str, float] = {"decode": 0.02, "trace": 0.2}
+_SEEING: Mapping[SourceName, Mapping[str, float]] = {
+    "photo": {"decode": 0.06, "foliage": 0.45, "trace": 0.14},
+    "sketches": {"decode": 0.02, "trace": 0.2},
+}
 _GROWING: Mapping[str, float] = {"lift": 0.02, "grow": 0.35, "leaf": 0.35, "mesh": 0.3}
 _PREVIEW = 0.6
 _LEVELS, _WRITE, _COMPRESS = 3.0, 0.1, 0.8
 _FILES: Mapping[str, float] = {"gltf": 0.1, "obj": 1.0, "usdz": 1.0, "ply": 0.2, "instanced": 0.2}
 _SMALL_FILE = 0.05
-"""Seconds, measured on photos of 1500 px; only their ratios matter."""
+"""Seconds of each phase and file, measured on photos of 1500 px; only their ratios matter."""
 
 
 class ProgressEstimate:
-    """The phases of one model, in order; those of growth come once a variant."""
+    """The phases of one model in order; those of growth are repeated for each variant."""
 
-    def __init__(self, settings: ModelSettings, of_sketches: bool = False) -> None:
+    def __init__(self, settings: ModelSettings, source: SourceName = "photo") -> None:
         each = {**_GROWING, "levels": 0.0 if settings.lod == "none" else _LEVELS, "write": _writing(settings)}
-        seeing = _SEEING_SKETCHES if of_sketches else _SEEING
-        phases = [*seeing.items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
+        phases = [*_SEEING[source].items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
         self._names = [name for name, _ in phases]
         self._ends = list(accumulate(seconds for _, seconds in phases))
         self._at = 0
 
     def progress(self, phase: str, fraction: float) -> float:
-        """Give the share of the whole that is done, 0 to 1, when a phase is at this fraction; it never falls."""
+        """Return the share of the job, 0 to 1, that is done when a phase is at this fraction; it never falls."""
         self._at = self._names.index(phase, self._at) if phase in self._names[self._at :] else self._at
         start = self._ends[self._at - 1] if self._at else 0.0
         return (start + fraction * (self._ends[self._at] - start)) / self._ends[-1]

@@ -1,4 +1,4 @@
-"""Project files of models: packed when they are asked for, and kept for those who ask again."""
+"""Project files of models: packed on request, and cached."""
 
 import hashlib
 import json
@@ -9,18 +9,19 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from treestroke.codec.project import write_project
+from treestroke.service.stored_models import StoredModel
 from treestroke.service.tracing_pool import Overloaded
 from treestroke.store.blobs import Blobs, Damaged
-from treestroke.store.tables import ModelRow
 
 AT_ONCE = 2
 """Projects that are packed at the same time."""
 WAITING = 16
-"""Projects that may be or wait to be packed; more are refused."""
-MAX_KEPT_BYTES = 500_000_000
-"""Of all that are kept; the one that was asked for last stays, whatever its size."""
+"""Projects that may be in packing or wait for it; further requests are refused."""
+MAX_CACHE_BYTES = 500_000_000
+"""Size of the cache; the project that was requested last stays, whatever its size."""
 
 
 @dataclass(frozen=True)
@@ -31,52 +32,54 @@ class Packed:
     sha256: str
     size: int
     state: tuple[int, ...]
-    """Of the file; it changes with whatever is done to it."""
+    """State of the file when it was packed; it is another one after every change."""
 
 
 class Projects:
-    """Packs piece by piece from blob to file, so that no project is in memory; what is kept goes at the next start."""
+    """Packs projects piece by piece from blobs to a file, so that none is in memory; a start empties the cache."""
 
     def __init__(self, folder: Path, blobs: Blobs) -> None:
         self._folder, self._blobs = folder / "projects", blobs
         shutil.rmtree(self._folder, ignore_errors=True)
         self._packers = ThreadPoolExecutor(AT_ONCE, "packer")
-        self._kept: OrderedDict[str, Future[Packed]] = OrderedDict()
+        self._cache: OrderedDict[str, Future[Packed]] = OrderedDict()
         self._lock = threading.Lock()
 
-    def ask(self, row: ModelRow) -> Future[Packed]:
-        """Promise a model's project file; one of the same parts, settings and seed is packed once.
+    def pack(self, model: StoredModel) -> Future[Packed]:
+        """Pack a model's project file, once for all models of the same inputs, settings and seed.
 
-        Where it cannot be packed the promise ends in an OSError, or in Damaged where a part of it is.
+        The future raises an OSError where it cannot be packed, or Damaged where a part of it is.
 
         Raises
         ------
         Overloaded
-            Too many wait to be packed.
+            Too many projects wait to be packed.
         """
-        key = hashlib.sha256(json.dumps([row.parts, row.settings, row.seed], sort_keys=True).encode()).hexdigest()
+        blobs = {name: part.blob for name, part in model.inputs.parts.items()}
+        settings = {**model.row.settings, "seed": model.row.seed}
+        key = hashlib.sha256(json.dumps([blobs, settings], sort_keys=True).encode()).hexdigest()
         with self._lock:
-            promised = self._kept.pop(key, None)
-            if promised is None or _gone(promised):
-                if sum(not one.done() for one in self._kept.values()) >= WAITING:
+            packing = self._cache.pop(key, None)
+            if packing is None or _is_lost(packing):
+                if sum(not other.done() for other in self._cache.values()) >= WAITING:
                     raise Overloaded("too many projects are being packed at the moment")
-                promised = self._packers.submit(self._pack, key, row)
-            self._kept[key] = promised  # behind all others: it is the last to go
-            return promised
+                packing = self._packers.submit(self._write, key, blobs, settings)
+            self._cache[key] = packing  # at the end: the first to go is the one requested longest ago
+            return packing
 
     def close(self) -> None:
-        """Pack no more."""
+        """Stop packing."""
         self._packers.shutdown(cancel_futures=True)
 
-    def _pack(self, key: str, row: ModelRow) -> Packed:
+    def _write(self, key: str, blobs: dict[str, str], settings: dict[str, Any]) -> Packed:
         self._folder.mkdir(mode=0o700, exist_ok=True)
         path = self._folder / key
         try:
             with ExitStack() as opened:
                 out = opened.enter_context(path.open("w+b"))
-                blobs = {part: self._blobs.check(blob) for part, blob in row.parts.items()}
-                parts = {part: opened.enter_context(blob.open("rb")) for part, blob in blobs.items()}
-                write_project(out, parts, {**row.settings, "seed": row.seed})
+                paths = {name: self._blobs.check(blob) for name, blob in blobs.items()}
+                parts = {name: opened.enter_context(part.open("rb")) for name, part in paths.items()}
+                write_project(out, parts, settings)
                 size = out.tell()
                 out.seek(0)
                 sha256 = hashlib.file_digest(out, "sha256").hexdigest()
@@ -87,30 +90,34 @@ class Projects:
         return Packed(path, sha256, size, _state(path))
 
     def _make_room(self, size: int) -> None:
-        """Remove what was asked for longest ago, until a new one of this size fits in."""
+        """Remove the projects that were requested longest ago, until one of this size fits in."""
         with self._lock:
-            done = {key: one.result() for key, one in self._kept.items() if one.done() and not one.exception()}
-            room = MAX_KEPT_BYTES - size - sum(packed.size for packed in done.values())
+            done = {
+                key: packing.result()
+                for key, packing in self._cache.items()
+                if packing.done() and not packing.exception()
+            }
+            room = MAX_CACHE_BYTES - size - sum(packed.size for packed in done.values())
             for key, packed in done.items():
                 if room >= 0:
                     break
                 packed.path.unlink(missing_ok=True)
-                del self._kept[key]
+                del self._cache[key]
                 room += packed.size
 
 
-def _gone(promised: Future[Packed]) -> bool:
-    """Tell whether a promise has come to nothing: its packing failed, or its file was removed or changed."""
-    if not promised.done():
+def _is_lost(packing: Future[Packed]) -> bool:
+    """Return whether packing failed, or the packed file was removed or changed."""
+    if not packing.done():
         return False
-    if promised.cancelled() or promised.exception() is not None:
+    if packing.cancelled() or packing.exception() is not None:
         return True
-    packed = promised.result()
+    packed = packing.result()
     return _state(packed.path) != packed.state
 
 
 def _state(path: Path) -> tuple[int, ...]:
-    """Tell a file's state; () where there is none."""
+    """Return a file's state; () where there is no file."""
     try:
         now = path.stat()
     except FileNotFoundError:

@@ -15,7 +15,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, delete, inspect, select, update
 
-from treestroke.service.models import RESTORABLE_SECONDS
+from treestroke.service.stored_models import RESTORABLE_SECONDS
 from treestroke.store.blobs import Blobs, state_of
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from treestroke.codec.image import decode_photo, decode_stored, encode_stored
-from treestroke.codec.project import VIEWS
+from treestroke.codec.inputs import VIEWS
 from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
 from treestroke.core.errors import PhotoError, TreestrokeError
@@ -21,7 +21,7 @@ from treestroke.core.stroke_rules import Place, mend_strokes
 from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.core.types import Picture
 from treestroke.service.bodies import check_keys, inside, read_object, take_rev_and_grow
-from treestroke.service.sketch import trace_sketches
+from treestroke.service.sketch_trace import trace_sketches
 from treestroke.service.trace import Trace, trace
 from treestroke.store.blobs import Blobs, read_blob
 

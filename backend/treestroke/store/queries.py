@@ -1,4 +1,4 @@
-"""Questions to the tables that more than one use case asks."""
+"""Queries that more than one use case needs."""
 
 import secrets
 from collections.abc import Collection, Iterable, Sequence
@@ -7,16 +7,17 @@ from typing import TypeVar
 from sqlalchemy import func, select, union
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import REFERENCES, File, ModelRow, PhotoRow
+from treestroke.store.tables import REFERENCES, File, ModelPart, ModelRow, PhotoRow
 
+FileRow = TypeVar("FileRow", File, ModelPart)
 Listed = TypeVar("Listed", ModelRow, PhotoRow)
 _RECENT = 20
-"""Finished models whose time tells how long the next will take."""
+"""Finished models by whose times the next one's is estimated."""
 _FIRST_GUESS_S = 5.0
 
 
 def new_id(kind: str) -> str:
-    """Make an id that nobody can guess."""
+    """Return a new id that cannot be guessed."""
     return f"{kind}_{secrets.token_hex(12)}"
 
 
@@ -33,34 +34,40 @@ def model(session: Session, id: str, deleted: bool = False) -> ModelRow | None:
 
 
 def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
-    """Give the files of models, by model and name."""
-    found: dict[str, dict[str, File]] = {model: {} for model in models}
-    for file in session.scalars(select(File).where(File.model.in_(found))):
-        found[file.model][file.name] = file
-    return found
+    """Return the files of models, by model and name."""
+    return _by_model_and_name(session, File, models)
+
+
+def parts(session: Session, models: Iterable[str]) -> dict[str, dict[str, ModelPart]]:
+    """Return the parts that models are made of, by model and name."""
+    return _by_model_and_name(session, ModelPart, models)
 
 
 def page(session: Session, table: type[Listed], cursor: str | None, limit: int) -> tuple[Sequence[Listed], str | None]:
-    """Give a page of models or photos, newest first, and the cursor of the next page: decimal digits."""
+    """Return a page of models or photos, newest first, and the cursor of the next page: decimal digits."""
     wanted = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
     rows = session.scalars(wanted if cursor is None else wanted.where(table.number < int(cursor))).all()
     return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
 
 
-def twin(session: Session, fingerprint: str, engine: str) -> ModelRow | None:
-    """Find a model that this engine has finished of the same photo, drawings, settings and seed."""
+def finished_model(session: Session, fingerprint: str, engine: str) -> ModelRow | None:
+    """Find a model that this engine has finished with the same inputs, settings and seed."""
     same = ModelRow.fingerprint == fingerprint, ModelRow.engine == engine, ModelRow.status == "succeeded"
     return session.scalars(select(ModelRow).where(*same).limit(1)).first()
 
 
 def referenced(session: Session, beginning: str = "") -> set[str]:
-    """Give the blobs that a row refers to, of those whose names begin so: two digits for a folder's, 64 for one."""
-    end = f"{beginning}g"  # behind all hexadecimal digits
-    return set(session.scalars(union(*(select(one).where(one >= beginning, one < end) for one in REFERENCES))))
+    """Return the names of the blobs that rows refer to, of those whose names begin with some hexadecimal digits.
+
+    Two digits select a folder of blobs, all 64 one blob.
+    """
+    end = f"{beginning}g"  # sorts after all hexadecimal digits
+    columns = (select(column).where(column >= beginning, column < end) for column in REFERENCES)
+    return set(session.scalars(union(*columns)))
 
 
 def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int]:
-    """Count the queued jobs up to each of these that queues, by number: 1 for the next."""
+    """Return the places in the queue of those of these jobs that are queued, by number: 1 is the next."""
     if not numbers:
         return {}
     places = (
@@ -73,7 +80,7 @@ def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int
 
 
 def usual_seconds(session: Session) -> float:
-    """Say how long a model took of late; one that was answered from a twin was never started."""
+    """Return the median seconds of the models finished last; one copied from an equal model was never started."""
     took = session.scalars(
         select(ModelRow.finished - ModelRow.started)
         .where(ModelRow.status == "succeeded", ModelRow.started.is_not(None))
@@ -85,6 +92,13 @@ def usual_seconds(session: Session) -> float:
 
 
 def stored_bytes(session: Session) -> int:
-    """Add up what photos take, the deleted that are not yet removed among them; the same pixels count once."""
+    """Return the bytes that all photos take, deleted but not yet removed ones too; equal pixels count once."""
     blobs = select(func.max(PhotoRow.bytes).label("bytes")).group_by(PhotoRow.blob).subquery()
     return session.scalar(select(func.sum(blobs.c.bytes))) or 0
+
+
+def _by_model_and_name(session: Session, table: type[FileRow], models: Iterable[str]) -> dict[str, dict[str, FileRow]]:
+    found: dict[str, dict[str, FileRow]] = {model: {} for model in models}
+    for row in session.scalars(select(table).where(table.model.in_(found))):
+        found[row.model][row.name] = row
+    return found

@@ -1,4 +1,4 @@
-"""The tables. Times are seconds since 1970 (UTC); they are shown, and nothing waits by them."""
+"""The tables. Times are seconds since 1970 (UTC); they are shown, and never decide when something is due."""
 
 from typing import Any
 
@@ -11,12 +11,11 @@ _NAMES = {
     "ix": "ix_%(table_name)s_%(column_0_name)s",
     "fk": "fk_%(table_name)s_%(column_0_name)s",
 }
-PARTS = ("photo", "strokes", "front", "side", "leaf", "fruit")
 _NUMBER = BigInteger().with_variant(Integer, "sqlite")
 
 
 class Table(DeclarativeBase):
-    """What all tables share."""
+    """Base of all tables."""
 
     metadata = MetaData(naming_convention=_NAMES)
     type_annotation_map = {  # noqa: RUF012
@@ -27,10 +26,10 @@ class Table(DeclarativeBase):
 
 
 class Aged:
-    """A row whose age counts.
+    """A row that is removed by age.
 
-    ``seen`` is when a sweep first saw the row as it is now, kept or deleted, by the store's own clock (`StoreClock`);
-    None until then.
+    ``seen`` is when a sweep first saw the row in its present state, kept or deleted, by the store's own clock
+    (`StoreClock`); None until then.
     """
 
     seen: Mapped[float | None]
@@ -44,14 +43,14 @@ class PhotoRow(Aged, Table):
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     sha256: Mapped[str] = mapped_column(String(64))
-    """Of the bytes that were uploaded."""
+    """Of the uploaded bytes."""
     width: Mapped[int]
     height: Mapped[int]
     blob: Mapped[str] = mapped_column(String(64))
     bytes: Mapped[int] = mapped_column(insert_default=0, server_default="0")
-    """Of the blob, which may be many times as large as what was uploaded."""
+    """Size of the blob, which may be many times that of the upload."""
     warnings: Mapped[list[dict[str, Any]]] = mapped_column(insert_default=list, server_default="[]")
-    """What was mended when it was read: code, stroke and detail of each."""
+    """What was mended when the photo was read: code, stroke and detail of each."""
     created: Mapped[float]
     deleted: Mapped[float | None]
 
@@ -59,8 +58,8 @@ class PhotoRow(Aged, Table):
 class ModelRow(Aged, Table):
     """A tree that was asked for, is being made, or is made. This row is the job; a queue message is a hint to it.
 
-    ``attempt`` is the fence: what works on the job says which attempt it is, and nothing of another attempt is
-    taken. ``beat`` rises as long as that attempt lives. ``seq`` rises with all that a viewer is told.
+    ``attempt`` is the fence: each change made by a worker names its attempt, and is refused once another attempt has
+    the job. ``beat`` rises while that attempt lives. ``seq`` rises with every change that viewers are shown.
     """
 
     __tablename__ = "models"
@@ -69,21 +68,12 @@ class ModelRow(Aged, Table):
     id: Mapped[str] = mapped_column(String(40), unique=True)
     name: Mapped[str] = mapped_column(String(200))
     photo: Mapped[str | None] = mapped_column(String(40))
-    photo_blob: Mapped[str | None] = mapped_column(String(64))
-    strokes_blob: Mapped[str | None] = mapped_column(String(64))
-    front_blob: Mapped[str | None] = mapped_column(String(64))
-    front_ending: Mapped[str | None] = mapped_column(String(4))
-    """Of the file that the blob is: json or png."""
-    side_blob: Mapped[str | None] = mapped_column(String(64))
-    side_ending: Mapped[str | None] = mapped_column(String(4))
-    leaf_blob: Mapped[str | None] = mapped_column(String(64))
-    fruit_blob: Mapped[str | None] = mapped_column(String(64))
     settings: Mapped[dict[str, Any]]
     seed: Mapped[int] = mapped_column(BigInteger)
     engine: Mapped[str] = mapped_column(String(40))
-    """Of the worker that grew it, or grows it; until then of the web process."""
+    """Engine of the worker that grew it or grows it; before that, of the web process."""
     fingerprint: Mapped[str] = mapped_column(String(64))
-    """Of photo, drawings, settings and seed: what the tree is made of."""
+    """Digest of inputs, settings and seed: models with equal ones have equal trees."""
     status: Mapped[str] = mapped_column(String(12))
     phase: Mapped[str | None] = mapped_column(String(12))
     phase_fraction: Mapped[float]
@@ -102,21 +92,20 @@ class ModelRow(Aged, Table):
     finished: Mapped[float | None]
     deleted: Mapped[float | None]
 
-    @property
-    def parts(self) -> dict[str, str]:
-        """Give the blobs of what the tree is made of, by part: photo, strokes, front, side, leaf, fruit."""
-        blobs = {part: getattr(self, f"{part}_blob") for part in PARTS}
-        return {part: blob for part, blob in blobs.items() if blob is not None}
 
-    @property
-    def drawings(self) -> dict[str, str]:
-        """Give the blobs of what was drawn, by the name of the file that each is."""
-        names = {"strokes": "strokes.json", "front": f"front.{self.front_ending}", "side": f"side.{self.side_ending}"}
-        return {names[part]: blob for part, blob in self.parts.items() if part in names}
+class ModelPart(Table):
+    """One of the files that a model is made of: the name of its part, the blob that holds it, and its media type."""
+
+    __tablename__ = "model_parts"
+
+    model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"), primary_key=True)
+    name: Mapped[str] = mapped_column(String(40), primary_key=True)
+    blob: Mapped[str] = mapped_column(String(64))
+    media_type: Mapped[str] = mapped_column(String(40))
 
 
 class File(Table):
-    """A file of a model: its name outside, and the blob that holds it."""
+    """A file of a model: its public name, and the blob that holds it."""
 
     __tablename__ = "files"
 
@@ -127,7 +116,7 @@ class File(Table):
 
 
 class Replay(Aged, Table):
-    """An Idempotency-Key: what it was used for, and what it gave."""
+    """An Idempotency-Key: the digest of the request that used it, and the model that it got."""
 
     __tablename__ = "replays"
 
@@ -138,7 +127,7 @@ class Replay(Aged, Table):
 
 
 class Worker(Table):
-    """A worker that said it lives: how many models it grows at once, and its own beat."""
+    """A running worker: how many models it grows at once, and its own beat."""
 
     __tablename__ = "workers"
 
@@ -148,14 +137,14 @@ class Worker(Table):
 
 
 class StoreClock(Table):
-    """The one row of the clock that ages are told by: it counts the seconds in which sweeps watched the store."""
+    """The clock that ages are measured by, one row: it counts the seconds in which sweeps watched the store."""
 
     __tablename__ = "store_clock"
 
     id: Mapped[int] = mapped_column(primary_key=True)
     age_s: Mapped[float]
     wall: Mapped[float]
-    """The latest that the clock on the wall ever said when ``age_s`` was written."""
+    """The latest wall-clock time at which ``age_s`` was written."""
 
 
 class Stray(Table):
@@ -166,16 +155,16 @@ class Stray(Table):
     folder: Mapped[str] = mapped_column(String(2), primary_key=True)
     name: Mapped[str] = mapped_column(String(80), primary_key=True)
     state: Mapped[str] = mapped_column(String(60))
-    """Changes when the file is written anew."""
+    """As `store.blobs.state_of`: it changes when the file is written again."""
     seen: Mapped[float]
-    """By the store's own clock, and in this state."""
+    """When it was first seen in this state, by the store's own clock."""
 
 
-REFERENCES = (PhotoRow.blob, *(getattr(ModelRow, f"{part}_blob") for part in PARTS), File.blob)
+REFERENCES = (PhotoRow.blob, ModelPart.blob, File.blob)
 """Every column that names a blob."""
 
 Index("ix_models_queue", ModelRow.status, ModelRow.number)
-Index("ix_models_twins", ModelRow.fingerprint, ModelRow.engine, ModelRow.status)
+Index("ix_models_fingerprint", ModelRow.fingerprint, ModelRow.engine, ModelRow.status)
 Index("ix_models_times", ModelRow.status, ModelRow.started, ModelRow.finished)
 for _table in (ModelRow, PhotoRow):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
@@ -183,6 +172,5 @@ for _table in (ModelRow, PhotoRow):
 Index("ix_photos_stored", PhotoRow.blob, PhotoRow.bytes)
 Index("ix_replays_seen", Replay.seen)
 Index("ix_photos_blob", PhotoRow.blob)
+Index("ix_model_parts_blob", ModelPart.blob)
 Index("ix_files_blob", File.blob)
-for _column in REFERENCES[1:-1]:
-    Index(f"ix_models_{_column.key}", _column, sqlite_where=_column.is_not(None))

@@ -15,7 +15,7 @@ from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.service.inputs import load_photo, load_strokes
-from treestroke.service.making import Model
+from treestroke.service.model import Model
 
 MAPLE, BARE = EXAMPLES / "sugar_maple_autumn", DATA / "bigleaf_maple_bare"
 

@@ -12,10 +12,10 @@ from treestroke.api.deps import ModelId, ShelfOf, WatcherOf
 from treestroke.api.errors import documented
 from treestroke.api.following import Follower
 from treestroke.api.views import model_view
-from treestroke.service import models
+from treestroke.service import stored_models
 from treestroke.service.jobs import GROWTH
-from treestroke.service.models import Seen
 from treestroke.service.photos import Shelf
+from treestroke.service.stored_models import StoredModel
 from treestroke.store.blobs import Damaged
 from treestroke.store.leases import TERMINAL
 
@@ -24,18 +24,18 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 _RETRY_MS = 2000
 
 
-def _seen(shelf: ShelfOf, id: ModelId) -> Seen:
+def _seen(shelf: ShelfOf, id: ModelId) -> StoredModel:
     """Find the model before the stream begins, while the answer can still be 404."""
-    return models.see(shelf.database, id)
+    return stored_models.find_model(shelf.database, id)
 
 
-async def _follower(watcher: WatcherOf, seen: Annotated[Seen, Depends(_seen)]) -> AsyncIterator[Follower]:
+async def _follower(watcher: WatcherOf, seen: Annotated[StoredModel, Depends(_seen)]) -> AsyncIterator[Follower]:
     """Take a place before the stream begins, while the answer can still be 503; it is free when the request is over."""
     with watcher.follow(seen) as follower:
         yield follower
 
 
-def _growth(shelf: Shelf, seen: Seen) -> str | None:
+def _growth(shelf: Shelf, seen: StoredModel) -> str | None:
     """Read the grown skeleton; None where its file is damaged, of which a stream under way cannot make an error."""
     try:
         return shelf.blobs.get(seen.files[GROWTH].blob).decode()
@@ -47,7 +47,7 @@ def _growth(shelf: Shelf, seen: Seen) -> str | None:
 @router.get("/{id}/events", response_class=EventSourceResponse, responses=documented("not_found", "invalid"))
 async def follow_model(
     shelf: ShelfOf,
-    seen: Annotated[Seen, Depends(_seen)],
+    seen: Annotated[StoredModel, Depends(_seen)],
     follower: Annotated[Follower, Depends(_follower)],
     last_event_id: Annotated[str | None, Header(max_length=40)] = None,
 ) -> AsyncIterator[ServerSentEvent]:

@@ -11,8 +11,8 @@ from fastapi.responses import FileResponse
 from treestroke.api.deps import ModelId, ProjectsOf, ShelfOf
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_responses, send_blob, send_file
-from treestroke.codec.project import VIEWS
-from treestroke.service import models
+from treestroke.codec.inputs import VIEWS
+from treestroke.service import stored_models
 from treestroke.service.jobs import GLB, PREVIEW
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.service.tracing_pool import Overloaded
@@ -21,8 +21,8 @@ router = APIRouter(prefix="/v1/models/{id}", tags=["files"])
 _GLB, _PNG, _ZIP, _JSON = "model/gltf-binary", "image/png", "application/zip", "application/json"
 _OTHER = "application/octet-stream"
 _PACKING_SECONDS = 20.0
-"""A project that is not packed within this is asked for again later; it is packed all the same."""
-_KINDS = {
+"""A request waits no longer for its project, which is packed all the same; it is sent again later."""
+_MEDIA_TYPES = {
     ".glb": _GLB,
     ".zip": _ZIP,
     ".json": _JSON,
@@ -36,7 +36,7 @@ _ENDING = r"^[a-z0-9]{2,10}(\.[a-z0-9]{2,10}){0,2}$"
 _MANY: dict[int | str, dict[str, Any]] = {
     status: {
         **answer,
-        "content": {kind: {"schema": {"type": "string", "format": "binary"}} for kind in _KINDS.values()},
+        "content": {kind: {"schema": {"type": "string", "format": "binary"}} for kind in _MEDIA_TYPES.values()},
     }
     if status in (HTTPStatus.OK, HTTPStatus.PARTIAL_CONTENT)
     else answer
@@ -61,13 +61,13 @@ def get_tree(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
 
 @router.get("/preview.png", response_class=FileResponse, responses=file_responses(_PNG))
 def get_preview(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
-    """Look at the tree: the front view at the photo's framing beside a 3/4 view."""
+    """Download a picture of the tree: the front view at the photo's framing beside a 3/4 view."""
     return _file(request, shelf, id, PREVIEW)
 
 
 @router.get("/strokes.json", response_class=FileResponse, responses=file_responses(_JSON, "Strokes"))
 def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
-    """Give the strokes that the tree was made of."""
+    """Download the strokes that the tree was made of."""
     return _drawing(request, shelf, id, "strokes.json")
 
 
@@ -78,13 +78,13 @@ def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
 )
 async def get_project(request: Request, shelf: ShelfOf, projects: ProjectsOf, id: ModelId) -> Response:
     """Download NAME.treestroke: all that the tree is made of, for the command line and the page."""
-    row = (await run_in_threadpool(models.see, shelf.database, id)).row
-    promised = asyncio.shield(asyncio.wrap_future(projects.ask(row)))
+    model = await run_in_threadpool(stored_models.find_model, shelf.database, id)
+    packing = asyncio.shield(asyncio.wrap_future(projects.pack(model)))
     try:
-        packed = await asyncio.wait_for(promised, _PACKING_SECONDS)
+        packed = await asyncio.wait_for(packing, _PACKING_SECONDS)
     except TimeoutError:
         raise Overloaded("the project is still being packed") from None
-    return send_file(request, packed.path, packed.sha256, _ZIP, f"{row.name or row.id}.treestroke")
+    return send_file(request, packed.path, packed.sha256, _ZIP, f"{model.row.name or id}.treestroke")
 
 
 @router.get("/tree.{ending}", response_class=FileResponse, responses=_MANY)
@@ -95,25 +95,25 @@ def get_tree_file(request: Request, shelf: ShelfOf, id: ModelId, ending: Ending)
 
 @router.get("/{view}.{ending}", response_class=FileResponse, responses=_SKETCH)
 def get_sketch(request: Request, shelf: ShelfOf, id: ModelId, view: View, ending: SketchEnding) -> Response:
-    """Give a sketch that the tree was made of: front.json or front.png, side.json or side.png."""
+    """Download a sketch that the tree was made of: front.json or front.png, side.json or side.png."""
     if view not in VIEWS:
         raise NotFound("file")
     return _drawing(request, shelf, id, f"{view}.{ending}")
 
 
 def _drawing(request: Request, shelf: Shelf, id: str, name: str) -> Response:
-    blob = models.see(shelf.database, id).row.drawings.get(name)
-    if blob is None:
+    part = stored_models.find_model(shelf.database, id).drawings.get(name)
+    if part is None:
         raise NotFound("file")
-    return send_blob(request, shelf, blob, _PNG if name.endswith(".png") else _JSON)
+    return send_blob(request, shelf, part.blob, part.media_type)
 
 
 def _file(request: Request, shelf: Shelf, id: str, name: str) -> Response:
-    seen = models.see(shelf.database, id)
-    found = seen.files.get(name)
-    if seen.row.status != "succeeded" or found is None:
+    model = stored_models.find_model(shelf.database, id)
+    file = model.files.get(name)
+    if model.row.status != "succeeded" or file is None:
         raise NotFound("file")
     if name == PREVIEW:
-        return send_blob(request, shelf, found.blob, _PNG)
-    kind = _KINDS.get(name[name.rindex(".") :], _OTHER)
-    return send_blob(request, shelf, found.blob, kind, f"{seen.row.name or seen.row.id}{name.removeprefix('tree')}")
+        return send_blob(request, shelf, file.blob, _PNG)
+    media_type = _MEDIA_TYPES.get(name[name.rindex(".") :], _OTHER)
+    return send_blob(request, shelf, file.blob, media_type, f"{model.row.name or id}{name.removeprefix('tree')}")

@@ -30,13 +30,13 @@ from treestroke.api.deps import (
 from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.following import TooManyFollowers, Watcher
 from treestroke.api.views import model_view
+from treestroke.codec.inputs import MAX_TEXT_BYTES, PARTS
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
-from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
-from treestroke.service import models, photos
+from treestroke.service import photos, stored_models
 from treestroke.service.model_request import MAX_NAME, Wish, read_name
-from treestroke.service.models import Seen
 from treestroke.service.photos import Shelf
+from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
 from treestroke.store.tables import PhotoRow
 from treestroke.wire_strokes import STROKES_EXAMPLE
@@ -55,7 +55,7 @@ _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$
 _TEXT = {"type": "string"}
 _BINARY = {"type": "string", "format": "binary"}
 _SKETCH = {**_TEXT, "contentMediaType": "application/json, image/png"}
-_FIELDS = ("photo", "strokes", "front", "side", "settings", "seed", "name", "leaf", "fruit")
+_FIELDS = (*PARTS, "settings", "seed", "name")
 _ASK: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -105,18 +105,18 @@ _RENAME: dict[str, Any] = {
 
 
 @dataclass(frozen=True)
-class _Request:
-    """What is wished for, and the photo that came along."""
+class _Received:
+    """A request for a model, and the photo that was sent with it."""
 
     wish: Wish
     photo: PhotoRow | None = None
 
 
-async def _request(request: Request, shelf: ShelfOf) -> _Request:
+async def _receive(request: Request, shelf: ShelfOf) -> _Received:
     """Read a request for a model: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return _Request(await run_in_threadpool(models.read_wish, shelf, await request.body()))
+        return _Received(await run_in_threadpool(stored_models.read_wish, shelf, await request.body()))
     if kind != "multipart/form-data":
         raise Refusal(
             "unsupported_media_type", "send application/json, or a form with photo and strokes, or front and side"
@@ -128,19 +128,19 @@ async def _request(request: Request, shelf: ShelfOf) -> _Request:
         photo = form.get("photo")
         if photo is not None and not isinstance(photo, UploadFile):
             raise Refusal("bad_request", "the form has no file in the field photo; send the photo there")
-        texts = {name: await _text(field) for name, field in form.items() if field is not photo}
+        fields = {name: await _content(field) for name, field in form.items() if field is not photo}
         content = None if photo is None else await photo.read()
-    return await run_in_threadpool(_take_in, shelf, content, texts)
+    return await run_in_threadpool(_read_form, shelf, content, fields)
 
 
-def _take_in(shelf: Shelf, photo: bytes | None, texts: dict[str, bytes]) -> _Request:
+def _read_form(shelf: Shelf, photo: bytes | None, fields: dict[str, bytes]) -> _Received:
     if photo is None:
-        return _Request(models.read_fields(shelf, texts, brings_photo=False))
+        return _Received(stored_models.read_fields(shelf, fields, brings_photo=False))
     check_length(photo)
-    return _Request(models.read_fields(shelf, texts), photos.take_in(shelf, photo))
+    return _Received(stored_models.read_fields(shelf, fields), photos.take_in(shelf, photo))
 
 
-async def _text(field: UploadFile | str) -> bytes:
+async def _content(field: UploadFile | str) -> bytes:
     return await field.read() if isinstance(field, UploadFile) else field.encode("utf-8", "surrogatepass")
 
 
@@ -159,64 +159,64 @@ async def ask_for_model(
     shelf: ShelfOf,
     dispatcher: DispatcherOf,
     watcher: WatcherOf,
-    request: Annotated[_Request, Depends(_request)],
+    received: Annotated[_Received, Depends(_receive)],
     idempotency_key: Annotated[str | None, Header(min_length=1, max_length=255, pattern=r"^[\x21-\x7e]+$")] = None,
     prefer: Annotated[str | None, Header(description="wait=SECONDS answers when the model is finished")] = None,
 ) -> Response:
     """Ask for a tree: always a new model, finished at once where the same was made before."""
-    seen = await run_in_threadpool(models.ask_for_model, shelf, request.wish, idempotency_key, request.photo)
+    model = await run_in_threadpool(stored_models.accept_model, shelf, received.wish, idempotency_key, received.photo)
     dispatcher.notify()
     wanted = _WAIT.search(prefer or "")
     if wanted:
-        seen = await _finished(watcher, seen, min(float(wanted[1]), MAX_WAIT_SECONDS))
-    headers = {"Location": f"/v1/models/{seen.row.id}"}
+        model = await _finished(watcher, model, min(float(wanted[1]), MAX_WAIT_SECONDS))
+    headers = {"Location": f"/v1/models/{model.row.id}"}
     if wanted:
         headers["Preference-Applied"] = f"wait={wanted[1]}"
-    status = HTTPStatus.OK if seen.row.status in TERMINAL else HTTPStatus.ACCEPTED
-    return JSONResponse(model_view(seen).model_dump(), status, headers)
+    status = 200 if model.row.status in TERMINAL else 202
+    return JSONResponse(model_view(model).model_dump(), status, headers)
 
 
-async def _finished(watcher: Watcher, seen: Seen, seconds: float) -> Seen:
-    """Wait for a model as long as may be; not at all where too many wait."""
-    with suppress(TooManyFollowers, TimeoutError), watcher.follow(seen) as follower:
+async def _finished(watcher: Watcher, model: StoredModel, seconds: float) -> StoredModel:
+    """Wait for a model to finish, at most so many seconds; not at all where too many requests wait."""
+    with suppress(TooManyFollowers, TimeoutError), watcher.follow(model) as follower:
         async with asyncio.timeout(seconds):
-            while seen.row.status not in TERMINAL and (news := await follower.next_change()) is not None:
-                seen = news
-    return seen
+            while model.row.status not in TERMINAL and (news := await follower.next_change()) is not None:
+                model = news
+    return model
 
 
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
 def list_models(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
     """List models, newest first."""
-    page, following = models.list_models(shelf.database, cursor, limit)
-    return ModelPage(models=[model_view(seen) for seen in page], next=following)
+    page, following = stored_models.list_models(shelf.database, cursor, limit)
+    return ModelPage(models=[model_view(model) for model in page], next=following)
 
 
 @router.get("/{id}", responses=documented("not_found"))
 def get_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Look a model up."""
-    return model_view(models.see(shelf.database, id))
+    return model_view(stored_models.find_model(shelf.database, id))
 
 
 @router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=_RENAME)
 def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> Model:
     """Name a model."""
-    return model_view(models.rename(shelf.database, id, read_name(body)))
+    return model_view(stored_models.rename(shelf.database, id, read_name(body)))
 
 
 @router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
 def delete_model(shelf: ShelfOf, id: ModelId) -> None:
     """Delete a model; its files go after 24 hours, until then it can be restored."""
-    models.delete(shelf.database, id)
+    stored_models.delete(shelf.database, id)
 
 
 @router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
 def restore_model(shelf: ShelfOf, id: ModelId) -> Model:
-    """Take a deletion back."""
-    return model_view(models.restore(shelf.database, id))
+    """Undo a deletion."""
+    return model_view(stored_models.restore(shelf.database, id))
 
 
 @router.post("/{id}/cancel", responses=documented("not_found", "storage_full"))
 def cancel_model(shelf: ShelfOf, id: ModelId) -> Model:
     """Stop a model that is not finished; a finished one stays as it is."""
-    return model_view(models.cancel(shelf.database, id))
+    return model_view(stored_models.cancel(shelf.database, id))

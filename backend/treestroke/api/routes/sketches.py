@@ -7,7 +7,7 @@ from fastapi import APIRouter, Response
 from treestroke.api.deps import JsonBody, ShelfOf
 from treestroke.api.errors import BODY, documented
 from treestroke.schemas import SKETCHES_EXAMPLE, SketchTraceAnswer
-from treestroke.service import sketches
+from treestroke.service.tracing import sketch_answer
 
 router = APIRouter(prefix="/v1/sketches", tags=["sketches"])
 _TRACE: dict[str, Any] = {
@@ -31,4 +31,4 @@ _TRACE: dict[str, Any] = {
 )
 def trace_sketches(shelf: ShelfOf, body: JsonBody) -> Response:
     """Find the branches that sketches show; with ``grow`` the whole tree's skeleton too. Nothing is kept."""
-    return Response(sketches.trace_sketches(shelf, body), media_type="application/json")
+    return Response(shelf.tracers("", sketch_answer, body), media_type="application/json")

@@ -9,8 +9,8 @@ from treestroke import __version__
 from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf, WatcherOf
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
+from treestroke.codec.inputs import MAX_TEXT_BYTES
 from treestroke.codec.photo_kinds import MEDIA_TYPES
-from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
 from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES

@@ -4,10 +4,10 @@ from typing import Any
 import pytest
 from tests.api import drawn, sketched
 
+from treestroke.codec.inputs import Inputs
 from treestroke.core.errors import SettingsError, StrokesError
 from treestroke.core.pipeline.grown_tree import LiveTree
-from treestroke.service.making import Model
-from treestroke.service.sketch import sketch, trace_sketches
+from treestroke.service.model import Model, Options, make_tree, model, sketch
 
 QUICK = drawn.QUICK
 
@@ -69,11 +69,14 @@ def test_a_sketch_or_a_setting_that_cannot_be_used_is_named() -> None:
         sketch(sketched.FRONT, settings={"height": 0})
 
 
-def test_a_trace_shows_what_was_drawn() -> None:
-    found = trace_sketches(sketched.FRONT, sketched.SIDE)
-    assert found.grown is None
-    answer = found.answer()
-    for view, given in (("front", sketched.FRONT), ("side", sketched.SIDE)):
-        points = answer[view]["skeleton"]["points"]
-        for branch in given["branches"]:
-            assert min(abs(x - branch["points"][-1][0]) + abs(y - branch["points"][-1][1]) for x, y in points) < 1.0
+@pytest.mark.parametrize("parts", [{"strokes": drawn.STROKES}, {"strokes": drawn.STROKES, "side": sketched.SIDE}])
+def test_inputs_with_strokes_are_made_by_the_photo_s_recipe(parts: dict[str, Any]) -> None:
+    photo = drawn.encoded()
+    made = make_tree(Inputs.of({"photo": photo, **parts}), Options.of(QUICK, 1))
+    assert made.glb == model(photo, settings=QUICK, seed=1, **parts).glb
+
+
+@pytest.mark.parametrize("parts", [{}, {"photo": drawn.encoded()}])
+def test_inputs_with_a_front_are_made_by_the_sketches_recipe(parts: dict[str, Any]) -> None:
+    made = make_tree(Inputs.of({"front": sketched.FRONT, **parts}), Options.of(QUICK, 1))
+    assert made.glb == sketch(sketched.FRONT, settings=QUICK, seed=1, **parts).glb

@@ -9,11 +9,11 @@ from tests.api import drawn, sketched
 from tests.rows import add_model
 
 from treestroke.core.errors import StrokesError
-from treestroke.service import models, photos
+from treestroke.service import photos, stored_models
 from treestroke.service.engine_version import engine_version
 from treestroke.service.model_request import Wish
-from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.stored_models import KeyReused
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import claim, succeed
@@ -21,7 +21,7 @@ from treestroke.store.tables import ModelRow, PhotoRow
 
 
 def wish(shelf: Shelf, photo: str, **others: Any) -> Wish:
-    return models.read_wish(shelf, json.dumps(drawn.wish(photo, **others)).encode())
+    return stored_models.read_wish(shelf, json.dumps(drawn.wish(photo, **others)).encode())
 
 
 def finished(shelf: Shelf, id: str, glb: bytes, by: str = "") -> None:
@@ -39,39 +39,41 @@ def count(shelf: Shelf, table: type[ModelRow] | type[PhotoRow]) -> int:
 
 def test_a_model_is_answered_from_one_of_the_same_input_alone(shelf: Shelf) -> None:
     first_photo, same_photo, other_photo = (photos.add_photo(shelf, drawn.encoded(seed=seed)).id for seed in (0, 0, 1))
-    first = models.ask_for_model(shelf, wish(shelf, first_photo), None).row
-    assert models.ask_for_model(shelf, wish(shelf, first_photo), None).row.status == "queued"  # it is not made yet
+    first = stored_models.accept_model(shelf, wish(shelf, first_photo), None).row
+    assert (
+        stored_models.accept_model(shelf, wish(shelf, first_photo), None).row.status == "queued"
+    )  # it is not made yet
     finished(shelf, first.id, b"tree")
     again = [wish(shelf, first_photo, name="Twin"), wish(shelf, same_photo)]
-    assert [models.ask_for_model(shelf, one, None).row.status for one in again] == ["succeeded"] * 2
+    assert [stored_models.accept_model(shelf, one, None).row.status for one in again] == ["succeeded"] * 2
     other = [wish(shelf, first_photo, seed=1), wish(shelf, first_photo, settings={}), wish(shelf, other_photo)]
-    assert [models.ask_for_model(shelf, one, None).row.status for one in other] == ["queued"] * 3
+    assert [stored_models.accept_model(shelf, one, None).row.status for one in other] == ["queued"] * 3
 
 
 def test_a_model_that_another_engine_grew_is_grown_anew(shelf: Shelf) -> None:
     """As in a data folder that outlives an upgrade, or where a worker is of another version than the web process."""
     photo = photos.add_photo(shelf, drawn.encoded()).id
-    first = models.ask_for_model(shelf, wish(shelf, photo), "key").row
+    first = stored_models.accept_model(shelf, wish(shelf, photo), "key").row
     assert first.engine == engine_version()
     finished(shelf, first.id, b"tree", by="treestroke 0.1.0+other")
-    assert models.see(shelf.database, first.id).row.engine == "treestroke 0.1.0+other"
-    assert models.ask_for_model(shelf, wish(shelf, photo), None).row.status == "queued"
+    assert stored_models.find_model(shelf.database, first.id).row.engine == "treestroke 0.1.0+other"
+    assert stored_models.accept_model(shelf, wish(shelf, photo), None).row.status == "queued"
     # What is sent again is the same request, whoever grew it.
-    assert models.ask_for_model(shelf, wish(shelf, photo), "key").row.id == first.id
+    assert stored_models.accept_model(shelf, wish(shelf, photo), "key").row.id == first.id
 
 
 @pytest.mark.parametrize("harm", ["flip", "remove"])
 def test_a_model_whose_files_are_damaged_is_no_answer_and_growing_it_anew_mends_it(shelf: Shelf, harm: str) -> None:
     photo = photos.add_photo(shelf, drawn.encoded()).id
-    first = models.ask_for_model(shelf, wish(shelf, photo), None).row
+    first = stored_models.accept_model(shelf, wish(shelf, photo), None).row
     finished(shelf, first.id, b"tree")
-    blob = models.see(shelf.database, first.id).files["tree.glb"].blob
+    blob = stored_models.find_model(shelf.database, first.id).files["tree.glb"].blob
     place = shelf.blobs.path(blob)
     place.write_bytes(b"tref") if harm == "flip" else place.unlink()
-    second = models.ask_for_model(shelf, wish(shelf, photo), None).row
+    second = stored_models.accept_model(shelf, wish(shelf, photo), None).row
     assert second.status == "queued"
     finished(shelf, second.id, b"tree")
-    assert models.ask_for_model(shelf, wish(shelf, photo), None).row.status == "succeeded"
+    assert stored_models.accept_model(shelf, wish(shelf, photo), None).row.status == "succeeded"
     assert shelf.blobs.get(blob) == b"tree"
 
 
@@ -79,77 +81,78 @@ def test_a_request_with_a_damaged_photo_is_refused_and_uploading_it_again_mends_
     photo = photos.add_photo(shelf, drawn.encoded(seed=7))
     shelf.blobs.path(photo.blob).write_bytes(b"no photo")
     with pytest.raises(Damaged):
-        models.ask_for_model(shelf, wish(shelf, photo.id), None)
+        stored_models.accept_model(shelf, wish(shelf, photo.id), None)
     with pytest.raises(Damaged):
         photos.trace_photo(shelf, photo.id, json.dumps(drawn.STROKES).encode())
     assert count(shelf, ModelRow) == 0
     assert photos.add_photo(shelf, drawn.encoded(seed=7)).blob == photo.blob
-    assert models.ask_for_model(shelf, wish(shelf, photo.id), None).row.status == "queued"
+    assert stored_models.accept_model(shelf, wish(shelf, photo.id), None).row.status == "queued"
 
 
-def test_a_model_of_a_deleted_twin_keeps_the_files(shelf: Shelf) -> None:
+def test_a_model_with_the_files_of_a_deleted_one_keeps_them(shelf: Shelf) -> None:
     photo = photos.add_photo(shelf, drawn.encoded()).id
-    first = models.ask_for_model(shelf, wish(shelf, photo), None).row
+    first = stored_models.accept_model(shelf, wish(shelf, photo), None).row
     finished(shelf, first.id, b"tree")
-    models.delete(shelf.database, first.id)
-    seen = models.ask_for_model(shelf, wish(shelf, photo), None)
+    stored_models.delete(shelf.database, first.id)
+    seen = stored_models.accept_model(shelf, wish(shelf, photo), None)
     assert shelf.blobs.get(seen.files["tree.glb"].blob) == b"tree"
 
 
 def test_a_photo_that_came_along_is_kept_with_its_model_alone(shelf: Shelf) -> None:
     good = wish(shelf, "")
-    seen = models.ask_for_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
+    seen = stored_models.accept_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
     assert photos.get_photo(shelf, seen.row.photo)
-    models.ask_for_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
+    stored_models.accept_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
     beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
-    bad = models.read_fields(shelf, {"strokes": json.dumps(beside).encode()})
+    bad = stored_models.read_fields(shelf, {"strokes": json.dumps(beside).encode()})
     with pytest.raises(StrokesError):
-        models.ask_for_model(shelf, bad, None, photos.take_in(shelf, drawn.encoded()))
+        stored_models.accept_model(shelf, bad, None, photos.take_in(shelf, drawn.encoded()))
     assert (count(shelf, PhotoRow), count(shelf, ModelRow)) == (1, 1)
 
 
 def test_a_key_that_outlived_its_model_gives_a_new_one(shelf: Shelf) -> None:
     photo = photos.add_photo(shelf, drawn.encoded()).id
-    first = models.ask_for_model(shelf, wish(shelf, photo), "key").row.id
+    first = stored_models.accept_model(shelf, wish(shelf, photo), "key").row.id
     with shelf.database.writing() as session:
         session.query(ModelRow).delete()
-    second = models.ask_for_model(shelf, wish(shelf, photo), "key").row.id
+    second = stored_models.accept_model(shelf, wish(shelf, photo), "key").row.id
     assert second != first
-    assert models.ask_for_model(shelf, wish(shelf, photo), "key").row.id == second
+    assert stored_models.accept_model(shelf, wish(shelf, photo), "key").row.id == second
 
 
 def test_a_model_of_sketches_needs_no_photo_and_is_known_again(shelf: Shelf) -> None:
     asked = json.dumps(sketched.wish(seed=3)).encode()
-    first = models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row
-    assert (first.photo, first.photo_blob, first.strokes_blob) == (None, None, None)
-    assert list(first.drawings) == ["front.json", "side.json"]
-    assert models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row.id == first.id
+    model = stored_models.accept_model(shelf, stored_models.read_wish(shelf, asked), "key")
+    assert (model.row.photo, model.inputs.source, list(model.parts)) == (None, "sketches", ["front", "side"])
+    assert list(model.drawings) == ["front.json", "side.json"]
+    first = model.row
+    assert stored_models.accept_model(shelf, stored_models.read_wish(shelf, asked), "key").row.id == first.id
     finished(shelf, first.id, b"tree")
-    assert models.ask_for_model(shelf, models.read_wish(shelf, asked), None).row.status == "succeeded"
+    assert stored_models.accept_model(shelf, stored_models.read_wish(shelf, asked), None).row.status == "succeeded"
     exchanged = {"front": sketched.SIDE, "side": sketched.FRONT}
     for change in ({"seed": 4}, {"sketches": exchanged}, {"sketches": {"front": sketched.FRONT}}):
-        other = models.read_wish(shelf, json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
-        assert models.ask_for_model(shelf, other, None).row.status == "queued"
+        other = stored_models.read_wish(shelf, json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
+        assert stored_models.accept_model(shelf, other, None).row.status == "queued"
         with pytest.raises(KeyReused):
-            models.ask_for_model(shelf, other, "key")
+            stored_models.accept_model(shelf, other, "key")
 
 
 def test_the_same_strokes_with_another_side_are_another_model(shelf: Shelf) -> None:
     photo = photos.add_photo(shelf, drawn.encoded()).id
-    rows = [
-        models.ask_for_model(shelf, wish(shelf, photo, **more), None).row
+    models = [
+        stored_models.accept_model(shelf, wish(shelf, photo, **more), None)
         for more in ({}, {"sketches": {"side": sketched.SIDE}}, {"sketches": {"side": sketched.FRONT}})
     ]
-    assert len({row.fingerprint for row in rows}) == 3
-    assert [list(row.drawings) for row in rows] == [["strokes.json"], *[["strokes.json", "side.json"]] * 2]
+    assert len({model.row.fingerprint for model in models}) == 3
+    assert [list(model.drawings) for model in models] == [["strokes.json"], *[["strokes.json", "side.json"]] * 2]
 
 
 def test_a_model_that_there_is_not_is_not_found(shelf: Shelf) -> None:
-    for ask in (models.see, models.cancel, models.delete, models.restore):
+    for ask in (stored_models.find_model, stored_models.cancel, stored_models.delete, stored_models.restore):
         with pytest.raises(NotFound):
             ask(shelf.database, "mdl_0")
     with pytest.raises(NotFound):
-        models.rename(shelf.database, "mdl_0", "x")
+        stored_models.rename(shelf.database, "mdl_0", "x")
 
 
 @contextmanager
@@ -173,9 +176,9 @@ def test_many_models_are_shown_with_as_few_questions_as_one(database: Database) 
         add_model(database, status="running")
         rows = [add_model(database) for _ in range(10)]
         with questions() as page:
-            models.list_models(database, None, 50)
+            stored_models.list_models(database, None, 50)
         with questions() as change:
-            models.see_changed(database, dict.fromkeys([row.id for row in rows]))
+            stored_models.find_changed(database, dict.fromkeys([row.id for row in rows]))
         counts.append((len(page), len(change)))
     assert counts[0] == counts[1]
     assert max(counts[0]) < 10
@@ -183,11 +186,11 @@ def test_many_models_are_shown_with_as_few_questions_as_one(database: Database) 
 
 def test_only_what_changed_is_shown_anew(database: Database) -> None:
     rows = [add_model(database) for _ in range(3)]
-    marks = {row.id: models.see(database, row.id).mark for row in rows}
-    assert models.see_changed(database, marks) == {}
-    models.rename(database, rows[0].id, "Oak")
-    models.cancel(database, rows[1].id)  # the third moves up
-    changed = models.see_changed(database, {**marks, "mdl_gone": None})
+    versions = {row.id: stored_models.find_model(database, row.id).version for row in rows}
+    assert stored_models.find_changed(database, versions) == {}
+    stored_models.rename(database, rows[0].id, "Oak")
+    stored_models.cancel(database, rows[1].id)  # the third moves up
+    changed = stored_models.find_changed(database, {**versions, "mdl_gone": None})
     assert changed.keys() == {rows[0].id, rows[1].id, rows[2].id, "mdl_gone"}
     assert changed["mdl_gone"] is None
     third = changed[rows[2].id]

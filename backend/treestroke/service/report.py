@@ -1,0 +1,101 @@
+"""The report of a model: what was made, how long it took, how well it fits and what it measures, as plain values."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import cv2
+import numpy as np
+
+from treestroke.core.geometry.silhouette import likeness, silhouette
+from treestroke.core.leaf.leaves import fruit_among
+from treestroke.core.pipeline.finishing import TreeModel
+from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
+from treestroke.core.survey.measures import Measures
+from treestroke.service.engine_version import engine_version
+from treestroke.service.execution import Stopwatch
+from treestroke.service.files import Bundle
+
+SCORED_HEIGHT = 400
+"""Px, of the front view that the silhouette score is measured on."""
+STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "levels", "write")
+
+
+def variant_seeds(first: int, count: int) -> list[int]:
+    """Return the seeds of ``count`` variants, from ``first`` on; after the largest seed comes 0."""
+    return [(first + index) % (MAX_SEED + 1) for index in range(count)]
+
+
+def tree_report(
+    trees: Sequence[TreeModel], bundles: Mapping[str, Bundle], settings: ModelSettings, seed: int, watch: Stopwatch
+) -> dict[str, Any]:
+    """Return the report of a model's variants, of which ``seed`` is the first one's, and of all their files."""
+    tree, files = trees[0], {name: len(content) for bundle in bundles.values() for name, content in bundle.items()}
+    scores = [{"silhouette_iou": _silhouette_iou(variant), **variant.score} for variant in trees]
+    counts = [_counts(variant) for variant in trees]
+    return {
+        "engine": engine_version(),
+        "seed": seed,
+        "settings": {**plain_settings(settings), "foliage": tree.foliage_kind},
+        "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},
+        "counts": {**counts[0], "bytes": next(iter(files.values()))},
+        "score": scores[0],
+        "reading": asdict(tree.reading),
+        "measures": _plain_measures(tree.measures),
+        "variants": [
+            {"seed": variant_seed, "counts": count, "score": score}
+            for variant_seed, count, score in zip(variant_seeds(seed, len(trees)), counts, scores, strict=True)
+        ],
+        "files": files,
+        "warnings": [asdict(warning) for warning in tree.warnings],
+    }
+
+
+def _counts(tree: TreeModel) -> dict[str, int]:
+    surfaces = [tree.bark] if tree.leaf is None else [tree.bark, tree.leaf]
+    return {
+        "iterations": tree.iterations,
+        "branches": tree.branches,
+        "leaves": _leaf_count(tree),
+        "triangles": sum(len(surface.mesh.triangles) for surface in surfaces),
+    }
+
+
+def _leaf_count(tree: TreeModel) -> int:
+    """Count the cards that show leaves, not fruit."""
+    return 0 if tree.cards is None or tree.atlas is None else int((~fruit_among(tree.cards, tree.atlas)).sum())
+
+
+def _plain_measures(measures: Measures) -> dict[str, Any]:
+    """Return measures as plain values, numbers rounded to 4 digits."""
+
+    def plain(value: object) -> object:
+        return float(f"{value:.4g}") if isinstance(value, float) else value
+
+    figures = {
+        name: {key: plain(value) for key, value in asdict(figure).items()} for name, figure in measures.figures.items()
+    }
+    scale = measures.scale
+    return {
+        **figures,
+        "branches_by_order": {
+            "value": list(measures.branches_by_order),
+            "basis": "derived",
+            "meaning": "stems, what leaves them, what leaves those, and so on: seen and grown",
+        },
+        "scale": {
+            "value": scale.metres_per_pixel,
+            "unit": "m/px",
+            "basis": "measured" if scale.known else "given",
+            "meaning": "metres a pixel of the picture at the tree, by "
+            + ("the line of known length" if scale.known else "the height that was given"),
+        },
+    }
+
+
+def _silhouette_iou(tree: TreeModel) -> float:
+    """Return the overlap of the front view with the foliage and branches that were found, at a reduced size."""
+    seen = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.likeness)))
+    size = (seen.shape[1], seen.shape[0])
+    wanted = cv2.resize(tree.likeness.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
+    return likeness(seen, wanted)

@@ -1,0 +1,336 @@
+"""Stored models: accepted, found, named, stopped, deleted and restored."""
+
+import hashlib
+import json
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import structlog
+from sqlalchemy import select, update
+from sqlalchemy.orm import Session
+
+from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
+from treestroke.service import model_request, tracing
+from treestroke.service.engine_version import engine_version
+from treestroke.service.model_request import Wish, check_name
+from treestroke.service.photos import NotFound, Shelf
+from treestroke.store import leases, queries
+from treestroke.store.blobs import Damaged
+from treestroke.store.database import Database
+from treestroke.store.tables import File, ModelPart, ModelRow, PhotoRow, Replay
+
+RESTORABLE_SECONDS = 24 * 3600.0
+log = structlog.get_logger()
+
+
+class KeyReused(Exception):
+    """An Idempotency-Key was sent again with another request."""
+
+
+class Version(NamedTuple):
+    """What changes whenever a model's viewers are to be shown something new."""
+
+    seq: int
+    queue_position: int | None
+    eta_s: float | None
+
+
+@dataclass(frozen=True)
+class StoredModel:
+    """A model as it is stored and shown: its row, parts and files, its place in the queue and its remaining seconds."""
+
+    row: ModelRow
+    parts: dict[str, ModelPart]
+    files: dict[str, File]
+    queue_position: int | None
+    eta_s: float | None
+
+    @property
+    def inputs(self) -> Inputs[ModelPart]:
+        """What it is made of."""
+        return Inputs.of(self.parts)
+
+    @property
+    def drawings(self) -> dict[str, ModelPart]:
+        """The parts that the person drew, by the names of their files."""
+        drawn = (self.parts[name] for name, part in PARTS.items() if part.drawn and name in self.parts)
+        return {file_name(part.name, part.media_type): part for part in drawn}
+
+    @property
+    def version(self) -> Version:
+        """What viewers are shown changes only together with this."""
+        return Version(self.row.seq, self.queue_position, self.eta_s)
+
+
+def read_wish(shelf: Shelf, body: bytes) -> Wish:
+    """Read a request for a model from JSON, in a tracing process since it may be large or hostile.
+
+    Raises
+    ------
+    TreestrokeError
+        It is not a valid request.
+    """
+    return shelf.tracers("", model_request.read_wish, body)
+
+
+def read_fields(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> Wish:
+    """Read a request for a model from a form's fields without the photo, as `read_wish` does.
+
+    Raises
+    ------
+    TreestrokeError
+        It is not a valid request.
+    """
+    return shelf.tracers("", model_request.read_fields, fields, brings_photo)
+
+
+def accept_model(shelf: Shelf, wish: Wish, key: str | None, sent_photo: PhotoRow | None = None) -> StoredModel:
+    """Check, store and queue a model; one whose inputs were made into a tree before gets that tree's files at once.
+
+    ``key`` is the Idempotency-Key: sent again with the same request, it returns the model that it returned first.
+    ``sent_photo`` is a photo that came with the request; it is kept only where a new model is made from it.
+
+    Raises
+    ------
+    NotFound, TreestrokeError, KeyReused
+        There is no such photo; something in the request cannot be used; the key was used for another request.
+    Damaged
+        The photo's file is damaged.
+    OSError
+        The disk is full.
+    """
+    photo = sent_photo or (None if wish.photo is None else _photo_for(shelf, wish.photo, key))
+    inputs = _store_inputs(shelf, wish, photo)
+    row = _new_row(wish, photo, inputs)
+    request = _digest([row.fingerprint, wish.name, None if photo is None else photo.sha256])
+    equal = _finished_model(shelf, row)
+    with shelf.database.writing() as session:
+        answered = _answered_before(session, key, request)
+        if answered is None:
+            session.add_all([row, sent_photo] if sent_photo else [row])
+            session.flush()  # parts and files refer to the row
+            for part in inputs.parts.values():
+                part.model = row.id
+                session.add(part)
+            if equal is not None:
+                _copy_files(session, equal, row)
+            if key:
+                session.merge(Replay(key=key, fingerprint=request, model=row.id, created=time.time(), seen=None))
+    # What the queue and the files tell needs no lock.
+    return find_model(shelf.database, (answered or row).id, deleted=True)
+
+
+def find_model(database: Database, id: str, deleted: bool = False) -> StoredModel:
+    """Find a model; a deleted one only where ``deleted``.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with database.reading() as session:
+        (found,) = _stored(session, [_row(session, id, deleted)])
+        return found
+
+
+def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[StoredModel], str | None]:
+    """Return a page of models, newest first, and the cursor of the next page: decimal digits."""
+    with database.reading() as session:
+        rows, following = queries.page(session, ModelRow, cursor, limit)
+        return _stored(session, rows), following
+
+
+def find_changed(database: Database, versions: Mapping[str, Version | None]) -> dict[str, StoredModel | None]:
+    """Return those of these models that have another version by now; None for one that was removed for good."""
+    with database.reading() as session:
+        rows = session.execute(
+            select(ModelRow.id, ModelRow.number, ModelRow.seq, ModelRow.status, ModelRow.progress).where(
+                ModelRow.id.in_(versions)
+            )
+        ).all()
+        waits = _waits(session, rows)
+        changed = [row.id for row in rows if Version(row.seq, *waits[row.number]) != versions[row.id]]
+        found = session.scalars(select(ModelRow).where(ModelRow.id.in_(changed))).all() if changed else ()
+        removed = dict.fromkeys(versions.keys() - {row.id for row in rows})
+        return {**removed, **{model.row.id: model for model in _stored(session, found)}}
+
+
+def rename(database: Database, id: str, name: str) -> StoredModel:
+    """Name a model.
+
+    Raises
+    ------
+    NotFound, TreestrokeError
+        There is no such model, or the name cannot be used.
+    """
+    check_name(name)
+    with database.writing() as session:
+        _row(session, id)
+        session.execute(update(ModelRow).where(ModelRow.id == id).values(name=name, seq=ModelRow.seq + 1))
+    return find_model(database, id)
+
+
+def cancel(database: Database, id: str) -> StoredModel:
+    """Stop a model that is not finished; a finished one stays as it is.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with database.writing() as session:
+        _row(session, id)
+        leases.cancel(session, id)
+    return find_model(database, id, deleted=True)
+
+
+def delete(database: Database, id: str) -> None:
+    """Delete a model; it is stopped if it is not finished, and can be restored for a day.
+
+    Raises
+    ------
+    NotFound
+        There is none.
+    """
+    with database.writing() as session:
+        _row(session, id)
+        leases.cancel(session, id)
+        session.execute(update(ModelRow).where(ModelRow.id == id).values(deleted=time.time(), seen=None))
+
+
+def restore(database: Database, id: str) -> StoredModel:
+    """Undo a model's deletion.
+
+    Raises
+    ------
+    NotFound
+        There is none, or it was removed for good.
+    """
+    with database.writing() as session:
+        row = _row(session, id, deleted=True)
+        if row.deleted is not None:
+            row.deleted = row.seen = None
+    return find_model(database, id)
+
+
+def _photo_for(shelf: Shelf, id: str, key: str | None) -> PhotoRow:
+    """Find the photo that a request names; a deleted one only where the request may have been sent before."""
+    with shelf.database.reading() as session:
+        repeated = key is not None and session.get(Replay, key) is not None
+        photo = queries.photo(session, id, deleted=repeated)
+    if photo is None:
+        raise NotFound("photo")
+    return photo
+
+
+def _store_inputs(shelf: Shelf, wish: Wish, photo: PhotoRow | None) -> Inputs[ModelPart]:
+    """Check what was drawn, against the photo where there is one, and store the parts' files."""
+    blob = None if photo is None else photo.blob
+    path = None if blob is None else shelf.blobs.path(blob)
+    shelf.tracers(blob or "", tracing.check_wish, path, wish.parts, wish.within)
+    sent = {
+        name: ModelPart(
+            name=name, blob=shelf.blobs.put(content), media_type=part_of(name).format_of(content).media_type
+        )
+        for name, content in wish.parts.items()
+    }
+    stored = None if blob is None else ModelPart(name="photo", blob=blob, media_type="image/png")
+    return Inputs.of({"photo": stored, **sent})
+
+
+def _new_row(wish: Wish, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> ModelRow:
+    return ModelRow(
+        id=queries.new_id("mdl"),
+        name=wish.name,
+        photo=None if photo is None else photo.id,
+        settings=wish.settings,
+        seed=wish.seed,
+        engine=engine_version(),
+        fingerprint=_fingerprint(wish, photo, inputs),
+        status="queued",
+        phase_fraction=0.0,
+        progress=0.0,
+        seq=1,
+        attempt=0,
+        beat=0,
+        cancel=False,
+        created=time.time(),
+    )
+
+
+def _fingerprint(wish: Wish, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> str:
+    """Digest all that decides how the tree and its report come out, but the engine."""
+    blobs = {name: part.blob for name, part in inputs.parts.items()}
+    mended = [] if photo is None else photo.warnings
+    return _digest([blobs.pop("photo", None), blobs, wish.settings, wish.seed, *mended])
+
+
+def _answered_before(session: Session, key: str | None, request: str) -> ModelRow | None:
+    """Find the model that an Idempotency-Key has returned; None where the key is new or the model was removed.
+
+    Raises
+    ------
+    KeyReused
+        The key was used for another request.
+    """
+    replay = session.get(Replay, key) if key else None
+    if replay is None:
+        return None
+    if replay.fingerprint != request:
+        raise KeyReused
+    return queries.model(session, replay.model, deleted=True)
+
+
+def _finished_model(shelf: Shelf, row: ModelRow) -> ModelRow | None:
+    """Find a model that this engine has made from equal inputs; None too where a file of it is damaged."""
+    with shelf.database.reading() as session:
+        equal = queries.finished_model(session, row.fingerprint, row.engine)
+        files = {} if equal is None else queries.files(session, [equal.id])[equal.id]
+    try:
+        for file in files.values():
+            shelf.blobs.check(file.blob)
+    except Damaged as error:
+        log.error("file_damaged", file=str(error))
+        return None
+    return equal
+
+
+def _copy_files(session: Session, equal: ModelRow, row: ModelRow) -> None:
+    """Finish a model with the files of an equal one, unless that was removed meanwhile: they would be the same."""
+    files = queries.files(session, [equal.id])[equal.id]
+    if files:
+        row.status, row.progress, row.finished = "succeeded", 1.0, time.time()
+        row.report, row.preview_seq = equal.report, 1
+        session.add_all(File(model=row.id, name=name, blob=file.blob, bytes=file.bytes) for name, file in files.items())
+
+
+def _row(session: Session, id: str, deleted: bool = False) -> ModelRow:
+    row = queries.model(session, id, deleted)
+    if row is None:
+        raise NotFound("model")
+    return row
+
+
+def _stored(session: Session, rows: Sequence[ModelRow]) -> list[StoredModel]:
+    """Read what belongs to rows, by as many queries for many rows as for one."""
+    ids = [row.id for row in rows]
+    parts, files, waits = queries.parts(session, ids), queries.files(session, ids), _waits(session, rows)
+    return [StoredModel(row, parts[row.id], files[row.id], *waits[row.number]) for row in rows]
+
+
+def _waits(session: Session, rows: Sequence[Any]) -> dict[int, tuple[int | None, float | None]]:
+    """Return each row's place in the queue and the seconds until it is finished, by its number."""
+    places = queries.queue_positions(session, [row.number for row in rows if row.status == "queued"])
+    unfinished = [row for row in rows if row.status not in leases.TERMINAL]
+    usual_s = queries.usual_seconds(session) if unfinished else 0.0
+    waits: dict[int, tuple[int | None, float | None]] = {row.number: (None, None) for row in rows}
+    for row in unfinished:
+        place = places.get(row.number)
+        waits[row.number] = place, usual_s * (1.0 - row.progress + (place or 1) - 1)
+    return waits
+
+
+def _digest(value: object) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
