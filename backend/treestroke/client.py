@@ -17,7 +17,7 @@ from urllib.parse import quote
 import httpx
 
 from treestroke.responses import Again, Event, ServiceError, checked, events_of, read, unreachable
-from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, PhotoPage, SketchTraceAnswer, TraceAnswer
+from treestroke.schemas import GrownSkeleton, ModelInfo, ModelPage, PhotoInfo, PhotoPage, SketchTraceAnswer, TraceAnswer
 from treestroke.wire_strokes import Sketch, Strokes
 
 __all__ = ["Client", "PictureLike", "ServiceError", "SketchLike", "StrokesLike"]
@@ -68,7 +68,7 @@ class Client:
         """Close the connection."""
         self._http.close()
 
-    def upload(self, photo: str | os.PathLike[str] | bytes) -> Photo:
+    def upload(self, photo: str | os.PathLike[str] | bytes) -> PhotoInfo:
         """Upload a photo: a path, or encoded bytes (JPEG, PNG, WebP, HEIC, AVIF or TIFF).
 
         Raises
@@ -80,24 +80,24 @@ class Client:
         """
         content = _content(photo)
         headers = {"Content-Type": "application/octet-stream"}
-        return read(Photo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
+        return read(PhotoInfo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
 
-    def photo(self, photo: Photo | str) -> Photo:
+    def photo(self, photo: PhotoInfo | str) -> PhotoInfo:
         """Look a photo up."""
-        return read(Photo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
+        return read(PhotoInfo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
 
-    def photos(self) -> Iterator[Photo]:
+    def photos(self) -> Iterator[PhotoInfo]:
         """Give all photos, newest first, page by page as they are taken."""
         for page in self._pages(PhotoPage, "/v1/photos"):
             yield from page.photos
 
-    def delete_photo(self, photo: Photo | str) -> None:
+    def delete_photo(self, photo: PhotoInfo | str) -> None:
         """Delete a photo; models that were made of it keep their own copy."""
         self._ask("DELETE", f"/v1/photos/{_id(photo)}")
 
     def trace(
         self,
-        photo: Photo | str,
+        photo: PhotoInfo | str,
         strokes: StrokesLike,
         rev: int | None = None,
         grow: bool = False,
@@ -131,7 +131,7 @@ class Client:
 
     def grow(
         self,
-        photo: Photo | str,
+        photo: PhotoInfo | str,
         strokes: StrokesLike,
         settings: Mapping[str, Any] | None = None,
         seed: int = 0,
@@ -140,7 +140,7 @@ class Client:
         leaf: PictureLike | None = None,
         fruit: PictureLike | None = None,
         side: SketchLike | None = None,
-    ) -> Model:
+    ) -> ModelInfo:
         """Ask for a tree; `wait` for it. The request may be cut off and sent again: it makes one model.
 
         Parameters
@@ -174,8 +174,8 @@ class Client:
         idempotency_key: str | None = None,
         leaf: PictureLike | None = None,
         fruit: PictureLike | None = None,
-        photo: Photo | str | None = None,
-    ) -> Model:
+        photo: PhotoInfo | str | None = None,
+    ) -> ModelInfo:
         """Ask for a tree of sketches of its front and, where there is one, of its left side; else as `grow`.
 
         Parameters
@@ -193,22 +193,22 @@ class Client:
         wish = {"settings": dict(settings or {}), "seed": seed, "name": name, **_pictures(leaf, fruit)}
         return self._wish({**body, **wish}, idempotency_key)
 
-    def model(self, model: Model | str) -> Model:
+    def model(self, model: ModelInfo | str) -> ModelInfo:
         """Look a model up."""
-        return read(Model, self._ask("GET", f"/v1/models/{_id(model)}").content)
+        return read(ModelInfo, self._ask("GET", f"/v1/models/{_id(model)}").content)
 
-    def models(self) -> Iterator[Model]:
+    def models(self) -> Iterator[ModelInfo]:
         """Give all models, newest first, page by page as they are taken."""
         for page in self._pages(ModelPage, "/v1/models"):
             yield from page.models
 
     def wait(
         self,
-        model: Model | str,
+        model: ModelInfo | str,
         timeout: float | None = None,
-        on_progress: Callable[[Model], None] | None = None,
+        on_progress: Callable[[ModelInfo], None] | None = None,
         on_preview: Callable[[GrownSkeleton], None] | None = None,
-    ) -> Model:
+    ) -> ModelInfo:
         """Follow a model until it has succeeded, failed or been canceled, and give it.
 
         A stream of events that breaks is taken up again where it broke; where none comes through, the model is looked
@@ -237,7 +237,7 @@ class Client:
                 for event in events:
                     last = event.id or last
                     if event.kind != "preview":
-                        shown = _tell(read(Model, event.text), shown, on_progress)
+                        shown = _tell(read(ModelInfo, event.text), shown, on_progress)
                     elif on_preview is not None:
                         on_preview(read(GrownSkeleton, event.text))
                     if shown is not None and event.kind in _ENDS:
@@ -248,7 +248,7 @@ class Client:
                 return shown
             time.sleep(min(_POLL_S, _left(deadline)))
 
-    def download(self, model: Model | str, path: str | os.PathLike[str], file: str = "tree.glb") -> Path:
+    def download(self, model: ModelInfo | str, path: str | os.PathLike[str], file: str = "tree.glb") -> Path:
         """Download one of a model's files, whole or not at all, checked against its SHA-256; give its path.
 
         Raises
@@ -267,21 +267,21 @@ class Client:
             beside.unlink(missing_ok=True)
         return place
 
-    def rename(self, model: Model | str, name: str) -> Model:
+    def rename(self, model: ModelInfo | str, name: str) -> ModelInfo:
         """Name a model."""
-        return read(Model, self._ask("PATCH", f"/v1/models/{_id(model)}", json={"name": name}).content)
+        return read(ModelInfo, self._ask("PATCH", f"/v1/models/{_id(model)}", json={"name": name}).content)
 
-    def cancel(self, model: Model | str) -> Model:
+    def cancel(self, model: ModelInfo | str) -> ModelInfo:
         """Stop a model that is not finished; a finished one stays as it is."""
-        return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
+        return read(ModelInfo, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
 
-    def delete(self, model: Model | str) -> None:
+    def delete(self, model: ModelInfo | str) -> None:
         """Delete a model; for 24 hours `restore` takes it back."""
         self._ask("DELETE", f"/v1/models/{_id(model)}")
 
-    def restore(self, model: Model | str) -> Model:
+    def restore(self, model: ModelInfo | str) -> ModelInfo:
         """Take a model's deletion back."""
-        return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
+        return read(ModelInfo, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
 
     def _pages(self, kind: type[Page], path: str) -> Iterator[Page]:
         cursor: dict[str, str] = {}
@@ -292,9 +292,9 @@ class Client:
                 return
             cursor = {"cursor": page.next}
 
-    def _wish(self, body: Mapping[str, Any], key: str | None) -> Model:
+    def _wish(self, body: Mapping[str, Any], key: str | None) -> ModelInfo:
         headers = {"Idempotency-Key": key or secrets.token_hex(16)}
-        return read(Model, self._ask("POST", "/v1/models", json=body, headers=headers).content)
+        return read(ModelInfo, self._ask("POST", "/v1/models", json=body, headers=headers).content)
 
     def _ask(self, method: str, path: str, **request: Any) -> httpx.Response:
         # A deletion that was cut off may have happened; sent again it would find nothing.
@@ -372,7 +372,7 @@ def _content(file: str | os.PathLike[str] | bytes) -> bytes:
     return file if isinstance(file, bytes) else Path(file).read_bytes()
 
 
-def _id(thing: Photo | Model | str) -> str:
+def _id(thing: PhotoInfo | ModelInfo | str) -> str:
     return quote(thing if isinstance(thing, str) else thing.id, safe="")
 
 
@@ -384,7 +384,7 @@ def _left(deadline: float) -> float:
     return left
 
 
-def _tell(model: Model, shown: Model | None, on_progress: Callable[[Model], None] | None) -> Model:
+def _tell(model: ModelInfo, shown: ModelInfo | None, on_progress: Callable[[ModelInfo], None] | None) -> ModelInfo:
     if on_progress is not None and model != shown:
         on_progress(model)
     return model

@@ -11,7 +11,7 @@ from tests.rows import add_model
 from treestroke.core.errors import StrokesError
 from treestroke.service import models, photos
 from treestroke.service.engine import engine
-from treestroke.service.model_request import Wish
+from treestroke.service.model_request import ModelOrder
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.store.blobs import Damaged
@@ -20,8 +20,8 @@ from treestroke.store.leases import claim, succeed
 from treestroke.store.tables import ModelRow, PhotoRow
 
 
-def wish(shelf: Shelf, photo: str, **others: Any) -> Wish:
-    return models.read_wish(shelf, json.dumps(drawn.wish(photo, **others)).encode())
+def wish(shelf: Shelf, photo: str, **others: Any) -> ModelOrder:
+    return models.read_order(shelf, json.dumps(drawn.wish(photo, **others)).encode())
 
 
 def finished(shelf: Shelf, id: str, glb: bytes, by: str = "") -> None:
@@ -102,7 +102,7 @@ def test_a_photo_that_came_along_is_kept_with_its_model_alone(shelf: Shelf) -> N
     assert photos.get_photo(shelf, seen.row.photo)
     models.ask_for_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
     beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
-    bad = models.read_fields(shelf, {"strokes": json.dumps(beside).encode()})
+    bad = models.read_form(shelf, {"strokes": json.dumps(beside).encode()})
     with pytest.raises(StrokesError):
         models.ask_for_model(shelf, bad, None, photos.take_in(shelf, drawn.encoded()))
     assert (count(shelf, PhotoRow), count(shelf, ModelRow)) == (1, 1)
@@ -120,15 +120,15 @@ def test_a_key_that_outlived_its_model_gives_a_new_one(shelf: Shelf) -> None:
 
 def test_a_model_of_sketches_needs_no_photo_and_is_known_again(shelf: Shelf) -> None:
     asked = json.dumps(sketched.wish(seed=3)).encode()
-    first = models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row
+    first = models.ask_for_model(shelf, models.read_order(shelf, asked), "key").row
     assert (first.photo, first.photo_blob, first.strokes_blob) == (None, None, None)
     assert list(first.drawings) == ["front.json", "side.json"]
-    assert models.ask_for_model(shelf, models.read_wish(shelf, asked), "key").row.id == first.id
+    assert models.ask_for_model(shelf, models.read_order(shelf, asked), "key").row.id == first.id
     finished(shelf, first.id, b"tree")
-    assert models.ask_for_model(shelf, models.read_wish(shelf, asked), None).row.status == "succeeded"
+    assert models.ask_for_model(shelf, models.read_order(shelf, asked), None).row.status == "succeeded"
     exchanged = {"front": sketched.SIDE, "side": sketched.FRONT}
     for change in ({"seed": 4}, {"sketches": exchanged}, {"sketches": {"front": sketched.FRONT}}):
-        other = models.read_wish(shelf, json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
+        other = models.read_order(shelf, json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
         assert models.ask_for_model(shelf, other, None).row.status == "queued"
         with pytest.raises(KeyReused):
             models.ask_for_model(shelf, other, "key")

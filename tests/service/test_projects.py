@@ -46,7 +46,7 @@ def model_of(shelf: Shelf, content: bytes, **values: object) -> ModelRow:
 
 def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: Projects) -> None:
     photo = photos.add_photo(shelf, drawn.encoded())
-    asked = models.read_wish(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
+    asked = models.read_order(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
     row = models.ask_for_model(shelf, asked, None).row
     project = project_of(projects, row)
     assert project.photo == shelf.blobs.get(photo.blob)
@@ -57,7 +57,7 @@ def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: P
 def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projects: Projects) -> None:
     sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
     fruit = base64.b64encode(sketched.berry()).decode()
-    asked = models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
+    asked = models.read_order(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
     row = models.ask_for_model(shelf, asked, None).row
     assert list(row.drawings) == ["front.json", "side.png"]
     project = project_of(projects, row)

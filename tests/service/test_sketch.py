@@ -7,7 +7,8 @@ from tests.api import drawn, sketched
 from treestroke.core.errors import SettingsError, StrokesError
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.making import Model
-from treestroke.service.sketch import sketch, trace_sketches
+from treestroke.service.sketch import sketch
+from treestroke.service.trace import trace_sketches
 
 QUICK = drawn.QUICK
 

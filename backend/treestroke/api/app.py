@@ -20,7 +20,7 @@ from treestroke.api.routes.page import add_page
 from treestroke.codec.image import MAX_BYTES
 from treestroke.codec.project import MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_hint
-from treestroke.schemas import ModelRequest, Problem, Rename, SketchTraceRequest, TraceRequest
+from treestroke.schemas import Problem
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.pool import Tracers
@@ -30,6 +30,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.folder import own_folder
 from treestroke.store.versions import check_version
+from treestroke.wire_requests import ModelRequest, Rename, SketchTraceRequest, TraceRequest
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500

@@ -22,7 +22,7 @@ from treestroke.service.failures import code_of, problem_of
 from treestroke.service.models import KeyReused
 from treestroke.service.photos import NotFound
 from treestroke.service.pool import CannotStart, Crashed, Overloaded
-from treestroke.service.tracing import NoRoom
+from treestroke.service.tracer import NoRoom
 from treestroke.store.blobs import Damaged
 
 MEDIA_TYPE = "application/problem+json"

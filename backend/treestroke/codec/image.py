@@ -17,6 +17,7 @@ from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
+from treestroke.limits import MAX_LEAF_BYTES
 
 Warn = Callable[[StrokeWarning], object]
 """Called with each thing about a photo that was mended in reading it."""
@@ -30,7 +31,6 @@ MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
 PHOTO_HEAD = 24
 """First bytes of a photo that `most_stored_bytes` looks at."""
 
-MAX_LEAF_BYTES = 4_000_000
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 MAX_LOST = 0.002
 """Share of a photo's pixels that a file cut short may lack: less than half a row of blocks of 3000 rows of pixels."""

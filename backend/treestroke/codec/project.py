@@ -11,12 +11,12 @@ from pathlib import PurePosixPath
 from typing import Any, BinaryIO, cast
 
 from treestroke.codec.archive import zip_into
-from treestroke.codec.image import MAX_LEAF_BYTES, MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
+from treestroke.codec.image import MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
 from treestroke.codec.json_text import read_json
 from treestroke.codec.photo_kinds import ending_of
-from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.errors import SettingsError, TreestrokeError
 from treestroke.core.stroke_rules import Place
+from treestroke.limits import MAX_LEAF_BYTES, MAX_SKETCH_BYTES
 
 MAX_TEXT_BYTES = 64_000_000
 """More than the longest strokes that are allowed ever need; of all texts of a project together."""

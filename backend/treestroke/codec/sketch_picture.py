@@ -15,11 +15,11 @@ from treestroke.codec.image import MAX_PIXELS, MAX_SIDE
 from treestroke.core.errors import StrokesError
 from treestroke.core.strokes import Sketch, Stroke
 from treestroke.core.types import Floats, Mask
+from treestroke.limits import MAX_SKETCH_BYTES
 
 Marks = NDArray[np.uint8]
 
 PNG = b"\x89PNG\r\n\x1a\n"
-MAX_SKETCH_BYTES = 25_000_000
 MIN_SIDE = 16
 OPAQUE = 128
 LEAST_CONTRAST = 48

@@ -10,7 +10,6 @@ import numpy as np
 
 from treestroke.codec.image import (
     MAX_BYTES,
-    MAX_LEAF_BYTES,
     Warn,
     check_size,
     decode_fruit,
@@ -26,6 +25,7 @@ from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import Sketch, Strokes
 from treestroke.core.types import Picture
+from treestroke.limits import MAX_LEAF_BYTES
 
 PhotoLike = str | os.PathLike[str] | bytes | Picture
 StrokesLike = str | os.PathLike[str] | bytes | Mapping[str, Any] | Strokes

@@ -13,9 +13,9 @@ from sqlalchemy.orm import Session
 
 from treestroke.codec.image import StoredPhoto
 from treestroke.codec.project import VIEWS, Project, sketch_ending
-from treestroke.service import model_request, tracing
+from treestroke.service import model_request, tracer
 from treestroke.service.engine import engine
-from treestroke.service.model_request import Wish, check_name
+from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.store import leases, queries
 from treestroke.store.blobs import Blobs, Damaged
@@ -53,7 +53,7 @@ class Seen:
         return Mark(self.row.seq, self.queue_position, self.eta_s)
 
 
-def read_wish(shelf: Shelf, body: bytes) -> Wish:
+def read_order(shelf: Shelf, body: bytes) -> ModelOrder:
     """Read a request for a model, in a tracing process since it may be large or hostile.
 
     Raises
@@ -61,21 +61,21 @@ def read_wish(shelf: Shelf, body: bytes) -> Wish:
     TreestrokeError
         It is no such request.
     """
-    return shelf.tracers("", model_request.read_wish, body)
+    return shelf.tracers("", model_request.read_order, body)
 
 
-def read_fields(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> Wish:
-    """Read a request for a model from a form's fields but the photo, as `read_wish` does.
+def read_form(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> ModelOrder:
+    """Read a request for a model from a form's fields but the photo, as `read_order` does.
 
     Raises
     ------
     TreestrokeError
         It is no such request.
     """
-    return shelf.tracers("", model_request.read_fields, fields, brings_photo)
+    return shelf.tracers("", model_request.read_form, fields, brings_photo)
 
 
-def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: PhotoRow | None = None) -> Seen:
+def ask_for_model(shelf: Shelf, order: ModelOrder, key: str | None, brought: PhotoRow | None = None) -> Seen:
     """Accept a model: checked, stored and queued, or answered from the one that was made of the same input.
 
     ``key`` is the Idempotency-Key: with the same request it gives the model that it gave first. A photo that the
@@ -90,13 +90,13 @@ def ask_for_model(shelf: Shelf, wish: Wish, key: str | None, brought: PhotoRow |
     OSError
         The disk is full.
     """
-    photo = brought or (None if wish.photo is None else _photo_for(shelf, wish.photo, key))
+    photo = brought or (None if order.photo is None else _photo_for(shelf, order.photo, key))
     blob = None if photo is None else photo.blob
     place = None if blob is None else shelf.blobs.path(blob)
-    shelf.tracers(blob or "", tracing.check_wish, place, wish.parts, wish.within)
-    parts = {part: shelf.blobs.put(content) for part, content in wish.parts.items()}
-    row = _new_row(photo, wish, parts)
-    used = _digest([row.fingerprint, wish.name, None if photo is None else photo.sha256])
+    shelf.tracers(blob or "", tracer.check_drawing, place, order.drawing, order.within)
+    parts = {part: shelf.blobs.put(content) for part, content in order.parts.items()}
+    row = _new_row(photo, order, parts)
+    used = _digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
     twin = _twin(shelf, row)
     with shelf.database.writing() as session:
         first = session.get(Replay, key) if key else None
@@ -155,7 +155,6 @@ def rename(database: Database, id: str, name: str) -> Seen:
     NotFound, TreestrokeError
         There is no such model, or the name cannot be used.
     """
-    check_name(name)
     with database.writing() as session:
         _found(session, id)
         session.execute(update(ModelRow).where(ModelRow.id == id).values(name=name, seq=ModelRow.seq + 1))
@@ -252,20 +251,20 @@ def _waits(session: Session, rows: Sequence[Any]) -> dict[int, tuple[int | None,
     return waits
 
 
-def _new_row(photo: PhotoRow | None, wish: Wish, parts: Mapping[str, str]) -> ModelRow:
+def _new_row(photo: PhotoRow | None, order: ModelOrder, parts: Mapping[str, str]) -> ModelRow:
     blob, mended = (None, []) if photo is None else (photo.blob, photo.warnings)
-    endings = {view: sketch_ending(wish.parts[view]) for view in VIEWS if view in parts}
+    endings = {view: sketch_ending(order.parts[view]) for view in VIEWS if view in parts}
     return ModelRow(
         id=queries.new_id("mdl"),
-        name=wish.name,
+        name=order.name,
         photo=None if photo is None else photo.id,
         photo_blob=blob,
         **{f"{part}_blob": blob for part, blob in parts.items()},
         **{f"{view}_ending": ending for view, ending in endings.items()},
-        settings=wish.settings,
-        seed=wish.seed,
+        settings=order.settings,
+        seed=order.seed,
         engine=engine(),
-        fingerprint=_digest([blob, parts, wish.settings, wish.seed, *mended]),
+        fingerprint=_digest([blob, parts, order.settings, order.seed, *mended]),
         status="queued",
         phase_fraction=0.0,
         progress=0.0,

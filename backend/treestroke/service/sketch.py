@@ -1,19 +1,13 @@
 """Sketches of a tree's front and left side: traced, and turned into a 3D tree."""
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict
 
-import numpy as np
-
-from treestroke.codec.skeleton import plain_grown, plain_skeleton
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, unseen
-from treestroke.core.pipeline.grown_tree import GrownTree
-from treestroke.core.pipeline.settings import ModelSettings, check_seed
-from treestroke.core.pipeline.sketching import SeenSketches, grow_sketches, model_sketches, see_sketches
+from treestroke.core.pipeline.settings import check_seed
+from treestroke.core.pipeline.sketching import model_sketches, see_sketches
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
-from treestroke.core.trace.drawing import Drawing
 from treestroke.service.clock import Stopwatch
 from treestroke.service.files import check_files
 from treestroke.service.inputs import (
@@ -30,44 +24,6 @@ from treestroke.service.inputs import (
 )
 from treestroke.service.making import Model, make
 from treestroke.service.threads import one_thread
-
-
-@dataclass(frozen=True, eq=False)
-class SketchTrace:
-    """What sketches show, and the tree that default settings and seed 0 let grow of them, where it was asked for."""
-
-    seen: SeenSketches
-    grown: GrownTree | None
-
-    def answer(self) -> dict[str, Any]:
-        """Give the trace as plain values: ``front``, ``side`` and ``warnings``.
-
-        With a tree also ``grown``, ``photo`` and ``score``.
-        """
-        found = {
-            "front": _plain(self.seen.front),
-            "side": None if self.seen.side is None else _plain(self.seen.side),
-            "warnings": [asdict(warning) for warning in self.seen.warnings],
-        }
-        if self.grown is None:
-            return found
-        grown = plain_grown(self.grown.live)
-        return {**found, "grown": grown, "photo": grown["photo"], "score": self.grown.score}
-
-
-def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool = False) -> SketchTrace:
-    """Find the 2D skeletons of a front sketch and, where there is one, of a left-side sketch.
-
-    ``grow`` asks for the tree, too, that `sketch` would grow of them.
-
-    Raises
-    ------
-    StrokesError
-        A sketch cannot be used; the message says what, where and how to mend it.
-    """
-    with one_thread():
-        seen = see_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
-        return SketchTrace(seen, grow_sketches(seen, ModelSettings(), np.random.default_rng(0)) if grow else None)
 
 
 def sketch(
@@ -112,12 +68,3 @@ def sketch(
             name,
         )
     return made.with_warnings(asdict(warning) for warning in mended)
-
-
-def _plain(drawing: Drawing) -> dict[str, Any]:
-    return {
-        "skeleton": plain_skeleton(drawing.tree.skeleton, drawing.tree.branch),
-        "crown": drawing.crown.round(2).tolist(),
-        "crown_drawn": drawing.crown_drawn,
-        "size": list(drawing.size),
-    }

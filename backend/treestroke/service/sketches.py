@@ -1,6 +1,6 @@
 """Sketches, traced while they are drawn."""
 
-from treestroke.service import tracing
+from treestroke.service import tracer
 from treestroke.service.photos import Shelf
 
 
@@ -14,4 +14,4 @@ def trace_sketches(shelf: Shelf, body: bytes) -> bytes:
     Overloaded, Crashed
         The tracing processes have too much to do, or one died over this.
     """
-    return shelf.tracers("", tracing.sketch_answer, body)
+    return shelf.tracers("", tracer.sketch_answer, body)

@@ -12,7 +12,6 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
-from treestroke import schemas
 from treestroke.api.deps import (
     Cursor,
     DispatcherOf,
@@ -31,13 +30,14 @@ from treestroke.api.following import Crowded, Watcher
 from treestroke.api.views import model_view
 from treestroke.codec.photo_kinds import TAKEN
 from treestroke.codec.project import MAX_TEXT_BYTES
-from treestroke.schemas import NAME_PATTERN, Model, ModelPage
+from treestroke.schemas import ModelInfo, ModelPage
 from treestroke.service import models, photos
-from treestroke.service.model_request import MAX_NAME, Wish, read_name
+from treestroke.service.model_request import ModelOrder, read_name
 from treestroke.service.models import Seen
 from treestroke.service.photos import Shelf
 from treestroke.store.leases import TERMINAL
 from treestroke.store.tables import PhotoRow
+from treestroke.wire_requests import MODEL_EXAMPLE, FormRequest
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -51,34 +51,19 @@ _FILES = ("get_tree", "get_preview", "get_strokes", "get_sketch", "get_project",
 _CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
-_TEXT = {"type": "string"}
-_BINARY = {"type": "string", "format": "binary"}
-_SKETCH = {**_TEXT, "contentMediaType": "application/json, image/png"}
-_FIELDS = ("photo", "strokes", "front", "side", "settings", "seed", "name", "leaf", "fruit")
+_PHOTO_FIELD = {"photo": {"type": "string", "format": "binary", "description": TAKEN}}
+_FORM = FormRequest.model_json_schema()
+_FIELDS = (*_PHOTO_FIELD, *FormRequest.model_fields)
 _ASK: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "content": {
             "application/json": {
                 "schema": {"$ref": "#/components/schemas/ModelRequest"},
-                "example": schemas.MODEL_EXAMPLE,
+                "example": MODEL_EXAMPLE,
             },
             "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "properties": {
-                        "photo": {**_BINARY, "description": TAKEN},
-                        "strokes": {**_TEXT, "description": "Strokes, as JSON; with a photo"},
-                        "front": {**_SKETCH, "description": "Sketch of the front, in place of strokes: JSON or PNG"},
-                        "side": {**_SKETCH, "description": "Sketch of the left side: JSON or PNG"},
-                        "settings": {**_TEXT, "description": "ModelSettings, as JSON"},
-                        "seed": {**_TEXT, "pattern": "^[0-9]{1,18}$"},
-                        "name": {**_TEXT, "maxLength": MAX_NAME, "pattern": NAME_PATTERN},
-                        "leaf": {**_BINARY, "description": "PNG of a leaf cut out"},
-                        "fruit": {**_BINARY, "description": "PNG of a fruit cut out"},
-                    },
-                    "additionalProperties": False,
-                },
+                "schema": {**_FORM, "properties": {**_PHOTO_FIELD, **_FORM["properties"]}},
                 "example": {
                     "photo": "(the file's bytes)",
                     "strokes": json.dumps(STROKES_EXAMPLE),
@@ -105,9 +90,9 @@ _RENAME: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class _Request:
-    """What is wished for, and the photo that came along."""
+    """The model that is asked for, and the photo that came along."""
 
-    wish: Wish
+    order: ModelOrder
     photo: PhotoRow | None = None
 
 
@@ -115,7 +100,7 @@ async def _request(request: Request, shelf: ShelfOf) -> _Request:
     """Read a request for a model: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return _Request(await run_in_threadpool(models.read_wish, shelf, await request.body()))
+        return _Request(await run_in_threadpool(models.read_order, shelf, await request.body()))
     if kind != "multipart/form-data":
         raise HTTPException(415, "send application/json, or a form with photo and strokes, or front and side")
     most = len(_FIELDS)
@@ -132,9 +117,9 @@ async def _request(request: Request, shelf: ShelfOf) -> _Request:
 
 def _take_in(shelf: Shelf, photo: bytes | None, texts: dict[str, bytes]) -> _Request:
     if photo is None:
-        return _Request(models.read_fields(shelf, texts, brings_photo=False))
+        return _Request(models.read_form(shelf, texts, brings_photo=False))
     check_length(photo)
-    return _Request(models.read_fields(shelf, texts), photos.take_in(shelf, photo))
+    return _Request(models.read_form(shelf, texts), photos.take_in(shelf, photo))
 
 
 async def _text(field: UploadFile | str) -> bytes:
@@ -144,10 +129,10 @@ async def _text(field: UploadFile | str) -> bytes:
 @router.post(
     "",
     status_code=202,
-    response_model=Model,
+    response_model=ModelInfo,
     responses={
-        200: {"model": Model, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
-        202: {"model": Model, "headers": _LOCATION, "links": _LINKS},
+        200: {"model": ModelInfo, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
+        202: {"model": ModelInfo, "headers": _LOCATION, "links": _LINKS},
         **documented(400, 403, 404, 408, 413, 415, 422, 500, 503, 507),
     },
     openapi_extra=_ASK,
@@ -161,7 +146,7 @@ async def ask_for_model(
     prefer: Annotated[str | None, Header(description="wait=SECONDS answers when the model is finished")] = None,
 ) -> Response:
     """Ask for a tree: always a new model, finished at once where the same was made before."""
-    seen = await run_in_threadpool(models.ask_for_model, shelf, request.wish, idempotency_key, request.photo)
+    seen = await run_in_threadpool(models.ask_for_model, shelf, request.order, idempotency_key, request.photo)
     dispatcher.wake()
     wanted = _WAIT.search(prefer or "")
     if wanted:
@@ -190,13 +175,13 @@ def list_models(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> Mod
 
 
 @router.get("/{id}", responses=documented(403, 404))
-def get_model(shelf: ShelfOf, id: ModelId) -> Model:
+def get_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
     """Look a model up."""
     return model_view(models.see(shelf.database, id))
 
 
 @router.patch("/{id}", responses=documented(400, 403, 404, 408, 413, 415, 422, 507), openapi_extra=_RENAME)
-def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> Model:
+def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> ModelInfo:
     """Name a model."""
     return model_view(models.rename(shelf.database, id, read_name(body)))
 
@@ -208,12 +193,12 @@ def delete_model(shelf: ShelfOf, id: ModelId) -> None:
 
 
 @router.post("/{id}/restore", responses=documented(403, 404, 507))
-def restore_model(shelf: ShelfOf, id: ModelId) -> Model:
+def restore_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
     """Take a deletion back."""
     return model_view(models.restore(shelf.database, id))
 
 
 @router.post("/{id}/cancel", responses=documented(403, 404, 507))
-def cancel_model(shelf: ShelfOf, id: ModelId) -> Model:
+def cancel_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
     """Stop a model that is not finished; a finished one stays as it is."""
     return model_view(models.cancel(shelf.database, id))

@@ -11,7 +11,7 @@ from treestroke.api.errors import documented
 from treestroke.api.sending import file_answers, send_blob
 from treestroke.api.views import photo_view
 from treestroke.codec.photo_kinds import MEDIA_TYPES
-from treestroke.schemas import Photo, PhotoPage, TraceAnswer
+from treestroke.schemas import PhotoInfo, PhotoPage, TraceAnswer
 from treestroke.service import photos
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
@@ -69,7 +69,7 @@ async def _photo_bytes(request: Request) -> bytes:
     status_code=201,
     responses={
         201: {
-            "model": Photo,
+            "model": PhotoInfo,
             "headers": {"Location": _LOCATION},
             "links": leads_to("get_photo", "get_image", "trace_photo", "delete_photo"),
         },
@@ -77,7 +77,7 @@ async def _photo_bytes(request: Request) -> bytes:
     },
     openapi_extra=_UPLOAD,
 )
-def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> Photo:
+def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> PhotoInfo:
     """Upload a photo: JPEG, PNG, WebP, HEIC, AVIF or TIFF, one frame."""
     check_length(content)
     row = photos.add_photo(shelf, content)
@@ -93,7 +93,7 @@ def list_photos(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> Pho
 
 
 @router.get("/{id}", responses=documented(403, 404))
-def get_photo(shelf: ShelfOf, id: PhotoId) -> Photo:
+def get_photo(shelf: ShelfOf, id: PhotoId) -> PhotoInfo:
     """Look a photo up."""
     return photo_view(photos.get_photo(shelf, id))
 

@@ -8,17 +8,15 @@ from treestroke import __version__
 from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf, WatcherOf
 from treestroke.api.errors import documented
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
-from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
+from treestroke.codec.image import MAX_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.codec.project import MAX_TEXT_BYTES
-from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
-from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
+from treestroke.limits import MAX_LEAF_BYTES, MAX_NAME, MAX_POINTS, MAX_SKETCH_BYTES, MAX_STROKES
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
 from treestroke.service.engine import engine
 from treestroke.service.files import files_on_offer
-from treestroke.service.model_request import MAX_NAME
 
 router = APIRouter(tags=["service"])
 

@@ -1,0 +1,18 @@
+import type { Settings } from '../state'
+
+/** Written by `make types` from the API's document. */
+export const DEFAULT_SETTINGS: Settings = {
+  height: 10,
+  library: 'auto',
+  iterations: 300,
+  variants: 1,
+  species: 'auto',
+  season: 'photo',
+  foliage: 'auto',
+  leaf_size: 1,
+  leaf_density: 1,
+  wind: 'none',
+  lod: 'none',
+  compress: false,
+  files: [],
+}
