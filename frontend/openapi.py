@@ -23,9 +23,9 @@ def defaults(document: dict[str, Any]) -> str:
     settings = document["components"]["schemas"]["ModelSettings"]["properties"]
     lines = [f"  {name}: {_written(setting['default'])},\n" for name, setting in settings.items()]
     return (
-        "import type { Settings } from '../state'\n\n"
+        "import type { components } from './schema'\n\n"
         "/** Written by `make types` from the API's document. */\n"
-        f"export const DEFAULT_SETTINGS: Settings = {{\n{''.join(lines)}}}\n"
+        f"export const DEFAULT_SETTINGS: Required<components['schemas']['ModelSettings']> = {{\n{''.join(lines)}}}\n"
     )
 
 

@@ -1,7 +1,7 @@
-import type { Settings } from '../state'
+import type { components } from './schema'
 
 /** Written by `make types` from the API's document. */
-export const DEFAULT_SETTINGS: Settings = {
+export const DEFAULT_SETTINGS: Required<components['schemas']['ModelSettings']> = {
   height: 10,
   library: 'auto',
   iterations: 300,
