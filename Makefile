@@ -10,6 +10,7 @@ PAGE := backend/treestroke/api/page
 PAGE_SOURCES := $(shell find frontend examples -type f -not -path '*/node_modules/*' -not -path 'frontend/test/*')
 PAGE_STAMP := $(PAGE)/.built-$(shell sha256sum $(PAGE_SOURCES) | sort | sha256sum | cut -c1-16)
 SCHEMA := frontend/src/api/schema.d.ts
+DEFAULTS := frontend/src/api/defaults.ts
 PYTEST = $(BIN)/python -m pytest -q --ignore=tests/benchmarks -p no:benchmark
 EXAMPLE ?= burr_oak_dusk
 PORT ?= 8000
@@ -57,12 +58,15 @@ check: $(STAMP) $(NODE_STAMP)
 	cd frontend && node_modules/.bin/tsc
 	cd frontend && node_modules/.bin/biome ci .
 	@$(schema) | cmp -s - $(SCHEMA) || { echo "make: $(SCHEMA) is not what the API says; run \`make types\`" >&2; exit 1; }
+	@$(defaults) | cmp -s - $(DEFAULTS) || { echo "make: $(DEFAULTS) is not what the API says; run \`make types\`" >&2; exit 1; }
 
-# What the API takes and gives, as types for the page.
+# What the API takes and gives, as types for the page, and its default settings.
 types: $(STAMP) $(NODE_STAMP)
 	@$(schema) > $(SCHEMA).new && mv $(SCHEMA).new $(SCHEMA)
+	@$(defaults) > $(DEFAULTS).new && mv $(DEFAULTS).new $(DEFAULTS)
 
 schema = $(BIN)/python frontend/openapi.py | $(NODE)/.bin/openapi-typescript
+defaults = $(BIN)/python frontend/openapi.py defaults
 
 bench: $(STAMP) page
 	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \

@@ -19,7 +19,7 @@ from tests.running import BACKEND, serving
 
 from treestroke import client as client_module
 from treestroke.client import Client, ServiceError
-from treestroke.schemas import Model, Photo
+from treestroke.schemas import ModelInfo, PhotoInfo
 from treestroke.wire_strokes import Sketch, Strokes
 
 DATA = Path(__file__).parent / "data"
@@ -41,12 +41,12 @@ def client(address: str) -> Iterator[Client]:
 
 
 @pytest.fixture(scope="module")
-def photo(client: Client) -> Photo:
+def photo(client: Client) -> PhotoInfo:
     return client.upload(PHOTO)
 
 
 @pytest.fixture(scope="module")
-def tree(client: Client, photo: Photo) -> Model:
+def tree(client: Client, photo: PhotoInfo) -> ModelInfo:
     return client.wait(client.grow(photo, STROKES, QUICK, name="Elm"), timeout=120)
 
 
@@ -121,7 +121,7 @@ def breaking(times: int, after: int, path: bytes) -> Callable[[bytes], int]:
     return cut
 
 
-def test_a_photo_is_uploaded_from_a_path_and_from_bytes(client: Client, photo: Photo) -> None:
+def test_a_photo_is_uploaded_from_a_path_and_from_bytes(client: Client, photo: PhotoInfo) -> None:
     again = client.upload(PHOTO.read_bytes())
     assert (again.width, again.height) == (photo.width, photo.height) == (450, 600)
     assert again.sha256 == photo.sha256 == hashlib.sha256(PHOTO.read_bytes()).hexdigest()
@@ -130,7 +130,7 @@ def test_a_photo_is_uploaded_from_a_path_and_from_bytes(client: Client, photo: P
         client.photo(again)
 
 
-def test_photos_are_given_over_pages(client: Client, photo: Photo) -> None:
+def test_photos_are_given_over_pages(client: Client, photo: PhotoInfo) -> None:
     added = [client.upload(drawn.encoded()) for _ in range(25)]
     given = list(client.photos())
     assert given[:25] == added[::-1]
@@ -139,7 +139,7 @@ def test_photos_are_given_over_pages(client: Client, photo: Photo) -> None:
         client.delete_photo(one)
 
 
-def test_strokes_are_a_path_a_mapping_or_values(client: Client, photo: Photo) -> None:
+def test_strokes_are_a_path_a_mapping_or_values(client: Client, photo: PhotoInfo) -> None:
     plain = json.loads(STROKES.read_text())
     found = [client.trace(photo, strokes, rev=7) for strokes in (STROKES, plain, Strokes.model_validate(plain))]
     assert found[0] == found[1] == found[2]
@@ -147,13 +147,13 @@ def test_strokes_are_a_path_a_mapping_or_values(client: Client, photo: Photo) ->
     assert found[0].grown is None
 
 
-def test_a_trace_grows_the_whole_skeleton(client: Client, photo: Photo) -> None:
+def test_a_trace_grows_the_whole_skeleton(client: Client, photo: PhotoInfo) -> None:
     found = client.trace(photo, STROKES, grow=True)
     assert found.grown is not None
     assert len(found.grown.points) > len(found.skeleton.points) > 0
 
 
-def test_a_tree_is_followed_to_its_end(client: Client, photo: Photo) -> None:
+def test_a_tree_is_followed_to_its_end(client: Client, photo: PhotoInfo) -> None:
     seen, previews = [], []
     model = client.grow(photo, STROKES, QUICK, seed=1)
     ended = client.wait(model, timeout=120, on_progress=seen.append, on_preview=previews.append)
@@ -163,18 +163,18 @@ def test_a_tree_is_followed_to_its_end(client: Client, photo: Photo) -> None:
     assert seen[-1] == ended
 
 
-def test_waiting_for_what_is_finished_ends_at_once(client: Client, tree: Model) -> None:
+def test_waiting_for_what_is_finished_ends_at_once(client: Client, tree: ModelInfo) -> None:
     assert client.wait(tree.id, timeout=5) == client.model(tree)
 
 
-def test_a_file_arrives_whole(client: Client, tree: Model, tmp_path: Path) -> None:
+def test_a_file_arrives_whole(client: Client, tree: ModelInfo, tmp_path: Path) -> None:
     place = client.download(tree, tmp_path / "elm.glb")
     client.download(tree, tmp_path / "elm.png", "preview.png")
     assert place.read_bytes()[:4] == b"glTF"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["elm.glb", "elm.png"]
 
 
-def test_a_file_that_there_is_not_leaves_nothing(client: Client, tree: Model, tmp_path: Path) -> None:
+def test_a_file_that_there_is_not_leaves_nothing(client: Client, tree: ModelInfo, tmp_path: Path) -> None:
     (tmp_path / "elm.glb").write_bytes(b"older")
     with pytest.raises(ServiceError) as caught:
         client.download(tree, tmp_path / "elm.glb", "leaf.glb")
@@ -182,7 +182,7 @@ def test_a_file_that_there_is_not_leaves_nothing(client: Client, tree: Model, tm
     assert [path.read_bytes() for path in tmp_path.iterdir()] == [b"older"]
 
 
-def test_a_model_is_named_deleted_and_restored(client: Client, tree: Model) -> None:
+def test_a_model_is_named_deleted_and_restored(client: Client, tree: ModelInfo) -> None:
     assert client.rename(tree, "Old elm").name == "Old elm"
     client.delete(tree)
     with pytest.raises(ServiceError) as caught:
@@ -191,38 +191,38 @@ def test_a_model_is_named_deleted_and_restored(client: Client, tree: Model) -> N
     assert client.restore(tree).name == "Old elm"
 
 
-def test_a_model_is_canceled(client: Client, photo: Photo) -> None:
+def test_a_model_is_canceled(client: Client, photo: PhotoInfo) -> None:
     model = client.grow(photo, STROKES, {"iterations": 2000}, seed=2)
     client.cancel(model)
     assert client.wait(model, timeout=60).status == "canceled"
 
 
-def test_models_are_given_over_pages(client: Client, photo: Photo, tree: Model) -> None:
+def test_models_are_given_over_pages(client: Client, photo: PhotoInfo, tree: ModelInfo) -> None:
     asked = [client.grow(photo, STROKES, tree.settings, name=f"page {number}").id for number in range(25)]
     given = [model.id for model in client.models()]
     assert given[:25] == asked[::-1]
     assert len(set(given)) == len(given) > 25
 
 
-def test_what_is_refused_names_the_field(client: Client, photo: Photo) -> None:
+def test_what_is_refused_names_the_field(client: Client, photo: PhotoInfo) -> None:
     with pytest.raises(ServiceError) as caught:
         client.grow(photo, {"crown": {"points": [[10, 10], [200, 10], [200, 200]]}})
     assert (caught.value.status, caught.value.code) == (422, "trunk_missing")
     assert [fault.pointer for fault in caught.value.errors] == ["/strokes/branches"]
 
 
-def test_a_request_that_is_cut_off_makes_one_model(address: str, photo: Photo) -> None:
+def test_a_request_that_is_cut_off_makes_one_model(address: str, photo: PhotoInfo) -> None:
     with through(address, breaking(2, 0, b"/v1/models")) as place, Client(place) as client:
         made = client.grow(photo, STROKES, QUICK, name="cut off")
         assert [model.id for model in client.models() if model.name == "cut off"] == [made.id]
 
 
-def test_one_key_gives_one_model(client: Client, photo: Photo) -> None:
+def test_one_key_gives_one_model(client: Client, photo: PhotoInfo) -> None:
     first, second = (client.grow(photo, STROKES, QUICK, idempotency_key="elm-1") for _ in range(2))
     assert first.id == second.id
 
 
-def test_a_stream_that_breaks_is_taken_up_again(address: str, photo: Photo) -> None:
+def test_a_stream_that_breaks_is_taken_up_again(address: str, photo: PhotoInfo) -> None:
     previews: list[object] = []
     with through(address, breaking(4, 3000, b"/events")) as place, Client(place) as client:
         model = client.grow(photo, STROKES, QUICK, seed=3)
@@ -230,12 +230,12 @@ def test_a_stream_that_breaks_is_taken_up_again(address: str, photo: Photo) -> N
     assert len(previews) <= 1
 
 
-def test_without_a_stream_a_model_is_looked_up(address: str, photo: Photo) -> None:
+def test_without_a_stream_a_model_is_looked_up(address: str, photo: PhotoInfo) -> None:
     with through(address, breaking(WHOLE, 0, b"/events")) as place, Client(place) as client:
         assert client.wait(client.grow(photo, STROKES, QUICK, seed=4), timeout=120).status == "succeeded"
 
 
-def test_a_download_that_breaks_is_made_again(address: str, tree: Model, tmp_path: Path) -> None:
+def test_a_download_that_breaks_is_made_again(address: str, tree: ModelInfo, tmp_path: Path) -> None:
     with through(address, breaking(1, 50_000, b"/tree.glb")) as place, Client(place) as client:
         whole = client.download(tree, tmp_path / "elm.glb").read_bytes()
     assert len(whole) == int.from_bytes(whole[8:12], "little")
@@ -266,14 +266,14 @@ def test_sketches_are_traced(client: Client) -> None:
     assert caught.value.errors[0].pointer == "/front/branches"
 
 
-def test_a_photo_is_given_a_side_or_lends_its_colours(client: Client, photo: Photo) -> None:
+def test_a_photo_is_given_a_side_or_lends_its_colours(client: Client, photo: PhotoInfo) -> None:
     mixed = client.wait(client.grow(photo, STROKES, QUICK, side=sketched.SIDE), timeout=120)
     assert {"strokes.json", "side.json"} <= set(mixed.files)
     over = client.wait(client.grow_sketches(sketched.FRONT, settings=QUICK, photo=photo), timeout=120)
     assert (over.status, over.photo) == ("succeeded", photo.id)
 
 
-def test_waiting_ends_in_time(client: Client, photo: Photo) -> None:
+def test_waiting_ends_in_time(client: Client, photo: PhotoInfo) -> None:
     model = client.grow(photo, STROKES, {"iterations": 2000, "leaf_density": 3}, seed=5)
     with pytest.raises(TimeoutError, match="not finished yet"):
         client.wait(model, timeout=0.3)
@@ -289,14 +289,14 @@ def test_a_service_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -
     assert (caught.value.status, caught.value.code) == (0, "unreachable")
 
 
-def test_a_busy_service_is_asked_again(tree: Model) -> None:
+def test_a_busy_service_is_asked_again(tree: ModelInfo) -> None:
     busy = json.dumps({"type": "", "title": "", "status": 503, "code": "overloaded", "detail": "busy"}).encode()
     model = tree.model_dump_json().encode()
     with saying((503, {"Retry-After": "1"}, busy), (200, {}, model)) as place, Client(place) as client:
         assert client.model(tree) == tree
 
 
-def test_what_a_newer_service_adds_is_left_out(tree: Model) -> None:
+def test_what_a_newer_service_adds_is_left_out(tree: ModelInfo) -> None:
     newer = json.dumps({**tree.model_dump(), "mood": "calm"}).encode()
     with saying((200, {}, newer)) as place, Client(place) as client:
         assert client.model(tree) == tree
@@ -318,7 +318,7 @@ def test_a_damaged_file_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Pa
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_option_that_there_is_not_is_the_programmer_s_mistake(client: Client, photo: Photo) -> None:
+def test_an_option_that_there_is_not_is_the_programmer_s_mistake(client: Client, photo: PhotoInfo) -> None:
     with pytest.raises(TypeError, match="colour"):
         client.grow(photo, STROKES, QUICK, colour="red")
     with pytest.raises(TypeError, match="bark"):

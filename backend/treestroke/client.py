@@ -17,7 +17,7 @@ from urllib.parse import quote
 import httpx
 
 from treestroke.responses import Again, Event, ServiceError, checked, events_of, read, unreachable
-from treestroke.schemas import GrownSkeleton, Model, ModelPage, Photo, PhotoPage, SketchTraceAnswer, TraceAnswer
+from treestroke.schemas import GrownSkeleton, ModelInfo, ModelPage, PhotoInfo, PhotoPage, SketchTraceAnswer, TraceAnswer
 from treestroke.wire_strokes import Sketch, Strokes
 
 __all__ = [
@@ -80,7 +80,7 @@ class PhotoOptions(TreeOptions, total=False):
 class SketchOptions(TreeOptions, total=False):
     """Options of `Client.grow_sketches`: also the ``photo`` that the front was drawn over, which gives the colours."""
 
-    photo: Photo | str | None
+    photo: PhotoInfo | str | None
 
 
 class Client:
@@ -112,7 +112,7 @@ class Client:
         """Close the connection."""
         self._http.close()
 
-    def upload(self, photo: str | os.PathLike[str] | bytes) -> Photo:
+    def upload(self, photo: str | os.PathLike[str] | bytes) -> PhotoInfo:
         """Upload a photo: a path, or encoded bytes (JPEG, PNG, WebP, HEIC, AVIF or TIFF).
 
         Raises
@@ -124,24 +124,24 @@ class Client:
         """
         content = _content(photo)
         headers = {"Content-Type": "application/octet-stream"}
-        return read(Photo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
+        return read(PhotoInfo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
 
-    def photo(self, photo: Photo | str) -> Photo:
+    def photo(self, photo: PhotoInfo | str) -> PhotoInfo:
         """Return a photo."""
-        return read(Photo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
+        return read(PhotoInfo, self._ask("GET", f"/v1/photos/{_id(photo)}").content)
 
-    def photos(self) -> Iterator[Photo]:
+    def photos(self) -> Iterator[PhotoInfo]:
         """Yield all photos, newest first; pages are requested as they are needed."""
         for page in self._pages(PhotoPage, "/v1/photos"):
             yield from page.photos
 
-    def delete_photo(self, photo: Photo | str) -> None:
+    def delete_photo(self, photo: PhotoInfo | str) -> None:
         """Delete a photo; models that were made of it keep their own copy."""
         self._ask("DELETE", f"/v1/photos/{_id(photo)}")
 
     def trace(
         self,
-        photo: Photo | str,
+        photo: PhotoInfo | str,
         strokes: StrokesLike,
         rev: int | None = None,
         grow: bool = False,
@@ -175,12 +175,12 @@ class Client:
 
     def grow(
         self,
-        photo: Photo | str,
+        photo: PhotoInfo | str,
         strokes: StrokesLike,
         settings: Mapping[str, Any] | None = None,
         seed: int = 0,
         **options: Unpack[PhotoOptions],
-    ) -> Model:
+    ) -> ModelInfo:
         """Ask for a tree; `wait` for it. The request may be cut off and sent again: it makes one model.
 
         ``options`` are the names of `PhotoOptions`.
@@ -202,7 +202,7 @@ class Client:
         settings: Mapping[str, Any] | None = None,
         seed: int = 0,
         **options: Unpack[SketchOptions],
-    ) -> Model:
+    ) -> ModelInfo:
         """Ask for a tree from sketches of its front and, where there is one, of its left side; else as `grow`.
 
         ``options`` are the names of `SketchOptions`.
@@ -216,22 +216,22 @@ class Client:
         inputs = {"sketches": _plain_sketches(front, side), **({} if photo is None else {"photo": _id(photo)})}
         return self._ask_for_tree(inputs, settings, seed, options)
 
-    def model(self, model: Model | str) -> Model:
+    def model(self, model: ModelInfo | str) -> ModelInfo:
         """Return a model."""
-        return read(Model, self._ask("GET", f"/v1/models/{_id(model)}").content)
+        return read(ModelInfo, self._ask("GET", f"/v1/models/{_id(model)}").content)
 
-    def models(self) -> Iterator[Model]:
+    def models(self) -> Iterator[ModelInfo]:
         """Yield all models, newest first; pages are requested as they are needed."""
         for page in self._pages(ModelPage, "/v1/models"):
             yield from page.models
 
     def wait(
         self,
-        model: Model | str,
+        model: ModelInfo | str,
         timeout: float | None = None,
-        on_progress: Callable[[Model], None] | None = None,
+        on_progress: Callable[[ModelInfo], None] | None = None,
         on_preview: Callable[[GrownSkeleton], None] | None = None,
-    ) -> Model:
+    ) -> ModelInfo:
         """Follow a model until it has succeeded, failed or been canceled, and return it.
 
         A stream of events that breaks is resumed; where none comes through, the model is requested now and then.
@@ -259,7 +259,7 @@ class Client:
                 for event in events:
                     last = event.id or last
                     if event.kind != "preview":
-                        shown = _tell(read(Model, event.text), shown, on_progress)
+                        shown = _tell(read(ModelInfo, event.text), shown, on_progress)
                     elif on_preview is not None:
                         on_preview(read(GrownSkeleton, event.text))
                     if shown is not None and event.kind in _ENDS:
@@ -270,7 +270,7 @@ class Client:
                 return shown
             time.sleep(min(_POLL_S, _left(deadline)))
 
-    def download(self, model: Model | str, path: str | os.PathLike[str], file: str = "tree.glb") -> Path:
+    def download(self, model: ModelInfo | str, path: str | os.PathLike[str], file: str = "tree.glb") -> Path:
         """Download one of a model's files, whole or not at all, checked against its SHA-256; return its path.
 
         Raises
@@ -289,21 +289,21 @@ class Client:
             beside.unlink(missing_ok=True)
         return place
 
-    def rename(self, model: Model | str, name: str) -> Model:
+    def rename(self, model: ModelInfo | str, name: str) -> ModelInfo:
         """Name a model."""
-        return read(Model, self._ask("PATCH", f"/v1/models/{_id(model)}", json={"name": name}).content)
+        return read(ModelInfo, self._ask("PATCH", f"/v1/models/{_id(model)}", json={"name": name}).content)
 
-    def cancel(self, model: Model | str) -> Model:
+    def cancel(self, model: ModelInfo | str) -> ModelInfo:
         """Stop a model that is not finished; a finished one stays as it is."""
-        return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
+        return read(ModelInfo, self._ask("POST", f"/v1/models/{_id(model)}/cancel").content)
 
-    def delete(self, model: Model | str) -> None:
+    def delete(self, model: ModelInfo | str) -> None:
         """Delete a model; for 24 hours `restore` undoes that."""
         self._ask("DELETE", f"/v1/models/{_id(model)}")
 
-    def restore(self, model: Model | str) -> Model:
+    def restore(self, model: ModelInfo | str) -> ModelInfo:
         """Undo a model's deletion."""
-        return read(Model, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
+        return read(ModelInfo, self._ask("POST", f"/v1/models/{_id(model)}/restore").content)
 
     def _pages(self, kind: type[Page], path: str) -> Iterator[Page]:
         cursor: dict[str, str] = {}
@@ -316,14 +316,14 @@ class Client:
 
     def _ask_for_tree(
         self, inputs: Mapping[str, Any], settings: Mapping[str, Any] | None, seed: int, options: Mapping[str, Any]
-    ) -> Model:
+    ) -> ModelInfo:
         if unknown := options.keys() - TreeOptions.__annotations__.keys():
             raise TypeError(f"there are no options {', '.join(sorted(unknown))}")
         headers = {"Idempotency-Key": options.get("idempotency_key") or secrets.token_hex(16)}
         cutouts = {part: _base64(options[part]) for part in Cutouts.__annotations__ if options.get(part) is not None}
         wanted = {"settings": dict(settings or {}), "seed": seed, "name": options.get("name", "")}
         answer = self._ask("POST", "/v1/models", json={**inputs, **cutouts, **wanted}, headers=headers)
-        return read(Model, answer.content)
+        return read(ModelInfo, answer.content)
 
     def _ask(self, method: str, path: str, **request: Any) -> httpx.Response:
         # A deletion that was cut off may have happened; sent again it would fail.
@@ -400,7 +400,7 @@ def _content(file: str | os.PathLike[str] | bytes) -> bytes:
     return file if isinstance(file, bytes) else Path(file).read_bytes()
 
 
-def _id(thing: Photo | Model | str) -> str:
+def _id(thing: PhotoInfo | ModelInfo | str) -> str:
     return quote(thing if isinstance(thing, str) else thing.id, safe="")
 
 
@@ -418,7 +418,7 @@ def _left(deadline: float) -> float:
     return left
 
 
-def _tell(model: Model, shown: Model | None, on_progress: Callable[[Model], None] | None) -> Model:
+def _tell(model: ModelInfo, shown: ModelInfo | None, on_progress: Callable[[ModelInfo], None] | None) -> ModelInfo:
     if on_progress is not None and model != shown:
         on_progress(model)
     return model

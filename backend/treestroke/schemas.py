@@ -1,84 +1,30 @@
-"""What travels over HTTP, for the service's documents and its clients."""
+"""What the service sends in its responses, for its documents and its clients."""
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, JsonValue
-from pydantic.json_schema import SkipJsonSchema
+from pydantic import BaseModel, ConfigDict, Field
 
-from treestroke.wire_strokes import (
-    STROKES_EXAMPLE,
-    PhotoFrame,
-    Point,
-    Sketch,
-    Sketches,
-    Strokes,
-    StrokeWarning,
-    Wire,
-    no_default,
-)
+from treestroke.wire_strokes import Wire
 
-Species = Literal[
-    "auto",
-    "ash",
-    "beech",
-    "birch",
-    "cherry",
-    "elm",
-    "horse_chestnut",
-    "larch",
-    "linden",
-    "locust",
-    "maple",
-    "oak",
-    "pine",
-    "plane",
-    "poplar",
-    "spruce",
-    "walnut",
-    "willow",
-]
-FurtherFile = Literal["gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv"]
+Point = tuple[float, float]
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 
-MAX_LEAF_TEXT = 5_400_000
-"""Characters of base64 that the largest picture of a leaf needs."""
-NAME_PATTERN = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]*$"
-"""A line of text: no controls, no line ends, nothing that turns the direction of what follows it."""
-SKETCHES_EXAMPLE: dict[str, JsonValue] = {
-    "front": {"branches": [{"points": [[200, 390], [198, 250], [203, 60]]}, {"points": [[199, 260], [290, 140]]}]},
-    "side": {"branches": [{"points": [[200, 390], [202, 240], [200, 60]]}, {"points": [[201, 270], [120, 150]]}]},
-}
-MODEL_EXAMPLE: dict[str, JsonValue] = {
-    "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
-    "strokes": STROKES_EXAMPLE,
-    "settings": {"height": 14},
-    "seed": 1,
-    "name": "The old oak",
-}
 
-_ENCODED_PNG: dict[str, JsonValue] = {
-    "contentEncoding": "base64",
-    "contentMediaType": "image/png",
-    "default": None,
-}
+class StrokeWarning(Wire):
+    """Something in the strokes, or in the photo, that was mended."""
+
+    code: str
+    stroke: str = Field(description="pointer to the stroke, such as branches/1; photo where it is the photo itself")
+    detail: str
 
 
-def _photo_id(schema: dict[str, Any]) -> None:
-    """Document a photo's id where it may be absent."""
-    no_default(schema)
-    schema["pattern"] = "^pho_[0-9a-f]{24}$"
+class PhotoFrame(Wire):
+    """Where the photo stands in the tree's world: (X, Y, Z) is pixel (root_x + X / s, root_y - Y / s)."""
 
-
-class TraceRequest(Strokes):
-    """Strokes to trace."""
-
-    model_config = ConfigDict(json_schema_extra={"example": {**STROKES_EXAMPLE, "rev": 7, "grow": False}})
-
-    rev: int | None = Field(default=None, ge=-(2**53) + 1, le=2**53 - 1, description="comes back with the answer")
-    grow: bool = Field(default=False, description="grow the whole skeleton too, without leaves")
-    side: Sketch | SkipJsonSchema[None] = Field(
-        default=None, description="the tree's left side, for the grown skeleton's depth", json_schema_extra=no_default
-    )
+    width: int
+    height: int
+    metres_per_pixel: float
+    root: Point
 
 
 class TracedSkeleton(Wire):
@@ -88,17 +34,6 @@ class TracedSkeleton(Wire):
     radii: list[float]
     parents: list[int]
     stroke: list[int]
-
-
-class SketchTraceRequest(Wire):
-    """Sketches to trace."""
-
-    model_config = ConfigDict(json_schema_extra={"example": {**SKETCHES_EXAMPLE, "rev": 7, "grow": False}})
-
-    front: Sketch
-    side: Sketch | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
-    rev: int | None = Field(default=None, ge=-(2**53) + 1, le=2**53 - 1, description="comes back with the answer")
-    grow: bool = Field(default=False, description="grow the whole skeleton too, without leaves")
 
 
 class GrownSkeleton(Wire):
@@ -143,7 +78,7 @@ class SketchTraceAnswer(Wire):
     score: dict[str, float] | None = Field(default=None, description="how the tree resembles them, with ``grown``")
 
 
-class Photo(Wire):
+class PhotoInfo(Wire):
     """A stored photo."""
 
     model_config = ConfigDict(
@@ -172,64 +107,8 @@ class Photo(Wire):
 class PhotoPage(Wire):
     """Photos, newest first; ``next`` is the cursor of the next page."""
 
-    photos: list[Photo]
+    photos: list[PhotoInfo]
     next: str | None
-
-
-class ModelSettings(Wire):
-    """Settings of a model; what is absent takes its default."""
-
-    height: float = Field(default=10, ge=0.1, le=150, description="metres, from the root to the foliage's top")
-    library: Literal["auto", "visible", "type1", "type2", "both"] = "auto"
-    iterations: int = Field(default=300, ge=0, le=2000)
-    variants: int = Field(default=1, ge=1, le=16, description="trees grown of the photo, each by the next seed")
-    species: Species = "auto"
-    season: Literal["photo", "spring", "summer", "autumn", "bare"] = "photo"
-    foliage: Literal["auto", "leaves", "needles", "bare"] = "auto"
-    leaf_size: float = Field(default=1, ge=0.3, le=3)
-    leaf_density: float = Field(default=1, ge=0, le=3)
-    wind: Literal["none", "breeze", "all"] = "none"
-    lod: Literal["none", "files", "one"] = "none"
-    compress: bool = False
-    files: list[FurtherFile] = Field(default_factory=list, description="further files")
-
-
-class ModelRequest(Wire):
-    """A tree that is wished for.
-
-    It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
-    of its left side, perhaps with the photo that they were drawn over.
-    """
-
-    model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={"example": MODEL_EXAMPLE},
-    )
-
-    photo: str | SkipJsonSchema[None] = Field(default=None, max_length=40, json_schema_extra=_photo_id)
-    strokes: Strokes | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
-    sketches: Sketches | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
-    settings: ModelSettings = ModelSettings()
-    seed: int = Field(default=0, ge=0, le=2**63 - 1)
-    name: str = Field(default="", max_length=200, json_schema_extra={"pattern": NAME_PATTERN})
-    leaf: str | SkipJsonSchema[None] = Field(
-        default=None,
-        max_length=MAX_LEAF_TEXT,
-        description="PNG of a leaf cut out, base64",
-        json_schema_extra=_ENCODED_PNG,
-    )
-    fruit: str | SkipJsonSchema[None] = Field(
-        default=None,
-        max_length=MAX_LEAF_TEXT,
-        description="PNG of a fruit cut out, base64",
-        json_schema_extra=_ENCODED_PNG,
-    )
-
-
-class Rename(Wire):
-    """A model's new name."""
-
-    name: str = Field(max_length=200, json_schema_extra={"example": "The old oak", "pattern": NAME_PATTERN})
 
 
 class Failure(Wire):
@@ -240,8 +119,8 @@ class Failure(Wire):
     retryable: bool
 
 
-class Model(Wire):
-    """A tree that is made, or waits to be."""
+class ModelInfo(Wire):
+    """A tree that was made, or waits to be made."""
 
     model_config = ConfigDict(
         json_schema_extra={
@@ -295,7 +174,7 @@ class Model(Wire):
 class ModelPage(Wire):
     """Models, newest first; ``next`` is the cursor of the next page."""
 
-    models: list[Model]
+    models: list[ModelInfo]
     next: str | None
 
 

@@ -1,14 +1,30 @@
-"""What is drawn, as it travels over HTTP: strokes over a photo, and sketches."""
+"""Strokes and sketches as JSON: the one description that requests, files and the API's document follow."""
 
-from typing import Annotated, Any
+from collections.abc import Callable, Mapping
+from types import NoneType
+from typing import Annotated, Any, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, JsonValue, RootModel
+from pydantic import (
+    AllowInfNan,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    FailFast,
+    Field,
+    JsonValue,
+    PlainSerializer,
+    RootModel,
+    Strict,
+    Tag,
+    WithJsonSchema,
+    WrapValidator,
+    model_validator,
+)
 from pydantic.json_schema import SkipJsonSchema
+from pydantic_core import PydanticCustomError
 
-Point = tuple[float, float]
+from treestroke.limits import MAX_CANVAS, MAX_POINTS, MAX_SKETCH_BYTES, MAX_STROKES, MIN_CANVAS
 
-MAX_SKETCH_TEXT = 33_333_336
-"""Characters of base64 that the largest picture of a sketch needs."""
 _CROWN: list[JsonValue] = [[210, 300], [390, 120], [610, 140], [760, 330], [700, 560], [480, 640], [270, 560]]
 STROKES_EXAMPLE: dict[str, JsonValue] = {
     "crown": {"points": _CROWN},
@@ -21,94 +37,137 @@ def no_default(schema: dict[str, Any]) -> None:
     schema.pop("default")
 
 
+def text_length(data_bytes: int) -> int:
+    """Return how many characters base64 needs for so many bytes."""
+    return 4 * -(-data_bytes // 3)
+
+
 class Wire(BaseModel):
-    """What all that travels shares: nothing but the keys that are named."""
+    """Base of everything that travels over HTTP: only the keys that are named."""
 
     model_config = ConfigDict(extra="forbid")
 
 
-class CrownStroke(Wire):
+class RequestPart(Wire):
+    """Base of everything that a request holds: the first key that is unknown or null ends the reading."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _check_keys(cls, value: object) -> object:
+        if isinstance(value, cls):
+            return value
+        allowed = ", ".join(cls.model_fields)
+        if not isinstance(value, Mapping):
+            raise PydanticCustomError("no_object", "an object with {allowed} is needed", {"allowed": allowed})
+        for key, item in value.items():
+            # The key is wrapped in a list: pydantic writes a bare one into its message, which a lone surrogate breaks.
+            if key not in cls.model_fields:
+                raise PydanticCustomError("unknown_key", "unknown key", {"key": [key], "allowed": allowed})
+            if item is None and NoneType not in get_args(cls.model_fields[key].annotation):
+                raise PydanticCustomError("null", "null", {"key": [key]})
+        return value
+
+
+def _unchanged(points: Any, check: Callable[[Any], object]) -> Any:
+    """Check points and return them as they came: a copy of two million would take 130 MB."""
+    check(points)
+    return points
+
+
+def _as_is(points: Any) -> Any:
+    return points
+
+
+Number = Annotated[float, Strict(), AllowInfNan(False)]
+Positive = Annotated[Number, Field(gt=0)]
+_PAIR = {"type": "array", "prefixItems": [{"type": "number"}, {"type": "number"}], "minItems": 2, "maxItems": 2}
+Point = Annotated[list[Number], Field(min_length=2, max_length=2), FailFast(), WithJsonSchema(_PAIR)]
+_CHECKED_ONLY = (FailFast(), WrapValidator(_unchanged), PlainSerializer(_as_is))
+CrownPoints = Annotated[list[Point], Field(min_length=3, max_length=MAX_POINTS), *_CHECKED_ONLY]
+LinePoints = Annotated[list[Point], Field(min_length=2, max_length=MAX_POINTS), *_CHECKED_ONLY]
+
+
+class CrownStroke(RequestPart):
     """A stroke around the foliage; its last point is joined to its first."""
 
-    points: list[Point] = Field(min_length=3, max_length=10_000, description="pixels of the upright photo, x and y")
+    points: CrownPoints = Field(description="pixels of the upright photo, x and y")
 
 
-class BranchStroke(Wire):
+class BranchStroke(RequestPart):
     """A stroke along a branch, from its parent outward; the first runs from the root up the trunk."""
 
-    points: list[Point] = Field(min_length=2, max_length=10_000)
-    width: float | SkipJsonSchema[None] = Field(default=None, gt=0, description="pixels", json_schema_extra=no_default)
+    points: LinePoints
+    width: Positive | SkipJsonSchema[None] = Field(default=None, description="pixels", json_schema_extra=no_default)
 
 
-class EraseStroke(Wire):
+class EraseStroke(RequestPart):
     """A stroke across traced branches that are to go."""
 
-    points: list[Point] = Field(min_length=2, max_length=10_000)
+    points: LinePoints
 
 
-class KnownLength(Wire):
+class KnownLength(RequestPart):
     """A straight line over something of known length, as far from the camera as the tree; it sets the tree's height."""
 
-    points: list[Point] = Field(min_length=2, max_length=2)
-    metres: float = Field(gt=0, description="the line's length")
+    points: Annotated[list[Point], Field(min_length=2, max_length=2), FailFast()]
+    metres: Positive = Field(description="the line's length")
 
 
-class Strokes(Wire):
+Branches = Annotated[list[BranchStroke], Field(max_length=MAX_STROKES - 1), FailFast()]
+
+
+class Strokes(RequestPart):
     """What was drawn over a photo."""
 
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": STROKES_EXAMPLE})
+    model_config = ConfigDict(json_schema_extra={"example": STROKES_EXAMPLE})
 
     crown: CrownStroke
-    branches: list[BranchStroke] = Field(default_factory=list, max_length=199)
-    erase: list[EraseStroke] = Field(default_factory=list, max_length=199)
+    branches: Branches = Field(default_factory=list)
+    erase: Annotated[list[EraseStroke], Field(max_length=MAX_STROKES - 1), FailFast()] = Field(default_factory=list)
     scale: KnownLength | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
 
 
-class StrokeWarning(Wire):
-    """Something in the strokes, or in the photo, that was mended."""
-
-    code: str
-    stroke: str = Field(description="pointer to the stroke, such as branches/1; photo where it is the photo itself")
-    detail: str
+_Side = Annotated[int, Strict(), Field(ge=MIN_CANVAS, le=MAX_CANVAS)]
 
 
-class PhotoFrame(Wire):
-    """Where the photo stands in the tree's world: (X, Y, Z) is pixel (root_x + X / s, root_y - Y / s)."""
-
-    width: int
-    height: int
-    metres_per_pixel: float
-    root: Point
-
-
-_Side = Annotated[int, Field(ge=16, le=16_384)]
-
-
-class StrokeSketch(Wire):
+class StrokeSketch(RequestPart):
     """One side of a tree as strokes, over a photo or on white; without a canvas it is as large as what was drawn."""
 
     canvas: tuple[_Side, _Side] | SkipJsonSchema[None] = Field(
         default=None, description="width and height, pixels", json_schema_extra=no_default
     )
     crown: CrownStroke | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
-    branches: list[BranchStroke] = Field(min_length=1, max_length=199, description="the trunk first")
+    branches: Annotated[Branches, Field(min_length=1)] = Field(description="the trunk first")
 
 
-class PictureSketch(Wire):
+class PictureSketch(RequestPart):
     """One side of a tree as a picture: dark or opaque strokes, the crown as a closed line of pure red."""
 
-    picture: str = Field(
-        max_length=MAX_SKETCH_TEXT,
+    picture: Annotated[str, Strict()] = Field(
+        max_length=text_length(MAX_SKETCH_BYTES),
         description="PNG, base64",
         json_schema_extra={"contentEncoding": "base64", "contentMediaType": "image/png"},
     )
 
 
-class Sketch(RootModel[StrokeSketch | PictureSketch]):
+def _kind_of_sketch(value: object) -> str:
+    """Tell a picture, which has a key of that name, from lines."""
+    pictured = isinstance(value, PictureSketch) or (isinstance(value, Mapping) and "picture" in value)
+    return "pixels" if pictured else "lines"
+
+
+class Sketch(
+    RootModel[
+        Annotated[
+            Annotated[StrokeSketch, Tag("lines")] | Annotated[PictureSketch, Tag("pixels")],
+            Discriminator(_kind_of_sketch),
+        ]
+    ]
+):
     """One side of a tree, drawn."""
 
 
-class Sketches(Wire):
+class Sketches(RequestPart):
     """A tree drawn from the front and from its left; the side alone goes with a photo and strokes."""
 
     front: Sketch | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)

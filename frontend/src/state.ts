@@ -1,3 +1,4 @@
+import { DEFAULT_SETTINGS } from './api/defaults'
 import type { components } from './api/schema'
 import { begin, type History } from './history'
 import { type Line, NO_STROKES, type SheetName, type StrokeRef, type Strokes } from './strokes'
@@ -9,7 +10,7 @@ export type TracedSkeleton = Schemas['TracedSkeleton']
 export type StrokeWarning = Schemas['StrokeWarning']
 export type Grown = Schemas['GrownSkeleton']
 export type PhotoFrame = Schemas['PhotoFrame']
-export type Model = Schemas['Model']
+export type Model = Schemas['ModelInfo']
 export type Limits = Schemas['Limits']
 export type Settings = Required<Schemas['ModelSettings']>
 
@@ -116,22 +117,6 @@ export interface State {
   /** False while the service cannot be reached. */
   readonly online: boolean
   readonly faults: Readonly<Partial<Record<Place, Fault>>>
-}
-
-export const DEFAULT_SETTINGS: Settings = {
-  height: 10,
-  library: 'auto',
-  iterations: 300,
-  variants: 1,
-  species: 'auto',
-  season: 'photo',
-  foliage: 'auto',
-  leaf_size: 1,
-  leaf_density: 1,
-  wind: 'none',
-  lod: 'none',
-  compress: false,
-  files: [],
 }
 
 export const EMPTY: State = {

@@ -14,6 +14,7 @@ const LAYERS = [
   ['state'],
   ['plane'],
   ['history', 'strokes'],
+  ['api/defaults'],
   ['api/schema'],
 ]
 

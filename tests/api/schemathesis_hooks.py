@@ -12,7 +12,7 @@ from schemathesis.transport.serialization import Binary
 from tests.api import drawn
 from tests.api.corpora import saved
 
-from treestroke.schemas import SKETCHES_EXAMPLE
+from treestroke.wire_requests import SKETCHES_EXAMPLE
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
 PICTURE = Image.fromarray(cv2.resize(drawn.pixels(), (800, 960)))

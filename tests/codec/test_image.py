@@ -11,7 +11,6 @@ from tests.api.corpora import saved, wide_profile
 
 import treestroke.codec.image
 from treestroke.codec.image import (
-    MAX_BYTES,
     check_size,
     decode_fruit,
     decode_leaf,
@@ -22,6 +21,7 @@ from treestroke.codec.image import (
 )
 from treestroke.core.errors import FruitError, LeafError, PhotoError
 from treestroke.core.strokes import StrokeWarning
+from treestroke.limits import MAX_PHOTO_BYTES
 
 ELM = Path(__file__).parents[1] / "data" / "elm_house.jpg"
 UPRIGHT = np.zeros((80, 100, 3), dtype=np.uint8)
@@ -153,7 +153,7 @@ def ftyp(*brands: bytes) -> bytes:
         (b"GIF89a", "format_not_allowed", "this is a GIF picture.*save it as PNG$"),
         (b"\xff\xd8\xff\xe0", "photo_unreadable", "this JPEG is damaged"),
         (encode_png(UPRIGHT)[:-30], "photo_unreadable", "damaged or cut short"),
-        (bytes(MAX_BYTES + 1), "photo_too_large_file", "more than 25 MB"),
+        (bytes(MAX_PHOTO_BYTES + 1), "photo_too_large_file", "more than 25 MB"),
     ],
 )
 def test_a_refusal_says_for_programs_what_is_wrong(data: bytes, code: str, message: str) -> None:
@@ -170,7 +170,7 @@ def test_a_stored_photo_comes_back_as_it_was(maple_photo: Path) -> None:
 
 
 def test_a_stored_photo_may_be_larger_than_an_upload(maple_photo: Path) -> None:
-    stored = encode_png(UPRIGHT) + bytes(MAX_BYTES)
+    stored = encode_png(UPRIGHT) + bytes(MAX_PHOTO_BYTES)
     assert np.array_equal(decode_stored(stored), UPRIGHT)
 
 

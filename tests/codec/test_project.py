@@ -14,9 +14,10 @@ from tests.api.corpora import saved
 
 import treestroke
 from treestroke.cli import main
-from treestroke.codec.image import MAX_BYTES, MAX_PIXELS, MAX_STORED_BYTES, decode_photo, encode_stored
+from treestroke.codec.image import MAX_PIXELS, MAX_STORED_BYTES, decode_photo, encode_stored
 from treestroke.codec.project import Project, read_project, stored_inputs, write_project
 from treestroke.core.errors import TreestrokeError
+from treestroke.limits import MAX_PHOTO_BYTES
 
 
 def packed(how: int = zipfile.ZIP_STORED, **members: bytes) -> bytes:
@@ -88,7 +89,7 @@ def test_a_photo_may_be_as_large_as_a_stored_one_of_its_pixels() -> None:
     assert len(opened(packed(photo_png=png_of(5000, 5000, size), strokes_json=b"S")).inputs.parts["photo"]) == size
 
 
-@pytest.mark.parametrize("photo", [png_of(2000, 2000, MAX_BYTES + 1), b"\xff\xd8\xff" + bytes(MAX_BYTES)])
+@pytest.mark.parametrize("photo", [png_of(2000, 2000, MAX_PHOTO_BYTES + 1), b"\xff\xd8\xff" + bytes(MAX_PHOTO_BYTES)])
 def test_a_photo_larger_than_its_pixels_need_is_refused(photo: bytes) -> None:
     with pytest.raises(
         TreestrokeError, match=r"^oak\.treestroke: photo\.png has 25\.0 MB, more than the 25\.0"
@@ -209,6 +210,6 @@ def test_the_command_line_opens_what_is_written(
     settings = {"iterations": 3, "leaf_density": 0.1}
     project = tmp_path / "maple.treestroke"
     project.write_bytes(written(project_of({**settings, "seed": 4}, photo=stored, strokes=maple_strokes.read_bytes())))
-    monkeypatch.setattr("treestroke.codec.image.MAX_BYTES", len(stored) - 1)
+    monkeypatch.setattr("treestroke.codec.image.MAX_PHOTO_BYTES", len(stored) - 1)
     assert main(["model", str(project), "--out", str(tmp_path / "a.glb")]) == 0
     assert (tmp_path / "a.glb").read_bytes() == treestroke.model(stored, maple_strokes, settings, 4).glb

@@ -141,7 +141,7 @@ def test_what_is_no_json_is_refused_in_one_line(text: str | bytes) -> None:
 
 
 def test_too_many_strokes_are_refused() -> None:
-    with pytest.raises(StrokesError, match="201, at most 200"):
+    with pytest.raises(StrokesError, match="200 branches, at most 199"):
         strokes_from({**GOOD, "branches": GOOD["branches"] * 200})
 
 

@@ -35,7 +35,7 @@ def test_an_array_that_is_no_photo_is_refused(array: np.ndarray) -> None:
 
 def test_a_stored_photo_is_let_in_whatever_its_size(maple_photo: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stored = encode_stored(load_photo(maple_photo))
-    monkeypatch.setattr("treestroke.codec.image.MAX_BYTES", len(stored) - 1)
+    monkeypatch.setattr("treestroke.codec.image.MAX_PHOTO_BYTES", len(stored) - 1)
     assert np.array_equal(load_photo(stored), decode_stored(bytes(stored)))
     with pytest.raises(PhotoError) as refused:
         load_photo(bytes(stored))

@@ -7,7 +7,7 @@ from tests.api import drawn
 from treestroke.core.errors import PhotoError
 from treestroke.service import photos
 from treestroke.service.photos import NotFound, Shelf
-from treestroke.service.tracing import NoRoom
+from treestroke.service.tracer import NoRoom
 from treestroke.store.queries import stored_bytes
 from treestroke.store.tables import PhotoRow
 

@@ -46,7 +46,7 @@ def model_of(shelf: Shelf, content: bytes, seed: int = 0) -> StoredModel:
 
 def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: Projects) -> None:
     photo = photos.add_photo(shelf, drawn.encoded())
-    asked = stored_models.read_wish(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
+    asked = stored_models.read_order(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
     model = stored_models.accept_model(shelf, asked, None)
     project = project_of(projects, model)
     assert list(project.inputs.parts) == ["photo", "strokes"]
@@ -58,7 +58,7 @@ def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: P
 def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projects: Projects) -> None:
     sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
     fruit = base64.b64encode(sketched.berry()).decode()
-    asked = stored_models.read_wish(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
+    asked = stored_models.read_order(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
     model = stored_models.accept_model(shelf, asked, None)
     assert list(model.drawings) == ["front.json", "side.png"]
     parts = project_of(projects, model).inputs.parts

@@ -18,10 +18,9 @@ from treestroke.api.metrics import add_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware
 from treestroke.api.routes import events, files, models, photos, sketches, status
 from treestroke.api.routes.page import add_page
-from treestroke.codec.image import MAX_BYTES
-from treestroke.codec.inputs import MAX_TEXT_BYTES
+from treestroke.limits import MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_job_message
-from treestroke.schemas import ModelRequest, Problem, Rename, SketchTraceRequest, TraceRequest
+from treestroke.schemas import Problem
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.projects import Projects
@@ -30,6 +29,7 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
+from treestroke.wire_requests import ModelRequest, Rename, SketchTraceRequest, TraceRequest
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
@@ -96,9 +96,9 @@ def _limit_of(scope: Scope) -> int:
     """Say how many bytes a request's body may have."""
     path = scope["path"]
     if path == "/v1/photos":
-        return MAX_BYTES + _FORM_BYTES
+        return MAX_PHOTO_BYTES + _FORM_BYTES
     if path == "/v1/models":
-        return MAX_BYTES + MAX_TEXT_BYTES
+        return MAX_PHOTO_BYTES + MAX_TEXT_BYTES
     return MAX_TEXT_BYTES if path.endswith("/trace") else _SMALL_BYTES
 
 

@@ -10,7 +10,7 @@ from starlette.datastructures import FormData
 
 from treestroke.api.errors import Refusal
 from treestroke.api.following import Watcher
-from treestroke.codec.image import MAX_BYTES
+from treestroke.limits import MAX_PHOTO_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Shelf
 from treestroke.service.projects import Projects
@@ -70,8 +70,8 @@ def check_length(photo: bytes) -> None:
     Refusal
         The photo is too large.
     """
-    if len(photo) > MAX_BYTES:
-        raise Refusal("body_too_large", f"the photo has more than {MAX_BYTES // 10**6} MB; save it smaller")
+    if len(photo) > MAX_PHOTO_BYTES:
+        raise Refusal("body_too_large", f"the photo has more than {MAX_PHOTO_BYTES // 10**6} MB; save it smaller")
 
 
 def _id(kind: str) -> Any:

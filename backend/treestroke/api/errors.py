@@ -21,7 +21,7 @@ from treestroke.schemas import Fault, Problem
 from treestroke.service.failures import code_of, problem_of
 from treestroke.service.photos import NotFound
 from treestroke.service.stored_models import KeyReused
-from treestroke.service.tracing import NoRoom
+from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
 from treestroke.store.blobs import Damaged
 

@@ -7,27 +7,26 @@ from treestroke import schemas
 from treestroke.service.jobs import GROWTH
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.tables import PhotoRow
-from treestroke.wire_strokes import StrokeWarning
 
 
-def photo_view(row: PhotoRow) -> schemas.Photo:
+def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
     """Return a photo as the API shows it."""
-    return schemas.Photo(
+    return schemas.PhotoInfo(
         id=row.id,
         width=row.width,
         height=row.height,
         sha256=row.sha256,
         created=_time(row.created),
         image=f"/v1/photos/{row.id}/image",
-        warnings=[StrokeWarning(**warning) for warning in row.warnings],
+        warnings=[schemas.StrokeWarning(**warning) for warning in row.warnings],
     )
 
 
-def model_view(model: StoredModel) -> schemas.Model:
+def model_view(model: StoredModel) -> schemas.ModelInfo:
     """Return a model as the API shows it."""
     row, path = model.row, f"/v1/models/{model.row.id}"
     names = [*model.drawings, "project", *(model.files if row.status == "succeeded" else ())]
-    return schemas.Model(
+    return schemas.ModelInfo(
         id=row.id,
         name=row.name,
         photo=row.photo,

@@ -10,7 +10,6 @@ import cv2
 import numpy as np
 from PIL import Image, ImageCms
 
-from treestroke.codec.inputs import CUTOUT_PNG, MAX_PHOTO_BYTES
 from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, missing_part
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.codec.watched_bytes import WatchedBytes
@@ -19,12 +18,11 @@ from treestroke.core.geometry.mesh import ALPHA_CUT
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
+from treestroke.limits import MAX_LEAF_BYTES, MAX_PHOTO_BYTES
 
 Warn = Callable[[StrokeWarning], object]
 """Called with each fault of a photo that was mended while it was read."""
 
-MAX_BYTES = MAX_PHOTO_BYTES
-"""Of an upload."""
 MIN_SIDE, MAX_SIDE = 64, 16_384
 """Least and greatest side of a photo, px."""
 MAX_PIXELS = 50_000_000
@@ -33,7 +31,6 @@ MAX_STORED_BYTES = 3 * MAX_PIXELS * 101 // 100
 PHOTO_HEAD = 24
 """Number of first bytes of a photo that `most_stored_bytes` needs."""
 
-MAX_LEAF_BYTES = CUTOUT_PNG.max_bytes
 MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 """Least and greatest side of a leaf's or a fruit's picture, px."""
 MAX_LOST = 0.002
@@ -105,7 +102,7 @@ def decode_photo(data: bytes, name: str, report: Report = silent, warn: Warn = i
     PhotoError
         Another format, damaged, more than one frame, too small or too large.
     """
-    limit = MAX_STORED_BYTES if isinstance(data, StoredPhoto) else MAX_BYTES
+    limit = MAX_STORED_BYTES if isinstance(data, StoredPhoto) else MAX_PHOTO_BYTES
     if len(data) > limit:
         fault = f"the photo has more than {limit // 10**6} MB; save it smaller"
         raise PhotoError(f"{name}: {fault}", code="photo_too_large_file")
@@ -129,9 +126,9 @@ def decode_stored(data: bytes, report: Report = silent) -> Picture:
 def most_stored_bytes(head: bytes) -> int:
     """Return the greatest size of a stored photo with these first bytes: an upload's, or what a PNG's pixels need."""
     if len(head) < PHOTO_HEAD or kind_of(head) != "PNG" or head[12:16] != b"IHDR":
-        return MAX_BYTES
+        return MAX_PHOTO_BYTES
     width, height = (int.from_bytes(head[at : at + 4], "big") for at in (16, 20))
-    return max(MAX_BYTES, min(3 * width * height * 101 // 100, MAX_STORED_BYTES))
+    return max(MAX_PHOTO_BYTES, min(3 * width * height * 101 // 100, MAX_STORED_BYTES))
 
 
 def decode_leaf(data: bytes, name: str) -> Picture:

@@ -9,6 +9,7 @@ from typing import Generic, Literal, TypeVar
 
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, extension_of
 from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
+from treestroke.limits import MAX_LEAF_BYTES, MAX_PHOTO_BYTES, MAX_SKETCH_BYTES, MAX_TEXT_BYTES
 
 Content = TypeVar("Content", covariant=True)
 Changed = TypeVar("Changed")
@@ -29,12 +30,9 @@ class Format:
     max_bytes: int
 
 
-MAX_PHOTO_BYTES = 25_000_000
-MAX_TEXT_BYTES = 64_000_000
-"""More than the longest strokes that are allowed ever need."""
 TEXT = Format("json", "application/json", MAX_TEXT_BYTES)
-SKETCH_PNG = Format("png", "image/png", 25_000_000)
-CUTOUT_PNG = Format("png", "image/png", 4_000_000)
+SKETCH_PNG = Format("png", "image/png", MAX_SKETCH_BYTES)
+CUTOUT_PNG = Format("png", "image/png", MAX_LEAF_BYTES)
 _PHOTOS = tuple(
     Format(ending, f"image/{subtype}", MAX_PHOTO_BYTES)
     for ending, subtype in (

@@ -11,19 +11,10 @@ from typing import Any, BinaryIO, cast
 
 from treestroke.codec.archive import zip_into
 from treestroke.codec.image import MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
-from treestroke.codec.inputs import (
-    BEGINNING,
-    MAX_TEXT_BYTES,
-    PARTS,
-    TEXT,
-    Format,
-    Inputs,
-    Part,
-    check_parts,
-    part_of,
-)
+from treestroke.codec.inputs import BEGINNING, PARTS, TEXT, Format, Inputs, Part, check_parts, part_of
 from treestroke.codec.json_text import read_json
 from treestroke.core.errors import SettingsError, TreestrokeError
+from treestroke.limits import MAX_TEXT_BYTES
 
 MAX_SETTINGS_BYTES = 100_000
 _SETTINGS = "settings"

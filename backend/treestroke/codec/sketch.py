@@ -1,74 +1,101 @@
-"""Sketches: JSON strokes or a PNG of them in, JSON out."""
+"""Sketches: JSON strokes or a PNG of them to values, and back to JSON."""
 
 import base64
-import binascii
 import json
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from treestroke.codec.json_text import read_json
-from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES, PNG, read_picture
-from treestroke.codec.strokes import check_extent, check_plain, kind_of, list_of, plain_stroke, stroke_of, table_of
+from treestroke.codec.json_text import check_ascii, read_json
+from treestroke.codec.sketch_picture import PNG, read_picture
+from treestroke.codec.strokes import plain_stroke, stroke_of
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import check_count
 from treestroke.core.strokes import Sketch, Stroke
+from treestroke.limits import MAX_CANVAS, MIN_CANVAS
 
-MIN_CANVAS, MAX_CANVAS = 16, 16_384
-"""Px, of a side."""
+if TYPE_CHECKING:
+    from treestroke import wire_strokes as wire
+
 MARGIN = 0.05
-"""Of the strokes' box: room around them where no canvas is given."""
+"""Room around the strokes where no canvas is given, as a share of their box."""
 
 
 def parse_sketch(data: bytes, name: str) -> Sketch:
-    """Read a sketch: a PNG (known by its first bytes), else JSON; ``name`` appears in messages.
+    """Return the sketch that a PNG (known by its first bytes) or else JSON describes; ``name`` appears in messages.
 
     Raises
     ------
     StrokesError
-        No JSON, a wrong type, an unknown key, NaN or infinity, too many strokes or points; a picture that is damaged,
-        too large or empty. The message names the file and the stroke.
+        It is not JSON, or not as `wire_strokes.Sketch` describes it; a picture that is damaged, too large or empty.
+        The message names the file and the stroke.
     """
     try:
         if data.startswith(PNG):
             return read_picture(data)
-        check_extent(data)
-        check_plain(data)
+        check_ascii(data, StrokesError)
         return sketch_from(read_json(data, StrokesError, "the sketch is neither PNG nor JSON:", "save it anew"))
     except StrokesError as error:
         raise error.within(name) from error
 
 
 def sketch_from(value: object) -> Sketch:
-    """Read a sketch from plain mappings, lists and numbers: strokes, or a ``picture``, a PNG in base 64.
-
-    Strokes are `crown` (may be absent), `branches` and `canvas` [width, height], px; without a canvas it is as large as
-    the strokes ask for.
+    """Return the sketch that plain mappings, lists and numbers describe.
 
     Raises
     ------
     StrokesError
         As `parse_sketch`.
     """
-    if isinstance(value, dict) and "picture" in value:
-        return _pictured(table_of(value, (), ("picture",))["picture"])
-    table = table_of(value, (), ("crown", "branches", "canvas"))
-    branches = list_of(table.get("branches", []), ("branches",))
-    check_count(1 + len(branches))
-    crown = stroke_of(table["crown"], ("crown",), ("points",)) if table.get("crown") is not None else None
-    strokes = tuple(stroke_of(one, ("branches", i), ("points", "width")) for i, one in enumerate(branches))
-    if not strokes:
-        what = "there is none; draw one stroke from the tree's root up its trunk"
-        raise StrokesError.at(("branches",), what, "trunk_missing")
-    given = table.get("canvas")
-    canvas = _around(strokes if crown is None else (crown, *strokes)) if given is None else _canvas(given)
+    from treestroke.codec.refusals import checked
+    from treestroke.wire_strokes import Sketch as Described
+
+    return sketch_of(checked(Described, value, StrokesError))
+
+
+def sketch_of(described: "wire.Sketch") -> Sketch:
+    """Return the value of a sketch that was checked by its description; without a canvas it fits what was drawn.
+
+    Raises
+    ------
+    StrokesError
+        Its picture cannot be read; there are too many strokes; they reach further than any canvas.
+    """
+    from treestroke.wire_strokes import PictureSketch
+
+    drawn = described.root
+    if isinstance(drawn, PictureSketch):
+        return picture_of(drawn)[1]
+    check_count(1 + len(drawn.branches))
+    crown = None if drawn.crown is None else stroke_of(drawn.crown)
+    strokes = tuple(stroke_of(stroke) for stroke in drawn.branches)
+    canvas = drawn.canvas or _around(strokes if crown is None else (crown, *strokes))
     return Sketch(canvas, crown, strokes)
 
 
+def picture_of(described: "wire.PictureSketch") -> tuple[bytes, Sketch]:
+    """Return a sketch's PNG, decoded from base64, and its value.
+
+    Raises
+    ------
+    StrokesError
+        It is not base64, or the picture cannot be read.
+    """
+    try:
+        data = base64.b64decode(described.picture, validate=True)
+    except ValueError as error:
+        what = f"it is no base64 ({error}); send a PNG file encoded so"
+        raise StrokesError.at(("picture",), what, "sketch_unreadable") from error
+    try:
+        return data, read_picture(data)
+    except StrokesError as error:
+        raise StrokesError(f"picture: {error}", code=error.code, pointer="/picture") from error
+
+
 def encode_sketch(sketch: Sketch) -> bytes:
-    """Write a sketch of lines as JSON that `parse_sketch` reads back.
+    """Return a sketch of lines as JSON that `parse_sketch` reads back.
 
     Raises
     ------
@@ -82,37 +109,9 @@ def encode_sketch(sketch: Sketch) -> bytes:
     return json.dumps({"canvas": list(sketch.canvas), **crown, "branches": branches}).encode()
 
 
-def _pictured(value: object) -> Sketch:
-    if not isinstance(value, str):
-        raise StrokesError.at(("picture",), f"it must be a PNG in base 64, not {kind_of(value)}", "wrong_type")
-    if len(value) > MAX_SKETCH_BYTES * 4 // 3 + 4:
-        what = f"the picture has more than {MAX_SKETCH_BYTES // 10**6} MB; save it smaller"
-        raise StrokesError.at(("picture",), what, "sketch_too_large_file")
-    try:
-        data = base64.b64decode(value, validate=True)
-    except (ValueError, binascii.Error) as error:
-        what = f"it is no base 64 ({error}); send a PNG file encoded so"
-        raise StrokesError.at(("picture",), what, "sketch_unreadable") from error
-    try:
-        return read_picture(data)
-    except StrokesError as error:
-        raise StrokesError(f"picture: {error}", code=error.code, pointer="/picture") from error
-
-
-def _canvas(value: object) -> tuple[int, int]:
-    sides: Sequence[Any] = list_of(value, ("canvas",))
-    whole = all(isinstance(side, int) and not isinstance(side, bool) for side in sides)
-    if len(sides) != 2 or not whole or not all(MIN_CANVAS <= side <= MAX_CANVAS for side in sides):
-        what = f"it must be [width, height], whole numbers from {MIN_CANVAS} to {MAX_CANVAS}"
-        raise StrokesError.at(("canvas",), f"{what}; give the size, px, of what was drawn on", "canvas_invalid")
-    return int(sides[0]), int(sides[1])
-
-
 def _around(strokes: Sequence[Stroke]) -> tuple[int, int]:
-    """Give the canvas on which strokes have some room."""
+    """Return the canvas (width, height), px, that leaves some room around strokes."""
     points = np.concatenate([stroke.points for stroke in strokes])
-    if not len(points):
-        points = np.zeros((1, 2))
     low, high = points.min(axis=0), points.max(axis=0)
     far = high + MARGIN * (high - low)
     return _side(float(far[0])), _side(float(far[1]))

@@ -12,16 +12,15 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE
-from treestroke.codec.inputs import SKETCH_PNG
 from treestroke.core.errors import StrokesError
 from treestroke.core.strokes import Sketch, Stroke
 from treestroke.core.types import Floats, Mask, Picture
+from treestroke.limits import MAX_SKETCH_BYTES
 
 Binary = NDArray[np.uint8]
 """(h, w) of zeros and ones, as OpenCV takes masks."""
 
 PNG = b"\x89PNG\r\n\x1a\n"
-MAX_SKETCH_BYTES = SKETCH_PNG.max_bytes
 MIN_SIDE = 16
 """Least side of a sketch's picture, px."""
 OPAQUE_ALPHA = 128

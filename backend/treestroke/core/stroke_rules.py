@@ -10,9 +10,8 @@ from treestroke.core.geometry.polyline import arc_lengths, place_at, resample
 from treestroke.core.imaging.outline import filled_and_crossing
 from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes, StrokeWarning
 from treestroke.core.types import Floats
+from treestroke.limits import MAX_POINTS, MAX_STROKES
 
-MAX_STROKES = 200
-MAX_POINTS = 10_000
 MIN_CROWN_SHARE = 0.005
 """Of the photo's area."""
 CHECKED_SIDE = 1500

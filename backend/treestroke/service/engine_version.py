@@ -15,6 +15,8 @@ from treestroke import __version__
 PACKAGES = ("core", "codec")
 MODULES = ("execution", "files", "inputs", "jobs", "model", "report")
 """Of this package: what brings input to a tree and a tree to files."""
+_BELOW = ("limits", "wire_strokes")
+"""Of the whole package: what input may hold."""
 LIBRARIES = {
     "numpy": np.__version__,
     "opencv": cv2.__version__,
@@ -46,3 +48,4 @@ def sources(package: Path) -> Iterator[Path]:
     for name in PACKAGES:
         yield from (path for path in (package / name).rglob("*") if path.is_file() and path.suffix not in _BUILT)
     yield from (package / "service" / f"{name}.py" for name in MODULES)
+    yield from (package / f"{name}.py" for name in _BELOW)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import update
 
 from treestroke.core.errors import PhotoError
-from treestroke.service import tracing
+from treestroke.service import tracer
 from treestroke.service.tracing_pool import Crashed, TracingPool
 from treestroke.settings import PHOTO_MB, PHOTOS_MB
 from treestroke.store.blobs import Blobs
@@ -66,7 +66,7 @@ def take_in(shelf: Shelf, content: bytes) -> PhotoRow:
         room = shelf.photos_bytes - stored_bytes(session)
     folder, most = shelf.blobs.folder.parent, shelf.photo_bytes
     try:
-        kept = shelf.tracers(sha256, tracing.keep_photo, folder, content, most, room)
+        kept = shelf.tracers(sha256, tracer.keep_photo, folder, content, most, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
     return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **kept)
@@ -120,4 +120,4 @@ def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
         The tracing processes have too much to do, or one died over this.
     """
     row = get_photo(shelf, id)
-    return shelf.tracers(row.blob, tracing.trace_answer, shelf.blobs.path(row.blob), body, row.warnings)
+    return shelf.tracers(row.blob, tracer.trace_answer, shelf.blobs.path(row.blob), body, row.warnings)

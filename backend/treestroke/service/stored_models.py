@@ -12,9 +12,9 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
-from treestroke.service import model_request, tracing
+from treestroke.service import model_request, tracer
 from treestroke.service.engine_version import engine_version
-from treestroke.service.model_request import Wish, check_name
+from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Shelf
 from treestroke.store import leases, queries
 from treestroke.store.blobs import Damaged
@@ -64,7 +64,7 @@ class StoredModel:
         return Version(self.row.seq, self.queue_position, self.eta_s)
 
 
-def read_wish(shelf: Shelf, body: bytes) -> Wish:
+def read_order(shelf: Shelf, body: bytes) -> ModelOrder:
     """Read a request for a model from JSON, in a tracing process since it may be large or hostile.
 
     Raises
@@ -72,21 +72,21 @@ def read_wish(shelf: Shelf, body: bytes) -> Wish:
     TreestrokeError
         It is not a valid request.
     """
-    return shelf.tracers("", model_request.read_wish, body)
+    return shelf.tracers("", model_request.read_order, body)
 
 
-def read_fields(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> Wish:
-    """Read a request for a model from a form's fields without the photo, as `read_wish` does.
+def read_form(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> ModelOrder:
+    """Read a request for a model from a form's fields without the photo, as `read_order` does.
 
     Raises
     ------
     TreestrokeError
         It is not a valid request.
     """
-    return shelf.tracers("", model_request.read_fields, fields, brings_photo)
+    return shelf.tracers("", model_request.read_form, fields, brings_photo)
 
 
-def accept_model(shelf: Shelf, wish: Wish, key: str | None, sent_photo: PhotoRow | None = None) -> StoredModel:
+def accept_model(shelf: Shelf, order: ModelOrder, key: str | None, sent_photo: PhotoRow | None = None) -> StoredModel:
     """Check, store and queue a model; one whose inputs were made into a tree before gets that tree's files at once.
 
     ``key`` is the Idempotency-Key: sent again with the same request, it returns the model that it returned first.
@@ -101,10 +101,10 @@ def accept_model(shelf: Shelf, wish: Wish, key: str | None, sent_photo: PhotoRow
     OSError
         The disk is full.
     """
-    photo = sent_photo or (None if wish.photo is None else _photo_for(shelf, wish.photo, key))
-    inputs = _store_inputs(shelf, wish, photo)
-    row = _new_row(wish, photo, inputs)
-    request = _digest([row.fingerprint, wish.name, None if photo is None else photo.sha256])
+    photo = sent_photo or (None if order.photo is None else _photo_for(shelf, order.photo, key))
+    inputs = _store_inputs(shelf, order, photo)
+    row = _new_row(order, photo, inputs)
+    request = _digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
     equal = _finished_model(shelf, row)
     with shelf.database.writing() as session:
         answered = _answered_before(session, key, request)
@@ -162,10 +162,9 @@ def rename(database: Database, id: str, name: str) -> StoredModel:
 
     Raises
     ------
-    NotFound, TreestrokeError
-        There is no such model, or the name cannot be used.
+    NotFound
+        There is no such model.
     """
-    check_name(name)
     with database.writing() as session:
         _row(session, id)
         session.execute(update(ModelRow).where(ModelRow.id == id).values(name=name, seq=ModelRow.seq + 1))
@@ -225,30 +224,30 @@ def _photo_for(shelf: Shelf, id: str, key: str | None) -> PhotoRow:
     return photo
 
 
-def _store_inputs(shelf: Shelf, wish: Wish, photo: PhotoRow | None) -> Inputs[ModelPart]:
+def _store_inputs(shelf: Shelf, order: ModelOrder, photo: PhotoRow | None) -> Inputs[ModelPart]:
     """Check what was drawn, against the photo where there is one, and store the parts' files."""
     blob = None if photo is None else photo.blob
     path = None if blob is None else shelf.blobs.path(blob)
-    shelf.tracers(blob or "", tracing.check_wish, path, wish.parts, wish.within)
+    shelf.tracers(blob or "", tracer.check_drawing, path, order.drawing, order.within)
     sent = {
         name: ModelPart(
             name=name, blob=shelf.blobs.put(content), media_type=part_of(name).format_of(content).media_type
         )
-        for name, content in wish.parts.items()
+        for name, content in order.parts.items()
     }
     stored = None if blob is None else ModelPart(name="photo", blob=blob, media_type="image/png")
     return Inputs.of({"photo": stored, **sent})
 
 
-def _new_row(wish: Wish, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> ModelRow:
+def _new_row(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> ModelRow:
     return ModelRow(
         id=queries.new_id("mdl"),
-        name=wish.name,
+        name=order.name,
         photo=None if photo is None else photo.id,
-        settings=wish.settings,
-        seed=wish.seed,
+        settings=order.settings,
+        seed=order.seed,
         engine=engine_version(),
-        fingerprint=_fingerprint(wish, photo, inputs),
+        fingerprint=_fingerprint(order, photo, inputs),
         status="queued",
         phase_fraction=0.0,
         progress=0.0,
@@ -260,11 +259,11 @@ def _new_row(wish: Wish, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> M
     )
 
 
-def _fingerprint(wish: Wish, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> str:
+def _fingerprint(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> str:
     """Digest all that decides how the tree and its report come out, but the engine."""
     blobs = {name: part.blob for name, part in inputs.parts.items()}
     mended = [] if photo is None else photo.warnings
-    return _digest([blobs.pop("photo", None), blobs, wish.settings, wish.seed, *mended])
+    return _digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *mended])
 
 
 def _answered_before(session: Session, key: str | None, request: str) -> ModelRow | None:

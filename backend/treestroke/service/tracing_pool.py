@@ -31,7 +31,7 @@ _REMEMBERED = 64
 """Photos whose child is remembered."""
 _START_SECONDS = 30.0
 """A child that is not ready within this never will be."""
-_IMPORTED = ("treestroke.service.tracing", "treestroke.service.model_request")
+_IMPORTED = ("treestroke.service.tracer", "treestroke.service.model_request")
 """What a child imports before it is ready: the time for a call is for the call."""
 REPLACED = Counter("treestroke_tracers_replaced", "Tracing processes that crashed or took too long.", ["why"])
 for _why in ("slow", "crash"):

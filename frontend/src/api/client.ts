@@ -49,13 +49,13 @@ export class Client {
     return ask('GET', '/v1/limits')
   }
 
-  addPhoto(file: Blob): Promise<Schemas['Photo']> {
+  addPhoto(file: Blob): Promise<Schemas['PhotoInfo']> {
     const form = new FormData()
     form.append('file', file)
     return ask('POST', '/v1/photos', { body: form })
   }
 
-  getPhoto(id: string): Promise<Schemas['Photo']> {
+  getPhoto(id: string): Promise<Schemas['PhotoInfo']> {
     return ask('GET', `/v1/photos/${id}`)
   }
 

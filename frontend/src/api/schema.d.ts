@@ -544,10 +544,10 @@ export interface components {
             followers: number;
         };
         /**
-         * Model
-         * @description A tree that is made, or waits to be.
+         * ModelInfo
+         * @description A tree that was made, or waits to be made.
          */
-        Model: {
+        ModelInfo: {
             /** Id */
             id: string;
             /** Name */
@@ -620,15 +620,32 @@ export interface components {
          */
         ModelPage: {
             /** Models */
-            models: components["schemas"]["Model"][];
+            models: components["schemas"]["ModelInfo"][];
             /** Next */
             next: string | null;
         };
         /**
-         * Photo
+         * PhotoFrame
+         * @description Where the photo stands in the tree's world: (X, Y, Z) is pixel (root_x + X / s, root_y - Y / s).
+         */
+        PhotoFrame: {
+            /** Width */
+            width: number;
+            /** Height */
+            height: number;
+            /** Metres Per Pixel */
+            metres_per_pixel: number;
+            /** Root */
+            root: [
+                number,
+                number
+            ];
+        };
+        /**
+         * PhotoInfo
          * @description A stored photo.
          */
-        Photo: {
+        PhotoInfo: {
             /** Id */
             id: string;
             /** Width */
@@ -654,29 +671,12 @@ export interface components {
             warnings?: components["schemas"]["StrokeWarning"][];
         };
         /**
-         * PhotoFrame
-         * @description Where the photo stands in the tree's world: (X, Y, Z) is pixel (root_x + X / s, root_y - Y / s).
-         */
-        PhotoFrame: {
-            /** Width */
-            width: number;
-            /** Height */
-            height: number;
-            /** Metres Per Pixel */
-            metres_per_pixel: number;
-            /** Root */
-            root: [
-                number,
-                number
-            ];
-        };
-        /**
          * PhotoPage
          * @description Photos, newest first; ``next`` is the cursor of the next page.
          */
         PhotoPage: {
             /** Photos */
-            photos: components["schemas"]["Photo"][];
+            photos: components["schemas"]["PhotoInfo"][];
             /** Next */
             next: string | null;
         };
@@ -866,34 +866,14 @@ export interface components {
         };
         /**
          * ModelRequest
-         * @description A tree that is wished for.
+         * @description A tree to be made.
          *
          *     It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
          *     of its left side, perhaps with the photo that they were drawn over.
          */
         ModelRequest: {
-            /** Photo */
-            photo?: string;
             strokes?: components["schemas"]["Strokes"];
-            sketches?: components["schemas"]["Sketches"];
-            /**
-             * @default {
-             *       "height": 10,
-             *       "library": "auto",
-             *       "iterations": 300,
-             *       "variants": 1,
-             *       "species": "auto",
-             *       "season": "photo",
-             *       "foliage": "auto",
-             *       "leaf_size": 1,
-             *       "leaf_density": 1,
-             *       "wind": "none",
-             *       "lod": "none",
-             *       "compress": false,
-             *       "files": []
-             *     }
-             */
-            settings: components["schemas"]["ModelSettings"];
+            settings?: components["schemas"]["ModelSettings"];
             /**
              * Seed
              * @default 0
@@ -904,18 +884,19 @@ export interface components {
              * @default
              */
             name: string;
+            /** Photo */
+            photo?: string;
+            sketches?: components["schemas"]["Sketches"];
             /**
              * Leaf
              * @description PNG of a leaf cut out, base64
-             * @default null
              */
-            leaf: string;
+            leaf?: string;
             /**
              * Fruit
              * @description PNG of a fruit cut out, base64
-             * @default null
              */
-            fruit: string;
+            fruit?: string;
         };
         /**
          * ModelSettings
@@ -930,12 +911,14 @@ export interface components {
             height: number;
             /**
              * Library
+             * @description subtrees that growth may use
              * @default auto
              * @enum {string}
              */
             library: "auto" | "visible" | "type1" | "type2" | "both";
             /**
              * Iterations
+             * @description rounds of growth
              * @default 300
              */
             iterations: number;
@@ -947,54 +930,63 @@ export interface components {
             variants: number;
             /**
              * Species
+             * @description shape and place of leaves, relief of bark
              * @default auto
              * @enum {string}
              */
             species: "auto" | "ash" | "beech" | "birch" | "cherry" | "elm" | "horse_chestnut" | "larch" | "linden" | "locust" | "maple" | "oak" | "pine" | "plane" | "poplar" | "spruce" | "walnut" | "willow";
             /**
              * Season
+             * @description colour and number of leaves
              * @default photo
              * @enum {string}
              */
             season: "photo" | "spring" | "summer" | "autumn" | "bare";
             /**
              * Foliage
+             * @description what the twigs bear
              * @default auto
              * @enum {string}
              */
             foliage: "auto" | "leaves" | "needles" | "bare";
             /**
              * Leaf Size
+             * @description factor on the size of the leaves
              * @default 1
              */
             leaf_size: number;
             /**
              * Leaf Density
+             * @description factor on the number of leaves
              * @default 1
              */
             leaf_density: number;
             /**
              * Wind
+             * @description movements in the file: a breeze, and a gust
              * @default none
              * @enum {string}
              */
             wind: "none" | "breeze" | "all";
             /**
              * Lod
+             * @description levels of detail: as files of their own, or in the one file
              * @default none
              * @enum {string}
              */
             lod: "none" | "files" | "one";
             /**
              * Compress
+             * @description a file about a third as large (meshopt, WebP)
              * @default false
              */
             compress: boolean;
             /**
              * Files
              * @description further files
+             * @default []
              */
-            files?: ("gltf" | "obj" | "usdz" | "ply" | "instanced" | "collision" | "json" | "swc" | "csv")[];
+            files: ("gltf" | "obj" | "usdz" | "ply" | "instanced" | "collision" | "json" | "swc" | "csv")[];
         };
         /**
          * PictureSketch
@@ -1237,7 +1229,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Photo"];
+                    "application/json": components["schemas"]["PhotoInfo"];
                 };
             };
             /** @description Bad Request */
@@ -1342,7 +1334,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Photo"];
+                    "application/json": components["schemas"]["PhotoInfo"];
                 };
             };
             /** @description Forbidden */
@@ -1836,22 +1828,38 @@ export interface operations {
                      * @description JPEG, PNG, WebP, HEIC, AVIF or TIFF
                      */
                     photo?: string;
-                    /** @description Strokes, as JSON; with a photo */
+                    /**
+                     * Strokes
+                     * @description Strokes, as JSON; with a photo
+                     */
                     strokes?: string;
-                    /** @description Sketch of the front, in place of strokes: JSON or PNG */
-                    front?: string;
-                    /** @description Sketch of the left side: JSON or PNG */
-                    side?: string;
                     /** @description ModelSettings, as JSON */
                     settings?: string;
+                    /**
+                     * Seed
+                     * @description a whole number from 0
+                     */
                     seed?: string;
+                    /** Name */
                     name?: string;
                     /**
+                     * Front
+                     * @description Sketch of the front, in place of strokes: JSON or PNG
+                     */
+                    front?: string;
+                    /**
+                     * Side
+                     * @description Sketch of the left side: JSON or PNG
+                     */
+                    side?: string;
+                    /**
+                     * Leaf
                      * Format: binary
                      * @description PNG of a leaf cut out
                      */
                     leaf?: string;
                     /**
+                     * Fruit
                      * Format: binary
                      * @description PNG of a fruit cut out
                      */
@@ -1870,7 +1878,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Model"];
+                    "application/json": components["schemas"]["ModelInfo"];
                 };
             };
             /** @description Successful Response */
@@ -1883,7 +1891,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Model"];
+                    "application/json": components["schemas"]["ModelInfo"];
                 };
             };
             /** @description Bad Request */
@@ -1997,7 +2005,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Model"];
+                    "application/json": components["schemas"]["ModelInfo"];
                 };
             };
             /** @description Forbidden */
@@ -2128,7 +2136,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Model"];
+                    "application/json": components["schemas"]["ModelInfo"];
                 };
             };
             /** @description Bad Request */
@@ -2242,7 +2250,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Model"];
+                    "application/json": components["schemas"]["ModelInfo"];
                 };
             };
             /** @description Forbidden */
@@ -2311,7 +2319,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["Model"];
+                    "application/json": components["schemas"]["ModelInfo"];
                 };
             };
             /** @description Forbidden */

@@ -1,6 +1,7 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate'
+import { DEFAULT_SETTINGS } from '../api/defaults'
 import { isDrawn } from '../sheets'
-import { DEFAULT_SETTINGS, type Settings } from '../state'
+import type { Settings } from '../state'
 import { fromWire, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
 import { text } from '../text'
 import { TYPES } from './photos'

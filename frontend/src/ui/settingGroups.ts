@@ -1,5 +1,5 @@
+import { DEFAULT_SETTINGS } from '../api/defaults'
 import type { Limits, Settings } from '../state'
-import { DEFAULT_SETTINGS } from '../state'
 import { text } from '../text'
 import type { Span } from './spans'
 

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs'
 import { strToU8, zipSync } from 'fflate'
 import { expect, test } from 'vitest'
-import { DEFAULT_SETTINGS } from '../../src/state'
+import { DEFAULT_SETTINGS } from '../../src/api/defaults'
 import { NO_STROKES, withSheet } from '../../src/strokes'
 import { isProject, projectName, readProject, writeProject } from '../../src/studio/project'
 import { CROWN, LIMB, TRUNK } from '../builders'

@@ -13,7 +13,6 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
-from treestroke import schemas
 from treestroke.api.deps import (
     Cursor,
     DispatcherOf,
@@ -30,15 +29,16 @@ from treestroke.api.deps import (
 from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.following import TooManyFollowers, Watcher
 from treestroke.api.views import model_view
-from treestroke.codec.inputs import MAX_TEXT_BYTES, PARTS
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
-from treestroke.schemas import NAME_PATTERN, Model, ModelPage
+from treestroke.limits import MAX_TEXT_BYTES
+from treestroke.schemas import ModelInfo, ModelPage
 from treestroke.service import photos, stored_models
-from treestroke.service.model_request import MAX_NAME, Wish, read_name
+from treestroke.service.model_request import ModelOrder, read_name
 from treestroke.service.photos import Shelf
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
 from treestroke.store.tables import PhotoRow
+from treestroke.wire_requests import MODEL_EXAMPLE, FormRequest
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -52,34 +52,19 @@ _FILES = ("get_tree", "get_preview", "get_strokes", "get_sketch", "get_project",
 _CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
-_TEXT = {"type": "string"}
-_BINARY = {"type": "string", "format": "binary"}
-_SKETCH = {**_TEXT, "contentMediaType": "application/json, image/png"}
-_FIELDS = (*PARTS, "settings", "seed", "name")
+_PHOTO_FIELD = {"photo": {"type": "string", "format": "binary", "description": ACCEPTED_FORMATS}}
+_FORM = FormRequest.model_json_schema()
+_FIELDS = (*_PHOTO_FIELD, *FormRequest.model_fields)
 _ASK: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "content": {
             "application/json": {
                 "schema": {"$ref": "#/components/schemas/ModelRequest"},
-                "example": schemas.MODEL_EXAMPLE,
+                "example": MODEL_EXAMPLE,
             },
             "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "properties": {
-                        "photo": {**_BINARY, "description": ACCEPTED_FORMATS},
-                        "strokes": {**_TEXT, "description": "Strokes, as JSON; with a photo"},
-                        "front": {**_SKETCH, "description": "Sketch of the front, in place of strokes: JSON or PNG"},
-                        "side": {**_SKETCH, "description": "Sketch of the left side: JSON or PNG"},
-                        "settings": {**_TEXT, "description": "ModelSettings, as JSON"},
-                        "seed": {**_TEXT, "pattern": "^[0-9]{1,18}$"},
-                        "name": {**_TEXT, "maxLength": MAX_NAME, "pattern": NAME_PATTERN},
-                        "leaf": {**_BINARY, "description": "PNG of a leaf cut out"},
-                        "fruit": {**_BINARY, "description": "PNG of a fruit cut out"},
-                    },
-                    "additionalProperties": False,
-                },
+                "schema": {**_FORM, "properties": {**_PHOTO_FIELD, **_FORM["properties"]}},
                 "example": {
                     "photo": "(the file's bytes)",
                     "strokes": json.dumps(STROKES_EXAMPLE),
@@ -108,7 +93,7 @@ _RENAME: dict[str, Any] = {
 class _Received:
     """A request for a model, and the photo that was sent with it."""
 
-    wish: Wish
+    order: ModelOrder
     photo: PhotoRow | None = None
 
 
@@ -116,7 +101,7 @@ async def _receive(request: Request, shelf: ShelfOf) -> _Received:
     """Read a request for a model: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return _Received(await run_in_threadpool(stored_models.read_wish, shelf, await request.body()))
+        return _Received(await run_in_threadpool(stored_models.read_order, shelf, await request.body()))
     if kind != "multipart/form-data":
         raise Refusal(
             "unsupported_media_type", "send application/json, or a form with photo and strokes, or front and side"
@@ -135,9 +120,9 @@ async def _receive(request: Request, shelf: ShelfOf) -> _Received:
 
 def _read_form(shelf: Shelf, photo: bytes | None, fields: dict[str, bytes]) -> _Received:
     if photo is None:
-        return _Received(stored_models.read_fields(shelf, fields, brings_photo=False))
+        return _Received(stored_models.read_form(shelf, fields, brings_photo=False))
     check_length(photo)
-    return _Received(stored_models.read_fields(shelf, fields), photos.take_in(shelf, photo))
+    return _Received(stored_models.read_form(shelf, fields), photos.take_in(shelf, photo))
 
 
 async def _content(field: UploadFile | str) -> bytes:
@@ -147,10 +132,10 @@ async def _content(field: UploadFile | str) -> bytes:
 @router.post(
     "",
     status_code=HTTPStatus.ACCEPTED,
-    response_model=Model,
+    response_model=ModelInfo,
     responses={
-        HTTPStatus.OK: {"model": Model, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
-        HTTPStatus.ACCEPTED: {"model": Model, "headers": _LOCATION, "links": _LINKS},
+        HTTPStatus.OK: {"model": ModelInfo, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
+        HTTPStatus.ACCEPTED: {"model": ModelInfo, "headers": _LOCATION, "links": _LINKS},
         **documented(*BODY, "not_found", "storage_full"),
     },
     openapi_extra=_ASK,
@@ -164,7 +149,7 @@ async def ask_for_model(
     prefer: Annotated[str | None, Header(description="wait=SECONDS answers when the model is finished")] = None,
 ) -> Response:
     """Ask for a tree: always a new model, finished at once where the same was made before."""
-    model = await run_in_threadpool(stored_models.accept_model, shelf, received.wish, idempotency_key, received.photo)
+    model = await run_in_threadpool(stored_models.accept_model, shelf, received.order, idempotency_key, received.photo)
     dispatcher.notify()
     wanted = _WAIT.search(prefer or "")
     if wanted:
@@ -193,13 +178,13 @@ def list_models(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> Mod
 
 
 @router.get("/{id}", responses=documented("not_found"))
-def get_model(shelf: ShelfOf, id: ModelId) -> Model:
+def get_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
     """Look a model up."""
     return model_view(stored_models.find_model(shelf.database, id))
 
 
 @router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=_RENAME)
-def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> Model:
+def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> ModelInfo:
     """Name a model."""
     return model_view(stored_models.rename(shelf.database, id, read_name(body)))
 
@@ -211,12 +196,12 @@ def delete_model(shelf: ShelfOf, id: ModelId) -> None:
 
 
 @router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
-def restore_model(shelf: ShelfOf, id: ModelId) -> Model:
+def restore_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
     """Undo a deletion."""
     return model_view(stored_models.restore(shelf.database, id))
 
 
 @router.post("/{id}/cancel", responses=documented("not_found", "storage_full"))
-def cancel_model(shelf: ShelfOf, id: ModelId) -> Model:
+def cancel_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
     """Stop a model that is not finished; a finished one stays as it is."""
     return model_view(stored_models.cancel(shelf.database, id))

@@ -12,7 +12,7 @@ from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.sending import file_responses, send_blob
 from treestroke.api.views import photo_view
 from treestroke.codec.photo_kinds import MEDIA_TYPES
-from treestroke.schemas import Photo, PhotoPage, TraceAnswer
+from treestroke.schemas import PhotoInfo, PhotoPage, TraceAnswer
 from treestroke.service import photos
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
@@ -72,7 +72,7 @@ async def _photo_bytes(request: Request) -> bytes:
     status_code=HTTPStatus.CREATED,
     responses={
         HTTPStatus.CREATED: {
-            "model": Photo,
+            "model": PhotoInfo,
             "headers": {"Location": _LOCATION},
             "links": leads_to("get_photo", "get_image", "trace_photo", "delete_photo"),
         },
@@ -80,7 +80,7 @@ async def _photo_bytes(request: Request) -> bytes:
     },
     openapi_extra=_UPLOAD,
 )
-def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> Photo:
+def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> PhotoInfo:
     """Upload a photo: JPEG, PNG, WebP, HEIC, AVIF or TIFF, one frame."""
     check_length(content)
     row = photos.add_photo(shelf, content)
@@ -96,7 +96,7 @@ def list_photos(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> Pho
 
 
 @router.get("/{id}", responses=documented("not_found"))
-def get_photo(shelf: ShelfOf, id: PhotoId) -> Photo:
+def get_photo(shelf: ShelfOf, id: PhotoId) -> PhotoInfo:
     """Look a photo up."""
     return photo_view(photos.get_photo(shelf, id))
 

@@ -6,8 +6,9 @@ from fastapi import APIRouter, Response
 
 from treestroke.api.deps import JsonBody, ShelfOf
 from treestroke.api.errors import BODY, documented
-from treestroke.schemas import SKETCHES_EXAMPLE, SketchTraceAnswer
-from treestroke.service.tracing import sketch_answer
+from treestroke.schemas import SketchTraceAnswer
+from treestroke.service.tracer import sketch_answer
+from treestroke.wire_requests import SKETCHES_EXAMPLE
 
 router = APIRouter(prefix="/v1/sketches", tags=["sketches"])
 _TRACE: dict[str, Any] = {

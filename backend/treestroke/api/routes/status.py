@@ -8,17 +8,22 @@ from fastapi import APIRouter, Response
 from treestroke import __version__
 from treestroke.api.deps import DispatcherOf, SettingsOf, ShelfOf, WatcherOf
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
-from treestroke.codec.image import MAX_BYTES, MAX_LEAF_BYTES, MAX_PIXELS, MAX_SIDE, MIN_SIDE
-from treestroke.codec.inputs import MAX_TEXT_BYTES
+from treestroke.codec.image import MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
-from treestroke.codec.sketch_picture import MAX_SKETCH_BYTES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
-from treestroke.core.stroke_rules import MAX_POINTS, MAX_STROKES
+from treestroke.limits import (
+    MAX_LEAF_BYTES,
+    MAX_NAME,
+    MAX_PHOTO_BYTES,
+    MAX_POINTS,
+    MAX_SKETCH_BYTES,
+    MAX_STROKES,
+    MAX_TEXT_BYTES,
+)
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.doctor import readiness
 from treestroke.service.engine_version import engine_version
 from treestroke.service.files import files_on_offer
-from treestroke.service.model_request import MAX_NAME
 
 router = APIRouter(tags=["service"])
 
@@ -42,7 +47,7 @@ def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Healt
 def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
     """Name everything that is bounded."""
     return Limits(
-        photo_bytes=MAX_BYTES,
+        photo_bytes=MAX_PHOTO_BYTES,
         photo_stored_bytes=settings.photo_mb * 10**6,
         photos_stored_bytes=settings.photos_mb * 10**6,
         photo_pixels=MAX_PIXELS,

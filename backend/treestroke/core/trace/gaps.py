@@ -5,8 +5,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.stroke_rules import MAX_STROKES, TOUCH_SHARE
+from treestroke.core.stroke_rules import TOUCH_SHARE
 from treestroke.core.types import Floats, Indices, Mask
+from treestroke.limits import MAX_STROKES
 
 SPECK = 0.006
 """Of the long side: what is no larger is no stroke."""

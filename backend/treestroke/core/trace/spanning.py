@@ -7,9 +7,9 @@ import numpy as np
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.polyline import arc_lengths, place_at
-from treestroke.core.stroke_rules import MAX_STROKES
 from treestroke.core.trace.centre_lines import STRAIGHT_RAD, Arc, Graph, heading, turn
 from treestroke.core.types import Floats
+from treestroke.limits import MAX_STROKES
 
 SMALL_LOOP = 4.0
 """Of the ink's half width: a loop of this length, and `SMALL_LOOP_PX`, is a hole in the ink."""

@@ -11,19 +11,19 @@ from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 from treestroke.codec.image import decode_photo, decode_stored, encode_stored
-from treestroke.codec.inputs import VIEWS
-from treestroke.codec.sketch import parse_sketch, sketch_from
-from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.core.errors import PhotoError, TreestrokeError
+from treestroke.codec.refusals import checked, inside
+from treestroke.codec.sketch import sketch_of
+from treestroke.codec.strokes import strokes_of
+from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import see_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
 from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.core.types import Picture
-from treestroke.service.bodies import check_keys, inside, read_object, take_rev_and_grow
-from treestroke.service.sketch_trace import trace_sketches
-from treestroke.service.trace import Trace, trace
+from treestroke.service.model_request import Drawing, read_body
+from treestroke.service.trace import Trace, trace, trace_sketches
 from treestroke.store.blobs import Blobs, read_blob
+from treestroke.wire_requests import SketchTraceRequest, TraceRequest
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -70,7 +70,7 @@ def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, 
 
 
 def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] = ()) -> bytes:
-    """Trace a stored photo by a request's body; give the answer as JSON.
+    """Trace a stored photo by a request's body and return the answer as JSON.
 
     What was ``mended`` in the photo comes before the other warnings.
 
@@ -79,44 +79,42 @@ def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] =
     StrokesError
         The body is no such request, or its strokes cannot be used.
     """
-    request = read_object(body)
-    rev, grow = take_rev_and_grow(request)
-    side = _within(("side",), sketch_from, request.pop("side")) if "side" in request else None
+    request = checked(TraceRequest, read_body(body), StrokesError)
+    strokes = strokes_of(request)
+    side = None if request.side is None else _within(("side",), sketch_of, request.side)
     known = _recall(photo)
-    known.last = trace(known.picture, strokes_from(request), known.last, grow, side)
+    known.last = trace(known.picture, strokes, known.last, request.grow, side)
     answer = known.last.answer()
-    return _answer(rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
+    return _answer(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 
 
 def sketch_answer(body: bytes) -> bytes:
-    """Trace sketches by a request's body; give the answer as JSON.
+    """Trace sketches by a request's body and return the answer as JSON.
 
     Raises
     ------
     TreestrokeError
         The body is no such request, or a sketch cannot be used.
     """
-    request = read_object(body)
-    rev, grow = take_rev_and_grow(request)
-    check_keys(request, ("front",), ("side",))
-    sketches = {view: _within((view,), sketch_from, value) for view, value in request.items()}
-    return _answer(rev, trace_sketches(sketches["front"], sketches.get("side"), grow).answer())
+    request = checked(SketchTraceRequest, read_body(body), StrokesError)
+    front = _within(("front",), sketch_of, request.front)
+    side = None if request.side is None else _within(("side",), sketch_of, request.side)
+    return _answer(request.rev, trace_sketches(front, side, request.grow).answer())
 
 
-def check_wish(photo: Path | None, parts: Mapping[str, bytes], within: Place = ()) -> None:
-    """Check what was drawn, and against the photo what was drawn over it, so that what is accepted can be made.
+def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> None:
+    """Check sketches, and strokes against the photo under them, so that every accepted model can be made.
 
     Raises
     ------
     StrokesError
-        It cannot be used; the pointer leads into the request, whose sketches are ``within``.
+        One cannot be used; the pointer leads into the request, whose sketches are ``within``.
     """
     picture = None if photo is None else _recall(photo).picture
-    sketches = {view: parse_sketch(parts[view], view) for view in VIEWS if view in parts}
-    if picture is not None and "strokes" in parts:
+    if picture is not None and drawing.strokes is not None:
         height, width = picture.shape[:2]
-        _within(("strokes",), mend_strokes, parse_strokes(parts["strokes"], "strokes"), width, height)
-    _within(within, _draw_up, sketches, picture)
+        _within(("strokes",), mend_strokes, drawing.strokes, width, height)
+    _within(within, _draw_up, drawing.sketches, picture)
 
 
 def _draw_up(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:

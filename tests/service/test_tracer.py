@@ -5,31 +5,34 @@ from typing import Any
 import pytest
 from tests.api import drawn, sketched
 
+from treestroke.codec.sketch import sketch_from
+from treestroke.codec.strokes import strokes_from
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
-from treestroke.service import tracing
+from treestroke.service import tracer
+from treestroke.service.model_request import Drawing
 from treestroke.store.blobs import Blobs
 
 MB = 10**6
-STROKES = {"strokes": json.dumps(drawn.STROKES).encode()}
-FRONT, SIDE = (json.dumps(one).encode() for one in (sketched.FRONT, sketched.SIDE))
+STROKES = strokes_from(drawn.STROKES)
+FRONT, SIDE = (sketch_from(sketch) for sketch in (sketched.FRONT, sketched.SIDE))
 
 
 @pytest.fixture
 def photo(tmp_path: Path) -> Path:
-    kept = tracing.keep_photo(tmp_path, drawn.encoded(), MB, MB)
+    kept = tracer.keep_photo(tmp_path, drawn.encoded(), MB, MB)
     assert (kept["width"], kept["height"], kept["warnings"]) == (drawn.WIDTH, drawn.HEIGHT, [])
     assert Blobs(tmp_path).path(kept["blob"]).stat().st_size == kept["bytes"]
     return Blobs(tmp_path).path(kept["blob"])
 
 
 @pytest.mark.parametrize(
-    ("most", "room", "refusal"), [(1000, MB, PhotoError), (MB, 1000, tracing.NoRoom), (MB, -1, tracing.NoRoom)]
+    ("most", "room", "refusal"), [(1000, MB, PhotoError), (MB, 1000, tracer.NoRoom), (MB, -1, tracer.NoRoom)]
 )
 def test_a_photo_that_takes_too_much_is_not_written(
     tmp_path: Path, most: int, room: int, refusal: type[Exception]
 ) -> None:
     with pytest.raises(refusal):
-        tracing.keep_photo(tmp_path, drawn.encoded(), most, room)
+        tracer.keep_photo(tmp_path, drawn.encoded(), most, room)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -38,32 +41,32 @@ def body(**request: Any) -> bytes:
 
 
 def test_one_more_stroke_is_answered_from_what_is_known(photo: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    first = json.loads(tracing.trace_answer(photo, body(crown=drawn.STROKES["crown"])))
+    first = json.loads(tracer.trace_answer(photo, body(crown=drawn.STROKES["crown"])))
     photo.unlink()  # it is remembered
-    second = json.loads(tracing.trace_answer(photo, body(**drawn.STROKES)))
+    second = json.loads(tracer.trace_answer(photo, body(**drawn.STROKES)))
     assert second["foliage"] == first["foliage"]
     assert second["skeleton"]["points"]
 
 
 def test_the_photos_that_were_used_longest_ago_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tracing, "_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT)
-    monkeypatch.setattr(tracing, "_known", type(tracing._known)())
-    blobs = [tracing.keep_photo(tmp_path, drawn.encoded(seed=seed), MB, MB)["blob"] for seed in range(3)]
+    monkeypatch.setattr(tracer, "_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT)
+    monkeypatch.setattr(tracer, "_known", type(tracer._known)())
+    blobs = [tracer.keep_photo(tmp_path, drawn.encoded(seed=seed), MB, MB)["blob"] for seed in range(3)]
     photos = [Blobs(tmp_path).path(blob) for blob in blobs]
     for at in (0, 1, 0, 2):
-        tracing.check_wish(photos[at], STROKES)
-    assert list(tracing._known) == [photos[0], photos[2]]
+        tracer.check_drawing(photos[at], Drawing(STROKES, {}))
+    assert list(tracer._known) == [photos[0], photos[2]]
 
 
 def test_strokes_are_checked_against_the_photo(photo: Path) -> None:
     beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
     with pytest.raises(StrokesError) as caught:
-        tracing.check_wish(photo, {"strokes": json.dumps(beside).encode()})
+        tracer.check_drawing(photo, Drawing(strokes_from(beside), {}))
     assert (caught.value.code, caught.value.pointer) == ("trunk_outside_crown", "/strokes/branches/0")
 
 
 def test_sketches_are_traced_apart_and_a_joint_knows_its_branch() -> None:
-    told = json.loads(tracing.sketch_answer(body(front=sketched.FRONT, side=sketched.SIDE, rev=3)))
+    told = json.loads(tracer.sketch_answer(body(front=sketched.FRONT, side=sketched.SIDE, rev=3)))
     assert told["rev"] == 3
     assert told["warnings"] == []
     assert [told[view]["size"] for view in ("front", "side")] == [[200, 240], [180, 240]]
@@ -76,7 +79,7 @@ def test_sketches_are_traced_apart_and_a_joint_knows_its_branch() -> None:
 
 
 def test_one_sketch_alone_says_what_was_assumed_and_grows() -> None:
-    told = json.loads(tracing.sketch_answer(body(front=sketched.FRONT, grow=True)))
+    told = json.loads(tracer.sketch_answer(body(front=sketched.FRONT, grow=True)))
     assert told["side"] is None
     assert [warning["code"] for warning in told["warnings"]] == ["side_assumed"]
     assert len(told["grown"]["points"]) > len(told["front"]["skeleton"]["points"])
@@ -84,14 +87,14 @@ def test_one_sketch_alone_says_what_was_assumed_and_grows() -> None:
 
 
 def test_what_grows_of_two_sketches_is_told_with_its_score() -> None:
-    told = json.loads(tracing.sketch_answer(body(front=sketched.FRONT, side=sketched.SIDE, grow=True)))
+    told = json.loads(tracer.sketch_answer(body(front=sketched.FRONT, side=sketched.SIDE, grow=True)))
     assert told["grown"]["photo"] == told["photo"]
     assert told["score"]["front_covered"] > 0.9
     assert told["score"]["side_covered"] > 0.9
 
 
 def test_a_picture_is_traced_as_its_strokes_are() -> None:
-    told = json.loads(tracing.sketch_answer(body(front=sketched.pictured(sketched.FRONT))))
+    told = json.loads(tracer.sketch_answer(body(front=sketched.pictured(sketched.FRONT))))
     assert told["front"]["size"] == [200, 240]
     assert told["front"]["skeleton"]["points"]
 
@@ -120,22 +123,22 @@ def test_a_picture_is_traced_as_its_strokes_are() -> None:
 )
 def test_what_is_wrong_in_sketches_is_pointed_at(request_: dict[str, Any], pointer: str) -> None:
     with pytest.raises(TreestrokeError) as caught:
-        tracing.sketch_answer(body(**request_))
+        tracer.sketch_answer(body(**request_))
     assert caught.value.pointer == pointer
 
 
 def test_sketches_are_checked_before_they_are_accepted(photo: Path) -> None:
-    tracing.check_wish(None, {"front": FRONT, "side": SIDE})
-    tracing.check_wish(photo, {"front": FRONT})
-    tracing.check_wish(photo, {**STROKES, "side": SIDE})
-    flat = json.dumps({"branches": [{"points": [[5, 5], [5, 5]]}]}).encode()
-    wide = json.dumps({**sketched.FRONT, "canvas": [400, 240]}).encode()
-    for place, parts, pointer in (
-        (None, {"front": flat}, "/sketches/front/branches/0"),
-        (None, {"front": FRONT, "side": flat}, "/sketches/side/branches/0"),
-        (photo, {**STROKES, "side": flat}, "/sketches/side/branches/0"),
-        (photo, {"front": wide}, "/sketches/front"),
+    tracer.check_drawing(None, Drawing(None, {"front": FRONT, "side": SIDE}))
+    tracer.check_drawing(photo, Drawing(None, {"front": FRONT}))
+    tracer.check_drawing(photo, Drawing(STROKES, {"side": SIDE}))
+    flat = sketch_from({"branches": [{"points": [[5, 5], [5, 5]]}]})
+    wide = sketch_from({**sketched.FRONT, "canvas": [400, 240]})
+    for place, drawing, pointer in (
+        (None, Drawing(None, {"front": flat}), "/sketches/front/branches/0"),
+        (None, Drawing(None, {"front": FRONT, "side": flat}), "/sketches/side/branches/0"),
+        (photo, Drawing(STROKES, {"side": flat}), "/sketches/side/branches/0"),
+        (photo, Drawing(None, {"front": wide}), "/sketches/front"),
     ):
         with pytest.raises(StrokesError) as caught:
-            tracing.check_wish(place, parts, ("sketches",))
+            tracer.check_drawing(place, drawing, ("sketches",))
         assert caught.value.pointer == pointer

@@ -1,0 +1,178 @@
+"""Requests as JSON and as forms: the one description that checks them and that the API's document follows."""
+
+from dataclasses import Field as Entry
+from dataclasses import fields
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, JsonValue, Strict, WithJsonSchema, create_model
+from pydantic.json_schema import SkipJsonSchema
+
+from treestroke.core.pipeline import settings as table
+from treestroke.core.pipeline.settings import MAX_SEED, Choice, Several, Span, Toggle
+from treestroke.limits import MAX_ID, MAX_LEAF_BYTES, MAX_NAME, MAX_REV
+from treestroke.wire_strokes import STROKES_EXAMPLE, RequestPart, Sketch, Sketches, Strokes, no_default, text_length
+
+NAME_PATTERN = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]*$"
+"""A line of text: no controls, no line ends, nothing that turns the direction of what follows it."""
+SKETCHES_EXAMPLE: dict[str, JsonValue] = {
+    "front": {"branches": [{"points": [[200, 390], [198, 250], [203, 60]]}, {"points": [[199, 260], [290, 140]]}]},
+    "side": {"branches": [{"points": [[200, 390], [202, 240], [200, 60]]}, {"points": [[201, 270], [120, 150]]}]},
+}
+MODEL_EXAMPLE: dict[str, JsonValue] = {
+    "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
+    "strokes": STROKES_EXAMPLE,
+    "settings": {"height": 14},
+    "seed": 1,
+    "name": "The old oak",
+}
+_HOW_TO_TRACE: dict[str, JsonValue] = {"rev": 7, "grow": False}
+
+
+def _photo_id(schema: dict[str, Any]) -> None:
+    """Document a photo's id where it may be absent."""
+    no_default(schema)
+    schema["pattern"] = "^pho_[0-9a-f]{24}$"
+
+
+def _setting_type(allowed: table.Allowed) -> Any:
+    """Return the type of what a setting may be."""
+    match allowed:
+        case Span(whole=whole):
+            number = int if whole else float
+            return Annotated[number, Strict(), Field(ge=allowed.low, le=allowed.high, allow_inf_nan=False)]
+        case Choice():
+            return Literal[allowed.names]
+        case Toggle():
+            return Annotated[bool, Strict()]
+        case Several():
+            return list[Literal[allowed.names]]  # type: ignore[name-defined]
+
+
+def _setting_field(entry: "Entry[Any]") -> tuple[Any, Any]:
+    """Return the type of one setting, and its default and meaning."""
+    default = list(entry.default) if isinstance(entry.default, tuple) else entry.default
+    return _setting_type(entry.metadata["allowed"]), Field(default=default, description=entry.metadata["meaning"])
+
+
+if TYPE_CHECKING:
+    ModelSettings = RequestPart
+else:
+    ModelSettings = create_model(
+        "ModelSettings",
+        __base__=RequestPart,
+        __doc__="Settings of a model; what is absent takes its default.",
+        **{entry.name: _setting_field(entry) for entry in fields(table.ModelSettings)},
+    )
+
+Rev = Annotated[int, Strict(), Field(ge=-MAX_REV, le=MAX_REV)]
+Seed = Annotated[int, Strict(), Field(ge=0, le=MAX_SEED)]
+Name = Annotated[str, Strict(), Field(max_length=MAX_NAME, pattern=NAME_PATTERN)]
+Png = Annotated[bytes, Strict()]
+EncodedPng = Annotated[
+    str,
+    Strict(),
+    Field(
+        max_length=text_length(MAX_LEAF_BYTES),
+        json_schema_extra={"contentEncoding": "base64", "contentMediaType": "image/png"},
+    ),
+]
+
+
+class TraceRequest(Strokes):
+    """Strokes to trace."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {**STROKES_EXAMPLE, **_HOW_TO_TRACE}})
+
+    rev: Rev | None = Field(default=None, description="comes back with the answer")
+    grow: Annotated[bool, Strict()] = Field(default=False, description="grow the whole skeleton too, without leaves")
+    side: Sketch | SkipJsonSchema[None] = Field(
+        default=None, description="the tree's left side, for the grown skeleton's depth", json_schema_extra=no_default
+    )
+
+
+class SketchTraceRequest(RequestPart):
+    """Sketches to trace."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {**SKETCHES_EXAMPLE, **_HOW_TO_TRACE}})
+
+    front: Sketch
+    side: Sketch | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    rev: Rev | None = Field(default=None, description="comes back with the answer")
+    grow: Annotated[bool, Strict()] = Field(default=False, description="grow the whole skeleton too, without leaves")
+
+
+class TreeRequest(RequestPart):
+    """What a request for a model holds both as JSON and as a form."""
+
+    strokes: Strokes | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    settings: ModelSettings = Field(default_factory=ModelSettings)
+    seed: Seed = 0
+    name: Name = ""
+
+
+class ModelRequest(TreeRequest):
+    """A tree to be made.
+
+    It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
+    of its left side, perhaps with the photo that they were drawn over.
+    """
+
+    model_config = ConfigDict(json_schema_extra={"example": MODEL_EXAMPLE})
+
+    photo: Annotated[str, Strict()] | SkipJsonSchema[None] = Field(
+        default=None, max_length=MAX_ID, json_schema_extra=_photo_id
+    )
+    sketches: Sketches | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    leaf: EncodedPng | SkipJsonSchema[None] = Field(
+        default=None, description="PNG of a leaf cut out, base64", json_schema_extra=no_default
+    )
+    fruit: EncodedPng | SkipJsonSchema[None] = Field(
+        default=None, description="PNG of a fruit cut out, base64", json_schema_extra=no_default
+    )
+
+
+def _text(description: str, **more: JsonValue) -> WithJsonSchema:
+    """Document a form's field that is text."""
+    return WithJsonSchema({"type": "string", "description": description, **more})
+
+
+_SKETCH_KINDS = "application/json, image/png"
+_StrokesText = Annotated[Strokes | SkipJsonSchema[None], _text("Strokes, as JSON; with a photo")]
+_SettingsText = Annotated[ModelSettings, _text("ModelSettings, as JSON")]
+_SeedText = Annotated[Seed, _text("a whole number from 0", pattern="^[0-9]{1,18}$")]
+_FrontFile = Annotated[
+    Sketch | Png | SkipJsonSchema[None],
+    _text("Sketch of the front, in place of strokes: JSON or PNG", contentMediaType=_SKETCH_KINDS),
+]
+_SideFile = Annotated[
+    Sketch | Png | SkipJsonSchema[None],
+    _text("Sketch of the left side: JSON or PNG", contentMediaType=_SKETCH_KINDS),
+]
+_LeafFile = Annotated[Png | SkipJsonSchema[None], _text("PNG of a leaf cut out", format="binary")]
+_FruitFile = Annotated[Png | SkipJsonSchema[None], _text("PNG of a fruit cut out", format="binary")]
+
+
+def _without_defaults(schema: dict[str, Any]) -> None:
+    """Leave defaults out of a form's schema: an absent field has no text."""
+    for field in schema["properties"].values():
+        field.pop("default", None)
+
+
+class FormRequest(TreeRequest):
+    """A tree to be made, from a form's fields; the photo, which is read apart, is not among them."""
+
+    model_config = ConfigDict(json_schema_extra=_without_defaults)
+
+    strokes: _StrokesText = None
+    settings: _SettingsText = Field(default_factory=ModelSettings)
+    seed: _SeedText = 0
+    front: _FrontFile = None
+    side: _SideFile = None
+    leaf: _LeafFile = None
+    fruit: _FruitFile = None
+
+
+class Rename(RequestPart):
+    """A model's new name."""
+
+    name: Name = Field(json_schema_extra={"example": "The old oak"})
