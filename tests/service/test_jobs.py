@@ -3,7 +3,7 @@ import json
 import pytest
 from tests.api import drawn
 
-from treestroke.service import photos, stored_models
+from treestroke.service import model_request, photos, stored_models
 from treestroke.service.engine import engine
 from treestroke.service.jobs import grow_model
 from treestroke.service.photos import Shelf
@@ -12,7 +12,7 @@ from treestroke.service.photos import Shelf
 @pytest.mark.parametrize("part", ["photo", "strokes"])
 def test_a_model_whose_input_is_damaged_fails_and_says_so(shelf: Shelf, part: str) -> None:
     photo = photos.add_photo(shelf, drawn.encoded(seed=3))
-    wish = stored_models.read_wish(shelf, json.dumps(drawn.wish(photo.id)).encode())
+    wish = model_request.read_wish(json.dumps(drawn.wish(photo.id)).encode())
     model = stored_models.accept_model(shelf, wish, None)
     row, place = model.row, shelf.blobs.path(model.parts[part].blob)
     content = bytearray(place.read_bytes())

@@ -33,7 +33,7 @@ from treestroke.codec.inputs import MAX_TEXT_BYTES, PARTS
 from treestroke.codec.photo_kinds import TAKEN
 from treestroke.schemas import NAME_PATTERN, Model, ModelPage
 from treestroke.service import photos, stored_models
-from treestroke.service.model_request import MAX_NAME, Wish, read_name
+from treestroke.service.model_request import MAX_NAME, Wish, read_fields, read_name, read_wish
 from treestroke.service.photos import Shelf
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
@@ -112,10 +112,10 @@ class _Received:
 
 
 async def _receive(request: Request, shelf: ShelfOf) -> _Received:
-    """Read a request for a model: JSON that may name a photo, or a form that may bring one."""
+    """Read a request for a model, in a tracing process: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return _Received(await run_in_threadpool(stored_models.read_wish, shelf, await request.body()))
+        return _Received(await run_in_threadpool(shelf.tracers, "", read_wish, await request.body()))
     if kind != "multipart/form-data":
         raise HTTPException(415, "send application/json, or a form with photo and strokes, or front and side")
     most = len(_FIELDS)
@@ -132,9 +132,9 @@ async def _receive(request: Request, shelf: ShelfOf) -> _Received:
 
 def _read_form(shelf: Shelf, photo: bytes | None, fields: dict[str, bytes]) -> _Received:
     if photo is None:
-        return _Received(stored_models.read_fields(shelf, fields, brings_photo=False))
+        return _Received(shelf.tracers("", read_fields, fields, brings_photo=False))
     check_length(photo)
-    return _Received(stored_models.read_fields(shelf, fields), photos.take_in(shelf, photo))
+    return _Received(shelf.tracers("", read_fields, fields), photos.take_in(shelf, photo))
 
 
 async def _content(field: UploadFile | str) -> bytes:
