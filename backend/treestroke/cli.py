@@ -107,7 +107,7 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for add in (_add_model, _add_sketch, _add_trace, _add_serve, _add_worker, _add_doctor):
+    for add in (_add_model, _add_sketch, _add_trace, _add_service):
         add(commands)
     return parser
 
@@ -136,19 +136,14 @@ def _add_trace(commands: "Commands") -> None:
     )
 
 
-def _add_serve(commands: "Commands") -> None:
-    command = _add_command(commands, "serve", _serve, "answer over HTTP, with a page")
-    command.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
-    command.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
-    _add_data(command)
-
-
-def _add_worker(commands: "Commands") -> None:
-    _add_data(_add_command(commands, "worker", _worker, "grow models for a service elsewhere"))
-
-
-def _add_doctor(commands: "Commands") -> None:
-    _add_data(_add_command(commands, "doctor", _doctor, "say what is missing or broken"))
+def _add_service(commands: "Commands") -> None:
+    serve = _add_command(commands, "serve", _serve, "answer over HTTP, with a page")
+    serve.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
+    serve.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
+    worker = _add_command(commands, "worker", _worker, "grow models for a service elsewhere")
+    doctor = _add_command(commands, "doctor", _doctor, "say what is missing or broken")
+    for command in (serve, worker, doctor):
+        command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
 
 
 def _add_command(
@@ -158,10 +153,6 @@ def _add_command(
     command.add_argument("--debug", action="store_true", help="show the trace of an error")
     command.set_defaults(command=action, reads=action in (_make, _trace))
     return command
-
-
-def _add_data(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
 
 
 def _add_inputs(command: argparse.ArgumentParser, source: Source, by_position: Sequence[str]) -> None:
