@@ -1,4 +1,4 @@
-"""The command line: parse, call one use case, answer."""
+"""The command line: parse, call one use case, write its results."""
 
 import argparse
 import json
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_ALOUD = ("side_assumed", "photo_cut_short", "trunk_level", "outside_photo", "crown_unclear")
-"""Codes of the warnings that are said aloud: nobody drew what they speak of, or it may be no tree."""
+_PRINTED = ("side_assumed", "photo_cut_short", "trunk_level", "outside_photo", "crown_unclear")
+"""Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
 
 class UsageError(TreestrokeError):
@@ -37,14 +37,20 @@ class UsageError(TreestrokeError):
 
 
 class MachineFault(Exception):
-    """The machine's fault, in a line that says all there is to say."""
+    """The machine's fault; its message is one line for the person."""
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser whose complaint is one line."""
+    """An argument parser that raises its message instead of printing the usage."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise instead of printing the usage."""
+        """Raise the message.
+
+        Raises
+        ------
+        UsageError
+            Always.
+        """
         raise UsageError(f"{message}; see {self.prog} --help")
 
 
@@ -62,34 +68,34 @@ class ProgressLine:
         self._stream.flush()
 
     def clear(self) -> None:
-        """Leave an empty line."""
+        """Clear the line."""
         self._stream.write("\r\x1b[K")
         self._stream.flush()
 
 
 def run() -> NoReturn:
-    """Run the command line and leave with its exit code; our own mistakes become one line too."""
+    """Run the command line and exit with its code; a programming error is printed as one line, too."""
     if "--debug" not in sys.argv:
         sys.excepthook = _one_line
     sys.exit(main())
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run one command; give its exit code: 0, 2 bad input, 1 the machine's fault, 130 interrupted."""
-    given = list(sys.argv[1:] if argv is None else argv)
+    """Run one command; return its exit code: 0, 2 bad input, 1 the machine's fault, 130 interrupted."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
     try:
-        options = _parser().parse_args(given)
+        options = _parser().parse_args(arguments)
         with warnings.catch_warnings():
             if not options.debug:
                 warnings.simplefilter("ignore")
-            with _own_words() if options.reads and not options.debug else nullcontext():
+            with _library_output_hidden() if options.reads and not options.debug else nullcontext():
                 options.command(options)
     except TreestrokeError as error:
-        return _fail(BAD_INPUT, str(error), "--debug" in given)
+        return _fail(BAD_INPUT, str(error), "--debug" in arguments)
     except (MachineFault, DataFolderError) as error:
-        return _fail(OUR_FAULT, str(error), "--debug" in given)
+        return _fail(OUR_FAULT, str(error), "--debug" in arguments)
     except (OSError, MemoryError) as error:
-        return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in given)
+        return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in arguments)
     except KeyboardInterrupt:
         return _fail(INTERRUPTED, "interrupted; nothing was written", debug=False)
     return 0
@@ -101,7 +107,7 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for add in (_add_model, _add_sketch, _add_trace, _add_serve, _add_worker, _add_doctor):
+    for add in (_add_model, _add_sketch, _add_trace, _add_service):
         add(commands)
     return parser
 
@@ -109,11 +115,15 @@ def _parser() -> Parser:
 def _add_model(commands: "Commands") -> None:
     command = _add_command(commands, "model", _make, "make a GLB of a photo")
     _add_inputs(command, SOURCES["photo"], ("photo",))
+    _add_outputs(command)
+    _add_settings(command)
 
 
 def _add_sketch(commands: "Commands") -> None:
     command = _add_command(commands, "sketch", _make, "make a GLB of sketches")
     _add_inputs(command, SOURCES["sketches"], ("front", "side"))
+    _add_outputs(command)
+    _add_settings(command)
 
 
 def _add_trace(commands: "Commands") -> None:
@@ -126,19 +136,14 @@ def _add_trace(commands: "Commands") -> None:
     )
 
 
-def _add_serve(commands: "Commands") -> None:
-    command = _add_command(commands, "serve", _serve, "answer over HTTP, with a page")
-    command.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
-    command.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
-    _add_data(command)
-
-
-def _add_worker(commands: "Commands") -> None:
-    _add_data(_add_command(commands, "worker", _worker, "grow models for a service elsewhere"))
-
-
-def _add_doctor(commands: "Commands") -> None:
-    _add_data(_add_command(commands, "doctor", _doctor, "say what is missing or broken"))
+def _add_service(commands: "Commands") -> None:
+    serve = _add_command(commands, "serve", _serve, "answer over HTTP, with a page")
+    serve.add_argument("--host", help="this machine's own address to listen on (default 127.0.0.1)")
+    serve.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
+    worker = _add_command(commands, "worker", _worker, "grow models for a service elsewhere")
+    doctor = _add_command(commands, "doctor", _doctor, "say what is missing or broken")
+    for command in (serve, worker, doctor):
+        command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
 
 
 def _add_command(
@@ -150,12 +155,8 @@ def _add_command(
     return command
 
 
-def _add_data(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
-
-
 def _add_inputs(command: argparse.ArgumentParser, source: Source, by_position: Sequence[str]) -> None:
-    """Add the parts of a source, some ``by_position``; a project may stand in place of the first."""
+    """Add the parts of a source as flags, some ``by_position``; a project may take the place of the first."""
     command.set_defaults(first=by_position[0])
     for name in (*source.needs, *source.options):
         part = PARTS[name]
@@ -166,8 +167,6 @@ def _add_inputs(command: argparse.ArgumentParser, source: Source, by_position: S
             command.add_argument(name, metavar=metavar, help=part.help, nargs="?")
         else:
             command.add_argument(f"--{name}", metavar=metavar, help=part.help)
-    _add_outputs(command)
-    _add_settings(command)
 
 
 def _add_outputs(command: argparse.ArgumentParser) -> None:
@@ -213,12 +212,12 @@ def _make(options: argparse.Namespace) -> None:
     further = {options.out.with_name(name): content for name, content in list(result.files.items())[1:]}
     _check_further(options, further)
     write_atomically({path: makers[name]() for name, path in outputs.items()} | further)
-    _say_aloud(result.report["warnings"])
+    _print_warnings(result.report["warnings"])
 
 
-def _say_aloud(warnings: Sequence[Mapping[str, str]]) -> None:
+def _print_warnings(warnings: Sequence[Mapping[str, str]]) -> None:
     for warning in warnings:
-        if warning["code"] in _ALOUD:
+        if warning["code"] in _PRINTED:
             print(f"treestroke: {warning['stroke']}: {warning['detail']}", file=sys.stderr)
 
 
@@ -228,7 +227,7 @@ def _stem(out: Path) -> str:
 
 
 def _check_further(options: argparse.Namespace, further: Collection[Path]) -> None:
-    """Refuse to write over what was read."""
+    """Refuse to write over a file that the command reads."""
     read = _read(options)
     for path in further:
         if os.path.realpath(path) in read or path.is_dir():
@@ -252,7 +251,7 @@ def _trace(options: argparse.Namespace) -> None:
     write_atomically({path: makers[name]() for name, path in outputs.items()})
     if options.out is None:
         print(answer)
-    _say_aloud(found["warnings"])
+    _print_warnings(found["warnings"])
 
 
 def _serve(options: argparse.Namespace) -> None:
@@ -273,21 +272,21 @@ def _doctor(options: argparse.Namespace) -> None:
     settings = _service_settings(options)
     from treestroke.service.doctor import examine
 
-    looked = ill = 0
+    examined = ill = 0
     for finding in examine(settings):
-        looked, ill = looked + 1, ill + (not finding.well)
+        examined, ill = examined + 1, ill + (not finding.well)
         print(f"{'ok ' if finding.well else 'ILL'}  {finding.part:<{_PART_WIDTH}}  {finding.found}", flush=True)
         if finding.mend:
             print(f"     {'':<{_PART_WIDTH}}  mend: {finding.mend}", flush=True)
     if ill:
-        raise MachineFault(f"{ill} of {looked} parts are ill")
+        raise MachineFault(f"{ill} of {examined} parts are ill")
 
 
 def _service_settings(options: argparse.Namespace) -> Any:
     from treestroke.settings import read_settings
 
-    given = {name: getattr(options, name, None) for name in ("host", "port", "data")}
-    return read_settings(**{name: value for name, value in given.items() if value is not None})
+    flags = {name: getattr(options, name, None) for name in ("host", "port", "data")}
+    return read_settings(**{name: value for name, value in flags.items() if value is not None})
 
 
 def _inputs(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str, Any]]:
@@ -314,12 +313,12 @@ def _parts(options: argparse.Namespace) -> dict[str, str]:
 
 
 def _read(options: argparse.Namespace) -> set[str]:
-    """Give the places of all files that the command reads."""
+    """Return the resolved paths of all files that the command reads."""
     return {os.path.realpath(path) for path in _parts(options).values()}
 
 
 def _chosen(options: argparse.Namespace) -> dict[str, Any]:
-    """Collect the settings that flags name, and the seed."""
+    """Return the settings that flags name, and the seed."""
     flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
     settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
     return settings if options.seed is None else {**settings, "seed": _whole(options.seed)}
@@ -348,7 +347,7 @@ def _whole(text: str) -> object:
 
 
 def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Path]:
-    """Collect the files to write; refuse, before any work, places that no file can have."""
+    """Return the paths to write, by flag; refuse, before any work, those that cannot be written."""
     outputs = {name: path for name in names if (path := getattr(options, name)) is not None}
     taken = _read(options)
     for name, path in outputs.items():
@@ -363,8 +362,8 @@ def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Pat
 
 
 @contextmanager
-def _own_words() -> Iterator[None]:
-    """Keep what libraries in C print of a damaged picture from standard error: one line of ours says it."""
+def _library_output_hidden() -> Iterator[None]:
+    """Hide what libraries in C print about a damaged picture; the error's one line says it."""
     shown, kept = sys.stderr, os.dup(2)
     try:
         with open(os.devnull, "wb") as nowhere, os.fdopen(os.dup(kept), "w", 1, errors="backslashreplace") as ours:

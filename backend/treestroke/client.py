@@ -1,8 +1,6 @@
 """A client of the service: uploads photos and sketches, downloads traces and trees; needs no modelling package."""
 
-import base64
 import hashlib
-import json
 import math
 import os
 import secrets
@@ -11,14 +9,26 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import closing, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypedDict, TypeVar, Unpack
+from typing import Any, Self, TypeVar, Unpack
 from urllib.parse import quote
 
 import httpx
 
+from treestroke.request_bodies import (
+    PhotoOptions,
+    PictureLike,
+    SketchLike,
+    SketchOptions,
+    StrokesLike,
+    TreeOptions,
+    file_bytes,
+    plain_options,
+    plain_sketch,
+    plain_sketches,
+    plain_strokes,
+)
 from treestroke.responses import Again, Event, ServiceError, checked, events_of, read, unreachable
 from treestroke.schemas import GrownSkeleton, ModelInfo, ModelPage, PhotoInfo, PhotoPage, SketchTraceAnswer, TraceAnswer
-from treestroke.wire_strokes import Sketch, Strokes
 
 __all__ = [
     "Client",
@@ -31,11 +41,6 @@ __all__ = [
     "TreeOptions",
 ]
 
-StrokesLike = Strokes | Mapping[str, Any] | str | os.PathLike[str]
-"""Strokes, the same as a plain mapping, or the path of their JSON file."""
-PictureLike = str | os.PathLike[str] | bytes
-SketchLike = Sketch | Mapping[str, Any] | str | os.PathLike[str]
-"""A sketch, the same as a plain mapping, or the path of its JSON file or of a PNG."""
 Done = TypeVar("Done")
 Page = TypeVar("Page", ModelPage, PhotoPage)
 
@@ -44,43 +49,7 @@ _PAUSES_S = (0.2, 0.4, 0.8, 1.6, 3.2)
 _SILENCE_S = 20.0
 """An event stream without even a ping for this long is broken."""
 _POLL_S = 0.5
-_PNG = b"\x89PNG"
 _ENDS = ("succeeded", "failed", "canceled")
-
-
-class Cutouts(TypedDict, total=False):
-    """Pictures of what the tree is to bear: a path or the bytes of a PNG of a leaf, or of a fruit, cut out."""
-
-    leaf: PictureLike | None
-    fruit: PictureLike | None
-
-
-class TreeOptions(Cutouts, total=False):
-    """Options of a request for a tree, all of which may be left out; `Cutouts` among them.
-
-    Attributes
-    ----------
-    name
-        The tree's name.
-    idempotency_key
-        The same key with the same request returns the same model, for a day, from another process too; a new key by
-        default.
-    """
-
-    name: str
-    idempotency_key: str | None
-
-
-class PhotoOptions(TreeOptions, total=False):
-    """Options of `Client.grow`: also a sketch of the tree's left ``side``, from which its branches have their depth."""
-
-    side: SketchLike | None
-
-
-class SketchOptions(TreeOptions, total=False):
-    """Options of `Client.grow_sketches`: also the ``photo`` that the front was drawn over, which gives the colours."""
-
-    photo: PhotoInfo | str | None
 
 
 class Client:
@@ -112,7 +81,7 @@ class Client:
         """Close the connection."""
         self._http.close()
 
-    def upload(self, photo: str | os.PathLike[str] | bytes) -> PhotoInfo:
+    def upload(self, photo: PictureLike) -> PhotoInfo:
         """Upload a photo: a path, or encoded bytes (JPEG, PNG, WebP, HEIC, AVIF or TIFF).
 
         Raises
@@ -122,7 +91,7 @@ class Client:
         OSError
             The file cannot be read.
         """
-        content = _content(photo)
+        content = file_bytes(photo)
         headers = {"Content-Type": "application/octet-stream"}
         return read(PhotoInfo, self._ask("POST", "/v1/photos", content=content, headers=headers).content)
 
@@ -156,8 +125,8 @@ class Client:
         ServiceError
             There is no such photo, or a stroke cannot be used.
         """
-        body = {**_plain(strokes), "grow": grow} | ({} if rev is None else {"rev": rev})
-        body |= {} if side is None else {"side": _plain_sketch(side)}
+        body = {**plain_strokes(strokes), "grow": grow} | ({} if rev is None else {"rev": rev})
+        body |= {} if side is None else {"side": plain_sketch(side)}
         return read(TraceAnswer, self._ask("POST", f"/v1/photos/{_id(photo)}/trace", json=body).content)
 
     def trace_sketches(
@@ -170,7 +139,7 @@ class Client:
         ServiceError
             A sketch cannot be used.
         """
-        body = {**_plain_sketches(front, side), "grow": grow} | ({} if rev is None else {"rev": rev})
+        body = {**plain_sketches(front, side), "grow": grow} | ({} if rev is None else {"rev": rev})
         return read(SketchTraceAnswer, self._ask("POST", "/v1/sketches/trace", json=body).content)
 
     def grow(
@@ -191,8 +160,8 @@ class Client:
             There is no such photo, or a stroke or a setting cannot be used.
         """
         side = options.pop("side", None)
-        sketches = {} if side is None else {"sketches": {"side": _plain_sketch(side)}}
-        inputs = {"photo": _id(photo), "strokes": _plain(strokes), **sketches}
+        sketches = {} if side is None else {"sketches": {"side": plain_sketch(side)}}
+        inputs = {"photo": _id(photo), "strokes": plain_strokes(strokes), **sketches}
         return self._ask_for_tree(inputs, settings, seed, options)
 
     def grow_sketches(
@@ -213,7 +182,7 @@ class Client:
             A sketch or a setting cannot be used, or there is no such photo.
         """
         photo = options.pop("photo", None)
-        inputs = {"sketches": _plain_sketches(front, side), **({} if photo is None else {"photo": _id(photo)})}
+        inputs = {"sketches": plain_sketches(front, side), **({} if photo is None else {"photo": _id(photo)})}
         return self._ask_for_tree(inputs, settings, seed, options)
 
     def model(self, model: ModelInfo | str) -> ModelInfo:
@@ -317,13 +286,9 @@ class Client:
     def _ask_for_tree(
         self, inputs: Mapping[str, Any], settings: Mapping[str, Any] | None, seed: int, options: Mapping[str, Any]
     ) -> ModelInfo:
-        if unknown := options.keys() - TreeOptions.__annotations__.keys():
-            raise TypeError(f"there are no options {', '.join(sorted(unknown))}")
         headers = {"Idempotency-Key": options.get("idempotency_key") or secrets.token_hex(16)}
-        cutouts = {part: _base64(options[part]) for part in Cutouts.__annotations__ if options.get(part) is not None}
-        wanted = {"settings": dict(settings or {}), "seed": seed, "name": options.get("name", "")}
-        answer = self._ask("POST", "/v1/models", json={**inputs, **cutouts, **wanted}, headers=headers)
-        return read(ModelInfo, answer.content)
+        body = {**inputs, **plain_options(options), "settings": dict(settings or {}), "seed": seed}
+        return read(ModelInfo, self._ask("POST", "/v1/models", json=body, headers=headers).content)
 
     def _ask(self, method: str, path: str, **request: Any) -> httpx.Response:
         # A deletion that was cut off may have happened; sent again it would fail.
@@ -366,38 +331,6 @@ class Client:
         with suppress(httpx.TransportError), self._http.stream("GET", path, headers=headers, timeout=timeout) as answer:
             if answer.is_success:
                 yield from events_of(answer.iter_bytes())
-
-
-def _plain(strokes: StrokesLike) -> dict[str, Any]:
-    if isinstance(strokes, Strokes):
-        return strokes.model_dump(mode="json", exclude_none=True)
-    if isinstance(strokes, Mapping):
-        return dict(strokes)
-    plain: dict[str, Any] = json.loads(Path(strokes).read_bytes())
-    return plain
-
-
-def _plain_sketch(sketch: SketchLike) -> dict[str, Any]:
-    if isinstance(sketch, Sketch):
-        return dict(sketch.model_dump(mode="json", exclude_none=True))
-    if isinstance(sketch, Mapping):
-        return dict(sketch)
-    content = Path(sketch).read_bytes()
-    if content.startswith(_PNG):
-        return {"picture": base64.b64encode(content).decode()}
-    return dict(json.loads(content))
-
-
-def _plain_sketches(front: SketchLike, side: SketchLike | None) -> dict[str, Any]:
-    return {"front": _plain_sketch(front)} | ({} if side is None else {"side": _plain_sketch(side)})
-
-
-def _base64(picture: PictureLike) -> str:
-    return base64.b64encode(_content(picture)).decode()
-
-
-def _content(file: str | os.PathLike[str] | bytes) -> bytes:
-    return file if isinstance(file, bytes) else Path(file).read_bytes()
 
 
 def _id(thing: PhotoInfo | ModelInfo | str) -> str:

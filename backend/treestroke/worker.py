@@ -26,7 +26,7 @@ from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
 from treestroke.service.dispatch import holds_jobs, record_heartbeat, remove_worker
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
-from treestroke.service.jobs import grow_model
+from treestroke.service.jobs import Hint, grow_model
 from treestroke.service.tracing_pool import limit_memory
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
@@ -170,7 +170,8 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
         Request = JobRequest  # type: ignore[assignment]
 
         def run(self, model: str) -> None:
-            grow_model(*opened[0], model, str(self.request.id), name_of_worker, settings.model_seconds)
+            hint = Hint(model, str(self.request.id), name_of_worker, settings.model_seconds)
+            grow_model(*opened[0], hint)
 
     name_of_worker = name
     app.register_task(Grow())

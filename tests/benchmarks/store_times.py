@@ -20,7 +20,7 @@ from sqlalchemy import Engine, event
 from sqlalchemy.pool import Pool
 from tests.api import drawn
 
-from treestroke.service import photos, stored_models
+from treestroke.service import model_request, photos, stored_models
 from treestroke.service.engine_version import engine_version
 from treestroke.service.photos import Shelf
 from treestroke.service.retention import Sweeper
@@ -119,7 +119,7 @@ def ask(shelf: Shelf) -> bool:
     photo = photos.add_photo(shelf, drawn.encoded()).id
     with held() as took:
         for seed in range(ASKED):
-            wish = stored_models.read_order(shelf, json.dumps(drawn.wish(photo, seed=seed)).encode())
+            wish = model_request.read_order(json.dumps(drawn.wish(photo, seed=seed)).encode())
             assert stored_models.accept_model(shelf, wish, f"key-{seed}").row.status == "queued"
     say(f"the lock, held by POST /v1/models (< {PROMISED_MS})", took)
     return bool(np.median(took) * 1000 < PROMISED_MS)

@@ -12,7 +12,7 @@ from tests.api import drawn, sketched
 from tests.rows import add_model
 
 from treestroke.codec.project import Project, read_project
-from treestroke.service import photos, stored_models
+from treestroke.service import model_request, photos, stored_models
 from treestroke.service.photos import Shelf
 from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
 from treestroke.service.stored_models import StoredModel
@@ -46,7 +46,7 @@ def model_of(shelf: Shelf, content: bytes, seed: int = 0) -> StoredModel:
 
 def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: Projects) -> None:
     photo = photos.add_photo(shelf, drawn.encoded())
-    asked = stored_models.read_order(shelf, json.dumps(drawn.wish(photo.id, seed=7)).encode())
+    asked = model_request.read_order(json.dumps(drawn.wish(photo.id, seed=7)).encode())
     model = stored_models.accept_model(shelf, asked, None)
     project = project_of(projects, model)
     assert list(project.inputs.parts) == ["photo", "strokes"]
@@ -58,7 +58,7 @@ def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: P
 def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projects: Projects) -> None:
     sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
     fruit = base64.b64encode(sketched.berry()).decode()
-    asked = stored_models.read_order(shelf, json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
+    asked = model_request.read_order(json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
     model = stored_models.accept_model(shelf, asked, None)
     assert list(model.drawings) == ["front.json", "side.png"]
     parts = project_of(projects, model).inputs.parts

@@ -9,7 +9,7 @@ from tests.api import drawn, sketched
 from tests.rows import add_model
 
 from treestroke.core.errors import StrokesError
-from treestroke.service import photos, stored_models
+from treestroke.service import model_request, photos, stored_models
 from treestroke.service.engine_version import engine_version
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Shelf
@@ -21,7 +21,7 @@ from treestroke.store.tables import ModelRow, PhotoRow
 
 
 def wish(shelf: Shelf, photo: str, **others: Any) -> ModelOrder:
-    return stored_models.read_order(shelf, json.dumps(drawn.wish(photo, **others)).encode())
+    return model_request.read_order(json.dumps(drawn.wish(photo, **others)).encode())
 
 
 def finished(shelf: Shelf, id: str, glb: bytes, by: str = "") -> None:
@@ -104,7 +104,7 @@ def test_a_photo_that_came_along_is_kept_with_its_model_alone(shelf: Shelf) -> N
     assert photos.get_photo(shelf, seen.row.photo)
     stored_models.accept_model(shelf, good, "key", photos.take_in(shelf, drawn.encoded()))
     beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
-    bad = stored_models.read_form(shelf, {"strokes": json.dumps(beside).encode()})
+    bad = model_request.read_form({"strokes": json.dumps(beside).encode()})
     with pytest.raises(StrokesError):
         stored_models.accept_model(shelf, bad, None, photos.take_in(shelf, drawn.encoded()))
     assert (count(shelf, PhotoRow), count(shelf, ModelRow)) == (1, 1)
@@ -122,16 +122,16 @@ def test_a_key_that_outlived_its_model_gives_a_new_one(shelf: Shelf) -> None:
 
 def test_a_model_of_sketches_needs_no_photo_and_is_known_again(shelf: Shelf) -> None:
     asked = json.dumps(sketched.wish(seed=3)).encode()
-    model = stored_models.accept_model(shelf, stored_models.read_order(shelf, asked), "key")
+    model = stored_models.accept_model(shelf, model_request.read_order(asked), "key")
     assert (model.row.photo, model.inputs.source, list(model.parts)) == (None, "sketches", ["front", "side"])
     assert list(model.drawings) == ["front.json", "side.json"]
     first = model.row
-    assert stored_models.accept_model(shelf, stored_models.read_order(shelf, asked), "key").row.id == first.id
+    assert stored_models.accept_model(shelf, model_request.read_order(asked), "key").row.id == first.id
     finished(shelf, first.id, b"tree")
-    assert stored_models.accept_model(shelf, stored_models.read_order(shelf, asked), None).row.status == "succeeded"
+    assert stored_models.accept_model(shelf, model_request.read_order(asked), None).row.status == "succeeded"
     exchanged = {"front": sketched.SIDE, "side": sketched.FRONT}
     for change in ({"seed": 4}, {"sketches": exchanged}, {"sketches": {"front": sketched.FRONT}}):
-        other = stored_models.read_order(shelf, json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
+        other = model_request.read_order(json.dumps(sketched.wish(**{"seed": 3, **change})).encode())
         assert stored_models.accept_model(shelf, other, None).row.status == "queued"
         with pytest.raises(KeyReused):
             stored_models.accept_model(shelf, other, "key")

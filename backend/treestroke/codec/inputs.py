@@ -3,7 +3,7 @@
 A new part (a file beside a photo or a sketch) is one more entry of `PARTS`, a new source one more of `SOURCES`.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
@@ -12,7 +12,6 @@ from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesErr
 from treestroke.limits import MAX_LEAF_BYTES, MAX_PHOTO_BYTES, MAX_SKETCH_BYTES, MAX_TEXT_BYTES
 
 Content = TypeVar("Content", covariant=True)
-Changed = TypeVar("Changed")
 PartKind = Literal["photo", "strokes", "sketch", "cutout"]
 SourceName = Literal["photo", "sketches"]
 
@@ -205,14 +204,9 @@ class Inputs(Generic[Content]):
             There is no part of such a name.
         """
         given = {name: content for name, content in parts.items() if content is not None}
-        source, order = check_parts(given), list(PARTS)
-        return cls(
-            source, {name: given[name] for name in sorted(given, key=lambda one: order.index(part_of(one).name))}
-        )
-
-    def map(self, change: Callable[[Content], Changed]) -> "Inputs[Changed]":
-        """Return the same inputs with each part changed."""
-        return Inputs(self.source, {name: change(content) for name, content in self.parts.items()})
+        order = list(PARTS)
+        names = sorted(given, key=lambda name: order.index(part_of(name).name))
+        return cls(check_parts(given), {name: given[name] for name in names})
 
 
 def part_of(name: str) -> Part:

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Self
 
@@ -34,6 +35,16 @@ GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
 _BEAT_SECONDS = 2.0
 _LOOK_SECONDS = 0.5
 log = structlog.get_logger()
+
+
+@dataclass(frozen=True)
+class Hint:
+    """A message to a worker: the model's id, a token of its own, the worker, and the seconds that it may take."""
+
+    model: str
+    token: str
+    worker: str
+    seconds: float
 
 
 class Canceled(Exception):
@@ -104,19 +115,19 @@ class Heartbeat:
         return False
 
 
-def grow_model(database: Database, blobs: Blobs, id: str, token: str, worker: str, seconds: float) -> None:
+def grow_model(database: Database, blobs: Blobs, hint: Hint) -> None:
     """Grow the model that a hint names, unless another worker does or did, and publish it whole or not at all."""
     with database.writing() as session:
-        job = claim(session, id, token, worker, engine_version())
-        parts = {} if job is None else queries.parts(session, [id])[id]
+        job = claim(session, hint.model, hint.token, hint.worker, engine_version())
+        parts = {} if job is None else queries.parts(session, [job.id])[job.id]
     if job is None:
-        log.info("hint_ignored", job=id)
+        log.info("hint_ignored", job=hint.model)
         return
-    with structlog.contextvars.bound_contextvars(job=id, attempt=job.attempt):
+    with structlog.contextvars.bound_contextvars(job=job.id, attempt=job.attempt):
         log.info("job_started")
         try:
             inputs = Inputs.of(parts)
-            with Heartbeat(database, job, inputs.source, seconds) as heartbeat:
+            with Heartbeat(database, job, inputs.source, hint.seconds) as heartbeat:
                 report, files = _make(database, blobs, job, inputs, heartbeat)
             _publish(database, job, report, files)
         except Superseded:

@@ -1,4 +1,4 @@
-"""Photos: taken in, found, traced and deleted."""
+"""Stored photos: uploaded, found, traced and deleted."""
 
 import hashlib
 import time
@@ -24,19 +24,19 @@ class NotFound(Exception):
 
 @dataclass(frozen=True)
 class Shelf:
-    """Where everything is kept, and who looks into photos."""
+    """The service's storage (rows and blobs), and the processes that decode and trace."""
 
     database: Database
     blobs: Blobs
     tracers: TracingPool
     photo_bytes: int = PHOTO_MB * 10**6
-    """What one photo may take as it is kept."""
+    """The most that one photo may take as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
-    """What all of them may take."""
+    """The most that all photos may take together."""
 
 
 def add_photo(shelf: Shelf, content: bytes) -> PhotoRow:
-    """Take a photo in and keep it.
+    """Store an uploaded photo.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def add_photo(shelf: Shelf, content: bytes) -> PhotoRow:
 
 
 def take_in(shelf: Shelf, content: bytes) -> PhotoRow:
-    """Decode a photo and store its upright pixels, without its metadata; the row that is given is not yet kept.
+    """Decode a photo and store its upright pixels without metadata; return its row, which is not yet in the table.
 
     Raises
     ------
@@ -64,12 +64,12 @@ def take_in(shelf: Shelf, content: bytes) -> PhotoRow:
     sha256 = hashlib.sha256(content).hexdigest()
     with shelf.database.reading() as session:
         room = shelf.photos_bytes - stored_bytes(session)
-    folder, most = shelf.blobs.folder.parent, shelf.photo_bytes
+    folder = shelf.blobs.folder.parent
     try:
-        kept = shelf.tracers(sha256, tracer.keep_photo, folder, content, most, room)
+        columns = shelf.tracers(sha256, tracer.keep_photo, folder, content, shelf.photo_bytes, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
-    return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **kept)
+    return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **columns)
 
 
 def get_photo(shelf: Shelf, id: str) -> PhotoRow:
@@ -88,7 +88,7 @@ def get_photo(shelf: Shelf, id: str) -> PhotoRow:
 
 
 def list_photos(shelf: Shelf, cursor: str | None, limit: int) -> tuple[Sequence[PhotoRow], str | None]:
-    """Give a page of photos, newest first, and the cursor of the next page: decimal digits."""
+    """Return a page of photos, newest first, and the cursor of the next page: decimal digits."""
     with shelf.database.reading() as session:
         return page(session, PhotoRow, cursor, limit)
 
@@ -102,22 +102,21 @@ def delete_photo(shelf: Shelf, id: str) -> None:
         There is none.
     """
     with shelf.database.writing() as session:
-        gone = (
-            update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None)).values(deleted=time.time(), seen=None)
-        )
-        if session.scalars(gone.returning(PhotoRow.id)).first() is None:
+        there = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))
+        deleted = there.values(deleted=time.time(), seen=None).returning(PhotoRow.id)
+        if session.scalars(deleted).first() is None:
             raise NotFound("photo")
 
 
 def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
-    """Trace a photo by a request's body; give the answer's JSON.
+    """Trace a photo by the body of a request; return the response's JSON.
 
     Raises
     ------
     NotFound, StrokesError
         There is no such photo, or the body cannot be used.
     Overloaded, Crashed
-        The tracing processes have too much to do, or one died over this.
+        The tracing processes are too busy, or one died over this request.
     """
     row = get_photo(shelf, id)
     return shelf.tracers(row.blob, tracer.trace_answer, shelf.blobs.path(row.blob), body, row.warnings)

@@ -1,7 +1,8 @@
-"""What is deleted goes, a day later, with its files; so does what nothing refers to.
+"""Removal of what was deleted a day ago, with its files, and of files that no row refers to.
 
-The clock on the wall decides nothing, since it may jump. Ages are told by a clock of the store's own, and begin when a
-sweep first sees a row, or a file, in its present state: nothing goes that was not seen twice, a day or an hour apart.
+The wall clock decides nothing, since it may jump. Ages are measured by a clock of the store's own, and begin when a
+sweep first sees a row, or a file, in its present state: nothing is removed that was not seen twice, a day or an hour
+apart.
 """
 
 import math
@@ -23,19 +24,19 @@ from treestroke.store.queries import referenced
 from treestroke.store.tables import ModelRow, PhotoRow, Replay, StoreClock, Stray
 
 STRAY_SECONDS = 3600.0
-"""A file that no row names may belong to one that is about to be written; after this it does not."""
+"""A file that no row refers to is kept this long: its row may be about to be written."""
 UNWATCHED_SECONDS = 12 * 3600.0
-"""The most that counts of the time in which no process watched: a clock that jumped meanwhile cannot make it a day."""
+"""The most that time without a running process counts, so that a wall clock that jumped cannot add a day."""
 _STEP_ROWS = 50
 _PAUSE_SECONDS = 0.02
-"""Between two steps others write."""
+"""Pause between two steps, in which others write."""
 _DAY = 86_400.0
-_FINISHED = ModelRow.status.not_in(UNFINISHED)  # said so, it leads nobody to read all finished models by their status
+_FINISHED = ModelRow.status.not_in(UNFINISHED)  # NOT IN keeps SQLite from walking the index of states
 
 
 @dataclass(frozen=True)
 class Swept:
-    """How many of each went."""
+    """How many of each were removed."""
 
     models: int
     photos: int
@@ -43,10 +44,9 @@ class Swept:
 
 
 class Sweeper:
-    """Removes what is to go, in small steps between which others write.
+    """Removes deleted rows and unreferenced files, in small steps between which others write.
 
-    ``keep_days`` is how old models and photos become before they are deleted (0: as old as they like); ``over`` is set
-    when this process ends.
+    Models and photos older than ``keep_days`` are deleted (0: never); ``over`` is set when this process ends.
     """
 
     def __init__(
@@ -62,29 +62,31 @@ class Sweeper:
         self._last: float | None = None
 
     def sweep(self, stray_s: float = STRAY_SECONDS) -> Swept:
-        """Delete what is too old, and remove for good what was deleted a day ago and files that nobody refers to.
+        """Delete what is too old, and remove for good what was deleted a day ago and files that no row refers to.
 
-        The first sweep of a process only notes such files: what it knows of the time before it has from the wall's
-        clock, and a worker may be about to name one.
+        The first sweep of a process only notes such files: the time before it is known by the wall clock alone, and a
+        worker may be about to write a row that refers to one.
         """
-        first, age_s = self._last is None, self._watch()
-        gone = age_s - RESTORABLE_SECONDS
+        first, age_s = self._last is None, self._advance_clock()
+        removed_until = age_s - RESTORABLE_SECONDS
         for table in (ModelRow, PhotoRow, Replay):
             self._in_steps(table, update(table).values(seen=age_s), table.seen.is_(None))
         if self._keep_days:
             self._delete_older_than(age_s - self._keep_days * _DAY, age_s)
         models = self._in_steps(
-            ModelRow, delete(ModelRow), ModelRow.deleted.is_not(None), ModelRow.seen <= gone, _FINISHED
+            ModelRow, delete(ModelRow), ModelRow.deleted.is_not(None), ModelRow.seen <= removed_until, _FINISHED
         )
-        photos = self._in_steps(PhotoRow, delete(PhotoRow), PhotoRow.deleted.is_not(None), PhotoRow.seen <= gone)
-        self._in_steps(Replay, delete(Replay), Replay.seen <= gone)
+        photos = self._in_steps(
+            PhotoRow, delete(PhotoRow), PhotoRow.deleted.is_not(None), PhotoRow.seen <= removed_until
+        )
+        self._in_steps(Replay, delete(Replay), Replay.seen <= removed_until)
         return Swept(models, photos, sum(self._sweep_folders(age_s, math.inf if first else stray_s)))
 
-    def _watch(self) -> float:
-        """Move the store's clock on, and read it.
+    def _advance_clock(self) -> float:
+        """Advance the store's clock and return its time, seconds.
 
-        It moves by as long as this process has run since it last looked. For the time before its first look, it moves
-        by what the wall's clock says beyond all that it ever said: the same hours never count twice.
+        It advances by the time that this process has run since its last sweep. Before the first sweep, it advances by
+        the time since the latest wall-clock time that was ever written, so that no hour counts twice.
         """
         now, wall = self._monotonic(), time.time()
         with self._database.writing() as session:
@@ -101,28 +103,28 @@ class Sweeper:
             change = update(table).values(deleted=time.time(), seen=age_s)
             self._in_steps(table, change, table.deleted.is_(None), table.seen <= oldest, finished)
 
-    def _in_steps(self, table: type[Any], change: Any, *which: ColumnElement[bool]) -> int:
-        """Make a change to all rows that are so; they are found while others write, and changed a few at a time."""
+    def _in_steps(self, table: type[Any], change: Any, *conditions: ColumnElement[bool]) -> int:
+        """Change all rows that meet conditions, a few at a time; return their number."""
         (key,), changed = inspect(table).primary_key, 0
         while not self._over.is_set():
             with self._database.reading() as session:
-                found = session.scalars(select(key).where(*which).limit(_STEP_ROWS)).all()
+                found = session.scalars(select(key).where(*conditions).limit(_STEP_ROWS)).all()
             if not found:
                 break
             with self._database.writing() as session:
-                changed += session.execute(change.where(key.in_(found), *which)).rowcount  # type: ignore[attr-defined]
+                changed += session.execute(change.where(key.in_(found), *conditions)).rowcount  # type: ignore[attr-defined]
             self._over.wait(_PAUSE_SECONDS)
         return changed
 
     def _sweep_folders(self, age_s: float, stray_s: float) -> Iterator[int]:
-        """Look at the files folder by folder, so that what is referred to need not be known all at once."""
+        """Sweep folder by folder, with only one folder's references in memory; yield how many files were removed."""
         for name, files in self._blobs.places():
             if self._over.is_set():
                 return
             yield self._sweep_folder(name, files, age_s, stray_s)
 
     def _sweep_folder(self, folder: str, files: list[Path], age_s: float, stray_s: float) -> int:
-        """Remove the files of one folder that are strays for long enough, and write down those that are not yet."""
+        """Remove the files of one folder that have been strays for long enough, and note the others."""
         with self._database.reading() as session:
             kept = referenced(session, folder)
             known = {stray.name: stray for stray in session.scalars(select(Stray).where(Stray.folder == folder))}
@@ -149,7 +151,7 @@ class Sweeper:
 
 
 def _states(paths: Iterable[Path]) -> dict[Path, str]:
-    """Give the states of files; one that is gone by now has none."""
+    """Return the states of files; those removed meanwhile are left out."""
     states = {}
     for path in paths:
         with suppress(FileNotFoundError):

@@ -12,7 +12,7 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
-from treestroke.service import model_request, tracer
+from treestroke.service import tracer
 from treestroke.service.engine_version import engine_version
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Shelf
@@ -62,28 +62,6 @@ class StoredModel:
     def version(self) -> Version:
         """What viewers are shown changes only together with this."""
         return Version(self.row.seq, self.queue_position, self.eta_s)
-
-
-def read_order(shelf: Shelf, body: bytes) -> ModelOrder:
-    """Read a request for a model from JSON, in a tracing process since it may be large or hostile.
-
-    Raises
-    ------
-    TreestrokeError
-        It is not a valid request.
-    """
-    return shelf.tracers("", model_request.read_order, body)
-
-
-def read_form(shelf: Shelf, fields: dict[str, bytes], brings_photo: bool = True) -> ModelOrder:
-    """Read a request for a model from a form's fields without the photo, as `read_order` does.
-
-    Raises
-    ------
-    TreestrokeError
-        It is not a valid request.
-    """
-    return shelf.tracers("", model_request.read_form, fields, brings_photo)
 
 
 def accept_model(shelf: Shelf, order: ModelOrder, key: str | None, sent_photo: PhotoRow | None = None) -> StoredModel:

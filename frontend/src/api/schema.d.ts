@@ -175,7 +175,7 @@ export interface paths {
         put?: never;
         /**
          * Restore Model
-         * @description Take a deletion back.
+         * @description Undo a deletion.
          */
         post: operations["restore_model"];
         delete?: never;
@@ -256,7 +256,7 @@ export interface paths {
         };
         /**
          * Get Preview
-         * @description Look at the tree: the front view at the photo's framing beside a 3/4 view.
+         * @description Download a picture of the tree: the front view at the photo's framing beside a 3/4 view.
          */
         get: operations["get_preview"];
         put?: never;
@@ -276,7 +276,7 @@ export interface paths {
         };
         /**
          * Get Strokes
-         * @description Give the strokes that the tree was made of.
+         * @description Download the strokes that the tree was made of.
          */
         get: operations["get_strokes"];
         put?: never;
@@ -336,7 +336,7 @@ export interface paths {
         };
         /**
          * Get Sketch
-         * @description Give a sketch that the tree was made of: front.json or front.png, side.json or side.png.
+         * @description Download a sketch that the tree was made of: front.json or front.png, side.json or side.png.
          */
         get: operations["get_sketch"];
         put?: never;

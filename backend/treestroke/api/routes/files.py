@@ -48,7 +48,7 @@ _SKETCH: dict[int | str, dict[str, Any]] = {
     else answer
     for status, answer in file_responses(_JSON, "StrokeSketch").items()
 }
-View = Annotated[str, Path(json_schema_extra={"pattern": "^(front|side)$"})]
+View = Annotated[str, Path(json_schema_extra={"pattern": f"^({'|'.join(VIEWS)})$"})]
 SketchEnding = Annotated[str, Path(json_schema_extra={"pattern": "^(json|png)$"})]
 Ending = Annotated[str, Path(json_schema_extra={"pattern": _ENDING, "example": "glb"})]
 

@@ -33,7 +33,7 @@ from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.limits import MAX_TEXT_BYTES
 from treestroke.schemas import ModelInfo, ModelPage
 from treestroke.service import photos, stored_models
-from treestroke.service.model_request import ModelOrder, read_name
+from treestroke.service.model_request import ModelOrder, read_form, read_name, read_order
 from treestroke.service.photos import Shelf
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
@@ -98,10 +98,10 @@ class _Received:
 
 
 async def _receive(request: Request, shelf: ShelfOf) -> _Received:
-    """Read a request for a model: JSON that may name a photo, or a form that may bring one."""
+    """Read a request for a model, in a tracing process: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return _Received(await run_in_threadpool(stored_models.read_order, shelf, await request.body()))
+        return _Received(await run_in_threadpool(shelf.tracers, "", read_order, await request.body()))
     if kind != "multipart/form-data":
         raise Refusal(
             "unsupported_media_type", "send application/json, or a form with photo and strokes, or front and side"
@@ -120,9 +120,9 @@ async def _receive(request: Request, shelf: ShelfOf) -> _Received:
 
 def _read_form(shelf: Shelf, photo: bytes | None, fields: dict[str, bytes]) -> _Received:
     if photo is None:
-        return _Received(stored_models.read_form(shelf, fields, brings_photo=False))
+        return _Received(shelf.tracers("", read_form, fields, brings_photo=False))
     check_length(photo)
-    return _Received(stored_models.read_form(shelf, fields), photos.take_in(shelf, photo))
+    return _Received(shelf.tracers("", read_form, fields), photos.take_in(shelf, photo))
 
 
 async def _content(field: UploadFile | str) -> bytes:
