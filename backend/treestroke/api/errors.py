@@ -1,4 +1,4 @@
-"""Errors as problem+json: the only place that knows which error is which HTTP status."""
+"""Errors as problem+json, and the HTTP status of each error of ours."""
 
 import re
 from collections.abc import Sequence
@@ -52,7 +52,7 @@ log = structlog.get_logger()
 def problem(
     status: int, code: str, detail: str, errors: Sequence[Fault] = (), headers: dict[str, str] | None = None
 ) -> JSONResponse:
-    """Answer with a problem."""
+    """Return a problem as a response."""
     body = Problem(
         type="about:blank",
         title=HTTPStatus(status).phrase,
@@ -65,7 +65,7 @@ def problem(
 
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
-    """Name the problems that a route may answer with, for the API's document."""
+    """Return the problems that a route may respond with, for the API's document."""
     content = {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}}
     described: dict[int | str, dict[str, Any]] = {
         status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses
@@ -76,7 +76,7 @@ def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
 
 
 def add_handlers(app: FastAPI) -> None:
-    """Answer every error as a problem."""
+    """Respond to every error with a problem."""
     for kind, answer in _ANSWERS.items():
         app.add_exception_handler(kind, answer)
 
@@ -89,7 +89,7 @@ def _input(_: Request, error: TreestrokeError) -> JSONResponse:
 def _invalid(_: Request, error: RequestValidationError) -> JSONResponse:
     if error.errors()[0]["type"] == "json_invalid":
         return problem(400, "malformed_json", "the body is no valid JSON; send it anew")
-    # What was sent is not repeated: it may be anything.
+    # What was sent is not repeated in the response: it may be anything.
     faults = [
         Fault(pointer="".join(f"/{part}" for part in one["loc"][1:]), code=one["type"], detail=one["msg"])
         for one in error.errors()
@@ -157,13 +157,13 @@ def _http(request: Request, error: HTTPException) -> JSONResponse:
 
 
 def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
-    """Answer, for order's sake, a client that left before its body was whole."""
+    """Respond to a client that left before its body was whole, though nobody reads it."""
     return problem(400, "bad_request", "the body ended too soon; send it again")
 
 
 def _ours(_: Request, error: Exception) -> JSONResponse:
     log.error("request_failed", exc_info=error)
-    return problem(500, "internal", "this is our mistake, and it is in the log; try again later")
+    return problem(500, "internal", "the service made a mistake, which its log holds; try again later")
 
 
 _ANSWERS: dict[type[Exception], Any] = {
@@ -186,7 +186,7 @@ _ANSWERS: dict[type[Exception], Any] = {
 
 
 def nothing_there(method: str, allowed: Sequence[str]) -> JSONResponse:
-    """Answer a method that does nothing at an address where others are ``allowed``, or none."""
+    """Return a 405 that names the ``allowed`` methods of an address, or a 404 where there are none."""
     if not allowed:
         nothing = "there is nothing at this address; /openapi.json names what there is"
         return problem(404, _CODES[404], nothing)
@@ -195,7 +195,7 @@ def nothing_there(method: str, allowed: Sequence[str]) -> JSONResponse:
 
 
 def allowed_methods(app: FastAPI, path: str) -> list[str]:
-    """Collect the methods of all routes at a path; none where there is nothing."""
+    """Return the methods of all routes at a path; empty where there is nothing."""
     methods: set[str] = set()
     for route in iter_route_contexts(app.routes):
         if isinstance(route.original_route, Mount) and path.startswith(f"{route.path}/"):

@@ -1,4 +1,4 @@
-"""How the service is, what it takes, and which it is."""
+"""Health, limits and version of the service."""
 
 from dataclasses import fields
 
@@ -23,7 +23,7 @@ router = APIRouter(tags=["service"])
 
 @router.get("/livez", responses=documented(403))
 async def live() -> Health:
-    """Tell that this process answers."""
+    """Tell that this process responds."""
     return Health(status="ok")
 
 
@@ -38,7 +38,7 @@ def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Healt
 
 @router.get("/v1/limits", responses=documented(403))
 def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
-    """Name everything that is bounded."""
+    """Return every limit of the service, and the settings of a model."""
     return Limits(
         photo_bytes=MAX_BYTES,
         photo_stored_bytes=settings.photo_mb * 10**6,
@@ -72,7 +72,7 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
 
 @router.get("/v1/version", responses=documented(403))
 def version() -> Version:
-    """Say which treestroke this is."""
+    """Return the version of treestroke."""
     return Version(version=__version__, engine=engine(), api="v1")
 
 
