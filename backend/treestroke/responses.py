@@ -1,4 +1,4 @@
-"""What a service answers, read by its client: problems, values and streams of events."""
+"""Responses of a service as its client reads them: problems, values and streams of events."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,14 +14,14 @@ _LONGEST_PAUSE_S = 10.0
 
 
 class ServiceError(Exception):
-    """The service refuses a request, or does not answer.
+    """The service refused a request, or did not respond.
 
     Attributes
     ----------
     status
-        HTTP status; 0 where no answer came.
+        HTTP status; 0 where no response came.
     code, detail
-        What is wrong, for programs (``unreachable`` where no answer came) and for people.
+        What is wrong, for programs (``unreachable`` where no response came) and for people.
     errors
         The fields that are at fault.
     """
@@ -32,7 +32,7 @@ class ServiceError(Exception):
 
 
 class Again(ServiceError):
-    """What may come right by itself."""
+    """A failure that may pass: the request can be sent again."""
 
     def __init__(
         self, status: int, code: str, detail: str, errors: tuple[Fault, ...] = (), pause_s: float = 0.0
@@ -51,7 +51,15 @@ class Event:
 
 
 def checked(response: httpx.Response) -> httpx.Response:
-    """Give an answer that is none of an error."""
+    """Return the response; raise on failure.
+
+    Raises
+    ------
+    Again
+        The service is busy (503).
+    ServiceError
+        It refused the request for another reason.
+    """
     if response.is_success:
         return response
     try:
@@ -66,7 +74,13 @@ def checked(response: httpx.Response) -> httpx.Response:
 
 
 def read(kind: type[Answer], content: bytes | str) -> Answer:
-    """Read an answer; what a newer service adds is left out."""
+    """Return a response's JSON as a model; keys that a newer service added are left out.
+
+    Raises
+    ------
+    ServiceError
+        The response is not as the model describes it.
+    """
     try:
         return kind.model_validate_json(content, extra="ignore")
     except ValidationError as error:
@@ -76,13 +90,13 @@ def read(kind: type[Answer], content: bytes | str) -> Answer:
 
 
 def unreachable(address: object, error: httpx.TransportError) -> ServiceError:
-    """Say that no answer came."""
+    """Return the error that says that no response came."""
     why = str(error) or type(error).__name__
     return ServiceError(0, "unreachable", f"{address} does not answer ({why}); start it by `treestroke serve`")
 
 
 def events_of(chunks: Iterator[bytes]) -> Iterator[Event]:
-    """Read the text/event-stream format, of which a comment is a ping."""
+    """Yield the events of a text/event-stream; comments, which are pings, are skipped."""
     fields: dict[str, str] = {}
     for line in _lines(chunks):
         name, _, value = line.partition(":")

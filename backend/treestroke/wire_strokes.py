@@ -45,7 +45,8 @@ def text_length(data_bytes: int) -> int:
 class Wire(BaseModel):
     """Base of everything that travels over HTTP: only the keys that are named."""
 
-    model_config = ConfigDict(extra="forbid")
+    # Validators are built at their first use: reading one stroke file needs few of them.
+    model_config = ConfigDict(extra="forbid", defer_build=True)
 
 
 class RequestPart(Wire):

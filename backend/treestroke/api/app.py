@@ -34,15 +34,15 @@ from treestroke.wire_requests import ModelRequest, Rename, SketchTraceRequest, T
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
 _FORM_BYTES = 100_000
-"""What a form may have around its file."""
+"""Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
 _REF = "#/components/schemas/{model}"
 
 
 def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
-    """Make the application; database, queue and tracing processes are opened when it starts.
+    """Return the application; it opens database, queue and tracing processes when it starts.
 
-    So many requests at once may follow models as there are ``places``.
+    At most ``places`` requests may follow models at once.
     """
     app = FastAPI(
         title="treestroke",
@@ -93,7 +93,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 
 
 def _limit_of(scope: Scope) -> int:
-    """Say how many bytes a request's body may have."""
+    """Return how many bytes a request's body may have."""
     path = scope["path"]
     if path == "/v1/photos":
         return MAX_PHOTO_BYTES + _FORM_BYTES
@@ -117,13 +117,13 @@ def _drop_standard_problems(document: dict[str, Any]) -> None:
 
 
 def _document(app: FastAPI) -> dict[str, Any]:
-    """Give the API's document, with the bodies that routes read by themselves."""
+    """Return the API's document, with the bodies that tracing processes read in place of FastAPI."""
     known = app.openapi_schema is not None
     document: dict[str, Any] = FastAPI.openapi(app)
     if not known:
         schemas = document["components"]["schemas"]
         _, extra = models_json_schema(
-            [(one, "validation") for one in (TraceRequest, SketchTraceRequest, ModelRequest, Rename, Problem)],
+            [(model, "validation") for model in (TraceRequest, SketchTraceRequest, ModelRequest, Rename, Problem)],
             ref_template=_REF,
         )
         schemas.update(extra["$defs"])

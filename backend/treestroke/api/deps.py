@@ -1,4 +1,4 @@
-"""What routes are given: the shelf with everything on it, and bodies read whole."""
+"""Dependencies of routes: the service's parts and whole bodies."""
 
 import os
 from contextlib import AbstractAsyncContextManager
@@ -45,25 +45,25 @@ def _watcher(request: Request) -> Watcher:
 
 
 def media_type(request: Request) -> str:
-    """Name the type of a request's body, without parameters."""
+    """Return the media type of a request's body, without parameters."""
     return request.headers.get("content-type", "").partition(";")[0].strip().lower()
 
 
 async def _json_body(request: Request) -> bytes:
-    """Read a JSON body; it is parsed where a large or hostile one does no harm."""
+    """Return a JSON body as bytes; a tracing process parses it, where a large or hostile one does no harm."""
     if media_type(request) not in ("application/json", ""):
         raise Refusal("unsupported_media_type", "the body must be JSON; send it as application/json")
     return await request.body()
 
 
 def form_of(request: Request, **limits: int) -> AbstractAsyncContextManager[FormData]:
-    """Read a form within limits; the folder for temporary files, where its large ones lie, is made if it is gone."""
+    """Return a form, read within limits; the folder for its large fields' temporary files is made anew if gone."""
     os.makedirs(gettempdir(), 0o700, exist_ok=True)
     return request.form(**limits)
 
 
 def check_length(photo: bytes) -> None:
-    """Refuse a photo of too many bytes.
+    """Raise where a photo has too many bytes.
 
     Raises
     ------
@@ -75,12 +75,12 @@ def check_length(photo: bytes) -> None:
 
 
 def _id(kind: str) -> Any:
-    """Document an id's form; whatever has another is not found."""
+    """Return a path parameter that documents an id's pattern; any other id is not found."""
     return Path(json_schema_extra={"pattern": f"^{kind}_[0-9a-f]{{24}}$"})
 
 
 def leads_to(*operations: str) -> dict[str, Any]:
-    """Document what may be asked with the id that an answer holds."""
+    """Return links to the operations that take the id a response holds."""
     return {name: {"operationId": name, "parameters": {"id": "$response.body#/id"}} for name in operations}
 
 

@@ -110,7 +110,7 @@ def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
 
 
 def add_handlers(app: FastAPI) -> None:
-    """Answer every error as a problem."""
+    """Respond to every error with a problem."""
     for kind, answer in _ANSWERS.items():
         app.add_exception_handler(kind, answer)
 
@@ -123,7 +123,7 @@ def _input(_: Request, error: TreestrokeError) -> JSONResponse:
 def _invalid(_: Request, error: RequestValidationError) -> JSONResponse:
     if error.errors()[0]["type"] == "json_invalid":
         return problem("malformed_json", "the body is no valid JSON; send it anew")
-    # What was sent is not repeated: it may be anything.
+    # What was sent is not repeated in the response: it may be anything.
     faults = [
         Fault(pointer="".join(f"/{part}" for part in one["loc"][1:]), code=one["type"], detail=one["msg"])
         for one in error.errors()
@@ -194,7 +194,7 @@ def _refused(_: Request, error: Refusal) -> JSONResponse:
 
 
 def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
-    """Answer, for order's sake, a client that left before its body was whole."""
+    """Respond to a client that left before its body was whole, though nobody reads it."""
     return problem("bad_request", "the body ended too soon; send it again")
 
 
@@ -224,7 +224,7 @@ _ANSWERS: dict[type[Exception], Any] = {
 
 
 def nothing_there(method: str, allowed: Sequence[str]) -> JSONResponse:
-    """Answer a method that does nothing at an address where others are ``allowed``, or none."""
+    """Return a 405 that names the ``allowed`` methods of an address, or a 404 where there are none."""
     if not allowed:
         nothing = "there is nothing at this address; /openapi.json names what there is"
         return problem("not_found", nothing)
@@ -233,7 +233,7 @@ def nothing_there(method: str, allowed: Sequence[str]) -> JSONResponse:
 
 
 def allowed_methods(app: FastAPI, path: str) -> list[str]:
-    """Collect the methods of all routes at a path; none where there is nothing."""
+    """Return the methods of all routes at a path; empty where there is nothing."""
     methods: set[str] = set()
     for route in iter_route_contexts(app.routes):
         if isinstance(route.original_route, Mount) and path.startswith(f"{route.path}/"):

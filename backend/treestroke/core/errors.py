@@ -1,10 +1,10 @@
-"""What can go wrong through no fault of the program.
+"""Errors in what the user gave.
 
-TreestrokeError              the user's input cannot be used; the message says what, where, how to mend it
+TreestrokeError              the input cannot be used; the message says what is wrong, where, how to mend it
 ├── PhotoError               the picture itself
 ├── LeafError                the picture of a leaf
 ├── FruitError               the picture of a fruit
-├── StrokesError             a stroke or the stroke file
+├── StrokesError             a stroke, a sketch, or their file
 └── SettingsError            a setting's name or value
 
 A programmer's mistake (wrong shape, broken invariant) is a ValueError instead.
@@ -13,9 +13,9 @@ A programmer's mistake (wrong shape, broken invariant) is a ValueError instead.
 from typing import ClassVar, Self
 
 LONGEST_SHOWN = 60
-"""Characters of a value that a message repeats."""
+"""Most characters of a value that a message repeats."""
 LONGEST_POINTED = 200
-"""Characters of a key that a pointer repeats."""
+"""Most characters of a key that a pointer repeats."""
 
 
 class TreestrokeError(Exception):
@@ -31,7 +31,7 @@ class TreestrokeError(Exception):
 
     usual_code: ClassVar[str] = "bad_input"
     whole: ClassVar[str] = "input"
-    """How a message calls the input as a whole."""
+    """What a message calls the input as a whole."""
 
     def __init__(self, message: str, *, code: str = "", pointer: str = "") -> None:
         super().__init__(_printable(message))
@@ -40,13 +40,16 @@ class TreestrokeError(Exception):
 
     @classmethod
     def at(cls, place: tuple[str | int, ...], what: str, code: str, *, key: str = "") -> Self:
-        """Say what is wrong at a place, given by its keys from the outside in; the text itself names ``key`` there."""
+        """Return the error that says ``what`` is wrong at a place, given by its keys from the outside in.
+
+        The pointer leads on to ``key``, which the text names by itself.
+        """
         keys = (*place, key) if key else place
         text = "/".join(map(str, place))[:LONGEST_SHOWN] or cls.whole
         return cls(f"{text}: {what}", code=code, pointer="".join(f"/{_escaped(str(one))}" for one in keys))
 
     def within(self, name: str) -> Self:
-        """Give the same error with the name of the file before its message."""
+        """Return the same error with the name of the file before its message."""
         return type(self)(f"{name}: {self}", code=self.code, pointer=self.pointer)
 
 
@@ -86,7 +89,7 @@ class SettingsError(TreestrokeError):
 
 
 def shown(value: object) -> str:
-    """Write a value for a message: cut short, and never an error of its own."""
+    """Return a value as text for a message, cut short; never raises."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # thousands of digits; lists in lists in lists
@@ -95,10 +98,10 @@ def shown(value: object) -> str:
 
 
 def _printable(message: str) -> str:
-    """Escape what is no character of a line of text: line ends, NUL, halves of a surrogate pair."""
+    """Escape what does not belong in a line of text: line ends, NUL, lone surrogates."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in message)
 
 
 def _escaped(key: str) -> str:
-    """Write a key as part of a JSON pointer; of one that nobody meant as a key, the beginning."""
+    """Return a key as part of a JSON pointer (RFC 6901); of a very long one the beginning."""
     return _printable(key[:LONGEST_POINTED]).replace("~", "~0").replace("/", "~1")

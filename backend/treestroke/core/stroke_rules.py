@@ -1,4 +1,4 @@
-"""What strokes must hold to describe a tree, and how a near miss is mended."""
+"""Rules that strokes must keep to describe a tree, and how small faults are mended."""
 
 from dataclasses import replace
 
@@ -13,28 +13,28 @@ from treestroke.core.types import Floats
 from treestroke.limits import MAX_POINTS, MAX_STROKES
 
 MIN_CROWN_SHARE = 0.005
-"""Of the photo's area."""
+"""Smallest crown, as a share of the photo's area."""
 CHECKED_SIDE = 1500
-"""Long side, px, of the picture in which strokes are checked, whatever the photo's size."""
+"""Long side, px, of the raster in which strokes are checked, whatever the photo's size."""
 TOUCH_SHARE = 0.02
-"""Of the photo's long side: as near as a loose stroke comes to what it is meant to touch."""
+"""Strokes this near, as a share of the photo's long side, count as touching."""
 TREE_HEIGHTS = (0.1, 150.0)
-"""Metres, the least and the greatest height of a tree."""
+"""Least and greatest height of a tree, metres."""
 STEM_SHARE = 0.03
-"""Of the tree's height: a later stroke that starts this near the root is a stem of its own."""
+"""A later stroke that starts this near the root, as a share of the tree's height, is a second stem."""
 LEAST_RISE = 0.4
-"""Of the furthest that a trunk goes from its root: how high it climbs (those of 28 photos 0.89 and more). Below it the
-stroke is level, or that of a photo that was turned."""
+"""Least rise of a trunk, as a share of the furthest it goes from its root (on 28 photos: 0.89 and more). A stroke below
+it is level, or was drawn on a photo that was turned since."""
 MOST_OUTSIDE, LOOSE, OUTSIDE_PLACES = 0.15, 0.05, 500
-"""Share of a stroke, judged at so many places, that may lie outside the photo by more than a share of its long side: a
-hand around a tree that the edge cuts stays nearer."""
+"""Largest share of a stroke that may lie further outside the photo than `LOOSE` of its long side, judged at
+`OUTSIDE_PLACES` places; a stroke around a tree that the edge cuts stays nearer."""
 Place = tuple[str | int, ...]
-"""Keys from the strokes as a whole to one of their parts."""
+"""Keys that lead from the strokes as a whole to one of their parts."""
 CROSSING = StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken")
 
 
 def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
-    """Check strokes against a photo of the given size, px, and mend what can be mended.
+    """Return strokes that were checked against a photo of the given size, px, and mended where possible.
 
     Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
     nearest of them by one more point at its start, with a warning; a second stem starts on the ground; a crown that
@@ -69,9 +69,9 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
 
 
 def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, ...]:
-    """Warn of crown and trunk where much of them lies outside the photo: they may have been drawn on another one."""
-    drawn = [("crown", strokes.crown), *(("branches/0", one) for one in strokes.branches[:1])]
-    turned = bool((np.vstack([one.points for _, one in drawn]) <= (height, width)).all())
+    """Return a warning for crown and trunk where much of it lies outside the photo: it may belong to another one."""
+    drawn = [("crown", strokes.crown), *(("branches/0", trunk) for trunk in strokes.branches[:1])]
+    turned = bool((np.vstack([stroke.points for _, stroke in drawn]) <= (height, width)).all())
     how = "it would fit the photo as it was before it was turned upright" if turned else "it may be another photo's"
     warnings = []
     for place, stroke in drawn:
@@ -84,7 +84,10 @@ def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, 
 
 
 def _share_outside(points: Floats, width: int, height: int) -> float:
-    """Give the share of a line (n, 2), px, that lies well outside the photo; far away is no further than nearby."""
+    """Return the share of a line (n, 2), px, that lies further than `LOOSE` outside the photo.
+
+    Points are first clipped to one long side beyond the photo, so that a single stray point decides nothing.
+    """
     side = float(max(width, height))
     near = np.clip(np.asarray(points, dtype=np.float64), -side, 2 * side)
     places = place_at(near, np.linspace(0.0, arc_lengths(near)[-1], OUTSIDE_PLACES))
@@ -93,7 +96,7 @@ def _share_outside(points: Floats, width: int, height: int) -> float:
 
 
 def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:
-    """Warn of a trunk that never rises much above its root, for as far as it goes; one may lean, arch and hang."""
+    """Return a warning where a trunk rises little above its root for its length; it may lean, arch and hang."""
     way = trunk.points - trunk.points[0]
     if -float(way[:, 1].min()) >= LEAST_RISE * float(np.hypot(*way.T).max()):
         return ()
@@ -103,7 +106,7 @@ def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:
 
 
 def require_trunk(strokes: Strokes) -> None:
-    """Refuse strokes without a branch, which can be traced but not modelled.
+    """Raise where there is no branch stroke: such strokes can be traced but not modelled.
 
     Raises
     ------
@@ -116,7 +119,7 @@ def require_trunk(strokes: Strokes) -> None:
 
 
 def check_count(count: int) -> None:
-    """Refuse too many strokes.
+    """Raise where there are too many strokes.
 
     Raises
     ------
@@ -129,13 +132,13 @@ def check_count(count: int) -> None:
 
 
 def clamped(stroke: Stroke, place: Place, width: int, height: int, least: int, ground: str = "photo") -> Stroke:
-    """Check one stroke by itself and move its points into the photo, or whatever else it is drawn on.
+    """Return one stroke, checked by itself, with its points (n, 2), px, clamped to the ``ground`` it is drawn on.
 
     Raises
     ------
     StrokesError
-        A value that is not finite, too many points, fewer than ``least`` distinct ones, or no width; it names the
-        ``place``.
+        A value that is not finite, too many points, fewer than ``least`` distinct ones, or a width that is not
+        above 0; the message names the ``place``.
     """
     points = np.asarray(stroke.points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 2:
@@ -158,7 +161,7 @@ def clamped(stroke: Stroke, place: Place, width: int, height: int, least: int, g
 
 
 def _known_length(scale: Length, width: int, height: int) -> Length:
-    """Check a known length by itself and move its ends into the photo."""
+    """Return a known length, checked by itself, with its ends (2, 2), px, clamped to the photo."""
     if len(scale.points) != 2:
         what = f"it has {len(scale.points)} points, it needs 2; draw a straight line"
         raise StrokesError.at(("scale",), what, "scale_invalid", key="points")
@@ -170,7 +173,7 @@ def _known_length(scale: Length, width: int, height: int) -> Length:
 
 
 def _check_scale(strokes: Strokes) -> None:
-    """Refuse a known length by which the crown's top is higher, or lower, than any tree's."""
+    """Raise where the known length makes the tree higher or lower than `TREE_HEIGHTS` allow."""
     if strokes.scale is None:
         return
     height_px = strokes.branches[0].points[0, 1] - strokes.crown.points[:, 1].min()
@@ -181,7 +184,7 @@ def _check_scale(strokes: Strokes) -> None:
 
 
 def check_crown(crown: NDArray[np.bool_], ground: str = "photo") -> None:
-    """Refuse a crown (h, w) that is too small for the photo, or whatever else it is drawn on.
+    """Raise where a crown, the mask (h, w), is too small for the ``ground`` it is drawn on.
 
     Raises
     ------
@@ -195,9 +198,9 @@ def check_crown(crown: NDArray[np.bool_], ground: str = "photo") -> None:
 
 
 def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side: int) -> None:
-    """Refuse a trunk that neither touches the crown, give or take a loose hand, nor points into it.
+    """Raise where the trunk neither touches the crown, within `TOUCH_SHARE`, nor points into it.
 
-    The crown is drawn ``coarse`` times as large as the photo, whose long side is ``side`` px.
+    The crown's mask (h, w) is ``coarse`` times as large as the photo, whose long side is ``side`` px.
     """
     height, width = crown.shape
     drawn = resample(strokes.branches[0].points, 1.0 / coarse)
@@ -232,13 +235,13 @@ def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], 
 
 
 def _on_the_ground(stem: Stroke, ground: float) -> Stroke:
-    """Let a second stem that starts above the root's height, px, begin straight below."""
+    """Return a second stem that starts on the ground, px: one that starts higher gets a point straight below."""
     x, y = stem.points[0]
     return stem if y >= ground else replace(stem, points=np.vstack([[x, ground], stem.points]))
 
 
 def _nearest(line: Floats, points: Floats) -> tuple[Floats, Floats]:
-    """Find the nearest place (m, 2) on a polyline (n, 2) to each of the points (m, 2), and its distance (m,)."""
+    """Return the nearest places (m, 2) on a polyline (n, 2) to points (m, 2), and their distances (m,), all px."""
     start, along = line[:-1], np.diff(line, axis=0)
     square = np.maximum((along**2).sum(axis=1), 1e-12)
     nearest, gaps = np.empty_like(points), np.empty(len(points))
@@ -252,7 +255,10 @@ def _nearest(line: Floats, points: Floats) -> tuple[Floats, Floats]:
 
 
 def _ray(drawn: Floats, step: float, reach: float) -> Floats:
-    """Go on beyond a resampled line's end, in the direction of its last fifth (one jittery point decides nothing)."""
+    """Return points (m, 2), px, that continue a resampled line (n, 2) in the direction of its last fifth.
+
+    A single jittery point at the end thus decides little.
+    """
     tail = drawn[-1] - drawn[len(drawn) - 1 - max(1, len(drawn) // 5)]
     if not tail.any():
         tail = drawn[-1] - drawn[0]

@@ -1,4 +1,4 @@
-"""The strokes a person draws over a photo or on white, as values."""
+"""Strokes that a person draws over a photo or on white, as values."""
 
 from dataclasses import dataclass, field
 
@@ -10,7 +10,7 @@ from treestroke.core.types import Floats
 
 @dataclass(frozen=True, eq=False)
 class Stroke:
-    """One drawn line: points (n, 2) in px of the upright photo, n >= 2; width in px where the person gave one."""
+    """One drawn line: points (n, 2), px of the upright photo, n >= 2; width, px, where the person gave one."""
 
     points: Floats
     width: float | None = None
@@ -18,7 +18,7 @@ class Stroke:
 
 @dataclass(frozen=True, eq=False)
 class Length:
-    """A line over something of known length: its two ends (2, 2) in px of the upright photo, and its metres."""
+    """A line over something of known length: its two ends (2, 2), px of the upright photo; its length, metres."""
 
     points: Floats
     metres: float
@@ -37,7 +37,7 @@ class Strokes:
     erase
         Each drops the traced (not stroked) branches that it crosses.
     scale
-        What sets the tree's scale in place of its height, at the tree's own distance from the camera.
+        A known length that sets the tree's scale in place of its height; as far from the camera as the tree.
     """
 
     crown: Stroke
@@ -57,9 +57,9 @@ class Sketch:
     crown
         Closed outline around the foliage; None where none was drawn.
     branches
-        The first is the trunk's; none where there is ``ink``. A width is a brush's.
+        The first is the trunk's; empty where there is ``ink``. A width is that of the brush, px.
     ink
-        (h, w), true on the strokes of a picture, whose size is the canvas's; None where lines are given.
+        (h, w) bool, true on the strokes of a picture of the canvas's size; None where lines are given.
     """
 
     canvas: tuple[int, int]
@@ -69,12 +69,12 @@ class Sketch:
 
 
 def same_stroke(one: Stroke, other: Stroke) -> bool:
-    """Tell whether two lines have the same points and the same width."""
+    """Tell whether two strokes have the same points and the same width."""
     return one.width == other.width and np.array_equal(one.points, other.points)
 
 
 def same_strokes(one: Strokes, other: Strokes) -> bool:
-    """Tell whether the same was drawn twice."""
+    """Tell whether two drawings have the same strokes."""
     if len(one.branches) != len(other.branches) or len(one.erase) != len(other.erase):
         return False
     if not _same_length(one.scale, other.scale):
@@ -91,9 +91,16 @@ def _same_length(one: Length | None, other: Length | None) -> bool:
 
 @dataclass(frozen=True)
 class StrokeWarning:
-    """Something mended: ``code`` for programs, ``stroke`` (a pointer such as ``branches/1``), ``detail`` for people.
+    """Something that was mended in the strokes or in the photo.
 
-    Where it was the photo, ``stroke`` is ``photo``.
+    Attributes
+    ----------
+    code
+        What it was, for programs.
+    stroke
+        Where: a pointer such as ``branches/1``; ``photo`` for the photo itself.
+    detail
+        What it was, for people.
     """
 
     code: str
@@ -103,7 +110,7 @@ class StrokeWarning:
 
 @dataclass(frozen=True, eq=False)
 class MendedStrokes:
-    """Strokes that can be used, and what was mended to make them so."""
+    """Strokes that can be used, and warnings of what was mended in them."""
 
     strokes: Strokes
     warnings: tuple[StrokeWarning, ...] = field(default=())

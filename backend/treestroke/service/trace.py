@@ -22,30 +22,30 @@ from treestroke.service.inputs import PhotoLike, SketchLike, StrokesLike, load_p
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """What was found in a photo, in its pixels.
+    """Foliage and branches found in a photo, in its pixels.
 
     Attributes
     ----------
     photo
         (h, w, 3) uint8 sRGB, upright.
     foliage
-        (h, w), true on leaves (on a bare tree, on twigs).
+        (h, w) bool, true on leaves (on a bare tree, on twigs).
     rings
-        The same as closed outlines, each (n, 2), px, by the even-odd rule.
+        The foliage as closed outlines, each (n, 2), px, by the even-odd rule.
     given
-        The strokes that it was found by.
+        The strokes as they were given.
     found
-        The same with what it was found from.
+        The recipe's own result, from which another trace of the same photo goes on.
     skeleton
         The visible branches; None where there was no branch stroke.
     stroke
-        (n,) index of the stroke that each joint lies under, -1 where it was found by itself.
+        (n,) index of the stroke that each joint lies under; -1 where it was found without one.
     warnings
         What was mended in the photo and in the strokes.
     grow
         Whether a grown tree was asked for.
     grown
-        The tree that default settings and seed 0 let grow; None where it was not asked for or has no branch stroke.
+        The tree grown by default settings and seed 0; None where it was not asked for or there is no branch stroke.
     """
 
     photo: NDArray[np.uint8]
@@ -60,7 +60,7 @@ class Trace:
     grown: LiveTree | None = None
 
     def answer(self) -> dict[str, Any]:
-        """Give the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``.
+        """Return the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``.
 
         Where a grown tree was asked for, also ``grown`` and ``photo``, null without a branch stroke.
         """
@@ -75,7 +75,7 @@ class Trace:
         return {**found, "grown": grown, "photo": None if grown is None else grown["photo"]}
 
     def overlay(self) -> NDArray[np.uint8]:
-        """Draw foliage and skeleton over the photo (h, w, 3)."""
+        """Return the photo (h, w, 3) uint8 with foliage and skeleton drawn over it."""
         return draw_overlay(self.photo, self.foliage, self.skeleton, self.stroke)
 
 
@@ -86,13 +86,13 @@ def trace(
     grow: bool = False,
     side: SketchLike | None = None,
 ) -> Trace:
-    """Find the foliage inside the crown stroke and the branches near the branch strokes.
+    """Return the foliage inside the crown stroke and the branches near the branch strokes.
 
     ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
-    mapping or values. Without branch strokes the foliage alone is found. ``after`` is the last trace of the same photo:
-    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once, and
-    everything while all strokes do. ``grow`` asks for the tree, too, that `model` would grow of them, and of the sketch
-    of its left ``side`` where there is one.
+    mapping or values. Without branch strokes only the foliage is found. ``after`` is the last trace of the same photo:
+    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once; all of it
+    is kept while all strokes do. With ``grow`` the tree that `model` would grow is added; a sketch of its left
+    ``side`` gives that tree its depth.
 
     Raises
     ------
@@ -110,19 +110,29 @@ def trace(
         found = beside(found, None if side is None else load_sketch(side, "side"))
         grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(found.foliage) if last is None else last.rings
-    what = found.foliage, rings, given, found, found.skeleton, found.stroke, (*mended, *found.warnings)
-    return Trace(picture, *what, grow=grow, grown=grown)
+    return Trace(
+        photo=picture,
+        foliage=found.foliage,
+        rings=rings,
+        given=given,
+        found=found,
+        skeleton=found.skeleton,
+        stroke=found.stroke,
+        warnings=(*mended, *found.warnings),
+        grow=grow,
+        grown=grown,
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class SketchTrace:
-    """What sketches show, and the tree that default settings and seed 0 let grow of them, where it was asked for."""
+    """The branches that sketches show and, where asked for, the tree grown of them by default settings and seed 0."""
 
     seen: SeenSketches
     grown: GrownTree | None
 
     def answer(self) -> dict[str, Any]:
-        """Give the trace as plain values: ``front``, ``side`` and ``warnings``.
+        """Return the trace as plain values: ``front``, ``side`` and ``warnings``.
 
         With a tree also ``grown``, ``photo`` and ``score``.
         """
@@ -138,7 +148,7 @@ class SketchTrace:
 
 
 def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool = False) -> SketchTrace:
-    """Find the 2D skeletons of a front sketch and, where there is one, of a left-side sketch.
+    """Return the 2D skeletons of a front sketch and, where there is one, of a left-side sketch.
 
     ``grow`` asks for the tree, too, that `sketch` would grow of them.
 

@@ -1,6 +1,6 @@
-"""What runs in a tracing process: photos and drawings from outside, read where a crash costs nothing.
+"""Work of a tracing process: photos and requests from outside are read where a crash costs nothing.
 
-Each process remembers the photos that it saw last, with their foliage, so that one more stroke is answered at once.
+Each process remembers the photos it saw last, with their foliage, so that one more stroke is answered at once.
 """
 
 import json
@@ -28,12 +28,12 @@ from treestroke.wire_requests import SketchTraceRequest, TraceRequest
 P = ParamSpec("P")
 T = TypeVar("T")
 _KEPT_PIXELS = 60_000_000
-"""Of the photos that one process remembers."""
+"""Most pixels of all photos that one process remembers."""
 
 
 @dataclass
 class Known:
-    """A photo's pixels and its last trace."""
+    """A photo's pixels (h, w, 3) uint8 and its last trace."""
 
     picture: Picture
     last: Trace | None = None
@@ -43,11 +43,11 @@ _known: OrderedDict[Path, Known] = OrderedDict()
 
 
 class NoRoom(Exception):
-    """All photos together would take more than they may."""
+    """All stored photos together would take more bytes than they may."""
 
 
 def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
-    """Decode an uploaded photo and store its upright pixels; give what its row says of them.
+    """Decode an uploaded photo, store its upright pixels and return the columns of its row.
 
     Raises
     ------
@@ -125,10 +125,10 @@ def _draw_up(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:
 
 
 def _recall(photo: Path) -> Known:
-    """Remember a photo, or read it, and forget those that were used longest ago."""
+    """Return a photo from memory or disk; those used longest ago are forgotten."""
     known = _known.pop(photo, None) or Known(decode_stored(read_blob(photo)))
     _known[photo] = known
-    while len(_known) > 1 and sum(one.picture.size // 3 for one in _known.values()) > _KEPT_PIXELS:
+    while len(_known) > 1 and sum(known_photo.picture.size // 3 for known_photo in _known.values()) > _KEPT_PIXELS:
         _known.popitem(last=False)
     return known
 
@@ -138,7 +138,7 @@ def _answer(rev: int | None, answer: Mapping[str, Any]) -> bytes:
 
 
 def _within(place: Place, read: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-    """Do what may refuse a part of a request; a refusal's pointer then leads from the whole request."""
+    """Return what reading a part of a request returns; an error's pointer leads from the whole request."""
     try:
         return read(*args, **kwargs)
     except TreestrokeError as error:

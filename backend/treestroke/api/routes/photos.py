@@ -51,10 +51,10 @@ _LOCATION = {"schema": {"type": "string", "pattern": "^/v1/photos/pho_[0-9a-f]{2
 
 
 async def _photo_bytes(request: Request) -> bytes:
-    """Read an upload: the field ``file`` of a form, or the whole body."""
+    """Return an upload: the field ``file`` of a form, or the whole body."""
     kind = media_type(request)
     if kind != "multipart/form-data":
-        # Any picture is looked at: what is refused is refused by what it is, not by what it is called.
+        # A picture is judged by its bytes, not by its media type.
         if not kind.startswith("image/") and kind not in (*_RAW, ""):
             raise Refusal(
                 "unsupported_media_type", f"send a form with the field file, or the photo itself as {' or '.join(_RAW)}"
@@ -97,13 +97,13 @@ def list_photos(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> Pho
 
 @router.get("/{id}", responses=documented("not_found"))
 def get_photo(shelf: ShelfOf, id: PhotoId) -> PhotoInfo:
-    """Look a photo up."""
+    """Return a photo."""
     return photo_view(photos.get_photo(shelf, id))
 
 
 @router.get("/{id}/image", response_class=FileResponse, responses=file_responses("image/png"))
 def get_image(request: Request, shelf: ShelfOf, id: PhotoId) -> Response:
-    """Give the stored picture: PNG, upright, sRGB, without metadata."""
+    """Return the stored picture: PNG, upright, sRGB, without metadata."""
     return send_blob(request, shelf, photos.get_photo(shelf, id).blob, "image/png")
 
 

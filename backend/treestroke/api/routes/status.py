@@ -1,4 +1,4 @@
-"""How the service is, what it takes, and which it is."""
+"""Health, limits and version of the service."""
 
 from dataclasses import fields
 from http import HTTPStatus
@@ -30,7 +30,7 @@ router = APIRouter(tags=["service"])
 
 @router.get("/livez")
 async def live() -> Health:
-    """Tell that this process answers."""
+    """Tell that this process responds."""
     return Health(status="ok")
 
 
@@ -45,7 +45,7 @@ def ready(shelf: ShelfOf, dispatcher: DispatcherOf, response: Response) -> Healt
 
 @router.get("/v1/limits")
 def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
-    """Name everything that is bounded."""
+    """Return every limit of the service, and the settings of a model."""
     return Limits(
         photo_bytes=MAX_PHOTO_BYTES,
         photo_stored_bytes=settings.photo_mb * 10**6,
@@ -79,7 +79,7 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
 
 @router.get("/v1/version")
 def version() -> Version:
-    """Say which treestroke this is."""
+    """Return the version of treestroke."""
     return Version(version=__version__, engine=engine_version(), api="v1")
 
 

@@ -1,4 +1,4 @@
-"""The settings of one model: the one table for command line, library and documents."""
+"""Settings of one model: the one description for library, command line, HTTP, page and documents."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
@@ -12,12 +12,12 @@ from treestroke.core.paint.species import SPECIES
 
 MAX_SEED = 2**63 - 1
 FILES = ("gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv")
-"""Other forms of a tree: other formats, leaves as instances, the solid that things bump into, the skeleton."""
+"""Files beside the GLB: other formats, leaves as instances, a collision solid, the skeleton."""
 
 
 @dataclass(frozen=True)
 class Span:
-    """Numbers from ``low`` to ``high``, both included; whole ones only where ``whole``."""
+    """Numbers from ``low`` to ``high``, both included; integers only where ``whole``."""
 
     low: float
     high: float
@@ -27,12 +27,12 @@ class Span:
         return f"{'a whole number ' if self.whole else ''}from {self.low:g} to {self.high:g}"
 
     def holds(self, value: Any) -> bool:
-        """Tell whether a value is such a number; a truth value is none."""
+        """Tell whether a value is a number in the range; bools are rejected."""
         kinds = int | np.integer if self.whole else int | float | np.integer | np.floating
         return isinstance(value, kinds) and not isinstance(value, bool) and bool(self.low <= value <= self.high)
 
     def plain(self, value: Any) -> float:
-        """Give a number as Python's own."""
+        """Return a number as Python's int or float."""
         return int(value) if self.whole else float(value)
 
 
@@ -50,13 +50,13 @@ class Choice:
         return isinstance(value, str) and value in self.names
 
     def plain(self, value: str) -> str:
-        """Give a name as Python's own."""
+        """Return a name as Python's str."""
         return str(value)
 
 
 @dataclass(frozen=True)
 class Toggle:
-    """Yes or no."""
+    """True or false."""
 
     def __str__(self) -> str:
         return "true or false"
@@ -66,13 +66,13 @@ class Toggle:
         return isinstance(value, bool | np.bool_)
 
     def plain(self, value: bool) -> bool:
-        """Give a truth value as Python's own."""
+        """Return a bool as Python's bool."""
         return bool(value)
 
 
 @dataclass(frozen=True)
 class Several:
-    """Any of a few names, none too."""
+    """Any number of a few names, or no name."""
 
     names: tuple[str, ...]
 
@@ -81,10 +81,10 @@ class Several:
 
     def holds(self, value: object) -> bool:
         """Tell whether a value is a list of the names."""
-        return isinstance(value, list | tuple) and all(isinstance(one, str) and one in self.names for one in value)
+        return isinstance(value, list | tuple) and all(isinstance(name, str) and name in self.names for name in value)
 
     def plain(self, value: Sequence[str]) -> tuple[str, ...]:
-        """Give the names once each, in their own order."""
+        """Return the names, each once, in the order of the description."""
         return tuple(name for name in self.names if name in value)
 
 
@@ -98,7 +98,7 @@ def _setting(default: object, allowed: Allowed, meaning: str, group: Group) -> A
 
 @dataclass(frozen=True)
 class ModelSettings:
-    """What a person may choose about a model; each field's metadata holds what is ``allowed`` and its ``meaning``.
+    """What a person may choose about a model; a field's metadata holds what is ``allowed``, ``meaning`` and ``group``.
 
     Raises
     ------
@@ -130,13 +130,13 @@ class ModelSettings:
         for entry in fields(self):
             value, allowed = getattr(self, entry.name), entry.metadata["allowed"]
             if not allowed.holds(value):
-                code = "non_finite_number" if _is_endless(value) else "setting_not_allowed"
+                code = "non_finite_number" if _is_not_finite(value) else "setting_not_allowed"
                 raise SettingsError.at((entry.name,), f"{shown(value)} is not allowed; give {allowed}", code)
             object.__setattr__(self, entry.name, allowed.plain(value))
 
 
 def settings_from(values: Mapping[str, Any]) -> ModelSettings:
-    """Make settings from names and values; what is absent takes its default.
+    """Return settings made of names and values; what is absent takes its default.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def settings_from(values: Mapping[str, Any]) -> ModelSettings:
 
 
 def plain_settings(settings: ModelSettings) -> dict[str, Any]:
-    """Write settings by name as JSON has them."""
+    """Return settings by name as plain values for JSON."""
     return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(settings).items()}
 
 
@@ -160,12 +160,12 @@ SEED = Span(0, MAX_SEED, whole=True)
 
 
 def check_seed(seed: Any) -> int:
-    """Give a seed back as an int.
+    """Return a seed as an int.
 
     Raises
     ------
     SettingsError
-        It is no whole number from 0 to 2^63 - 1.
+        It is not a whole number from 0 to 2^63 - 1.
     """
     if not SEED.holds(seed):
         what = f"{shown(seed)} is not allowed; give a whole number from 0 to {MAX_SEED}"
@@ -173,6 +173,6 @@ def check_seed(seed: Any) -> int:
     return int(seed)
 
 
-def _is_endless(value: object) -> bool:
-    """Tell whether a value is a number that is not finite."""
+def _is_not_finite(value: object) -> bool:
+    """Tell whether a value is NaN or infinite."""
     return isinstance(value, float | np.floating) and not np.isfinite(value)
