@@ -67,6 +67,8 @@ def resized_premultiplied(picture: Picture, width: int, height: int) -> NDArray[
     Returns
     -------
     (height, width, 4): sRGB, 0 to 255, times alpha; and alpha, 0 to 1.
+
+    Source: premultiplied alpha, Porter and Duff 1984: transparent pixels then add no colour.
     """
     alpha = picture[..., 3:].astype(np.float32) / 255
     premultiplied = np.concatenate([alpha * picture[..., :3].astype(np.float32), alpha], axis=2)

@@ -68,13 +68,18 @@ def refitted_models(pixels: Picture, leaves: Mask, components: int, samples: int
 
     This makes the result stable when the hand trembles: the first models depend on where the stroke runs, the refitted
     ones hardly do.
+
+    Source: as in GrabCut, Rother, Kolmogorov and Blake 2004, section 3; Tan et al. 2008 fit once.
     """
     leaf, ground = _sample(pixels, leaves, samples), _sample(pixels, ~leaves, samples)
     return fit_mixture(leaf, components // 2), fit_mixture(ground, components // 2 + 4)
 
 
 def log_odds_by_colour(leaf: Mixture, ground: Mixture, pixels: Picture) -> NDArray[np.float32]:
-    """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour, within +-LIMIT."""
+    """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour, within +-LIMIT.
+
+    Source: the data term of Tan et al. 2008, section 2; the limit is ours.
+    """
     colours = table_colours()
     table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -LIMIT, LIMIT)
     return table.astype(np.float32)[table_index(pixels)]
@@ -84,6 +89,7 @@ def log_odds_by_height(leaf: Mixture, ground: Mixture, pixels: Picture, leaves: 
     """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour and height, within +-LIMIT.
 
     The weights of the leaf's components are counted where leaves were found before (h, w), the ground's elsewhere.
+    Tan et al. 2008 have one mixture for all heights.
     """
     density = _log_density_by_height(leaf, pixels, leaves) - _log_density_by_height(ground, pixels, ~leaves)
     return _interpolated(np.clip(density, -LIMIT, LIMIT), table_index(pixels))
