@@ -124,7 +124,7 @@ def decode_stored(data: bytes, report: Report = silent) -> Picture:
 
 
 def most_stored_bytes(head: bytes) -> int:
-    """Return the greatest size of a stored photo with these first bytes: an upload's, or what a PNG's pixels need."""
+    """Return the greatest size of a stored photo with these first bytes: an upload's, or that of a PNG's pixels."""
     if len(head) < PHOTO_HEAD or kind_of(head) != "PNG" or head[12:16] != b"IHDR":
         return MAX_PHOTO_BYTES
     width, height = (int.from_bytes(head[at : at + 4], "big") for at in (16, 20))

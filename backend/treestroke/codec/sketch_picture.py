@@ -69,7 +69,7 @@ def read_picture(data: bytes) -> Sketch:
 
 
 def without_metadata(data: bytes) -> bytes:
-    """Encode a PNG of strokes anew, with nothing but its pixels: `read_picture` finds the same in it.
+    """Re-encode a PNG of strokes with nothing but its pixels: `read_picture` returns the same for both.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Labels on tiny grids are compared with the least of all labellings, counted out."""
+"""Cuts of tiny grids are compared with the cheapest of all labellings, found by enumeration."""
 
 from itertools import product
 
@@ -13,7 +13,7 @@ SMALL = 10_000
 
 
 def energy(labels: np.ndarray, pixels: np.ndarray, odds: np.ndarray, region: np.ndarray, smoothness: float) -> float:
-    """What a labelling costs: the log odds of what it denies, and its borders between pixels of the region."""
+    """Cost of a labelling: the log odds that it contradicts, and its borders between pixels of the region."""
     total = float(np.where(labels, np.maximum(-odds, 0), np.maximum(odds, 0))[region].sum())
     for axis in (0, 1):
         colours = np.diff(pixels.astype(float), axis=axis)

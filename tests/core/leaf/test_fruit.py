@@ -20,7 +20,7 @@ ORANGE = (230, 130, 20)
 
 
 def fruit_picture(width: int = 90, height: int = 100) -> np.ndarray:
-    """An orange oval that fills its picture, clear and green around."""
+    """An orange oval that fills its picture, transparent and green around."""
     picture = np.zeros((height, width, 4), np.uint8)
     picture[..., 1] = 255
     cv2.ellipse(picture, (width // 2, height // 2), (width // 2, height // 2), 0, 0, 360, (*ORANGE, 255), -1)

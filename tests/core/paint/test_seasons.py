@@ -10,7 +10,7 @@ BROAD = [name for name, species in SPECIES.items() if not species.evergreen]
 
 
 def coloured(photo, mask, colour) -> np.ndarray:
-    """Paint the foliage in another colour, as rough as it is."""
+    """Paint the foliage in another colour, keeping its noise."""
     rough = photo[mask].astype(float) - photo[mask].mean(axis=0)
     other = photo.copy()
     other[mask] = np.clip(np.array(colour) + rough, 0, 255)
@@ -18,7 +18,7 @@ def coloured(photo, mask, colour) -> np.ndarray:
 
 
 def recoloured(photo, mask, season, species="auto") -> np.ndarray:
-    """Give the mean colour (3,) of a season's leaves, without drawing them."""
+    """Return the mean colour (3,) of a season's leaves, without drawing them."""
     palette, kind = foliage_palette(photo, mask, 16, np.random.default_rng(0)), SPECIES.get(species, AUTO)
     recolour = recolour_for(season, kind, palette, kind.needles is not None)
     if recolour is not None:

@@ -122,7 +122,10 @@ def _terms(colours: Floats) -> Floats:
 
 
 def component_shares(mixture: Mixture, colours: Floats) -> Floats:
-    """Share (n, k) of each colour (n, 3), sRGB, 0 to 255, that each component explains; a colour's shares sum to 1."""
+    """Share (n, k) of each colour (n, 3), sRGB, 0 to 255, that each component explains; a colour's shares sum to 1.
+
+    Source: the expectation step of Dempster, Laird and Rubin 1977.
+    """
     parts = log_components(mixture, colours)
     return np.asarray(np.exp(parts - log_sum(parts)[:, None]))
 
@@ -133,13 +136,19 @@ def log_density(mixture: Mixture, colours: Floats) -> Floats:
 
 
 def log_sum(parts: Floats) -> Floats:
-    """Logarithm (n,) of the sum of the exponentials of each row (n, k) of dimensionless logarithms."""
+    """Logarithm (n,) of the sum of the exponentials of each row (n, k) of dimensionless logarithms.
+
+    It equals scipy.special.logsumexp, whose import takes longer than all uses of this.
+    """
     peak = parts.max(axis=1)
     return np.asarray(peak + np.log(np.exp(parts - peak[:, None]).sum(axis=1)))
 
 
 def distance(mixture: Mixture, colour: Floats) -> float:
-    """Mahalanobis distance, dimensionless, of a colour (3,), sRGB, 0 to 255, from the mixture's nearest component."""
+    """Mahalanobis distance, dimensionless, of a colour (3,), sRGB, 0 to 255, from the mixture's nearest component.
+
+    Source: Mahalanobis 1936.
+    """
     away = colour - mixture.means
     return float(np.sqrt(np.einsum("ki,kij,kj->k", away, np.linalg.inv(mixture.covariances), away).min()))
 

@@ -48,7 +48,7 @@ class QuiltParams:
 def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np.random.Generator) -> Floats:
     """Fill a texture (*size, c), px, that repeats in both directions, with patches of a sample (h, w, c).
 
-    Each patch is the best of some random ones: it fits what is there already and shows few pixels outside ``clean``
+    Each patch is the best of some random ones: it fits the patches below it and has few pixels outside ``clean``
     (h, w). It is joined along a minimal cut. Opposite edges of the texture are treated as neighbours from the start.
 
     Raises

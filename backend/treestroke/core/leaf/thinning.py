@@ -80,8 +80,8 @@ def thin_leaves(
     azimuths. A card that would reach beyond the silhouettes' edge grows less or not at all. Fruit keeps its size and is
     kept as far as its share allows. Deterministic.
 
-    Source: the greedy choice for maximum coverage, Nemhauser, Wolsey and Fisher 1978; docs/decisions/0013 says what is
-    covered.
+    Source: the greedy choice for maximum coverage, Nemhauser, Wolsey and Fisher 1978; docs/decisions/0013
+    describes the cells.
 
     Parameters
     ----------

@@ -8,7 +8,7 @@ from treestroke.core.paint.palette import lab_from_rgb
 from treestroke.core.types import Floats, Mask, Picture
 
 VISIBLE_ALPHA = 26
-"""Alpha, 0 to 255, from which a pixel belongs to what a picture shows."""
+"""Alpha, 0 to 255, from which a pixel of a picture counts as visible."""
 SOLID_ALPHA = 128
 """Alpha, 0 to 255, from which a pixel's colour is the leaf's or the fruit's own.
 
@@ -38,7 +38,7 @@ def opaque_part(picture: Picture) -> Picture:
 
 
 def visible(picture: Picture) -> Mask:
-    """Tell which pixels (h, w) of a picture (h, w, 4) belong to what it shows."""
+    """Tell which pixels (h, w) of a picture (h, w, 4) are visible."""
     return np.asarray(picture[..., 3] >= VISIBLE_ALPHA)
 
 
@@ -67,6 +67,8 @@ def resized_premultiplied(picture: Picture, width: int, height: int) -> NDArray[
     Returns
     -------
     (height, width, 4): sRGB, 0 to 255, times alpha; and alpha, 0 to 1.
+
+    Source: premultiplied alpha, Porter and Duff 1984: transparent pixels then add no colour.
     """
     alpha = picture[..., 3:].astype(np.float32) / 255
     premultiplied = np.concatenate([alpha * picture[..., :3].astype(np.float32), alpha], axis=2)

@@ -57,13 +57,19 @@ class Palette:
 
 
 def lab_from_rgb(rgb: Picture) -> Floats:
-    """Convert sRGB (..., 3) uint8 to CIE Lab (..., 3), L 0 to 100."""
+    """Convert sRGB (..., 3) uint8 to CIE Lab (..., 3), L 0 to 100.
+
+    Source: CIE 1976 L*a*b* for the white D65, by OpenCV.
+    """
     flat = np.ascontiguousarray(rgb.reshape(1, -1, 3), dtype=np.float32) / np.float32(255)
     return np.asarray(cv2.cvtColor(flat, cv2.COLOR_RGB2LAB), dtype=np.float64).reshape(rgb.shape)
 
 
 def rgb_from_lab(lab: Floats) -> Picture:
-    """Convert CIE Lab (..., 3) to sRGB (..., 3) uint8, clipped to the colours that sRGB holds."""
+    """Convert CIE Lab (..., 3) to sRGB (..., 3) uint8, clipped to the colours that sRGB holds.
+
+    Source: CIE 1976 L*a*b* for the white D65, by OpenCV.
+    """
     flat = np.ascontiguousarray(lab.reshape(1, -1, 3), dtype=np.float32)
     rgb = np.asarray(cv2.cvtColor(flat, cv2.COLOR_LAB2RGB)).reshape(lab.shape)
     return np.asarray(np.clip(np.rint(rgb * 255), 0, 255), dtype=np.uint8)
@@ -94,6 +100,8 @@ def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Ge
 
     Pixels at the mask's border are left out, since sky shines into them, and so are pixels that blend the foliage's
     colour with one seen around the crown's upper half. The photo's light is reduced (`flattened`).
+
+    Source: k-means, Lloyd 1982. Removing background and light is ours.
 
     Raises
     ------

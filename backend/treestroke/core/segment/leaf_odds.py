@@ -1,8 +1,8 @@
 """How likely each pixel is a leaf: by its colour, by its height in the photo and by its place in the crown stroke.
 
-What is seen through a crown is what is seen beside it at the same height: sky above, distant trees and grass below. And
-leaves are brighter at a crown's top than in its shade. So once the components of a colour model are fitted, their
-weights follow the height.
+The background seen through a crown resembles the one beside it at the same height: sky above, distant trees and grass
+below. And leaves are brighter at a crown's top than in its shade. So once the components of a colour model are fitted,
+their weights follow the height.
 """
 
 import cv2
@@ -24,7 +24,7 @@ from treestroke.core.types import Floats, Mask, Picture
 BANDS = 10
 """Heights at which weights are counted; between them they are interpolated."""
 EVERYWHERE = 0.25
-"""Share of a component's weight that does not depend on the height: what a band did not show may still be there."""
+"""Share of a component's weight that does not depend on the height: colours that a band lacks may still occur."""
 HEIGHT_SAMPLES = 8000
 """Pixels by which the weights are counted."""
 FEWEST = 20
@@ -64,17 +64,22 @@ def initial_models(pixels: Picture, inside: Mask, components: int, samples: int)
 
 
 def refitted_models(pixels: Picture, leaves: Mask, components: int, samples: int) -> tuple[Mixture, Mixture]:
-    """Fit colour models anew to the pixels (h, w, 3), sRGB, that were found to be leaves (h, w), and to all others.
+    """Refit the colour models to the pixels (h, w, 3), sRGB, that were found to be leaves (h, w), and to all others.
 
     This makes the result stable when the hand trembles: the first models depend on where the stroke runs, the refitted
     ones hardly do.
+
+    Source: as in GrabCut, Rother, Kolmogorov and Blake 2004, section 3; Tan et al. 2008 fit once.
     """
     leaf, ground = _sample(pixels, leaves, samples), _sample(pixels, ~leaves, samples)
     return fit_mixture(leaf, components // 2), fit_mixture(ground, components // 2 + 4)
 
 
 def log_odds_by_colour(leaf: Mixture, ground: Mixture, pixels: Picture) -> NDArray[np.float32]:
-    """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour, within +-LIMIT."""
+    """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour, within +-LIMIT.
+
+    Source: the data term of Tan et al. 2008, section 2; the limit is ours.
+    """
     colours = table_colours()
     table = np.clip(log_density(leaf, colours) - log_density(ground, colours), -LIMIT, LIMIT)
     return table.astype(np.float32)[table_index(pixels)]
@@ -84,6 +89,7 @@ def log_odds_by_height(leaf: Mixture, ground: Mixture, pixels: Picture, leaves: 
     """Log odds (h, w) that each pixel (h, w, 3), sRGB, is a leaf, by its colour and height, within +-LIMIT.
 
     The weights of the leaf's components are counted where leaves were found before (h, w), the ground's elsewhere.
+    Tan et al. 2008 have one mixture for all heights.
     """
     density = _log_density_by_height(leaf, pixels, leaves) - _log_density_by_height(ground, pixels, ~leaves)
     return _interpolated(np.clip(density, -LIMIT, LIMIT), table_index(pixels))
@@ -92,7 +98,7 @@ def log_odds_by_height(leaf: Mixture, ground: Mixture, pixels: Picture, leaves: 
 def log_odds_by_place(inside: Mask) -> NDArray[np.float32]:
     """Log odds (h, w) that a pixel is a leaf by its place relative to the crown's inside (h, w).
 
-    Strokes are loose: their rim and what lies beyond it is more likely ground.
+    Strokes are loose: pixels at their rim and beyond it are more likely ground.
     """
     depth = _depth(inside)
     return np.where(inside, 0.7 - 1.8 * np.exp(-depth / 0.06), -2.0).astype(np.float32)
