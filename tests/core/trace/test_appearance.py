@@ -19,7 +19,7 @@ BEHIND = around(GROUND)
 AROUND = Surroundings(LEAVES, BEHIND, np.ones((200, 200), dtype=bool))
 
 
-def test_wood_under_a_line_is_told_from_its_ground() -> None:
+def test_wood_under_a_line_differs_from_its_ground() -> None:
     odds = branch_odds(wood_photo(TRUNK), [LINE], 2.0, AROUND)
     assert (odds[TRUNK] > 0).mean() > 0.98
     assert (odds[~TRUNK] < 0).mean() > 0.98
@@ -31,7 +31,7 @@ def test_like_wood_elsewhere_is_seen_too() -> None:
     assert (odds[wood & ~TRUNK] > 0).mean() > 0.95
 
 
-def test_leaves_that_the_line_crosses_are_no_wood() -> None:
+def test_leaves_that_the_line_crosses_are_not_wood() -> None:
     flat = np.where(TRUNK[..., None], WOOD, GROUND)
     flat[60:110] = LEAF
     odds = branch_odds(noisy(flat), [LINE], 2.0, AROUND)

@@ -50,13 +50,13 @@ def test_a_fork_behind_a_fork_is_found() -> None:
     assert covered(twig, builder, within=8.0) > 0.6
 
 
-def test_what_is_found_hangs_on_the_stem() -> None:
+def test_found_branches_are_connected_with_the_stem() -> None:
     tree = traced(wood_mask([(STEM, 16.0), (LEFT, 11.0), (RIGHT, 11.0)], 400, 400)).skeleton()
     assert np.count_nonzero(tree.parents < 0) == 1
 
 
 @pytest.mark.parametrize("centre", [(200.0, 180.0), (240.0, 260.0)])
-def test_a_blob_like_dark_leaves_is_no_branch(centre: tuple[float, float]) -> None:
+def test_a_blob_like_dark_leaves_is_not_a_branch(centre: tuple[float, float]) -> None:
     wood = wood_mask([(STEM, 16.0)], 400, 400) | disc(400, 50, centre)
     assert min(traced(wood).stroke) == 0
 

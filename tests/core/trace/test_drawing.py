@@ -14,7 +14,7 @@ def test_a_drawn_crown_is_kept() -> None:
     assert drawing.crown.tolist() == CROWN
 
 
-def test_without_one_the_crown_is_drawn_round_all_but_the_bare_foot() -> None:
+def test_without_a_drawn_crown_it_surrounds_all_but_the_bare_trunk() -> None:
     drawing = trace_sketch(sketch(TRUNK, *ARMS))
     crown = drawing.crown.astype(np.float32)
     for x, y in [TRUNK[-1], *(arm[-1] for arm in ARMS)]:

@@ -11,7 +11,7 @@ from treestroke.core.trace.drawing import trace_sketch
 
 
 @pytest.mark.parametrize("width", [1, 2, 3])
-def test_a_pens_strokes_are_covered_and_tell_no_radius(width: int) -> None:
+def test_a_pens_strokes_are_covered_and_give_no_radius(width: int) -> None:
     tree = trace_sketch(inked(sketch(TRUNK, *ARMS), width)).tree
     assert away(tree, dense([TRUNK, *ARMS])).max() < 2
     assert apart(tree, [TRUNK, *ARMS]).max() < 2.5
@@ -50,7 +50,7 @@ def test_a_nearly_horizontal_brush_stroke_is_found(rise: float, width: int) -> N
 
 
 @pytest.mark.parametrize("width", [2, 3, 4, 5, 7, 10])
-def test_thinning_eats_no_slanted_stroke(width: int) -> None:
+def test_thinning_does_not_shorten_slanted_strokes(width: int) -> None:
     seen = np.zeros((1100, 900), dtype=np.uint8)
     lines = [
         np.array([[450, 1050], [450, 50]]),
@@ -68,7 +68,7 @@ def test_the_root_is_the_lowest_end() -> None:
     assert root[1] == pytest.approx(TRUNK[0][1] + 15, abs=2)
 
 
-def test_a_blunt_foot_gets_no_toes() -> None:
+def test_a_blunt_trunk_base_makes_no_branches() -> None:
     seen = inked(sketch([[450, 900], [450, 50]], widths=(60,)))
     assert seen.ink is not None
     cv2.rectangle(foot := seen.ink.astype(np.uint8), (420, 800), (480, 1050), 1, cv2.FILLED)
@@ -104,7 +104,7 @@ def test_a_loop_is_cut_open_with_a_warning() -> None:
     assert drawing.tree.skeleton.points[drawing.tree.chains()[1]][0] == pytest.approx([450, 700], abs=3)
 
 
-def test_branches_that_cross_pass_each_other() -> None:
+def test_branches_that_cross_stay_separate() -> None:
     arms = [[450, 800], [800, 450]], [[450, 500], [800, 750]]
     tree = trace_sketch(inked(sketch([[450, 1050], [450, 50]], *arms))).tree
     assert tree.levels().tolist() == [0, 1, 1]
@@ -113,7 +113,7 @@ def test_branches_that_cross_pass_each_other() -> None:
 
 
 @pytest.mark.parametrize("width", [1.0, 24.0])
-def test_a_stroke_across_the_trunk_hangs_on_it_both_ways(width: float) -> None:
+def test_a_stroke_across_the_trunk_becomes_a_branch_on_each_side(width: float) -> None:
     bar = [[150, 600], [750, 560]]
     tree = trace_sketch(inked(sketch([[450, 1050], [450, 50]], bar, widths=(30, width)))).tree
     assert tree.levels().tolist() == [0, 1, 1]
@@ -152,7 +152,7 @@ def test_a_big_picture_gives_the_tree_in_its_own_pixels() -> None:
         (np.random.default_rng(0).random((300, 300)) < 0.5, "too_many_strokes"),
     ],
 )
-def test_what_is_no_strokes_is_refused(ink: np.ndarray, code: str | None) -> None:
+def test_ink_that_does_not_consist_of_strokes_is_refused(ink: np.ndarray, code: str | None) -> None:
     try:
         drawing = trace_sketch(Sketch((ink.shape[1], ink.shape[0]), ink=ink))
     except StrokesError as error:

@@ -33,7 +33,7 @@ def test_a_chain_from_a_parent_begins_with_the_parent() -> None:
     assert tree.radii.tolist() == [5, 5, 5, 5, 2, 2]
 
 
-def test_growing_returns_the_last_joint() -> None:
+def test_adding_a_chain_returns_its_last_joint() -> None:
     builder = SkeletonBuilder()
     assert builder.add_chain(-1, STEM, 5.0, stroke=0) == 3
     assert builder.add_chain(3, STEM[-1:], 5.0, stroke=0) == 3
@@ -44,7 +44,7 @@ def test_the_nearest_joint_is_found() -> None:
 
 
 @given(TREES, st.data())
-def test_what_is_dropped_goes_with_all_its_descendants(tree: Skeleton, data: st.DataObject) -> None:
+def test_dropped_joints_go_with_all_their_descendants(tree: Skeleton, data: st.DataObject) -> None:
     dropped = data.draw(st.sets(st.integers(1, max(1, len(tree) - 1)))) if len(tree) > 1 else set()
     kept, number = drop_subtrees(tree, np.arange(len(tree)), np.array(sorted(dropped), dtype=np.int64))
     for joint in range(len(tree)):
@@ -62,7 +62,7 @@ def test_a_found_branch_stays_when_it_is_long_enough(spur_px: float, joints: int
     assert len(tree) == len(stroke) == joints
 
 
-def test_a_short_stroked_branch_is_no_spur() -> None:
+def test_a_short_stroked_branch_is_not_dropped() -> None:
     builder = drafted(2.0)
     tree, _ = drop_short_branches(builder.skeleton(), np.array([0, 0, 0, 0, 1, 1]), 30.0)
     assert len(tree) == 6

@@ -22,7 +22,7 @@ def test_every_stroke_lies_along_one_tree(arms: list[list[tuple[float, float]]])
     assert (drawing.tree.skeleton.parents[1:] >= 0).all()
 
 
-def test_a_plain_tree_is_covered_within_a_pixel_and_holds_nothing_else() -> None:
+def test_a_simple_tree_is_covered_within_a_pixel_by_nothing_else() -> None:
     drawing = trace_sketch(sketch(TRUNK, *ARMS))
     assert away(drawing.tree, dense([TRUNK, *ARMS])).max() < 1
     assert apart(drawing.tree, [TRUNK, *ARMS]).max() < 1
@@ -43,7 +43,7 @@ def test_a_trunk_drawn_downward_is_turned() -> None:
     assert turned.tree.skeleton.points[0].tolist() == TRUNK[0]
 
 
-def test_a_branch_drawn_inward_is_turned_without_a_word() -> None:
+def test_a_branch_drawn_inward_is_turned_without_a_warning() -> None:
     drawing = trace_sketch(sketch(TRUNK, *(arm[::-1] for arm in ARMS)))
     assert drawing.warnings == ()
     tips = [drawing.tree.skeleton.points[chain[-1]].tolist() for chain in drawing.tree.chains()]

@@ -136,7 +136,7 @@ def test_a_later_stroke_beside_the_root_is_a_second_stem() -> None:
     assert traced.stroke[roots].tolist() == [0, 1]
 
 
-def test_a_later_stroke_away_from_the_root_is_joined_to_what_it_leaves() -> None:
+def test_a_later_stroke_away_from_the_root_is_joined_to_its_parent() -> None:
     traced = trace(stroked(STEM, LEFT, [(140.0, 152.0), (50.0, 150.0)]))
     assert np.count_nonzero(traced.skeleton.parents < 0) == 1
     first = np.flatnonzero(traced.stroke == 2)[0]

@@ -139,7 +139,7 @@ def _between(shape: Floats, places: Floats) -> Floats:
 
 @dataclass(eq=False)
 class PathTrie:
-    """The 3D tree under construction: a trie of path pairs, which share joints as far as both paths agree.
+    """The 3D tree under construction: a trie of path pairs, which share joints up to where one of their paths differs.
 
     Attributes
     ----------

@@ -44,20 +44,20 @@ def bridge_gaps(lines: Mask, ink: Mask, half_widths: NDArray[np.float32]) -> tup
     ends = _ends(pixels, owner)
     widths = half_widths[tuple(pixels.T)].astype(np.float64)
     while len(np.unique(group[owner])) > 1:
-        for gap, one, other in _bridges(pixels.astype(np.float64), ends, group[owner], widths):
-            if _merge(group, owner[one], owner[other]):
-                sides = pixels[[one, other]][:, ::-1]
+        for gap, end, other in _bridges(pixels.astype(np.float64), ends, group[owner], widths):
+            if _merge(group, owner[end], owner[other]):
+                sides = pixels[[end, other]][:, ::-1]
                 cv2.line(bridged, sides[0].tolist(), sides[1].tolist(), 1)
                 middles.append(np.asarray(sides.mean(axis=0) + 0.5))
                 if gap <= near:
-                    _merge(trunk, owner[one], owner[other])
+                    _merge(trunk, owner[end], owner[other])
     sizes = np.bincount(trunk[owner], minlength=count)
     return bridged > 0, lines & (trunk[labels] == sizes.argmax()), middles
 
 
-def _merge(group: Indices, one: int, other: int) -> bool:
+def _merge(group: Indices, stroke: int, other: int) -> bool:
     """Merge the groups of two strokes in place; return whether they were different."""
-    first, last = group[one], group[other]
+    first, last = group[stroke], group[other]
     group[group == last] = first
     return bool(first != last)
 
@@ -80,6 +80,6 @@ def _ends(pixels: Indices, owner: Indices) -> list[int]:
     there[tuple(pixels.T + 1)] = 1
     counts = cv2.boxFilter(there, cv2.CV_16S, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     ends = counts[tuple(pixels.T + 1)] <= 2
-    for one in np.setdiff1d(owner, owner[ends]).tolist():
-        ends[np.flatnonzero(owner == one)[::4]] = True
+    for stroke in np.setdiff1d(owner, owner[ends]).tolist():
+        ends[np.flatnonzero(owner == stroke)[::4]] = True
     return np.flatnonzero(ends).tolist()

@@ -51,7 +51,7 @@ def split_into_branches(graph: Graph, root: int) -> tuple[list[BranchPath], list
     """
     if len(graph.arcs) - len(graph.at) >= MAX_STROKES:
         what = f"its lines close more than {MAX_STROKES} loops; draw branches that do not meet again"
-        raise StrokesError(f"the picture is no tree: {what}", code="too_many_strokes")
+        raise StrokesError(f"the picture does not show a tree: {what}", code="too_many_strokes")
     _separate_crossings(graph, root)
     cuts = _cut_loops(graph, root)
     return _branches(graph, root, {node for node, _ in cuts}), [place for _, place in cuts]
@@ -69,18 +69,18 @@ def _separate_crossings(graph: Graph, root: int) -> None:
             separated[spare] = node
             spare += 1
     while separated:
-        reached = _distances(graph, root)[0]
-        hanging = [
-            (min(reached.get(one, np.inf), reached.get(other, np.inf)), one, other)
-            for one, other in separated.items()
-            if (one in reached) != (other in reached)
+        distance = _distances(graph, root)[0]
+        disconnecting = [
+            (min(distance.get(new, np.inf), distance.get(node, np.inf)), new, node)
+            for new, node in separated.items()
+            if (new in distance) != (node in distance)
         ]
-        if not hanging:
+        if not disconnecting:
             break
-        _, one, other = min(hanging)
-        for number in list(graph.at[one]):
-            graph.move(number, one, other)
-        del graph.at[one], separated[one]
+        _, new, node = min(disconnecting)
+        for number in list(graph.at[new]):
+            graph.move(number, new, node)
+        del graph.at[new], separated[new]
 
 
 def _crossing(graph: Graph, node: int) -> tuple[int, int] | None:
@@ -100,7 +100,7 @@ def _crossing(graph: Graph, node: int) -> tuple[int, int] | None:
 def _distances(graph: Graph, root: int) -> tuple[dict[int, float], dict[int, int]]:
     """Return the length, px, of the shortest path from the root to each node (Dijkstra 1959), and its last arc.
 
-    Not by scipy.sparse.csgraph, which merges parallel arcs and takes longer to import than a sketch's graphs to search.
+    scipy.sparse.csgraph would merge parallel arcs, and its import takes longer than the search in a sketch's graph.
     """
     lengths = {number: arc.length for number, arc in graph.arcs.items()}
     distance: dict[int, float] = {}
@@ -139,13 +139,13 @@ def _cut_loops(graph: Graph, root: int) -> list[tuple[int, Floats]]:
 
 def _loop(graph: Graph, closing: int, distance: dict[int, float], last_arc: dict[int, int]) -> list[int]:
     """List the arcs of the loop that an arc closes."""
-    one, other = graph.arcs[closing].ends
+    far, near = graph.arcs[closing].ends
     loop = [closing]
-    while one != other:
-        if (distance[one], one) < (distance[other], other):
-            one, other = other, one
-        loop.append(last_arc[one])
-        one = graph.arcs[last_arc[one]].other(one)
+    while far != near:
+        if (distance[far], far) < (distance[near], near):
+            far, near = near, far
+        loop.append(last_arc[far])
+        far = graph.arcs[last_arc[far]].other(far)
     return loop
 
 

@@ -83,8 +83,9 @@ def _pieces(points: Floats, at: Indices) -> list[Floats]:
 
 
 def _approximated(piece: Floats, tolerance: float) -> Floats:
-    thinned = cv2.approxPolyDP(piece.astype(np.float32)[:, None], tolerance, closed=False)[:, 0].astype(np.float64)
-    return np.vstack([piece[:1], thinned[1:-1], piece[-1:]])
+    """Return a piece (n, 2) simplified by the algorithm of Douglas and Peucker, with its own ends."""
+    inner = cv2.approxPolyDP(piece.astype(np.float32)[:, None], tolerance, closed=False)[:, 0].astype(np.float64)
+    return np.vstack([piece[:1], inner[1:-1], piece[-1:]])
 
 
 class _Linking:
@@ -107,7 +108,7 @@ class _Linking:
         self.waiting = np.arange(1, count)
 
     def link_all(self) -> None:
-        """Link every stroke, the nearest to what is linked first."""
+        """Link every stroke, the one nearest to the lines so far first."""
         trunk = self.strokes[0]
         self._add(BranchLine(trunk.points, _radii(trunk, len(trunk.points)), -1, 0.0), 0)
         while len(self.waiting):
@@ -214,4 +215,5 @@ class _Linking:
 
 
 def _radii(stroke: Stroke, count: int) -> Floats:
+    """Return a stroke's radius, px, for each of its points (n,); 0 where unknown."""
     return np.full(count, 0.0 if stroke.width is None else stroke.width / 2)

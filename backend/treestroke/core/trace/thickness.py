@@ -30,6 +30,20 @@ def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tup
     return _steady(np.where(seen, halves, np.nan)), _steady(np.where(seen, middles, np.nan))
 
 
+def non_increasing(values: Floats) -> Floats:
+    """Return the non-increasing values (n,), px, nearest to the given ones (n,) in the sum of squares.
+
+    By the min-max formula of isotonic regression (Robertson, Wright and Dykstra 1988, section 1.4), which suffices for
+    the few values along a stroke: importing scipy's would take longer than all tracing.
+    """
+    count = np.arange(len(values))
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    means = (sums[None, 1:] - sums[:-1, None]) / np.maximum(count[None] - count[:, None] + 1, 1)
+    means[count[:, None] > count[None]] = -np.inf
+    onward = np.maximum.accumulate(means[:, ::-1], axis=1)[:, ::-1]
+    return np.asarray(np.minimum.accumulate(onward, axis=0).diagonal())
+
+
 def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Return the length (n,), px, of the run of wood that starts in the first column, ignoring one-pixel gaps."""
     closed = seen | np.roll(seen, -1, axis=1) | (np.arange(seen.shape[1]) == 0)

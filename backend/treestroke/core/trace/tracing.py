@@ -18,7 +18,7 @@ from treestroke.core.trace.appearance import Surroundings, branch_odds
 from treestroke.core.trace.circle import Circle, trace_forks
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_short_branches, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blurred, snap
-from treestroke.core.trace.thickness import half_widths
+from treestroke.core.trace.thickness import half_widths, non_increasing
 from treestroke.core.types import Floats, Indices, Mask, Picture
 
 REFERENCE_SIDE = 1500
@@ -189,25 +189,11 @@ def _radii(line: Floats, width: float | None, seen: _SeenWidths, parent_px: floa
     usual = float(np.median(seen.halves[bare if len(bare) >= MIN_SEEN else places]))
     expected = (usual if len(bare) >= MIN_SEEN else CHILD_RADIUS * parent_px) * (1 - 0.7 * share)
     measured = np.minimum(seen.halves[places], MAX_SWELLING * usual)
-    radii = np.interp(np.arange(len(line)), places, _isotonic(measured))
+    radii = np.interp(np.arange(len(line)), places, non_increasing(measured))
     radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
     return np.asarray(np.maximum(radii, MIN_EXPECTED * expected))
-
-
-def _isotonic(values: Floats) -> Floats:
-    """Return the non-increasing values (n,) nearest to the given ones, by the min-max formula of isotonic regression.
-
-    Source: Robertson, Wright and Dykstra 1988, section 1.4. Not by scipy.optimize, whose import would take a fifth of
-    a photo's time.
-    """
-    count = np.arange(len(values))
-    sums = np.concatenate([[0.0], np.cumsum(values)])
-    means = (sums[None, 1:] - sums[:-1, None]) / np.maximum(count[None] - count[:, None] + 1, 1)
-    means[count[:, None] > count[None]] = -np.inf
-    onward = np.maximum.accumulate(means[:, ::-1], axis=1)[:, ::-1]
-    return np.asarray(np.minimum.accumulate(onward, axis=0).diagonal())
 
 
 def _seeds(builder: SkeletonBuilder, radius_px: float) -> list[int]:
