@@ -58,7 +58,7 @@ def away(tree: Branched, points: Floats) -> Floats:
 
 
 def dense(lines: Sequence[Floats]) -> Floats:
-    """Give the points, a pixel apart, of lines (n, 2)."""
+    """Return the points, a pixel apart, of lines (n, 2)."""
     return np.concatenate([resample(np.asarray(line, dtype=float), 1.0) for line in lines])
 
 
@@ -69,6 +69,6 @@ def apart(tree: Branched, lines: Sequence[Floats]) -> Floats:
 
 
 def middle(line: object, share: float) -> Floats:
-    """Give the point (2,) at a share of a line's length."""
+    """Return the point (2,) at a share of a line's length."""
     points = np.array(line, dtype=float)
     return place_at(points, share * float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()))

@@ -14,7 +14,7 @@ def crown() -> Crown:
 
 
 def branch() -> Form:
-    """A seen trunk of two joints that bears a grown branch of 19, level in the crown's middle."""
+    """A seen trunk of two joints with a grown branch of 19, level in the middle of the crown."""
     points = [[160.0, 400.0, 0.0], [160.0, 160.0, 0.0]] + [[160.0 + 4 * k, 160.0, 0.0] for k in range(1, 20)]
     return Form(np.array(points), np.arange(21) - 1, np.r_[0, 0, np.full(19, 3)], np.r_[8.0, 4.0, np.zeros(19)])
 

@@ -25,7 +25,7 @@ def search(front: SketchTree, side: SketchTree, number: int) -> PartnerSearch:
     return PartnerSearch(trie, 0, number, front.branch_joints[number], RetrievalParams())
 
 
-def test_a_limb_is_answered_by_the_one_at_its_heights() -> None:
+def test_a_limb_pairs_with_the_one_at_its_heights() -> None:
     side = drawn(LOW, HIGH)
     for number, stroke in enumerate((LOW, HIGH), start=1):
         best = search(drawn(stroke), side, 1).best(set())
@@ -33,7 +33,7 @@ def test_a_limb_is_answered_by_the_one_at_its_heights() -> None:
         assert np.abs(best.pair.apart).max() <= 6.0
 
 
-def test_what_was_tried_is_not_tried_again() -> None:
+def test_a_branch_that_was_tried_is_not_tried_again() -> None:
     tried = {0, 1}
     best = search(drawn(LOW), drawn(LOW), 1).best(tried)
     assert best.partner == UNMATCHED
@@ -67,6 +67,6 @@ def test_a_path_leads_past_its_bud_up_to_a_height_and_back() -> None:
     assert path[-1] == tree.paths[1][-1]
 
 
-def test_without_anything_above_its_bud_a_path_stays() -> None:
+def test_a_path_with_nothing_above_its_bud_makes_no_detour() -> None:
     tree = drawn(HANGING)
     assert np.array_equal(detour(tree, 1, 1200.0), tree.paths[1])

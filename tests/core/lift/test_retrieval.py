@@ -20,7 +20,7 @@ IN_PLANES = {
     "broad 9/6": 0.28,
     # Level boughs pass few heights: for two fifths of them the other sketch has nothing but its stem.
     "pine 24/18": 0.53,
-    # Where most limbs of the side hang lower than the front's, they stray from one to another.
+    # Where most limbs of the side hang lower than the front's, they are aligned with several of them.
     "weeping 9/7": 0.2,
 }
 """Share of the limbs' length in the two planes of view, of the pairs that do not keep to a quarter."""
@@ -66,7 +66,7 @@ def test_the_tree_is_in_one_piece_from_the_origin(name: str) -> None:
 
 # The neat pair is drawn with long pieces, so that the nearest drawn joint is far.
 @pytest.mark.parametrize("name", sorted(set(PAIRS) - {"neat"}))
-def test_each_joint_tells_the_drawn_joints_near_it(name: str) -> None:
+def test_each_joint_names_the_drawn_joints_near_it(name: str) -> None:
     found, (front, side) = retrieved(name), PAIRS[name]
     points, known = found.tree.skeleton.points, found.origin != LONE
     for sketch, joints, axis in ((front, found.front, 0), (side, found.side, 2)):
@@ -115,7 +115,7 @@ def test_on_the_other_sketch_s_stem_a_limb_keeps_its_own_radius() -> None:
     assert tree.skeleton.radii[extension] == pytest.approx(np.interp(height[extension], [300, 700], [16, 6]), abs=0.3)
 
 
-def test_brushes_meet_at_their_mean_but_hide_no_ink_and_one_alone_counts_whole() -> None:
+def test_brushes_radii_are_averaged_but_leave_no_ink_uncovered_and_a_single_radius_counts_fully() -> None:
     front = sketched(STEM, (0, 1, [(300.0, 700.0)]), radii=(20.0, 10.0))
     both = retrieve_depth(front, sketched(STEM, (0, 1, [(200.0, 700.0)]), radii=(18.0, 4.0))).tree
     assert both.skeleton.radii[0] == 19
@@ -133,7 +133,7 @@ def test_a_brush_s_partner_is_as_thick() -> None:
         assert np.sign(first[-1, 2]) == np.sign(depth)
 
 
-def test_what_no_limb_of_the_front_used_complements_the_tree() -> None:
+def test_limbs_of_the_side_that_no_limb_of_the_front_used_complement_the_tree() -> None:
     side = sketched(STEM, (0, 1, [(200.0, 700.0)]), (0, 1, [(-200.0, 700.0)]))
     found = retrieve_depth(sketched(STEM, (0, 1, [(300.0, 700.0)])), side)
     paired, complemented = (found.tree.skeleton.points[found.origin == origin] for origin in (PAIRED, COMPLEMENTED))
@@ -143,7 +143,7 @@ def test_what_no_limb_of_the_front_used_complements_the_tree() -> None:
     assert complemented[-1] == pytest.approx([300, 700, -200])
 
 
-def test_a_part_at_heights_that_the_other_sketch_does_not_have_is_lone() -> None:
+def test_a_part_at_heights_that_the_other_sketch_lacks_is_lone() -> None:
     front = sketched(STEM, (0, 1, [(100.0, 200.0), (200.0, -200.0)]))
     found = retrieve_depth(front, sketched(STEM, (0, 1, [(200.0, 700.0)])))
     lone = found.tree.skeleton.points[found.origin == LONE]
@@ -193,15 +193,17 @@ def test_the_same_sketches_give_the_same_bytes() -> None:
     assert np.array_equal(again.tree.branch, found.tree.branch)
 
 
-@pytest.mark.parametrize("wrong", [{"step": 0.5}, {"step": 21.0}, {"tries": 0}, {"radius_weight": -1.0}])
+@pytest.mark.parametrize(
+    "wrong", [{"step": 0.5}, {"step": 21.0}, {"tries": 0}, {"radius_weight": -1.0}, {"flat_cost": -0.1}]
+)
 def test_params_refuse_nonsense(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="retrieval needs"):
         RetrievalParams(**wrong)
 
 
-def scrawl(bearers: Sequence[int], seed: int) -> Branched:
-    """Draw any tree: each further joint is borne by any before it and lies anywhere."""
-    parents = [-1] + [pick % joint for joint, pick in enumerate(bearers, start=1)]
+def scrawl(picks: Sequence[int], seed: int) -> Branched:
+    """Draw any tree: the parent of each further joint is any before it, its place is anywhere."""
+    parents = [-1] + [pick % joint for joint, pick in enumerate(picks, start=1)]
     points = np.random.default_rng(seed).uniform(-400, 400, (len(parents), 2))
     points -= points[0]
     points[:, 1] *= 1000.0 / points[:, 1].max() if points[:, 1].max() > 100 else 1.0

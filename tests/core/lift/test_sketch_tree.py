@@ -12,8 +12,8 @@ def test_joints_are_at_most_a_step_apart_and_lie_on_the_strokes() -> None:
     sketch = broadleaf(5, 3)
     found = prepare_sketch(sketch, 6.0)
     assert found.lengths.max() <= 6.0 + 1e-9
-    given = sketch.skeleton.points
-    assert np.hypot(*(found.points - given[found.source_joint]).T).max() < 8.0
+    drawn = sketch.skeleton.points
+    assert np.hypot(*(found.points - drawn[found.source_joint]).T).max() < 8.0
     chains = sketch.chains()
     assert all(given in chains[number] for given, number in zip(found.source_joint, found.branch, strict=True))
 
@@ -51,6 +51,6 @@ def test_lengths_by_height_hold_all_that_is_chosen() -> None:
 def test_aside_is_measured_from_the_stem_at_that_height() -> None:
     leaning = sketched([(200.0, 500.0), (200.0, 1000.0)], (0, 1, [(260.0, 700.0)]))
     found = prepare_sketch(leaning, 6.0)
-    own = found.branch_joints[1]
-    assert found.aside[own] == pytest.approx(found.points[own, 0] - 200)
+    limb = found.branch_joints[1]
+    assert found.aside[limb] == pytest.approx(found.points[limb, 0] - 200)
     assert found.aside[found.branch_joints[0]] == pytest.approx(0)

@@ -6,26 +6,26 @@ from tests.pictures import disc, wood_mask
 
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.trace.circle import Circle, trace_forks
-from treestroke.core.trace.draft import Draft
+from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 
 STEM = [(200.0, 390.0), (200.0, 220.0)]
 LEFT, RIGHT = [(200.0, 220.0), (110.0, 60.0)], [(200.0, 220.0), (290.0, 60.0)]
 RADIUS = 25.0
 
 
-def traced(wood: np.ndarray) -> Draft:
+def traced(wood: np.ndarray) -> SkeletonBuilder:
     """Follow the stem and let the circle run."""
-    draft = Draft()
-    draft.grow(-1, resample(np.array(STEM), 4.0), 8.0, stroke=0)
-    trace_forks(draft, Circle(RADIUS, wood), list(range(0, len(draft.points), 2)))
-    return draft
+    builder = SkeletonBuilder()
+    builder.add_chain(-1, resample(np.array(STEM), 4.0), 8.0, stroke=0)
+    trace_forks(builder, Circle(RADIUS, wood), list(range(0, len(builder.points), 2)))
+    return builder
 
 
-def covered(line: list[tuple[float, float]], draft: Draft, within: float) -> float:
+def covered(line: list[tuple[float, float]], builder: SkeletonBuilder, within: float) -> float:
     """Share of a line with a found joint's edge near it."""
-    found = [resample(np.stack([draft.points[p], draft.points[j]]), 1.0) for j, p in enumerate(draft.parents)]
+    found = [resample(np.stack([builder.points[p], builder.points[j]]), 1.0) for j, p in enumerate(builder.parents)]
     near = np.concatenate(
-        [piece for piece, stroke in zip(found, draft.stroke, strict=True) if stroke < 0] or [[[0, 0]]]
+        [piece for piece, stroke in zip(found, builder.stroke, strict=True) if stroke < 0] or [[[0, 0]]]
     )
     places = resample(np.array(line), 2.0)
     return float((np.linalg.norm(places[:, None] - near, axis=-1).min(axis=1) <= within).mean())
@@ -33,30 +33,30 @@ def covered(line: list[tuple[float, float]], draft: Draft, within: float) -> flo
 
 @pytest.mark.parametrize("arm", [LEFT, RIGHT], ids=["left", "right"])
 def test_an_arm_without_stroke_is_found(arm: list[tuple[float, float]]) -> None:
-    draft = traced(wood_mask([(STEM, 16.0), (arm, 11.0)], 400, 400))
-    assert covered(arm, draft, within=6.0) > 0.8
+    builder = traced(wood_mask([(STEM, 16.0), (arm, 11.0)], 400, 400))
+    assert covered(arm, builder, within=6.0) > 0.8
 
 
 def test_both_arms_of_a_fork_are_found_with_their_thickness() -> None:
-    draft = traced(wood_mask([(STEM, 16.0), (LEFT, 11.0), (RIGHT, 11.0)], 400, 400))
-    found = np.array(draft.radii)[np.array(draft.stroke) < 0]
-    assert min(covered(LEFT, draft, 6.0), covered(RIGHT, draft, 6.0)) > 0.8
+    builder = traced(wood_mask([(STEM, 16.0), (LEFT, 11.0), (RIGHT, 11.0)], 400, 400))
+    found = np.array(builder.radii)[np.array(builder.stroke) < 0]
+    assert min(covered(LEFT, builder, 6.0), covered(RIGHT, builder, 6.0)) > 0.8
     assert np.median(found) == pytest.approx(5.5, abs=1.0)
 
 
 def test_a_fork_behind_a_fork_is_found() -> None:
     twig = [(145.0, 122.0), (150.0, 30.0)]
-    draft = traced(wood_mask([(STEM, 16.0), (LEFT, 11.0), (twig, 9.0)], 400, 400))
-    assert covered(twig, draft, within=8.0) > 0.6
+    builder = traced(wood_mask([(STEM, 16.0), (LEFT, 11.0), (twig, 9.0)], 400, 400))
+    assert covered(twig, builder, within=8.0) > 0.6
 
 
-def test_what_is_found_hangs_on_the_stem() -> None:
+def test_found_branches_are_connected_with_the_stem() -> None:
     tree = traced(wood_mask([(STEM, 16.0), (LEFT, 11.0), (RIGHT, 11.0)], 400, 400)).skeleton()
     assert np.count_nonzero(tree.parents < 0) == 1
 
 
 @pytest.mark.parametrize("centre", [(200.0, 180.0), (240.0, 260.0)])
-def test_a_blob_like_dark_leaves_is_no_branch(centre: tuple[float, float]) -> None:
+def test_a_blob_like_dark_leaves_is_not_a_branch(centre: tuple[float, float]) -> None:
     wood = wood_mask([(STEM, 16.0)], 400, 400) | disc(400, 50, centre)
     assert min(traced(wood).stroke) == 0
 

@@ -4,18 +4,18 @@ import pytest
 from tests.sketches import ARMS, SIZE, TRUNK, sketch
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.trace.drawing import draw_up
+from treestroke.core.trace.drawing import trace_sketch
 
 CROWN = [[100, 100], [800, 100], [800, 700], [100, 700]]
 
 
 def test_a_drawn_crown_is_kept() -> None:
-    drawing = draw_up(sketch(TRUNK, *ARMS, crown=CROWN))
+    drawing = trace_sketch(sketch(TRUNK, *ARMS, crown=CROWN))
     assert drawing.crown.tolist() == CROWN
 
 
-def test_without_one_the_crown_is_drawn_round_all_but_the_bare_foot() -> None:
-    drawing = draw_up(sketch(TRUNK, *ARMS))
+def test_without_a_drawn_crown_it_surrounds_all_but_the_bare_trunk() -> None:
+    drawing = trace_sketch(sketch(TRUNK, *ARMS))
     crown = drawing.crown.astype(np.float32)
     for x, y in [TRUNK[-1], *(arm[-1] for arm in ARMS)]:
         assert cv2.pointPolygonTest(crown, (x, y), True) > 30
@@ -25,7 +25,7 @@ def test_without_one_the_crown_is_drawn_round_all_but_the_bare_foot() -> None:
 
 
 def test_a_crown_that_crosses_itself_is_kept_with_a_warning() -> None:
-    drawing = draw_up(sketch(TRUNK, crown=[[100, 100], [800, 700], [800, 100], [100, 700]]))
+    drawing = trace_sketch(sketch(TRUNK, crown=[[100, 100], [800, 700], [800, 100], [100, 700]]))
     assert [one.code for one in drawing.warnings] == ["crown_crosses_itself"]
 
 
@@ -39,5 +39,5 @@ def test_a_crown_that_crosses_itself_is_kept_with_a_warning() -> None:
 )
 def test_an_unusable_crown_is_refused(crown: object, message: str, code: str) -> None:
     with pytest.raises(StrokesError, match=message) as refused:
-        draw_up(sketch(TRUNK, *ARMS, crown=crown))
+        trace_sketch(sketch(TRUNK, *ARMS, crown=crown))
     assert (refused.value.code, refused.value.pointer) == (code, "/crown")

@@ -13,7 +13,7 @@ NOWHERE = np.full((300, 300), -6.0, np.float32)
 
 
 def odds_of(line: np.ndarray, thickness: float = 8.0) -> np.ndarray:
-    """Give the log odds of wood, blurred as the tracer blurs them."""
+    """Return the log odds of wood, blurred as the tracer blurs them."""
     return gaussian_filter(np.where(wood_mask([(line, thickness)], 300, 300), 6.0, -6.0).astype(np.float32), 2.0)
 
 

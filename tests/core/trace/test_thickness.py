@@ -1,9 +1,12 @@
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import isotonic_regression
 from tests.pictures import disc, wood_mask
 
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.trace.thickness import half_widths
+from treestroke.core.trace.thickness import half_widths, non_increasing
 
 UPRIGHT = resample(np.array([[100.0, 180.0], [100.0, 20.0]]), 4.0)
 ASLANT = resample(np.array([[40.0, 170.0], [150.0, 30.0]]), 4.0)
@@ -14,7 +17,7 @@ def bar(line: np.ndarray, thickness: float) -> np.ndarray:
 
 
 def band(line: np.ndarray, thickness: float) -> np.ndarray:
-    """Give the pixels whose centres lie in an endless straight band about a line."""
+    """Return the pixels whose centres lie in an endless straight band about a line."""
     y, x = np.mgrid[:200, :200] + 0.5
     way = line[-1] - line[0]
     away = (x - line[0, 0]) * -way[1] + (y - line[0, 1]) * way[0]
@@ -58,15 +61,21 @@ def test_a_speck_one_pixel_wide_does_not_cut_a_bar() -> None:
     assert np.median(half_widths(UPRIGHT, wood, 20.0)[0]) == pytest.approx(8.0, abs=0.75)
 
 
-def test_one_wrong_measure_is_outvoted_by_its_neighbours() -> None:
+def test_a_single_wrong_measure_is_replaced_by_its_neighbours_median() -> None:
     wood = bar(UPRIGHT, 12.0)
     wood[95:103, :106] = True
     assert np.nanmax(half_widths(UPRIGHT, wood, 30.0)[0][5:-5]) < 7.0
 
 
-def test_what_is_hidden_for_a_long_way_is_not_measured() -> None:
+def test_a_long_hidden_part_is_not_measured() -> None:
     wood = bar(UPRIGHT, 12.0)
     wood[20:90] = False
     widths, _ = half_widths(UPRIGHT, wood, 20.0)
     assert np.isnan(widths[UPRIGHT[:, 1] < 60]).all()
     assert not np.isnan(widths[UPRIGHT[:, 1] > 110]).any()
+
+
+@given(st.lists(st.floats(0.5, 60.0), min_size=1, max_size=40))
+def test_non_increasing_values_are_those_of_isotonic_regression(values: list[float]) -> None:
+    nearest = isotonic_regression(values, increasing=False).x
+    assert non_increasing(np.array(values)) == pytest.approx(nearest)

@@ -12,6 +12,7 @@ from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
+from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.tracing import Traced, TraceParams, trace_branches
 
 SIZE, HEIGHT = 450, 400.0
@@ -20,7 +21,7 @@ LEFT, RIGHT = [(220.0, 240.0), (90.0, 100.0)], [(220.0, 240.0), (350.0, 100.0)]
 TREE = wood_mask([(STEM, 11.0), (LEFT, 7.0), (RIGHT, 7.0)], SIZE, SIZE)
 CROWN = Stroke(np.array([[60.0, 40.0], [380.0, 40.0], [380.0, 250.0], [60.0, 250.0]]))
 INSIDE = fill_outline(CROWN.points, SIZE, SIZE)
-Line = Sequence[Sequence[float]]
+BranchLine = Sequence[Sequence[float]]
 
 
 def around(colour: tuple[int, int, int], deviation: float) -> Mixture:
@@ -31,13 +32,13 @@ LEAVES = around((70, 120, 40), 15.0)
 BEHIND = around(GROUND, 8.0)
 
 
-def stroked(*lines: Line, erase: Sequence[Line] = (), width: float | None = None) -> Strokes:
+def stroked(*lines: BranchLine, erase: Sequence[BranchLine] = (), width: float | None = None) -> Strokes:
     branches = tuple(Stroke(np.array(line, float), width) for line in lines)
     return Strokes(CROWN, branches, tuple(Stroke(np.array(line, float)) for line in erase))
 
 
 def trace(strokes: Strokes, wood: np.ndarray = TREE) -> Traced:
-    return trace_branches(wood_photo(wood), strokes, LEAVES, BEHIND, INSIDE, HEIGHT)
+    return trace_branches(wood_photo(wood), strokes, Surroundings(LEAVES, BEHIND, INSIDE), HEIGHT)
 
 
 def drawn(skeleton: Skeleton, edges: np.ndarray) -> np.ndarray:
@@ -46,7 +47,7 @@ def drawn(skeleton: Skeleton, edges: np.ndarray) -> np.ndarray:
     return np.concatenate([resample(np.stack(pair), 1.0) for pair in ends] or [np.full((1, 2), np.inf)])
 
 
-def covered(line: Line, traced: Traced, found_only: bool = True, within: float = 6.0) -> float:
+def covered(line: BranchLine, traced: Traced, found_only: bool = True, within: float = 6.0) -> float:
     """Share of a line that runs near a traced edge."""
     edges = np.flatnonzero(traced.stroke < 0) if found_only else np.arange(len(traced.stroke))
     near = drawn(traced.skeleton, edges)
@@ -61,7 +62,7 @@ def test_the_root_is_where_the_first_stroke_begins() -> None:
 
 
 @pytest.mark.parametrize("arm", [LEFT, RIGHT], ids=["left", "right"])
-def test_an_arm_without_stroke_is_found(arm: Line) -> None:
+def test_an_arm_without_stroke_is_found(arm: BranchLine) -> None:
     assert covered(arm, trace(stroked(STEM))) > 0.8
 
 
@@ -73,7 +74,7 @@ def test_an_arm_with_a_stroke_is_not_found_again() -> None:
 
 
 @pytest.mark.parametrize("lines", [(STEM,), (STEM, LEFT), (STEM, RIGHT, LEFT), ([*STEM, LEFT[1]], RIGHT)])
-def test_every_stroke_is_followed_over_its_whole_length(lines: tuple[Line, ...]) -> None:
+def test_every_stroke_is_followed_over_its_whole_length(lines: tuple[BranchLine, ...]) -> None:
     traced = trace(stroked(*lines))
     assert [covered(line, traced, found_only=False, within=0.02 * HEIGHT) for line in lines] == [1.0] * len(lines)
 
@@ -135,7 +136,7 @@ def test_a_later_stroke_beside_the_root_is_a_second_stem() -> None:
     assert traced.stroke[roots].tolist() == [0, 1]
 
 
-def test_a_later_stroke_away_from_the_root_is_joined_to_what_it_leaves() -> None:
+def test_a_later_stroke_away_from_the_root_is_joined_to_its_parent() -> None:
     traced = trace(stroked(STEM, LEFT, [(140.0, 152.0), (50.0, 150.0)]))
     assert np.count_nonzero(traced.skeleton.parents < 0) == 1
     first = np.flatnonzero(traced.stroke == 2)[0]

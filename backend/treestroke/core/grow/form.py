@@ -62,7 +62,7 @@ class VisibleTree:
     skeleton
         3D, px of the crown's frame.
     seen
-        Number of its first joints that come from the photo; the others carry its stem on.
+        Number of its first joints that come from the photo; the others extend its stem.
     chains
         Its pieces, which are the first branches of growth.
     """
@@ -103,7 +103,7 @@ class _Spots(NamedTuple):
 def curve_shoots(visible: VisibleTree, table: BranchTable, crown: Crown, rng: np.random.Generator) -> Form:
     """Bend the shoots and join them with the visible tree, whose joints stay where they are.
 
-    Joints that carry the visible stem on count as grown in the first iteration. Joints of shoots that would leave the
+    Joints that extend the visible stem count as grown in the first iteration. Joints of shoots that would leave the
     foliage are left out.
     """
     curves = _bend(visible, table, crown, rng)

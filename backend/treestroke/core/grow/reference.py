@@ -98,10 +98,10 @@ class PlainEvaluator:
         """List the shoots that remain; see `Evaluator`."""
         laid, at = self._lay(choice.branch), (choice.subtree, choice.angle)
         kept = self._uncrowded(laid, at, self._surroundings(laid))
-        standing = np.flatnonzero(kept)
-        order = {int(shoot): i for i, shoot in enumerate(standing)}
+        remaining = np.flatnonzero(kept)
+        order = {int(shoot): i for i, shoot in enumerate(remaining)}
         shoots = []
-        for i in standing.tolist():
+        for i in remaining.tolist():
             parent = int(self._library.parents[choice.subtree, i])
             fraction = float(self._library.fractions[choice.subtree, i])
             if parent >= 0:

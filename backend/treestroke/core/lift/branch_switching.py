@@ -77,8 +77,8 @@ class _Graph:
         rate = np.where(used, USED_COST, NEW_COST) + params.flat_cost * flat + params.reuse_cost * reused
         apart = lead.points[joint, 1] - follow.points[nodes, 1]
         crossed = np.where(shown, 0.0, np.where(far > ahead, np.inf, far))
-        walked = np.sqrt(far * far + lead.lengths[joint] ** 2)
-        cost = total[:, None] + walked * rate + params.unsupported_cost * crossed + HEIGHT_COST * apart**2
+        length = np.sqrt(far * far + lead.lengths[joint] ** 2)
+        cost = total[:, None] + length * rate + params.unsupported_cost * crossed + HEIGHT_COST * apart**2
         came = cost.argmin(axis=0)
         return came, cost[came, np.arange(len(nodes))]
 

@@ -1,8 +1,8 @@
 """The choice of a partner: which branch of the other sketch goes with a branch, by least assignment cost.
 
 Source: two-sketches paper, section 5.1, equations 1 to 3. Its feature F is the first term of our cost. We add the gap
-penalty, a gain for parts that are matched for the first time, and costs of what is matched twice, lies flat, is not
-supported by a sketch or is crowded: by F alone limbs pair with the other sketch's trunk.
+penalty, a gain for parts that are matched for the first time, and costs of parts that are matched twice, lie flat, are
+not supported by a sketch or are crowded: by F alone limbs pair with the other sketch's trunk.
 """
 
 from dataclasses import dataclass
@@ -103,7 +103,7 @@ class PartnerSearch:
     def best(self, tried: set[int]) -> Match:
         """Find the cheapest match with a branch not yet tried, or with none; add its partner to those tried."""
         if not self.trie.points:
-            # The first pair is that of the stems: all else stands on it.
+            # The first pair is that of the stems: all else grows from it.
             return Match(self.match(0), 0.0, 0)
         best = self._best_single(tried)
         if best.partner == 0:
@@ -247,7 +247,7 @@ def detour(sketch: SketchTree, branch: int, height: float) -> Indices:
 
 
 def _even_count(pair: PathPair, spare: Floats) -> int:
-    """Count the points up to which heights stay equal, save for spurs and tails within a spare length (2,), units."""
+    """Count the points up to which heights stay equal, except for spurs and tails within a spare length (2,), units."""
     unsupported = pair.unsupported
     for start, end in pair.uneven_runs.tolist():
         spare = spare - unsupported[:, start:end].sum(axis=1)

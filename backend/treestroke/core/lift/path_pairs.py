@@ -43,7 +43,7 @@ class PathPair:
 
     @cached_property
     def apart(self) -> Floats:
-        """Height of the leader above the follower (n,), units."""
+        """Height of the leader above the follower (n,); unit: 1/1000 of the tree's height."""
         return np.asarray(self.places[0, :, 1] - self.places[1, :, 1])
 
     def cut(self, start: int, end: int) -> "PathPair":
@@ -52,7 +52,7 @@ class PathPair:
 
     @cached_property
     def steps(self) -> Floats:
-        """Step in x and y of the leader and the follower to each point (2, n, 2), units; 0 at the first point."""
+        """Step in x and y of leader and follower to each point (2, n, 2), first 0; unit: 1/1000 of the height."""
         steps = np.zeros((2, len(self.apart), 2))
         steps[:, 1:] = self.places[:, 1:, :2] - self.places[:, :-1, :2]
         return steps
@@ -82,7 +82,7 @@ class PathPair:
         return np.where(unseen, projected, 0.0)
 
     def lengths(self) -> Floats:
-        """Return the 3D length before each point (n,), units."""
+        """Return the 3D length before each point (n,); unit: 1/1000 of the tree's height."""
         steps = self.steps
         return np.asarray(np.sqrt(steps[0, :, 0] ** 2 + steps[1, :, 0] ** 2 + steps[0, :, 1] ** 2))
 
@@ -139,7 +139,7 @@ def _between(shape: Floats, places: Floats) -> Floats:
 
 @dataclass(eq=False)
 class PathTrie:
-    """The 3D tree under construction: a trie of path pairs, which share joints as far as both paths agree.
+    """The 3D tree under construction: a trie of path pairs, which share joints up to where one of their paths differs.
 
     Attributes
     ----------
@@ -212,7 +212,7 @@ class PathTrie:
         return 0, -1
 
     def insert(self, leader: int, pair: PathPair, origins: Indices) -> None:
-        """Add the part of a path pair (n points, sketch units) that is new, with the origins (n,) of its points."""
+        """Add the part of a path pair that is new; ``origins`` (n,) are the origin flags of its points."""
         first, parent = self.branching(leader, pair)
         new = pair.cut(first, len(pair))
         points = self._placed(leader, new)

@@ -72,7 +72,7 @@ class SketchTree:
 
     @cached_property
     def arcs(self) -> Floats:
-        """Path length from the root to each joint (n,), units."""
+        """Path length from the root to each joint (n,); unit: 1/1000 of the tree's height."""
         arcs = np.zeros(len(self.points))
         for joint, parent in enumerate(self.parents.tolist()):
             if parent >= 0:
@@ -81,17 +81,17 @@ class SketchTree:
 
     @cached_property
     def thickness(self) -> Floats:
-        """Radius (k,) at the beginning of each branch, units; 0 where unknown."""
+        """Radius (k,) at the beginning of each branch, 0 where unknown; unit: 1/1000 of the tree's height."""
         return np.array([np.max(self.radii[joints[:3]]) for joints in self.branch_joints])
 
     @cached_property
     def passing(self) -> Mask:
-        """Mask (k, bins) of the height bins that each branch passes."""
+        """Boolean mask (k, bins) of the height bins that each branch passes."""
         return self.lengths_by_height(np.ones(len(self.points), dtype=bool)) > 0
 
     @cached_property
     def reaching(self) -> Mask:
-        """Mask (k, bins) of the height bins that each branch passes outside the slab about the stem."""
+        """Boolean mask (k, bins) of the height bins that each branch passes outside the slab about the stem."""
         return self.lengths_by_height(~self.flat) > 0
 
     @cached_property

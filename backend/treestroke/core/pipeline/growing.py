@@ -30,6 +30,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale
+from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
 from treestroke.core.types import FoliageKind, Indices, Mask, Picture
@@ -116,7 +117,8 @@ def see(
         return Seen(sight, foliage, None, beside)
     report("trace", 0.0)
     height_px = sight.height_px(foliage.mask)
-    traced = trace_branches(sight.photo, sight.strokes, foliage.leaf, foliage.ground, foliage.region, height_px)
+    surroundings = Surroundings(foliage.leaf, foliage.ground, foliage.region)
+    traced = trace_branches(sight.photo, sight.strokes, surroundings, height_px)
     return Seen(sight, foliage, traced, beside)
 
 

@@ -15,7 +15,7 @@ from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch
 from treestroke.core.survey.fidelity import fidelity
-from treestroke.core.trace.drawing import Drawing, draw_up
+from treestroke.core.trace.drawing import Drawing, trace_sketch
 from treestroke.core.types import Indices
 
 UNITS = 1000.0
@@ -49,7 +49,7 @@ def draw_side(sketch: Sketch, place: str) -> Drawing:
         It does not describe a tree.
     """
     try:
-        drawing = draw_up(sketch)
+        drawing = trace_sketch(sketch)
     except StrokesError as error:
         raise StrokesError(f"{place}: {error}", code=error.code, pointer=f"/{place}{error.pointer}") from error
     warnings = tuple(replace(one, stroke=f"{place}/{one.stroke}") for one in drawing.warnings)

@@ -1,4 +1,4 @@
-"""A skeleton whose joints know their branch."""
+"""A skeleton that is split into branches."""
 
 from dataclasses import dataclass
 
@@ -19,20 +19,20 @@ class Branched:
     branch    a chain of joints, each the parent of the next; branch 0 begins at the root
     bud       the joint of another branch from which a branch goes out
     tip       its last joint
-    level     0 for the stem, one more than that of the branch that bears the bud
+    level     0 for the stem, one more than that of its parent, the branch of its bud
     ========  ================================================================================
 
     Attributes
     ----------
     skeleton
-        (n joints) of two or three dimensions, of one root; a radius is 0 where it is not known.
+        n joints in two or three dimensions, with one root; a radius is 0 where it is unknown.
     branch
-        (n,) branch that each joint belongs to, 0 to k - 1; a bud belongs to the branch that bears it.
+        (n,) index of each joint's branch, 0 to k - 1; a bud belongs to the parent branch.
 
     Raises
     ------
     ValueError
-        There are several roots, or a branch is no chain.
+        There are several roots, or a branch is not a chain.
     """
 
     skeleton: Skeleton
@@ -54,14 +54,14 @@ class Branched:
         return len(self.skeleton)
 
     def chains(self) -> list[Indices]:
-        """List the joints of each branch, bud first (the stem has none), then its own up to its tip."""
+        """List the joint indices (m,) of each branch: its bud (the stem has none), then its joints up to the tip."""
         order = np.argsort(self.branch, kind="stable")
-        own = np.split(order, np.flatnonzero(np.diff(self.branch[order])) + 1)
-        buds = [self.skeleton.parents[joints[:1]] for joints in own]
-        return [np.concatenate([bud[bud >= 0], joints]) for bud, joints in zip(buds, own, strict=True)]
+        by_branch = np.split(order, np.flatnonzero(np.diff(self.branch[order])) + 1)
+        buds = [self.skeleton.parents[joints[:1]] for joints in by_branch]
+        return [np.concatenate([bud[bud >= 0], joints]) for bud, joints in zip(buds, by_branch, strict=True)]
 
     def levels(self) -> Indices:
-        """Count the branches between each branch (k,) and the stem's root: 0 for the stem."""
+        """Return the level (k,) of each branch, a count: 0 for the stem."""
         level = np.zeros(int(self.branch.max()) + 1, dtype=np.int64)
         for joint, parent in enumerate(self.skeleton.parents.tolist()):
             if parent >= 0 and self.branch[joint] != self.branch[parent]:
@@ -69,15 +69,15 @@ class Branched:
         return level
 
     def path(self, joint: int) -> Indices:
-        """List the joints from the root to a joint: its descending path, turned upward."""
-        way = [joint]
-        while self.skeleton.parents[way[-1]] >= 0:
-            way.append(int(self.skeleton.parents[way[-1]]))
-        return np.array(way[::-1], dtype=np.int64)
+        """Return the joint indices (m,) from the root to a joint."""
+        path = [joint]
+        while self.skeleton.parents[path[-1]] >= 0:
+            path.append(int(self.skeleton.parents[path[-1]]))
+        return np.array(path[::-1], dtype=np.int64)
 
 
 def branched(skeleton: Skeleton, successors: Indices) -> Branched:
-    """Split a skeleton into the limbs that follow ``successors``; further stems become branches of the root."""
+    """Split a skeleton into the limbs that follow ``successors`` (n,), indices; further stems branch from joint 0."""
     parents = np.where((skeleton.parents < 0) & (np.arange(len(skeleton)) > 0), 0, skeleton.parents)
     branch = np.zeros(len(skeleton), dtype=np.int64)
     for number, limb in enumerate(limbs(skeleton, successors)):

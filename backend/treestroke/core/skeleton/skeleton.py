@@ -1,4 +1,4 @@
-"""The Skeleton: the one noun in the middle of treestroke."""
+"""The Skeleton: the data structure that all stages share."""
 
 from dataclasses import dataclass
 

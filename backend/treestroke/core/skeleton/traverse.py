@@ -1,4 +1,4 @@
-"""Walks over a Skeleton."""
+"""Traversals of a Skeleton."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from treestroke.core.types import Floats, Indices
 
 
 def children(skeleton: Skeleton) -> list[list[int]]:
-    """List each joint's children, in ascending order."""
+    """List the indices of each joint's children, in ascending order."""
     found: list[list[int]] = [[] for _ in range(len(skeleton))]
     for child, parent in enumerate(skeleton.parents.tolist()):
         if parent >= 0:
@@ -16,12 +16,12 @@ def children(skeleton: Skeleton) -> list[list[int]]:
 
 
 def child_counts(skeleton: Skeleton) -> Indices:
-    """Count each joint's children (n,)."""
+    """Return the number of each joint's children (n,)."""
     return np.bincount(skeleton.parents[skeleton.parents >= 0], minlength=len(skeleton)).astype(np.int64)
 
 
 def accumulate_to_root(skeleton: Skeleton, values: Floats) -> Floats:
-    """Sum values (n,) over each joint and all its descendants."""
+    """Return the sums (n,) of values (n,), any unit, over each joint and all its descendants."""
     total = np.array(values, dtype=np.float64)
     parents = skeleton.parents.tolist()
     for joint in range(len(skeleton) - 1, 0, -1):
@@ -31,7 +31,7 @@ def accumulate_to_root(skeleton: Skeleton, values: Floats) -> Floats:
 
 
 def heaviest_children(skeleton: Skeleton, weights: Floats) -> Indices:
-    """Give each joint's child of greatest weight (n,), the first among equals; -1 at a tip."""
+    """Return the index (n,) of each joint's child of greatest weight (n,), the first among equals; -1 at a tip."""
     best = np.full(len(skeleton), -1, dtype=np.int64)
     for child in range(len(skeleton) - 1, -1, -1):
         parent = skeleton.parents[child]
@@ -41,10 +41,10 @@ def heaviest_children(skeleton: Skeleton, weights: Floats) -> Indices:
 
 
 def limbs(skeleton: Skeleton, successors: Indices) -> list[Indices]:
-    """Split the skeleton into limbs: chains of joints that follow ``successors`` until a tip.
+    """Split the skeleton into limbs: chains of joint indices (m,) that follow ``successors`` (n,) until a tip.
 
-    Each limb after a stem's begins with the joint (of another limb) that bears it, so limbs share just
-    their forks and together hold every edge once. Limbs come in the order of their first own joint.
+    Each limb that is not a stem begins with the joint of another limb that it leaves, so limbs share only their forks
+    and together contain every edge once. Limbs come in the order of their first own joint.
     """
     starts = [j for j in range(len(skeleton)) if skeleton.parents[j] < 0 or successors[skeleton.parents[j]] != j]
     found = []

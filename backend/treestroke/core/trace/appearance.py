@@ -1,6 +1,7 @@
 """What a branch looks like, learnt from the pixels under the branch strokes."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,68 +23,85 @@ from treestroke.core.types import Floats, Mask, Picture
 Odds = NDArray[np.float32]
 
 COMPONENTS = 5
+"""Components of the mixture of branch colours (Tan et al. 2008, section 2)."""
 LEAF_LIKE = 1.0
-"""Mahalanobis distance under which a branch component is taken for foliage that the stroke crosses."""
+"""Mahalanobis distance from foliage below which a branch component is foliage that the stroke crosses."""
 WOOD_LIKE = 3.0
-"""Mahalanobis distance from bare wood beyond which a component is no wood."""
-SAMPLES = 2500
-FEWEST = 100
-"""Pixels of bare wood under the strokes from which it has a mixture of its own."""
+"""Mahalanobis distance from bare wood above which a component is not wood."""
+MAX_SAMPLES = 2500
+"""Approximate number of pixels that a mixture is fitted to."""
+MIN_BARE = 100
+"""Number of pixels of bare wood under the strokes from which on it has a mixture of its own."""
+MAX_ODDS = 6.0
+"""Limit of the log odds in both directions."""
 
 
-def branch_odds(
-    photo: Picture, lines_px: Sequence[Floats], breadth_px: float, leaf: Mixture, ground: Mixture, crown: Mask
-) -> Odds:
-    """Log odds (h, w) that each pixel is branch rather than anything else, within +-6.
+@dataclass(frozen=True, eq=False)
+class Surroundings:
+    """What surrounds the branches of a photo.
 
-    Branch: a mixture of 5 components of the pixels within ``breadth_px`` of the lines (n, 2). Inside the crown (h, w)
-    it goes without the components that lie too close to one of ``leaf`` (the stroke crosses leaves), and all else is
-    leaf or ground; outside there are no leaves and the mixture is that of the bare wood there, so that a trunk as dark
-    as its leaves is seen against the ground.
-    Source: Tan et al. 2008, section 2, "Visible branch tracing".
+    Attributes
+    ----------
+    leaf, ground
+        Colours (sRGB mixtures) of leaves and of what is behind the tree.
+    crown
+        (h, w) mask of where leaves may be.
     """
+
+    leaf: Mixture
+    ground: Mixture
+    crown: Mask
+
+
+def branch_odds(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, surroundings: Surroundings) -> Odds:
+    """Return the log odds (h, w), within +-6, that each pixel of a photo (h, w, 3), sRGB, shows a branch.
+
+    Branches have a mixture of 5 components of the pixels within ``breadth_px`` of the lines (n, 2), px. In the crown
+    the components too close to those of leaves (the stroke crosses leaves) are left out, and all else is leaf or
+    ground. Outside there are no leaves and the mixture is that of the bare wood there, so that a trunk as dark as its
+    leaves differs from the ground. Source: Tan et al. 2008, section 2, "Visible branch tracing".
+    """
+    leaf, ground, crown = surroundings.leaf, surroundings.ground, surroundings.crown
     pixels, in_crown = _pixels_under(photo, lines_px, breadth_px, crown)
-    model = fit_mixture(_thinned(pixels), COMPONENTS)
-    bare = fit_mixture(_thinned(pixels[~in_crown]), COMPONENTS) if (~in_crown).sum() >= FEWEST else model
-    among_leaves = _like(_unlike(model, leaf), bare)
+    model = fit_mixture(_subsample(pixels), COMPONENTS)
+    bare = fit_mixture(_subsample(pixels[~in_crown]), COMPONENTS) if (~in_crown).sum() >= MIN_BARE else model
+    among_leaves = _wood_components(_without_leaf_components(model, leaf), bare)
     rest = join_mixtures([leaf, ground], [0.5, 0.5])
     outside = _odds(bare, ground)
-    inside = _odds(among_leaves, rest) if among_leaves is not None else np.full_like(outside, -6.0)
+    inside = _odds(among_leaves, rest) if among_leaves is not None else np.full_like(outside, -MAX_ODDS)
     return np.take(np.concatenate([outside, inside]), table_index(photo) | crown.astype(np.uint16) << 3 * TABLE_BITS)
 
 
 def _odds(branch: Mixture, rest: Mixture) -> Odds:
-    """Tabulate the log odds of a branch by colour."""
+    """Return the log odds of a branch for each colour of the colour table."""
     colours = table_colours()
-    return np.clip(log_density(branch, colours) - log_density(rest, colours), -6.0, 6.0).astype(np.float32)
+    odds = log_density(branch, colours) - log_density(rest, colours)
+    return np.clip(odds, -MAX_ODDS, MAX_ODDS).astype(np.float32)
 
 
-def _pixels_under(
-    photo: Picture, lines_px: Sequence[Floats], breadth_px: float, crown: Mask
-) -> tuple[Picture, NDArray[np.bool_]]:
-    """Read the pixels along the lines and up to ``breadth_px`` beside them (n, 3); tell which lie in the crown (n,)."""
+def _pixels_under(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, crown: Mask) -> tuple[Picture, Mask]:
+    """Return the pixels (n, 3) on the lines and up to ``breadth_px`` beside them, and which (n,) lie in the crown."""
     offsets = np.arange(-np.floor(breadth_px), np.floor(breadth_px) + 1)
-    walked = [resample(line, 1.0) for line in lines_px]
-    places = [(w[:, None] + offsets[:, None] * normals(w)[:, None]).reshape(-1, 2) for w in walked]
-    spread = np.concatenate(places)
-    return np.asarray(sample_nearest(photo, spread, 0), dtype=np.uint8), sample_nearest(crown, spread, False)
+    dense = [resample(line, 1.0) for line in lines_px]
+    places = np.concatenate([(d[:, None] + offsets[:, None] * normals(d)[:, None]).reshape(-1, 2) for d in dense])
+    return np.asarray(sample_nearest(photo, places, 0), dtype=np.uint8), sample_nearest(crown, places, False)
 
 
-def _thinned(pixels: Picture) -> Picture:
-    """Take evenly spaced ones of many pixels."""
-    return pixels[:: max(1, len(pixels) // SAMPLES)]
+def _subsample(pixels: Picture) -> Picture:
+    """Return evenly spaced pixels (m, 3) of many (n, 3)."""
+    return pixels[:: max(1, len(pixels) // MAX_SAMPLES)]
 
 
-def _unlike(model: Mixture, leaf: Mixture) -> Mixture | None:
-    """Keep the components that are unlike leaves; None where there are none."""
+def _without_leaf_components(model: Mixture, leaf: Mixture) -> Mixture | None:
+    """Return the components that differ from leaves; None where no component does."""
     common = leaf.weights > 0.05
     solid = leaf.select(common) if common.any() else leaf
     kept = np.array([distance(solid, mean) > LEAF_LIKE for mean in model.means])
     return model.select(kept) if kept.any() else None
 
 
-def _like(model: Mixture | None, bare: Mixture) -> Mixture | None:
-    """Keep the components that look like bare wood: a stroke in the crown crosses sky, too."""
+def _wood_components(model: Mixture | None, bare: Mixture) -> Mixture | None:
+    """Return the components that look like bare wood, as a stroke in the crown crosses sky, too; None if none does."""
     if model is None:
         return None
     kept = np.array([distance(bare, mean) < WOOD_LIKE for mean in model.means])

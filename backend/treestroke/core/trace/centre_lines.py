@@ -1,9 +1,9 @@
 """From ink to the graph of its centre lines.
 
-The two-sketch paper (section 4) walks single-pixel strokes by their 8 and 16 neighbours, and finds the centres of brush
-strokes by comparing horizontal and vertical runs, which misses a stroke that lies nearly flat. Ours is one method for
-both: thinning, which knows no direction, and the distance to the ground for the radii. (Guo and Hall 1989: the thinning
-of Zhang and Suen 1984 eats slanted lines of some widths from their ends on, hundreds of pixels.)
+The two-sketches paper (section 4) follows single-pixel strokes by their 8 and 16 neighbours, and finds the centres of
+brush strokes by comparing horizontal and vertical runs, which misses nearly horizontal strokes. Ours is one method for
+both: thinning, which prefers no direction, and the distance transform for the radii. (Guo and Hall 1989; the thinning
+of Zhang and Suen 1984 shortens slanted lines of some widths by hundreds of pixels.)
 """
 
 from collections import defaultdict
@@ -16,28 +16,27 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.polyline import arc_lengths, place_at
 from treestroke.core.types import Floats, Indices, Mask
 
-SPUR = 1.5
-"""Of the ink's half width: a line that ends nearer to its fork than this, and `SPUR_PX`, follows an uneven edge."""
-SPUR_PX = 1.5
+SPUR, SPUR_PX = 1.5, 1.5
+"""An end arc shorter than this many half widths of the ink at its fork, plus px, is a spur of an uneven edge."""
 CORNER, CORNER_LENGTH, CORNER_PX = 0.25, 4.0, 3.0
-"""A line into a corner of the ink: its half width falls at least so steeply once it is out of its fork's circle, of
-which, in half widths, it is no longer; thinner ink than so many px has no corners."""
+"""An end arc leads into a corner of the ink if its half width falls at least so steeply beyond its fork's circle and it
+is no longer than so many half widths; ink of a smaller half width, px, has no corners."""
 CLOSE, CLOSE_PX = 2.0, 2.5
-"""Forks of lines that cross are nearer to each other than so many half widths of the ink and px; any two that are
+"""Two forks of crossing lines are nearer to each other than this many half widths of the ink, plus px; any two forks
 within those px alone are one."""
 STRAIGHT_RAD = np.radians(35.0)
-"""Lines that cross turn by less."""
+"""Greatest turn of a line that goes on through a crossing, radians."""
 LOOK_PX = 8.0
-"""Length over which a line's direction at a fork is taken."""
+"""Length over which a line's direction at a fork is measured, px."""
 _AROUND = ((-1, 0), (0, -1), (0, 1), (1, 0), (-1, -1), (-1, 1), (1, -1), (1, 1))
-"""The 8 neighbours, first those that share a side."""
+"""The 8 neighbours (row, column), first those that share a side."""
 _BESIDE = {4: (0, 1), 5: (0, 2), 6: (3, 1), 7: (3, 2)}
-"""For each neighbour across a corner the two that lie beside it."""
+"""For each diagonal neighbour the two that share a side with it."""
 
 
 @dataclass(frozen=True, eq=False)
 class Arc:
-    """A piece of centre line between two nodes: points (n, 2) px, n >= 2, and half widths (n,) of the ink there."""
+    """A piece of centre line between two nodes: points (n, 2), n >= 2, and half widths (n,) of the ink there, px."""
 
     ends: tuple[int, int]
     points: Floats
@@ -45,42 +44,44 @@ class Arc:
 
     @property
     def length(self) -> float:
-        """Its length, px."""
+        """Length, px."""
         return float(arc_lengths(self.points)[-1])
 
     def away_from(self, node: int) -> "Arc":
-        """Give it so that it begins at one of its nodes."""
-        if self.ends[0] == node:
-            return self
+        """Return the arc in the direction that begins at one of its nodes."""
+        return self if self.ends[0] == node else self.reversed()
+
+    def reversed(self) -> "Arc":
+        """Return the arc in the opposite direction."""
         return Arc(self.ends[::-1], self.points[::-1], self.radii[::-1])
 
     def other(self, node: int) -> int:
-        """Give the node at its other end."""
+        """Return the node at its other end."""
         return self.ends[1] if self.ends[0] == node else self.ends[0]
 
 
 class Graph:
-    """Nodes and the arcs between them, by number."""
+    """A multigraph: nodes and the arcs between them, by number."""
 
     def __init__(self, arcs: list[Arc]) -> None:
         self.arcs = dict(enumerate(arcs))
         self.at: dict[int, list[int]] = defaultdict(list)
-        """The arcs at each node; one that leads back to it stands there twice."""
+        """The arcs at each node; one that leads back to it is listed twice."""
         self._next = len(arcs)
         for number, arc in self.arcs.items():
             for node in arc.ends:
                 self.at[node].append(number)
 
     def place(self, node: int) -> Floats:
-        """Give a node's place (2,), px."""
+        """Return a node's place (2,), px."""
         return np.asarray(self.arcs[self.at[node][0]].away_from(node).points[0])
 
     def radius(self, node: int) -> float:
-        """Give the ink's half width at a node, px."""
+        """Return the ink's half width at a node, px."""
         return float(self.arcs[self.at[node][0]].away_from(node).radii[0])
 
     def add(self, arc: Arc) -> int:
-        """Take in an arc and number it."""
+        """Add an arc and return its number."""
         number = self._next
         self._next += 1
         self.arcs[number] = arc
@@ -89,14 +90,14 @@ class Graph:
         return number
 
     def drop(self, number: int) -> None:
-        """Take out an arc, and the nodes that nothing leads to any more."""
+        """Remove an arc, and nodes that are left without one."""
         for node in self.arcs.pop(number).ends:
             self.at[node].remove(number)
             if not self.at[node]:
                 del self.at[node]
 
     def move(self, number: int, node: int, to: int) -> None:
-        """Let an arc that ends at a node end at another one, in the same place."""
+        """Reconnect an arc from a node to another one, which gets the same place."""
         arc = self.arcs[number]
         ends = (to if arc.ends[0] == node else arc.ends[0], to if arc.ends[1] == node else arc.ends[1])
         for end in arc.ends:
@@ -107,7 +108,7 @@ class Graph:
 
 
 def thinned(ink: Mask) -> Mask:
-    """Thin ink (h, w) to lines one pixel wide."""
+    """Return ink, a mask (h, w), thinned to lines one pixel wide (Guo and Hall 1989)."""
     rows, columns = np.flatnonzero(ink.any(axis=1)), np.flatnonzero(ink.any(axis=0))
     lines = np.zeros_like(ink)
     if not len(rows):
@@ -119,7 +120,7 @@ def thinned(ink: Mask) -> Mask:
 
 
 def graph_of(lines: Mask, half_widths: NDArray[np.float32]) -> Graph:
-    """Follow lines (h, w) one pixel wide from fork to fork; half widths (h, w), px, are those of the ink."""
+    """Build the graph of lines (h, w) one pixel wide; half widths (h, w), px, are those of the ink."""
     pixels = np.argwhere(lines)
     around = _neighbours(pixels, lines.shape)
     radii = np.asarray(half_widths[tuple(pixels.T)], dtype=np.float64)
@@ -128,7 +129,7 @@ def graph_of(lines: Mask, half_widths: NDArray[np.float32]) -> Graph:
 
 
 def without_spurs(graph: Graph) -> Graph:
-    """Drop what only follows the uneven edge or the blunt end of a brush stroke."""
+    """Drop the arcs that thinning makes of the uneven edge or the blunt end of a brush stroke."""
     while True:
         spurs = [number for number, arc in graph.arcs.items() if _is_spur(graph, arc)]
         if not spurs or len(spurs) == len(graph.arcs):
@@ -136,17 +137,17 @@ def without_spurs(graph: Graph) -> Graph:
         for number in spurs:
             graph.drop(number)
         for node in [node for node, numbers in graph.at.items() if len(set(numbers)) == len(numbers) == 2]:
-            _pass_through(graph, node)
+            _merge_arcs(graph, node)
     for number, arc in graph.arcs.items():
         for end in arc.ends:
             if len(graph.at[end]) == 1:
-                graph.arcs[number] = _blunt(graph.arcs[number].away_from(end))
+                graph.arcs[number] = _without_corner(graph.arcs[number].away_from(end))
     return graph
 
 
 def with_crossings_joined(graph: Graph) -> Graph:
-    """Make one node of two forks where thinning tore apart lines that cross, or that are next to each other."""
-    for number in sorted(graph.arcs, key=lambda one: (graph.arcs[one].length, one)):
+    """Merge two forks where thinning split a crossing, or that are next to each other."""
+    for number in sorted(graph.arcs, key=lambda number: (graph.arcs[number].length, number)):
         if number not in graph.arcs:
             continue
         arc = graph.arcs[number]
@@ -160,21 +161,21 @@ def with_crossings_joined(graph: Graph) -> Graph:
 
 
 def heading(arc: Arc, node: int) -> Floats:
-    """Give the direction (2,) in which an arc leaves a node, out of the ink that it shares with others."""
+    """Return the unit direction (2,) in which an arc leaves a node, measured outside the ink that arcs share."""
     outward = arc.away_from(node)
     arcs, start = arc_lengths(outward.points), max(3.0, float(outward.radii[0]))
     near, far = place_at(outward.points, np.array([min(start, arcs[-1] / 2), min(2.5 * start + LOOK_PX, arcs[-1])]))
-    way = far - near
-    return np.asarray(way / max(float(np.linalg.norm(way)), 1e-9))
+    direction = far - near
+    return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-9))
 
 
-def turn(one: Floats, other: Floats) -> float:
-    """Angle, rad, by which a line turns that comes in against one direction (2,) and leaves in another."""
-    return float(np.arccos(np.clip(-(one @ other), -1.0, 1.0)))
+def turn(first: Floats, second: Floats) -> float:
+    """Return the turn, radians, of a line whose two arcs leave a node in unit directions (2,); 0 is straight."""
+    return float(np.arccos(np.clip(-(first @ second), -1.0, 1.0)))
 
 
 def _cross(graph: Graph, number: int) -> bool:
-    """Tell whether two lines cross at an arc: the two at either end of it go on as those at the other."""
+    """Return whether two lines cross at an arc: the two at one end of it continue those at the other end."""
     sides = [[other for other in graph.at[node] if other != number] for node in graph.arcs[number].ends]
     if [len(side) for side in sides] != [2, 2] or len({*sides[0], *sides[1]}) != 4:
         return False
@@ -186,7 +187,7 @@ def _cross(graph: Graph, number: int) -> bool:
 
 
 def _neighbours(pixels: Indices, shape: tuple[int, ...]) -> list[list[int]]:
-    """List for each pixel (n, 2) those that it leads to: none across a corner that a side leads round."""
+    """List the neighbours of each pixel (n, 2); a diagonal one counts only where no pixel shares a side with both."""
     number = np.full((shape[0] + 2, shape[1] + 2), -1, dtype=np.int64)
     row, column = pixels.T + 1
     number[row, column] = np.arange(len(pixels))
@@ -198,36 +199,38 @@ def _neighbours(pixels: Indices, shape: tuple[int, ...]) -> list[list[int]]:
 
 
 def _chains(around: list[list[int]], pixels: Indices) -> list[list[int]]:
-    """List the pixels of each piece between two that have not just two neighbours; of a ring from its lowest on."""
+    """List the pixels of each piece between two ends or forks; a ring without one starts at its lowest pixel."""
     chains: list[list[int]] = []
     used: set[tuple[int, int]] = set()
     seen = np.zeros(len(around), dtype=bool)
     nodes = [pixel for pixel, others in enumerate(around) if len(others) not in (0, 2)]
-    nodes_set = set(nodes)
+    ends = set(nodes)
     for node in nodes:
         for following in around[node]:
             if (node, following) not in used:
-                chain = _followed(around, node, following, nodes_set)
+                chain = _follow(around, node, following, ends)
                 used |= {(chain[0], chain[1]), (chain[-1], chain[-2])}
                 seen[chain] = True
                 chains.append(chain)
     for start in np.argsort(-pixels[:, 0], kind="stable").tolist():
         if not seen[start] and len(around[start]) == 2:
-            chain = _followed(around, start, around[start][0], {start})
+            chain = _follow(around, start, around[start][0], {start})
             seen[chain] = True
             chains.append(chain)
     return chains
 
 
-def _followed(around: list[list[int]], start: int, following: int, ends: set[int]) -> list[int]:
+def _follow(around: list[list[int]], start: int, following: int, ends: set[int]) -> list[int]:
+    """List the pixels from a start and the one that follows it to the first of the ends."""
     chain = [start, following]
     while chain[-1] not in ends:
-        one, other = around[chain[-1]]
-        chain.append(other if one == chain[-2] else one)
+        first, second = around[chain[-1]]
+        chain.append(second if first == chain[-2] else first)
     return chain
 
 
 def _is_spur(graph: Graph, arc: Arc) -> bool:
+    """Return whether an end arc follows an uneven edge or leads into a corner of the ink."""
     counts = [len(graph.at[node]) for node in arc.ends]
     if min(counts) != 1 or max(counts) < 3:
         return False
@@ -236,22 +239,23 @@ def _is_spur(graph: Graph, arc: Arc) -> bool:
     if arc.length + tip < SPUR * fork + SPUR_PX:
         return True
     arcs = arc_lengths(outward.points)
-    leaves = float(np.interp(fork, arcs, outward.radii))
-    steep = leaves - tip > CORNER * (float(arcs[-1]) - fork)
+    outside = float(np.interp(fork, arcs, outward.radii))
+    steep = outside - tip > CORNER * (float(arcs[-1]) - fork)
     return bool(fork > CORNER_PX and steep and arcs[-1] < CORNER_LENGTH * fork)
 
 
-def _pass_through(graph: Graph, node: int) -> None:
-    """Make one arc of the two at a node."""
-    one, other = (graph.arcs[number].away_from(node) for number in graph.at[node])
+def _merge_arcs(graph: Graph, node: int) -> None:
+    """Merge the two arcs at a node into one."""
+    first, second = (graph.arcs[number].away_from(node) for number in graph.at[node])
     for number in list(graph.at[node]):
         graph.drop(number)
-    points, radii = np.vstack([one.points[:0:-1], other.points]), np.concatenate([one.radii[:0:-1], other.radii])
-    graph.add(Arc((one.ends[1], other.ends[1]), points, radii))
+    points = np.vstack([first.points[:0:-1], second.points])
+    radii = np.concatenate([first.radii[:0:-1], second.radii])
+    graph.add(Arc((first.ends[1], second.ends[1]), points, radii))
 
 
-def _blunt(arc: Arc) -> Arc:
-    """Take off where an arc, from its tip on, comes out of a corner of the ink."""
+def _without_corner(arc: Arc) -> Arc:
+    """Cut off the part at an arc's tip, its first point, that leads into a corner of the ink."""
     arcs = arc_lengths(arc.points)
     reach = min(float(arcs[-1]) - SPUR * float(arc.radii[-1]), CORNER_LENGTH * float(arc.radii.max()))
     start = int(np.argmax(np.where(arcs <= reach, arc.radii - CORNER * arcs, -np.inf))) if reach > 0 else 0
@@ -262,31 +266,31 @@ def _blunt(arc: Arc) -> Arc:
 
 
 def _contract(graph: Graph, number: int) -> None:
-    """Put the two nodes of an arc into its middle; what leads to them leads straight there from out of the ink."""
+    """Contract an arc to a node at its middle; the other arcs lead straight there from outside the ink."""
     arc = graph.arcs[number]
     keep, gone = arc.ends
     middle, radius = arc.points[len(arc.points) // 2], float(arc.radii.max())
     graph.drop(number)
     for node in (keep, gone):
         for other in set(graph.at[node]):
-            graph.arcs[other] = _led_to(graph.arcs[other], node, middle, radius)
+            graph.arcs[other] = _redirect(graph.arcs[other], node, middle, radius)
     for other in list(dict.fromkeys(graph.at[gone])):
         graph.move(other, gone, keep)
     del graph.at[gone]
-    for other in [one for one in set(graph.at[keep]) if graph.arcs[one].ends == (keep, keep)]:
+    for other in [number for number in set(graph.at[keep]) if graph.arcs[number].ends == (keep, keep)]:
         if graph.arcs[other].length < 2 * CLOSE_PX + CLOSE * radius:
             graph.drop(other)
 
 
-def _led_to(arc: Arc, node: int, place: Floats, radius: float) -> Arc:
-    """Let each end of an arc at a node begin in another place; of its points those within a radius are left out."""
+def _redirect(arc: Arc, node: int, place: Floats, radius: float) -> Arc:
+    """Move each end of an arc at a node to another place (2,), px, and drop the points within a radius of it, px."""
     for end in (0, 1):
         if arc.ends[end] == node:
-            outward = arc if end == 0 else Arc(arc.ends[::-1], arc.points[::-1], arc.radii[::-1])
+            outward = arc if end == 0 else arc.reversed()
             off = np.linalg.norm(outward.points - place, axis=1) > radius
             start = min(int(off.argmax()) if off.any() else len(off) - 1, len(off) - 1)
             points = np.vstack([place, outward.points[max(start, 1) :]])
             radii = np.append(outward.radii[0], outward.radii[max(start, 1) :])
             arc = Arc(outward.ends, points, radii)
-            arc = arc if end == 0 else Arc(arc.ends[::-1], arc.points[::-1], arc.radii[::-1])
+            arc = arc if end == 0 else arc.reversed()
     return arc

@@ -1,4 +1,4 @@
-"""The 2D skeleton of a sketch."""
+"""From a sketch to its 2D skeleton and crown."""
 
 from dataclasses import dataclass
 
@@ -10,14 +10,14 @@ from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.stroke_rules import CROSSING, check_crown, clamped
 from treestroke.core.strokes import Sketch, Stroke, StrokeWarning
-from treestroke.core.trace.hull import crown_around
-from treestroke.core.trace.inked import follow_ink
-from treestroke.core.trace.lined import link_strokes
-from treestroke.core.trace.lines import branched_from
+from treestroke.core.trace.branch_lines import join_lines
+from treestroke.core.trace.crown_hull import estimate_crown
+from treestroke.core.trace.ink_lines import follow_ink
+from treestroke.core.trace.stroke_lines import link_strokes
 from treestroke.core.types import Floats
 
 CHECKED_SIDE = 750
-"""Long side, px, of the picture in which a crown is checked: sketches are drawn up while they are drawn."""
+"""Long side, px, of the raster in which a crown is checked, which must be fast while the user draws."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,16 +27,16 @@ class Drawing:
     Attributes
     ----------
     tree
-        The 2D skeleton, canvas px (x right, y down), joints at most `lines.STEP` of its height apart; radii are those
-        of the brush, 0 where there was none.
+        The 2D skeleton, canvas px (x right, y down), joints at most `branch_lines.STEP` of its height apart; radii are
+        those of the brush, 0 where there was none.
     crown
         (k, 2) closed outline of the foliage, px: as drawn, else the dilated hull of the strokes.
     crown_drawn
-        Whether it was drawn.
+        Whether the crown was drawn.
     size
         Width and height of the canvas, px.
     warnings
-        What was mended.
+        One for each repair.
     """
 
     tree: Branched
@@ -46,29 +46,30 @@ class Drawing:
     warnings: tuple[StrokeWarning, ...]
 
 
-def draw_up(sketch: Sketch) -> Drawing:
-    """Turn a sketch into one connected 2D tree: every stroke lies along it.
+def trace_sketch(sketch: Sketch) -> Drawing:
+    """Turn a sketch into one connected 2D tree that every stroke lies along.
 
-    Source: the two-sketch paper, section 4; `lined` and `inked` say where we differ.
+    Source: two-sketches paper, section 4; `stroke_lines` and `ink_lines` say where ours differs.
 
     Raises
     ------
     StrokesError
-        There is no trunk, a stroke or the crown is unusable, or the strokes are no tree. The message names the stroke.
+        There is no trunk, a stroke or the crown is unusable, or the strokes do not form a tree. The message names the
+        stroke.
     """
     if sketch.ink is None:
         lines, height, warnings = link_strokes(sketch.branches, sketch.canvas)
     else:
         lines, height, warnings = follow_ink(sketch.ink)
-    tree = branched_from(lines, height)
+    tree = join_lines(lines, height)
     if sketch.crown is None:
-        return Drawing(tree, crown_around(tree, height, sketch.canvas), False, sketch.canvas, warnings)
+        return Drawing(tree, estimate_crown(tree, height, sketch.canvas), False, sketch.canvas, warnings)
     crown, crossing = _drawn_crown(sketch.crown, tree, sketch.canvas)
     return Drawing(tree, crown, True, sketch.canvas, (*crossing, *warnings))
 
 
 def _drawn_crown(crown: Stroke, tree: Branched, canvas: tuple[int, int]) -> tuple[Floats, tuple[StrokeWarning, ...]]:
-    """Check the crown that was drawn, and that there is something of the tree in it."""
+    """Clamp the drawn crown to the canvas; refuse one that is too small or that no branch reaches into."""
     width, height = canvas
     outline = clamped(crown, ("crown",), width, height, 3, "canvas").points
     coarse = min(1.0, CHECKED_SIDE / max(canvas))

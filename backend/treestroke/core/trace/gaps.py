@@ -1,4 +1,4 @@
-"""Gaps between the strokes of a picture."""
+"""Bridging of the gaps between the strokes of a picture."""
 
 import cv2
 import numpy as np
@@ -10,14 +10,19 @@ from treestroke.core.types import Floats, Indices, Mask
 from treestroke.limits import MAX_STROKES
 
 SPECK = 0.006
-"""Of the long side: what is no larger is no stroke."""
+"""Greatest extent of a speck, which is dropped, as a share of the long side."""
 
 
 def bridge_gaps(lines: Mask, ink: Mask, half_widths: NDArray[np.float32]) -> tuple[Mask, Mask, list[Floats]]:
     """Join the thinned lines (h, w) of separate strokes to one drawing, the nearest first; drop specks.
 
-    Give the lines with their bridges, those of the largest drawing that hangs together save for gaps within
-    `TOUCH_SHARE` of the long side, and the middles (2,), px, of all bridges.
+    ``ink`` (h, w) is the mask that was thinned, ``half_widths`` (h, w) its half widths, px. As in Boruvka's algorithm
+    for a minimum spanning tree, each round bridges the gap from each stroke to the nearest other one.
+
+    Returns
+    -------
+    Mask (h, w) of the lines with their bridges; mask (h, w) of the lines of the largest drawing, which may have gaps up
+    to `TOUCH_SHARE` of the long side; middle (2,) of each bridge, px.
 
     Raises
     ------
@@ -38,28 +43,28 @@ def bridge_gaps(lines: Mask, ink: Mask, half_widths: NDArray[np.float32]) -> tup
     group, trunk = np.arange(count), np.arange(count)
     bridged, middles = lines.astype(np.uint8), []
     ends = _ends(pixels, owner)
-    half_widths_there = half_widths[tuple(pixels.T)].astype(np.float64)
+    widths = half_widths[tuple(pixels.T)].astype(np.float64)
     while len(np.unique(group[owner])) > 1:
-        for gap, one, other in _bridges(pixels.astype(np.float64), ends, group[owner], half_widths_there):
-            if _united(group, owner[one], owner[other]):
-                sides = pixels[[one, other]][:, ::-1]
+        for gap, end, other in _bridges(pixels.astype(np.float64), ends, group[owner], widths):
+            if _merge(group, owner[end], owner[other]):
+                sides = pixels[[end, other]][:, ::-1]
                 cv2.line(bridged, sides[0].tolist(), sides[1].tolist(), 1)
                 middles.append(np.asarray(sides.mean(axis=0) + 0.5))
                 if gap <= near:
-                    _united(trunk, owner[one], owner[other])
+                    _merge(trunk, owner[end], owner[other])
     sizes = np.bincount(trunk[owner], minlength=count)
     return bridged > 0, lines & (trunk[labels] == sizes.argmax()), middles
 
 
-def _united(group: Indices, one: int, other: int) -> bool:
-    """Make one group of two strokes' groups; tell whether they were apart."""
-    first, last = group[one], group[other]
+def _merge(group: Indices, stroke: int, other: int) -> bool:
+    """Merge the groups of two strokes in place; return whether they were different."""
+    first, last = group[stroke], group[other]
     group[group == last] = first
     return bool(first != last)
 
 
 def _bridges(places: Floats, ends: list[int], group: Indices, half_widths: Floats) -> list[tuple[float, int, int]]:
-    """List the gap, px, from each of the ends to the nearest pixel (n, 2) of another group, the least first."""
+    """List each end's gap, px, to the nearest pixel (n, 2) of another group, with both pixels' indices, least first."""
     found = []
     for end in ends:
         gaps = np.hypot(*(places - places[end]).T) - half_widths - half_widths[end]
@@ -70,12 +75,12 @@ def _bridges(places: Floats, ends: list[int], group: Indices, half_widths: Float
 
 
 def _ends(pixels: Indices, owner: Indices) -> list[int]:
-    """Find the pixels (n, 2) at the ends of strokes; of a stroke without one each fourth."""
+    """Return the indices of the pixels (n, 2) at the ends of strokes; of a stroke without an end, of every fourth."""
     size = pixels.max(axis=0) + 3
     there = np.zeros(size, dtype=np.uint8)
     there[tuple(pixels.T + 1)] = 1
     counts = cv2.boxFilter(there, cv2.CV_16S, (3, 3), normalize=False, borderType=cv2.BORDER_CONSTANT)
     ends = counts[tuple(pixels.T + 1)] <= 2
-    for one in np.setdiff1d(owner, owner[ends]).tolist():
-        ends[np.flatnonzero(owner == one)[::4]] = True
+    for stroke in np.setdiff1d(owner, owner[ends]).tolist():
+        ends[np.flatnonzero(owner == stroke)[::4]] = True
     return np.flatnonzero(ends).tolist()

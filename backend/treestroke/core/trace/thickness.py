@@ -1,4 +1,4 @@
-"""How thick a branch is, measured where the photo shows it."""
+"""The thickness of a branch, measured where the photo shows it."""
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -10,10 +10,10 @@ from treestroke.core.types import Floats
 
 
 def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tuple[Floats, Floats]:
-    """Measure the half-width and the middle of the wood (h, w) across a line (n, 2).
+    """Measure the half-width and the middle of the wood, a mask (h, w), across a line (n, 2), px.
 
-    Across the line, the run of wood pixels that holds the line is followed to both sides (gaps of a pixel are
-    forgiven); a run that goes on beyond ``most_px`` on either side is no branch (dark leaves beside it).
+    Across the line, the run of wood pixels that contains the line is followed to both sides (gaps of one pixel are
+    ignored); a run longer than ``most_px`` on either side is not a branch but dark leaves beside it.
 
     Returns
     -------
@@ -30,8 +30,22 @@ def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tup
     return _steady(np.where(seen, halves, np.nan)), _steady(np.where(seen, middles, np.nan))
 
 
+def non_increasing(values: Floats) -> Floats:
+    """Return the non-increasing values (n,), px, nearest to the given ones (n,) in the sum of squares.
+
+    By the min-max formula of isotonic regression (Robertson, Wright and Dykstra 1988, section 1.4), which suffices for
+    the few values along a stroke: importing scipy's would take longer than all tracing.
+    """
+    count = np.arange(len(values))
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    means = (sums[None, 1:] - sums[:-1, None]) / np.maximum(count[None] - count[:, None] + 1, 1)
+    means[count[:, None] > count[None]] = -np.inf
+    onward = np.maximum.accumulate(means[:, ::-1], axis=1)[:, ::-1]
+    return np.asarray(np.minimum.accumulate(onward, axis=0).diagonal())
+
+
 def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Length (n,) of the run of wood that starts in the first column, one-pixel gaps forgiven."""
+    """Return the length (n,), px, of the run of wood that starts in the first column, ignoring one-pixel gaps."""
     closed = seen | np.roll(seen, -1, axis=1) | (np.arange(seen.shape[1]) == 0)
     closed[:, -1] = seen[:, -1]
     length = np.where(closed.all(axis=1), seen.shape[1], closed.argmin(axis=1))
@@ -39,7 +53,7 @@ def _run(seen: NDArray[np.bool_]) -> NDArray[np.int64]:
 
 
 def _steady(widths: Floats) -> Floats:
-    """Take the median of the measurements around each place; NaN where fewer than half of them measured anything."""
+    """Return the moving median (n,) of measurements (n,); NaN where over half of those around are NaN."""
     window = min((len(widths) - 1) | 1, 9)
     seen = ~np.isnan(widths)
     if not seen.any():

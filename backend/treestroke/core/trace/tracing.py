@@ -1,7 +1,7 @@
 """From branch strokes to the visible branches, as a Skeleton in the photo.
 
-Source: Tan et al. 2008, section 2. Strokes are pulled onto the branches that they mean, forks are found by the circle
-tracer, radii are measured where the photo shows them.
+Source: Tan et al. 2008, section 2. Strokes are pulled onto the branches in the photo, further branches are found by the
+circle tracer, radii are measured where the photo shows them.
 """
 
 from dataclasses import dataclass
@@ -11,51 +11,53 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import arc_lengths, normals
-from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
-from treestroke.core.trace.appearance import branch_odds
+from treestroke.core.trace.appearance import Surroundings, branch_odds
 from treestroke.core.trace.circle import Circle, trace_forks
-from treestroke.core.trace.draft import Draft, simplify, without, without_spurs
+from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_short_branches, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blurred, snap
-from treestroke.core.trace.thickness import half_widths
-from treestroke.core.types import Floats, Indices
+from treestroke.core.trace.thickness import half_widths, non_increasing
+from treestroke.core.types import Floats, Indices, Mask, Picture
 
 REFERENCE_SIDE = 1500
+"""Long side of a photo to which pixel figures refer, px."""
 CONE, TAPER = 1.25, 0.75
-"""A limb lies within a cone that has lost the taper at the tree's height: neighbours of its own colour widen what is
-measured, never the limb itself."""
+"""A limb lies within a cone: its base has this multiple of the limb's first radius, and it loses this share of it over
+the tree's height. So neighbours of its own colour do not widen the limb."""
 STEADY = 4.0
-"""Steps of a line over which its place in the wood is averaged."""
-LEAST = 0.5
-"""Of the radius that is expected unseen: less is a sliver of the branch between leaves."""
-FEWEST_SEEN = 4
-"""Places along a line where its width must be seen for it to count."""
+"""Standard deviation, in steps of a line, over which its place in the wood is averaged."""
+MIN_EXPECTED = 0.5
+"""Least measured radius relative to the expected one: less is a sliver of the branch between leaves."""
+MIN_SEEN = 4
+"""Least number of places along a line where its width must be seen for it to count."""
 GRAIN = 1.5
-"""Bark's grain, px at a long side of 1500: colours are judged together over it."""
-SWELLING = 1.8
-"""A measured radius beyond this many times the line's usual one is a shadow beside the branch."""
+"""Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
+MAX_SWELLING = 1.8
+"""Greatest measured radius relative to the line's median: more is a shadow beside the branch."""
+CHILD_RADIUS = 0.75
+"""Radius of a branch relative to its parent where it is not seen (Tan et al. 2008, section 2)."""
 
 
 @dataclass(frozen=True)
 class TraceParams:
-    """How branches are traced; px are those of a photo whose long side is 1500.
+    """How branches are traced; px are those of a photo whose long side is 1500, shares are of the tree's height.
 
     Attributes
     ----------
     circle_px
-        Radius of the circle tracer's circle.
+        Radius of the circle tracer's circle (Tan et al. 2008, section 2).
     snap_share
-        How far a stroke may be pulled aside, as a share of the tree's height.
+        Greatest distance by which a stroke is pulled aside.
     tolerance_share
-        How far simplification may move the line, as a share of the tree's height.
+        Greatest distance by which simplification moves the line.
     stem_share
-        A later stroke that starts this near the root, as a share of the tree's height, is a stem of its own.
+        A later stroke that starts this near the root is a stem of its own.
     trunk_share
-        Radius of a trunk that the photo does not show, as a share of the tree's height (a diameter of 1/30).
+        Radius of a trunk that the photo does not show (a diameter of 1/30).
     thickest_share
-        Greatest radius that is believed of a trunk, as a share of the tree's height.
+        Greatest radius of a trunk that is measured.
     thinnest_px
         Least radius of a traced branch.
     """
@@ -80,80 +82,90 @@ class Traced:
     Attributes
     ----------
     skeleton
-        In photo px; joint 0 is the root.
+        2D, photo px; joint 0 is the root.
     stroke
         (n,) index of the branch stroke that each joint follows, -1 where the tracer found it.
     measured
-        (n,) whether the photo showed the radius there.
+        (n,) mask of the joints whose radius the photo shows.
     wood
-        (h, w) pixels that have the colours of branches.
+        (h, w) mask of the pixels that have the colours of branches.
     """
 
     skeleton: Skeleton
     stroke: Indices
-    measured: NDArray[np.bool_]
-    wood: NDArray[np.bool_]
+    measured: Mask
+    wood: Mask
+
+
+@dataclass(frozen=True, eq=False)
+class _Evidence:
+    """What a stroke is judged by: branch odds, wood and crown (h, w), and the tree's height, px."""
+
+    odds: NDArray[np.float32]
+    wood: Mask
+    crown: Mask
+    height_px: float
+
+
+@dataclass(frozen=True, eq=False)
+class _SeenWidths:
+    """Half-widths (n,) measured along a line, px, NaN where unseen, and a mask (n,) of the places outside the crown."""
+
+    halves: Floats
+    bare: Mask
 
 
 def trace_branches(
-    photo: NDArray[np.uint8],
+    photo: Picture,
     strokes: Strokes,
-    leaf: Mixture,
-    ground: Mixture,
-    crown: NDArray[np.bool_],
+    surroundings: Surroundings,
     height_px: float,
     params: TraceParams = TraceParams(),
 ) -> Traced:
     """Trace the branches under and beside the branch strokes (one at least) of a photo (h, w, 3), sRGB.
 
-    ``leaf`` and ``ground`` are the colours of leaves and of what is behind them, ``crown`` (h, w) is where leaves may
-    be; ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; what the tracer finds
-    beside them hangs together with them.
+    ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; branches found beside the
+    strokes are connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
-    odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), leaf, ground, crown)
+    odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), surroundings)
     wood = cv2.GaussianBlur(odds, (0, 0), max(0.7, GRAIN * unit)) > 0
-    draft = Draft()
-    _follow_strokes(draft, strokes.branches, odds, wood, crown, height_px, params)
-    seeds = _seeds(draft, params.circle_px * unit)
-    trace_forks(draft, Circle(params.circle_px * unit, wood), seeds)
-    skeleton, stroke = _erased(draft.skeleton(), np.array(draft.stroke), strokes.erase)
-    skeleton, stroke = without_spurs(skeleton, stroke, 1.6 * params.circle_px * unit)
+    builder = SkeletonBuilder()
+    _follow_strokes(builder, strokes.branches, _Evidence(odds, wood, surroundings.crown, height_px), params)
+    seeds = _seeds(builder, params.circle_px * unit)
+    trace_forks(builder, Circle(params.circle_px * unit, wood), seeds)
+    skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
+    skeleton, stroke = drop_short_branches(skeleton, stroke, 1.6 * params.circle_px * unit)
     skeleton, stroke = simplify(skeleton, stroke, params.tolerance_share * height_px)
-    return Traced(skeleton, stroke, _seen(skeleton, wood), wood)
+    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood)
 
 
 def _follow_strokes(
-    draft: Draft,
-    branches: tuple[Stroke, ...],
-    odds: NDArray[np.float32],
-    wood: NDArray[np.bool_],
-    crown: NDArray[np.bool_],
-    height_px: float,
-    params: TraceParams,
+    builder: SkeletonBuilder, branches: tuple[Stroke, ...], evidence: _Evidence, params: TraceParams
 ) -> None:
-    """Add each stroke's line, pulled onto its branch, to the draft."""
+    """Add each stroke's line, pulled onto its branch, to the skeleton."""
+    height_px, wood = evidence.height_px, evidence.wood
     reach, step = params.snap_share * height_px, max(1.0, 0.006 * height_px)
-    evidence = np.asarray(cv2.GaussianBlur(odds, (0, 0), max(0.8, 0.3 * reach)), dtype=np.float32)
+    smooth_odds = np.asarray(cv2.GaussianBlur(evidence.odds, (0, 0), max(0.8, 0.3 * reach)), dtype=np.float32)
     root = branches[0].points[0]
     for index, stroke in enumerate(branches):
         start = root if index == 0 else None
-        line = _centred(snap(stroke.points, evidence, reach, step), wood, params.thickest_share * height_px, start)
-        stem = index == 0 or float(np.linalg.norm(stroke.points[0] - root)) <= params.stem_share * height_px
-        parent = -1 if stem else draft.nearest(line[0])
-        bearer = params.trunk_share * height_px / 0.75 if stem else draft.radii[parent]
-        most = params.thickest_share * height_px if stem else 1.2 * bearer
-        bare = ~sample_nearest(crown, line, False)
-        radii = _radii(line, stroke.width, half_widths(line, wood, most)[0], bare, bearer, height_px)
+        line = _centre(snap(stroke.points, smooth_odds, reach, step), wood, params.thickest_share * height_px, start)
+        is_stem = index == 0 or float(np.linalg.norm(stroke.points[0] - root)) <= params.stem_share * height_px
+        parent = -1 if is_stem else builder.nearest(line[0])
+        parent_px = params.trunk_share * height_px / CHILD_RADIUS if is_stem else builder.radii[parent]
+        widest = params.thickest_share * height_px if is_stem else 1.2 * parent_px
+        seen = _SeenWidths(half_widths(line, wood, widest)[0], ~sample_nearest(evidence.crown, line, False))
+        radii = _radii(line, stroke.width, seen, parent_px, height_px)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
         if parent >= 0:
-            line = np.concatenate([draft.points[parent][None], line])
+            line = np.concatenate([builder.points[parent][None], line])
             radii = np.concatenate([radii[:1], radii])
-        draft.grow(parent, line, radii, stroke=index)
+        builder.add_chain(parent, line, radii, stroke=index)
 
 
-def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float, root: Floats | None) -> Floats:
-    """Move a line (n, 2) to the middle of the wood that it runs in, where that is seen; it begins at its root."""
+def _centre(line: Floats, wood: Mask, most_px: float, root: Floats | None) -> Floats:
+    """Move a line (n, 2) to the middle of the wood where that is seen; it begins at its root, if there is one."""
     _, middles = half_widths(line, wood, most_px)
     moved = line + blurred(np.nan_to_num(middles), STEADY)[:, None] * normals(line)
     if root is None:
@@ -162,71 +174,60 @@ def _centred(line: Floats, wood: NDArray[np.bool_], most_px: float, root: Floats
     return np.asarray(moved + hold * (root - moved[0]))
 
 
-def _radii(
-    line: Floats, width: float | None, measured: Floats, bare: NDArray[np.bool_], bearer: float, height_px: float
-) -> Floats:
-    """Radius (n,) along a line: drawn, else measured, else 75 % of its bearer's; it tapers and never swells outward.
+def _radii(line: Floats, width: float | None, seen: _SeenWidths, parent_px: float, height_px: float) -> Floats:
+    """Return the radii (n,) along a line, px: drawn, else measured, else 75 % of the parent's; they never grow outward.
 
-    What was measured where the wood is ``bare`` (n,), out of the crown, is believed rather than slivers among leaves.
+    Measurements on bare wood outside the crown, if there are enough, take the place of slivers among leaves.
     """
     share = arc_lengths(line) / max(float(arc_lengths(line)[-1]), 1e-9)
     if width is not None:
         return width / 2 * (1 - 0.6 * share)
-    places = np.flatnonzero(~np.isnan(measured))
-    if len(places) < FEWEST_SEEN:
-        return 0.75 * bearer * (1 - 0.7 * share)
-    sure = places[bare[places]]
-    usual = float(np.median(measured[sure if len(sure) >= FEWEST_SEEN else places]))
-    expected = (usual if len(sure) >= FEWEST_SEEN else 0.75 * bearer) * (1 - 0.7 * share)
-    seen = np.minimum(measured[places], SWELLING * usual)
-    radii = np.interp(np.arange(len(line)), places, _falling(seen))
+    places = np.flatnonzero(~np.isnan(seen.halves))
+    if len(places) < MIN_SEEN:
+        return CHILD_RADIUS * parent_px * (1 - 0.7 * share)
+    bare = places[seen.bare[places]]
+    usual = float(np.median(seen.halves[bare if len(bare) >= MIN_SEEN else places]))
+    expected = (usual if len(bare) >= MIN_SEEN else CHILD_RADIUS * parent_px) * (1 - 0.7 * share)
+    measured = np.minimum(seen.halves[places], MAX_SWELLING * usual)
+    radii = np.interp(np.arange(len(line)), places, non_increasing(measured))
     radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
-    return np.asarray(np.maximum(radii, LEAST * expected))
+    return np.asarray(np.maximum(radii, MIN_EXPECTED * expected))
 
 
-def _falling(values: Floats) -> Floats:
-    """Give the values (n,) nearest to the given ones that never rise (the min-max formula of isotonic regression)."""
-    count = np.arange(len(values))
-    sums = np.concatenate([[0.0], np.cumsum(values)])
-    means = (sums[None, 1:] - sums[:-1, None]) / np.maximum(count[None] - count[:, None] + 1, 1)
-    means[count[:, None] > count[None]] = -np.inf
-    onward = np.maximum.accumulate(means[:, ::-1], axis=1)[:, ::-1]
-    return np.asarray(np.minimum.accumulate(onward, axis=0).diagonal())
-
-
-def _seeds(draft: Draft, radius_px: float) -> list[int]:
-    """Pick joints a third of the circle's radius apart, bottom to top, stroke by stroke."""
-    points = np.array(draft.points)
+def _seeds(builder: SkeletonBuilder, radius_px: float) -> list[int]:
+    """Return the indices of joints a third of the circle's radius apart, bottom to top, stroke by stroke."""
+    points = np.array(builder.points)
     step = float(np.median(np.linalg.norm(np.diff(points, axis=0), axis=1))) if len(points) > 1 else radius_px
     return list(range(0, len(points), max(1, int(radius_px / (3 * max(step, 1e-6))))))
 
 
-def _erased(skeleton: Skeleton, stroke: Indices, erase: tuple[Stroke, ...]) -> tuple[Skeleton, Indices]:
-    """Drop the traced branches, not the stroked ones, that an erase stroke crosses, with their descendants."""
+def _erase(skeleton: Skeleton, stroke: Indices, erase: tuple[Stroke, ...]) -> tuple[Skeleton, Indices]:
+    """Drop the traced branches (not the stroked ones) that an erase stroke crosses, with their descendants."""
     found = np.flatnonzero((stroke < 0) & (skeleton.parents >= 0))
     start, end = skeleton.points[skeleton.parents[found]], skeleton.points[found]
     crossed = np.zeros(len(found), dtype=bool)
     for line in erase:
         for first, last in zip(line.points[:-1], line.points[1:], strict=True):
             crossed |= _cross(start, end, first, last)
-    return without(skeleton, stroke, found[crossed])
+    return drop_subtrees(skeleton, stroke, found[crossed])
 
 
-def _cross(start: Floats, end: Floats, first: Floats, last: Floats) -> NDArray[np.bool_]:
-    """Tell which straight pieces (n, 2) to (n, 2) cross the piece from ``first`` to ``last``."""
-
-    def side(origin: Floats, toward: Floats, point: Floats) -> Floats:
-        way, away = toward - origin, point - origin
-        return np.asarray(way[..., 0] * away[..., 1] - way[..., 1] * away[..., 0])
-
-    apart = side(start, end, first) * side(start, end, last) <= 0
-    return np.asarray(apart & (side(first, last, start) * side(first, last, end) <= 0))
+def _cross(start: Floats, end: Floats, first: Floats, last: Floats) -> Mask:
+    """Return a mask (n,) of the segments from (n, 2) to (n, 2) that cross the one from ``first`` to ``last`` (2,)."""
+    apart = _side(start, end, first) * _side(start, end, last) <= 0
+    return np.asarray(apart & (_side(first, last, start) * _side(first, last, end) <= 0))
 
 
-def _seen(skeleton: Skeleton, wood: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Tell at which joints the photo shows wood."""
+def _side(origin: Floats, toward: Floats, point: Floats) -> Floats:
+    """Return the cross product (...,) that tells on which side of a line, by two points (..., 2), a point lies."""
+    along, away = toward - origin, point - origin
+    return np.asarray(along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0])
+
+
+def _on_wood(skeleton: Skeleton, wood: Mask) -> Mask:
+    """Return a mask (n,) of the joints where the photo shows wood."""
     column, row = np.floor(skeleton.points).astype(np.int64).T
     inside = np.clip(row, 0, wood.shape[0] - 1), np.clip(column, 0, wood.shape[1] - 1)
     return np.asarray(wood[inside])

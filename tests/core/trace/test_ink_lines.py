@@ -7,12 +7,12 @@ from tests.sketches import ARMS, SIZE, TRUNK, apart, away, dense, inked, middle,
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.strokes import Sketch
-from treestroke.core.trace.drawing import draw_up
+from treestroke.core.trace.drawing import trace_sketch
 
 
 @pytest.mark.parametrize("width", [1, 2, 3])
-def test_a_pens_strokes_are_covered_and_tell_no_radius(width: int) -> None:
-    tree = draw_up(inked(sketch(TRUNK, *ARMS), width)).tree
+def test_a_pens_strokes_are_covered_and_give_no_radius(width: int) -> None:
+    tree = trace_sketch(inked(sketch(TRUNK, *ARMS), width)).tree
     assert away(tree, dense([TRUNK, *ARMS])).max() < 2
     assert apart(tree, [TRUNK, *ARMS]).max() < 2.5
     assert not tree.skeleton.radii.any()
@@ -21,7 +21,7 @@ def test_a_pens_strokes_are_covered_and_tell_no_radius(width: int) -> None:
 
 def test_a_brushs_width_gives_the_radius_within_a_tenth() -> None:
     widths = (40, 20, 12, 8)
-    tree = draw_up(inked(sketch(TRUNK, *ARMS, widths=widths))).tree
+    tree = trace_sketch(inked(sketch(TRUNK, *ARMS, widths=widths))).tree
     for line, width in zip((TRUNK, *ARMS), widths, strict=True):
         for share in (0.3, 0.5, 0.8):
             gaps = np.linalg.norm(tree.skeleton.points - middle(line, share), axis=1)
@@ -31,7 +31,7 @@ def test_a_brushs_width_gives_the_radius_within_a_tenth() -> None:
 
 def test_a_brushs_strokes_are_covered_to_their_ends() -> None:
     drawn = sketch(TRUNK, *ARMS, widths=(30, 16, 16, 12))
-    tree = draw_up(inked(drawn)).tree
+    tree = trace_sketch(inked(drawn)).tree
     gaps = away(tree, dense([TRUNK, *ARMS]))
     assert np.quantile(gaps, 0.95) < 2
     assert gaps.max() < 8
@@ -42,7 +42,7 @@ def test_a_brushs_strokes_are_covered_to_their_ends() -> None:
 @pytest.mark.parametrize("width", [8, 24])
 def test_a_nearly_horizontal_brush_stroke_is_found(rise: float, width: int) -> None:
     arm = [[450, 600], [800, 600 - rise]]
-    tree = draw_up(inked(sketch([[450, 1050], [450, 50]], arm, widths=(30, width)))).tree
+    tree = trace_sketch(inked(sketch([[450, 1050], [450, 50]], arm, widths=(30, width)))).tree
     assert tree.levels().tolist() == [0, 1]
     own = tree.skeleton.points[tree.branch == 1]
     assert np.quantile(away(tree, dense([np.array(arm)])), 0.95) < 1.5
@@ -50,7 +50,7 @@ def test_a_nearly_horizontal_brush_stroke_is_found(rise: float, width: int) -> N
 
 
 @pytest.mark.parametrize("width", [2, 3, 4, 5, 7, 10])
-def test_thinning_eats_no_slanted_stroke(width: int) -> None:
+def test_thinning_does_not_shorten_slanted_strokes(width: int) -> None:
     seen = np.zeros((1100, 900), dtype=np.uint8)
     lines = [
         np.array([[450, 1050], [450, 50]]),
@@ -58,28 +58,28 @@ def test_thinning_eats_no_slanted_stroke(width: int) -> None:
     ]
     for line in lines:
         cv2.line(seen, *line.tolist(), 1, width)
-    tree = draw_up(Sketch((900, 1100), ink=seen > 0)).tree
+    tree = trace_sketch(Sketch((900, 1100), ink=seen > 0)).tree
     assert np.quantile(away(tree, 0.5 + dense(lines)), 0.98) < 2
 
 
 def test_the_root_is_the_lowest_end() -> None:
-    root = draw_up(inked(sketch(TRUNK[::-1], *ARMS, widths=(30,)))).tree.skeleton.points[0]
+    root = trace_sketch(inked(sketch(TRUNK[::-1], *ARMS, widths=(30,)))).tree.skeleton.points[0]
     assert root[0] == pytest.approx(TRUNK[0][0], abs=2)
     assert root[1] == pytest.approx(TRUNK[0][1] + 15, abs=2)
 
 
-def test_a_blunt_foot_gets_no_toes() -> None:
+def test_a_blunt_trunk_base_makes_no_branches() -> None:
     seen = inked(sketch([[450, 900], [450, 50]], widths=(60,)))
     assert seen.ink is not None
     cv2.rectangle(foot := seen.ink.astype(np.uint8), (420, 800), (480, 1050), 1, cv2.FILLED)
-    tree = draw_up(replace(seen, ink=foot > 0)).tree
+    tree = trace_sketch(replace(seen, ink=foot > 0)).tree
     assert len(tree.chains()) == 1
     assert tree.skeleton.points[0] == pytest.approx([450.5, 1050], abs=2)
 
 
 def test_a_small_gap_is_bridged_with_a_warning() -> None:
     arm = np.array([[463, 600], [800, 500]])
-    drawing = draw_up(inked(sketch([[450, 1050], [450, 50]], arm)))
+    drawing = trace_sketch(inked(sketch([[450, 1050], [450, 50]], arm)))
     assert [one.code for one in drawing.warnings] == ["branch_joined"]
     assert away(drawing.tree, dense([arm])).max() < 2
     assert drawing.tree.levels().tolist() == [0, 1]
@@ -90,52 +90,52 @@ def test_specks_are_dropped() -> None:
     assert seen.ink is not None
     ink = seen.ink.copy()
     ink[900:903, 100:103] = ink[50, 800] = True
-    drawing = draw_up(replace(seen, ink=ink))
+    drawing = trace_sketch(replace(seen, ink=ink))
     assert len(drawing.tree.chains()) == 4
     assert drawing.warnings == ()
 
 
 def test_a_loop_is_cut_open_with_a_warning() -> None:
     arc = [[450, 700], [250, 550], [250, 450], [450, 300]]
-    drawing = draw_up(inked(sketch([[450, 1050], [450, 50]], arc)))
+    drawing = trace_sketch(inked(sketch([[450, 1050], [450, 50]], arc)))
     assert [one.code for one in drawing.warnings] == ["loop_cut"]
     assert away(drawing.tree, dense([np.array(arc)])).max() < 2
     assert drawing.tree.levels().tolist() == [0, 1]
     assert drawing.tree.skeleton.points[drawing.tree.chains()[1]][0] == pytest.approx([450, 700], abs=3)
 
 
-def test_branches_that_cross_pass_each_other() -> None:
+def test_branches_that_cross_stay_separate() -> None:
     arms = [[450, 800], [800, 450]], [[450, 500], [800, 750]]
-    tree = draw_up(inked(sketch([[450, 1050], [450, 50]], *arms))).tree
+    tree = trace_sketch(inked(sketch([[450, 1050], [450, 50]], *arms))).tree
     assert tree.levels().tolist() == [0, 1, 1]
     tips = [tree.skeleton.points[chain[-1]] for chain in tree.chains()[1:]]
     assert sorted(np.round(tip / 50).tolist() for tip in tips) == [[16, 9], [16, 15]]
 
 
 @pytest.mark.parametrize("width", [1.0, 24.0])
-def test_a_stroke_across_the_trunk_hangs_on_it_both_ways(width: float) -> None:
+def test_a_stroke_across_the_trunk_becomes_a_branch_on_each_side(width: float) -> None:
     bar = [[150, 600], [750, 560]]
-    tree = draw_up(inked(sketch([[450, 1050], [450, 50]], bar, widths=(30, width)))).tree
+    tree = trace_sketch(inked(sketch([[450, 1050], [450, 50]], bar, widths=(30, width)))).tree
     assert tree.levels().tolist() == [0, 1, 1]
     assert tree.skeleton.points[tree.branch == 0][-1] == pytest.approx([450, 35], abs=3)
 
 
 def test_at_a_fork_the_branch_goes_on_straight() -> None:
-    tree = draw_up(inked(sketch([[450, 1050], [450, 50]], [[450, 600], [650, 400]], widths=(20, 20)))).tree
+    tree = trace_sketch(inked(sketch([[450, 1050], [450, 50]], [[450, 600], [650, 400]], widths=(20, 20)))).tree
     assert tree.skeleton.points[tree.branch == 0][:, 0] == pytest.approx(450, abs=5)
 
 
 def test_a_ring_is_cut_and_followed() -> None:
     ring = np.zeros((400, 400), dtype=np.uint8)
     cv2.circle(ring, (200, 200), 150, 1, 2)
-    tree = draw_up(Sketch((400, 400), ink=ring > 0)).tree
+    tree = trace_sketch(Sketch((400, 400), ink=ring > 0)).tree
     angle = np.linspace(0, 2 * np.pi, 500)
     assert away(tree, 200.5 + 150 * np.stack([np.cos(angle), np.sin(angle)], axis=1)).max() < 2
 
 
 def test_a_big_picture_gives_the_tree_in_its_own_pixels() -> None:
     drawn = sketch(*(4 * np.array(line, dtype=float) for line in (TRUNK, *ARMS)), size=(3600, 4400))
-    tree = draw_up(inked(drawn, 4)).tree
+    tree = trace_sketch(inked(drawn, 4)).tree
     assert sorted(tree.levels().tolist()) == [0, 1, 1, 2]
     assert away(tree, dense([one.points for one in drawn.branches])).max() < 8
 
@@ -152,9 +152,9 @@ def test_a_big_picture_gives_the_tree_in_its_own_pixels() -> None:
         (np.random.default_rng(0).random((300, 300)) < 0.5, "too_many_strokes"),
     ],
 )
-def test_what_is_no_strokes_is_refused(ink: np.ndarray, code: str | None) -> None:
+def test_ink_that_does_not_consist_of_strokes_is_refused(ink: np.ndarray, code: str | None) -> None:
     try:
-        drawing = draw_up(Sketch((ink.shape[1], ink.shape[0]), ink=ink))
+        drawing = trace_sketch(Sketch((ink.shape[1], ink.shape[0]), ink=ink))
     except StrokesError as error:
         assert error.code == code
     else:
@@ -170,7 +170,7 @@ def test_any_scribble_gives_one_tree_or_is_refused() -> None:
             line = rng.integers(0, (260, 300), (int(rng.integers(2, 6)), 2))
             cv2.polylines(seen, [line.astype(np.int32)], False, 1, int(rng.integers(1, 14)))
         try:
-            tree = draw_up(Sketch((260, 300), ink=seen > 0)).tree
+            tree = trace_sketch(Sketch((260, 300), ink=seen > 0)).tree
         except StrokesError as error:
             assert error.code in ("tree_flat", "sketch_filled")
         else:
@@ -179,6 +179,6 @@ def test_any_scribble_gives_one_tree_or_is_refused() -> None:
 
 def test_the_same_picture_gives_the_same_tree() -> None:
     seen = inked(sketch(TRUNK, *ARMS, widths=(30,)), 5)
-    one, other = draw_up(seen), draw_up(seen)
+    one, other = trace_sketch(seen), trace_sketch(seen)
     assert np.array_equal(one.tree.skeleton.points, other.tree.skeleton.points)
     assert one.size == SIZE

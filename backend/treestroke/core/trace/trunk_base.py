@@ -1,24 +1,23 @@
-"""Where a trunk that a brush drew stands on the ground."""
+"""The base of a brushed trunk, where it meets the ground."""
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import arc_lengths
-from treestroke.core.types import Floats
+from treestroke.core.types import Floats, Mask
 
 REACH = 2.0
-"""Radii above the ground below which a trunk's line is drawn anew."""
+"""Height above the ground, in radii, below which the trunk's line is replaced."""
 WIDEST = 4.0
-"""Radii: where its ink is wider on either side it is the ground's, not the trunk's."""
+"""Half width, in radii, beyond which ink is the ground's and not the trunk's."""
 
 
-def stood(points: Floats, radii: Floats, ink: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Let a trunk's line (n, 2), root first, px, with radii (n,), stand on the middle of its foot, as wide as that is.
+def centre_trunk_base(points: Floats, radii: Floats, ink: Mask) -> tuple[Floats, Floats]:
+    """Centre a trunk's line (n, 2), root first, px, with radii (n,), px, on its base in the ink (h, w).
 
-    Thinning leads a wide foot's line into one of its corners; near the ground the middles of the rows of ink are the
-    line instead, as the two-sketch paper (section 4) has them everywhere. A line that lies rather than stands is given
-    back as it is.
+    Thinning leads a wide base's line into one of its corners. Near the ground the line therefore follows the middles of
+    the rows of ink, with half their widths as radii; the two-sketches paper (section 4) does so everywhere. The line is
+    returned unchanged if it does not rise from the ground.
     """
     reach = REACH * float(np.percentile(radii[: max(2, len(radii) // 4)], 75))
     ground = _ground(points[0], ink, 2 * reach)
@@ -32,20 +31,20 @@ def stood(points: Floats, radii: Floats, ink: NDArray[np.bool_]) -> tuple[Floats
     return np.vstack([rows[::-1, :2], points[first:]]), np.append(rows[::-1, 2], radii[first:])
 
 
-def _ground(root: Floats, ink: NDArray[np.bool_], reach: float) -> float:
-    """Find the lower edge, y, of the ink that hangs together with a root within reach of it."""
+def _ground(root: Floats, ink: Mask, reach: float) -> float:
+    """Return the y, px, of the lower edge of the ink that is connected with a root (2,), px, within reach of it."""
     low = np.maximum(np.floor(root - reach).astype(int), 0)
     x, y = np.floor(root).astype(int) - low
     near = ink[low[1] : int(root[1] + reach) + 1, low[0] : int(root[0] + reach) + 1]
     _, labels = cv2.connectedComponents(near.astype(np.uint8), connectivity=8)
-    own = np.flatnonzero((labels == labels[y, x]).any(axis=1)) if near[y, x] else [y]
-    return float(own[-1] + low[1] + 1)
+    rows = np.flatnonzero((labels == labels[y, x]).any(axis=1)) if near[y, x] else [y]
+    return float(rows[-1] + low[1] + 1)
 
 
-def _rows(start: Floats, radius: float, ink: NDArray[np.bool_], ground: float) -> Floats:
-    """Give middle x, y and half width (m, 3) of the rows of ink below a place, down to the ground.
+def _rows(start: Floats, radius: float, ink: Mask, ground: float) -> Floats:
+    """Return the middle (x, y) and half width (m, 3), px, of the rows of ink from a point (2,) down to the ground.
 
-    A foot never narrows: what is round is the brush's end.
+    Half widths never decrease downward: a base that gets narrower is the round end of the brush.
     """
     found, x, widest = [], float(start[0]), WIDEST * radius
     for y in range(int(start[1]) + 1, int(ground)):

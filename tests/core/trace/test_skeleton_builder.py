@@ -7,18 +7,18 @@ from tests.strategies import skeletons
 from treestroke.core.geometry.polyline import distances_to_segment
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts
-from treestroke.core.trace.draft import Draft, simplify, without, without_spurs
+from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_short_branches, drop_subtrees, simplify
 
 TREES = skeletons(dimensions=2, stems=False)
 STEM = np.array([[0.0, 90.0], [0.0, 60.0], [0.0, 30.0], [0.0, 0.0]])
 
 
-def drafted(spur_px: float) -> Draft:
+def drafted(spur_px: float) -> SkeletonBuilder:
     """Draw a stem of 90 px and a found side of the given length at its second joint."""
-    draft = Draft()
-    draft.grow(-1, STEM, 5.0, stroke=0)
-    draft.grow(1, np.array([[0.0, 60.0], [spur_px / 2, 60.0], [spur_px, 60.0]]), 2.0, stroke=-1)
-    return draft
+    builder = SkeletonBuilder()
+    builder.add_chain(-1, STEM, 5.0, stroke=0)
+    builder.add_chain(1, np.array([[0.0, 60.0], [spur_px / 2, 60.0], [spur_px, 60.0]]), 2.0, stroke=-1)
+    return builder
 
 
 def off_line(points: np.ndarray, tree: Skeleton) -> np.ndarray:
@@ -33,10 +33,10 @@ def test_a_chain_from_a_parent_begins_with_the_parent() -> None:
     assert tree.radii.tolist() == [5, 5, 5, 5, 2, 2]
 
 
-def test_growing_returns_the_last_joint() -> None:
-    draft = Draft()
-    assert draft.grow(-1, STEM, 5.0, stroke=0) == 3
-    assert draft.grow(3, STEM[-1:], 5.0, stroke=0) == 3
+def test_adding_a_chain_returns_its_last_joint() -> None:
+    builder = SkeletonBuilder()
+    assert builder.add_chain(-1, STEM, 5.0, stroke=0) == 3
+    assert builder.add_chain(3, STEM[-1:], 5.0, stroke=0) == 3
 
 
 def test_the_nearest_joint_is_found() -> None:
@@ -44,9 +44,9 @@ def test_the_nearest_joint_is_found() -> None:
 
 
 @given(TREES, st.data())
-def test_what_is_dropped_goes_with_all_its_descendants(tree: Skeleton, data: st.DataObject) -> None:
+def test_dropped_joints_go_with_all_their_descendants(tree: Skeleton, data: st.DataObject) -> None:
     dropped = data.draw(st.sets(st.integers(1, max(1, len(tree) - 1)))) if len(tree) > 1 else set()
-    kept, number = without(tree, np.arange(len(tree)), np.array(sorted(dropped), dtype=np.int64))
+    kept, number = drop_subtrees(tree, np.arange(len(tree)), np.array(sorted(dropped), dtype=np.int64))
     for joint in range(len(tree)):
         way = [joint]
         while tree.parents[way[-1]] >= 0:
@@ -57,14 +57,14 @@ def test_what_is_dropped_goes_with_all_its_descendants(tree: Skeleton, data: st.
 
 @pytest.mark.parametrize(("spur_px", "joints"), [(20.0, 4), (40.0, 6)])
 def test_a_found_branch_stays_when_it_is_long_enough(spur_px: float, joints: int) -> None:
-    draft = drafted(spur_px)
-    tree, stroke = without_spurs(draft.skeleton(), np.array(draft.stroke), 30.0)
+    builder = drafted(spur_px)
+    tree, stroke = drop_short_branches(builder.skeleton(), np.array(builder.stroke), 30.0)
     assert len(tree) == len(stroke) == joints
 
 
-def test_a_short_stroked_branch_is_no_spur() -> None:
-    draft = drafted(2.0)
-    tree, _ = without_spurs(draft.skeleton(), np.array([0, 0, 0, 0, 1, 1]), 30.0)
+def test_a_short_stroked_branch_is_not_dropped() -> None:
+    builder = drafted(2.0)
+    tree, _ = drop_short_branches(builder.skeleton(), np.array([0, 0, 0, 0, 1, 1]), 30.0)
     assert len(tree) == 6
 
 

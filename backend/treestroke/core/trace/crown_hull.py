@@ -1,4 +1,4 @@
-"""A crown's outline where none was drawn."""
+"""The crown's outline where none was drawn."""
 
 import cv2
 import numpy as np
@@ -7,15 +7,15 @@ from treestroke.core.skeleton.branched import Branched
 from treestroke.core.types import Floats
 
 MARGIN = 0.06
-"""Of the tree's height: as far as leaves stand out from the strokes."""
+"""Distance of the outline from the strokes, as a share of the tree's height."""
 CORNERS = 24
-"""Of the ring around each point of the hull."""
+"""Number of corners of the circle that rounds the hull."""
 
 
-def crown_around(tree: Branched, height: float, canvas: tuple[int, int]) -> Floats:
-    """Draw the rounded hull (k, 2), px, round all of a tree but the bare foot of its trunk, within the canvas.
+def estimate_crown(tree: Branched, height: float, canvas: tuple[int, int]) -> Floats:
+    """Return the rounded convex hull (k, 2), px, of a tree without the bare part of its trunk, clipped to the canvas.
 
-    The trunk is bare up to its first bud, if there is one; of a trunk alone the upper half is taken.
+    The trunk is bare up to its first bud; of a trunk alone the upper half is taken. ``height`` is the tree's, px.
     """
     stem = np.flatnonzero(tree.branch == 0)
     buds = tree.skeleton.parents[1:][np.diff(tree.branch) != 0]

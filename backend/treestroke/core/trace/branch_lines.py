@@ -1,4 +1,4 @@
-"""Lines that grow from one another, and the skeleton that they make."""
+"""Branch lines, each growing from a parent line, and the skeleton of them all."""
 
 from dataclasses import dataclass
 
@@ -11,58 +11,59 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats
 
 STEP = 0.008
-"""Of the tree's height: as far as joints lie apart at most."""
+"""Greatest distance between joints, as a share of the tree's height."""
 SAME_PLACE = 0.0005
-"""Of the tree's height: buds and bends nearer to each other share a joint."""
+"""Distance, as a share of the tree's height, within which buds and bends share a joint."""
 MAX_JOINTS = 10_000
-LEAST_HEIGHT = 0.02
-"""Of the canvas's long side: a lower drawing has no height to measure by."""
+"""Greatest number of joints of a skeleton."""
+MIN_HEIGHT = 0.02
+"""Least height of a drawing, as a share of the canvas's long side."""
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class BranchLine:
     """One branch as it was drawn.
 
     Attributes
     ----------
     points
-        (n, 2) px from its place on its bearer (the stem: from the root) to its tip, n >= 2.
+        (n, 2), n >= 2, px, from its place on its parent (the stem: from the root) to its tip.
     radii
-        (n,) px, 0 where they are not known.
-    bearer
-        The line that it grows from, an earlier one; -1 for the stem.
+        (n,) px, 0 where unknown.
+    parent
+        Index of the line that it grows from, an earlier one; -1 for the stem.
     place
-        How far along the bearer, px.
+        Where it begins, as a length along the parent, px.
     """
 
     points: Floats
     radii: Floats
-    bearer: int
+    parent: int
     place: float
 
 
 def tree_height(root: Floats, points: Floats, canvas: tuple[int, int]) -> float:
-    """Measure from the root (2,) up to the topmost of the points (n, 2), px.
+    """Return the height, px, of the topmost of the points (n, 2), px, above the root (2,).
 
     Raises
     ------
     StrokesError
-        They do not rise above the root.
+        The points do not rise above the root.
     """
     height = float(root[1] - points[:, 1].min())
-    if height < LEAST_HEIGHT * max(canvas):
+    if height < MIN_HEIGHT * max(canvas):
         what = "the strokes do not rise above the lower end of the trunk; draw the tree upward from its root"
         raise StrokesError.at(("branches",), what, "tree_flat")
     return height
 
 
 def check_length(length: float, height: float) -> None:
-    """Refuse lines that are longer together, px, than `MAX_JOINTS` on a tree of the given height, px.
+    """Check that lines of a total length, px, fit `MAX_JOINTS` on a tree of the given height, px.
 
     Raises
     ------
     StrokesError
-        They are.
+        They are too long.
     """
     most = MAX_JOINTS * STEP
     if length > most * height:
@@ -72,19 +73,19 @@ def check_length(length: float, height: float) -> None:
         raise StrokesError.at(("branches",), f"{what} is allowed; draw fewer or shorter ones", "strokes_too_long")
 
 
-def branched_from(lines: list[Line], height: float) -> Branched:
-    """Join lines (the stem first, each after its bearer) to one skeleton of a tree ``height`` px high.
+def join_lines(lines: list[BranchLine], height: float) -> Branched:
+    """Join lines (the stem first, each after its parent) to one skeleton of a tree ``height`` px high.
 
-    A joint stands at each line's own points, at each bud, and between them so that none are further than `STEP` apart.
+    Joints are put at each line's points, at each bud, and between them so that none are further than `STEP` apart.
 
     Raises
     ------
     StrokesError
-        It has more than `MAX_JOINTS`.
+        The skeleton has more than `MAX_JOINTS` joints.
     """
     buds: list[list[float]] = [[] for _ in lines]
     for line in lines[1:]:
-        buds[line.bearer].append(line.place)
+        buds[line.parent].append(line.place)
     points: list[Floats] = []
     radii: list[Floats] = []
     parents: list[int] = []
@@ -93,13 +94,13 @@ def branched_from(lines: list[Line], height: float) -> Branched:
     for index, line in enumerate(lines):
         at = _stations(line, buds[index], height)
         joints = list(range(len(parents), len(parents) + len(at)))
-        if line.bearer >= 0:
-            bearer_at, bearer_joints = stations[line.bearer]
-            joints = [bearer_joints[int(np.abs(bearer_at - line.place).argmin())], *joints[:-1]]
-        own = at if line.bearer < 0 else at[1:]
+        if line.parent >= 0:
+            parent_at, parent_joints = stations[line.parent]
+            joints = [parent_joints[int(np.abs(parent_at - line.place).argmin())], *joints[:-1]]
+        own = at if line.parent < 0 else at[1:]
         points.append(place_at(line.points, own))
         radii.append(np.interp(own, arc_lengths(line.points), line.radii))
-        parents += [-1, *joints[:-1]] if line.bearer < 0 else joints[:-1]
+        parents += [-1, *joints[:-1]] if line.parent < 0 else joints[:-1]
         branch += [index] * len(own)
         stations.append((at, joints))
     if len(parents) > MAX_JOINTS:
@@ -108,8 +109,8 @@ def branched_from(lines: list[Line], height: float) -> Branched:
     return Branched(Skeleton(np.concatenate(points), np.concatenate(radii), np.array(parents)), np.array(branch))
 
 
-def _stations(line: Line, buds: list[float], height: float) -> Floats:
-    """Choose where along a line its joints stand (m,), px: its ends, its buds, its bends and between them."""
+def _stations(line: BranchLine, buds: list[float], height: float) -> Floats:
+    """Return the places (m,), px along a line, of its joints: its ends, buds, bends, and evenly between them."""
     arcs = arc_lengths(line.points)
     near, fixed = SAME_PLACE * height, [0.0, float(arcs[-1])]
     for place in sorted([*buds]):

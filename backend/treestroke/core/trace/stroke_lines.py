@@ -1,8 +1,8 @@
-"""From the lines of a sketch to branches that grow from one another.
+"""From the strokes of a sketch to branch lines that grow from one another.
 
-Source: the moving circle of the two-sketch paper, section 4.2.3, on strokes rather than on pixels: what begins within
-reach of a line that is already linked grows from it. Ours takes the nearest first, puts the bud on the bearer's line
-rather than at one of its points, and splits a line that runs across its bearer.
+Source: the moving circle of the two-sketches paper, section 4.2.3, on strokes rather than on pixels: a stroke that
+begins within reach of a line that is already linked grows from it. Ours takes the nearest first, puts the bud on the
+parent's line rather than at one of its points, and splits a stroke that runs across its parent.
 """
 
 from collections.abc import Sequence
@@ -16,60 +16,60 @@ from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.polyline import arc_lengths, place_at, places_along, resample
 from treestroke.core.stroke_rules import TOUCH_SHARE, check_count, clamped
 from treestroke.core.strokes import Stroke, StrokeWarning
-from treestroke.core.trace.lines import Line, check_length, tree_height
+from treestroke.core.trace.branch_lines import BranchLine, check_length, tree_height
 from treestroke.core.types import Floats, Indices
 
 TOLERANCE = 0.0003
-"""Of the tree's height: as far as the line through the points that are kept runs from those that are left out."""
+"""Greatest distance of a dropped point from the simplified line, as a share of the tree's height."""
 TOUCHING = 0.25
-"""Of the reach: an end this near touches, and a line's first end is then believed to be its bud."""
+"""Distance, as a share of the reach, within which an end touches a line; a touching first end is taken for the bud."""
 RUNS_ALONG = 0.0015
-"""Of the tree's height: a stroke that begins this near to its bearer's line runs along it until it leaves it."""
+"""Distance, as a share of the tree's height, within which a stroke still runs along its parent's line."""
 OVERSHOOT = 0.006
-"""Of the tree's height: as much as a stroke may begin beyond its bearer."""
+"""Length, as a share of the tree's height, by which a stroke may begin beyond its parent."""
 BLOCK = 32
-"""Places along a stroke that are looked at together: most leave their bearer soon."""
+"""Places along a stroke that are compared at a time: most strokes leave their parent soon."""
 TOUCHES, NEAR, APART = 0, 2, 4
-"""How an end of a stroke meets what is linked: the less the sooner the stroke is linked. One more: its last end."""
+"""Ranks of a stroke's end by its distance from the lines, plus 1 for the last end; the least is linked first."""
 
 
 def link_strokes(
     branches: Sequence[Stroke], canvas: tuple[int, int]
-) -> tuple[list[Line], float, tuple[StrokeWarning, ...]]:
-    """Link branch strokes, the trunk's first, to lines; give the tree's height, px, and what was mended, too.
+) -> tuple[list[BranchLine], float, tuple[StrokeWarning, ...]]:
+    """Link branch strokes, the trunk's first, to lines; return them, the tree's height, px, and warnings of repairs.
 
     Raises
     ------
     StrokesError
-        There is no stroke, one of them is unusable (as `mend_strokes` says), or together they are no tree.
+        There is no stroke, one of them is unusable (as `mend_strokes` says), or together they do not form a tree.
     """
     check_count(1 + len(branches))
     if not branches:
         what = "there is none; draw one stroke from the tree's root up its trunk"
         raise StrokesError.at(("branches",), what, "trunk_missing")
-    strokes = [clamped(one, ("branches", i), *canvas, 2, "canvas") for i, one in enumerate(branches)]
+    strokes = [clamped(stroke, ("branches", i), *canvas, 2, "canvas") for i, stroke in enumerate(branches)]
     strokes[0], warnings = _upright(strokes[0])
-    height = tree_height(strokes[0].points[0], np.concatenate([one.points for one in strokes]), canvas)
-    check_length(sum(float(arc_lengths(one.points)[-1]) for one in strokes), height)
-    plain = [replace(one, points=_plain(one.points, TOLERANCE * height)) for one in strokes]
-    linking = _Linking(plain, height, TOUCH_SHARE * max(canvas))
+    height = tree_height(strokes[0].points[0], np.concatenate([stroke.points for stroke in strokes]), canvas)
+    check_length(sum(float(arc_lengths(stroke.points)[-1]) for stroke in strokes), height)
+    simple = [replace(stroke, points=_simplify(stroke.points, TOLERANCE * height)) for stroke in strokes]
+    linking = _Linking(simple, height, TOUCH_SHARE * max(canvas))
     linking.link_all()
     return linking.lines, height, (*warnings, *linking.warnings)
 
 
 def _upright(trunk: Stroke) -> tuple[Stroke, tuple[StrokeWarning, ...]]:
-    """Let the trunk begin at its lower end."""
+    """Turn the trunk so that it begins at its lower end."""
     if trunk.points[-1, 1] <= trunk.points[0, 1]:
         return trunk, ()
     detail = "the trunk was drawn downward; its lower end was taken for the root"
     return replace(trunk, points=trunk.points[::-1]), (StrokeWarning("stroke_turned", "branches/0", detail),)
 
 
-def _plain(points: Floats, tolerance: float) -> Floats:
-    """Leave out the points (n, 2) that the line does not need; its ends stay."""
-    ways = np.diff(points, axis=0)
-    # OpenCV measures to the straight line through a piece's ends, on which a piece that turns back runs beyond them.
-    back = np.flatnonzero((ways[1:] * ways[:-1]).sum(axis=1) <= 0) + 1
+def _simplify(points: Floats, tolerance: float) -> Floats:
+    """Drop the points (n, 2) that lie within a tolerance, px, of the line that remains; its ends stay."""
+    edges = np.diff(points, axis=0)
+    # OpenCV measures distances to the infinite line through a piece's ends, so no piece may turn back.
+    back = np.flatnonzero((edges[1:] * edges[:-1]).sum(axis=1) <= 0) + 1
     kept = [_approximated(piece, tolerance)[:-1] for piece in _pieces(points, back)]
     line = np.vstack([*kept, points[-1:]])
     line = line[np.append(True, np.abs(np.diff(line, axis=0)).max(axis=1) > 0)]
@@ -77,49 +77,50 @@ def _plain(points: Floats, tolerance: float) -> Floats:
 
 
 def _pieces(points: Floats, at: Indices) -> list[Floats]:
-    """Split a line where it turns back; a piece begins where the one before it ends."""
+    """Split a line (n, 2) at point indices; a piece begins with the last point of the one before it."""
     ends = [0, *at.tolist(), len(points) - 1]
     return [points[start : stop + 1] for start, stop in pairwise(ends)]
 
 
 def _approximated(piece: Floats, tolerance: float) -> Floats:
-    thinned = cv2.approxPolyDP(piece.astype(np.float32)[:, None], tolerance, closed=False)[:, 0].astype(np.float64)
-    return np.vstack([piece[:1], thinned[1:-1], piece[-1:]])
+    """Return a piece (n, 2) simplified by the algorithm of Douglas and Peucker, with its own ends."""
+    inner = cv2.approxPolyDP(piece.astype(np.float32)[:, None], tolerance, closed=False)[:, 0].astype(np.float64)
+    return np.vstack([piece[:1], inner[1:-1], piece[-1:]])
 
 
 class _Linking:
-    """Strokes, px, of a tree of one height, linked one after the other.
+    """The strokes of a tree, px, while they are linked one after the other.
 
-    ``rank``, ``gap``, ``bearer``, ``place`` and ``end`` (n,) tell of each stroke how it best meets what is linked: at
-    which place of which line, over what gap, px, and with which end, 0 or 1.
+    The arrays (n,) hold, for each stroke, its best connection to the lines so far: ``parent`` line, ``place`` along it
+    and ``gap`` to it, px, the ``end`` of the stroke, 0 or 1, and the ``rank``.
     """
 
     def __init__(self, strokes: list[Stroke], height: float, reach: float) -> None:
         self.strokes, self.height, self.reach = strokes, height, reach
         self.ends = np.stack([stroke.points[[0, -1]] for stroke in strokes])
-        self.lines: list[Line] = []
+        self.lines: list[BranchLine] = []
         self.names: list[int] = []
         self.warnings: list[StrokeWarning] = []
         count = len(strokes)
         self.rank, self.gap = np.full(count, APART), np.full(count, np.inf)
-        self.bearer, self.end = np.zeros((2, count), dtype=np.int64)
+        self.parent, self.end = np.zeros((2, count), dtype=np.int64)
         self.place = np.zeros(count)
         self.waiting = np.arange(1, count)
 
     def link_all(self) -> None:
-        """Link every stroke, the nearest to what is linked first."""
+        """Link every stroke, the one nearest to the lines so far first."""
         trunk = self.strokes[0]
-        self._add(Line(trunk.points, _radii(trunk, len(trunk.points)), -1, 0.0), 0)
+        self._add(BranchLine(trunk.points, _radii(trunk, len(trunk.points)), -1, 0.0), 0)
         while len(self.waiting):
             self.waiting = self.waiting[np.lexsort((self.waiting, self.gap[self.waiting], self.rank[self.waiting]))]
             index = int(self.waiting[0])
-            if self.rank[index] == APART and self._split_one():
+            if self.rank[index] == APART and self._split_crossing():
                 continue
             self.waiting = self.waiting[1:]
-            self._grow(index)
+            self._connect(index)
 
-    def _add(self, line: Line, name: int) -> None:
-        """Take a line in and see which ends of the others are nearest to it."""
+    def _add(self, line: BranchLine, name: int) -> None:
+        """Add a line and update the connections of the waiting strokes."""
         self.lines.append(line)
         self.names.append(name)
         waiting = self.waiting
@@ -130,36 +131,36 @@ class _Linking:
         ranks[:, 1] += 1
         ranks[gaps > self.reach] = APART
         end = np.where(ranks[:, 0] == ranks[:, 1], gaps.argmin(axis=1), ranks.argmin(axis=1))
-        one = np.arange(len(waiting)), end
-        better = (ranks[one] < self.rank[waiting]) | (
-            (ranks[one] == self.rank[waiting]) & (gaps[one] < self.gap[waiting])
-        )
-        which, one = waiting[better], (one[0][better], end[better])
-        self.rank[which], self.gap[which], self.place[which] = ranks[one], gaps[one], places[one]
-        self.bearer[which], self.end[which] = len(self.lines) - 1, one[1]
+        rows = np.arange(len(waiting))
+        rank, gap, place = ranks[rows, end], gaps[rows, end], places[rows, end]
+        better = (rank < self.rank[waiting]) | ((rank == self.rank[waiting]) & (gap < self.gap[waiting]))
+        improved = waiting[better]
+        self.rank[improved], self.gap[improved], self.place[improved] = rank[better], gap[better], place[better]
+        self.parent[improved], self.end[improved] = len(self.lines) - 1, end[better]
 
-    def _grow(self, index: int) -> None:
-        """Let a stroke grow from its bearer by its nearer end."""
-        stroke, bearer = self.strokes[index], int(self.bearer[index])
+    def _connect(self, index: int) -> None:
+        """Connect a stroke with its parent by its nearer end."""
+        stroke, parent = self.strokes[index], int(self.parent[index])
         if self.rank[index] == APART:
-            where = f"branches/{self.names[bearer]}"
+            where = f"branches/{self.names[parent]}"
             detail = f"it starts {self.gap[index]:.0f} px from every other branch and was joined to {where}"
             self.warnings.append(StrokeWarning("branch_joined", f"branches/{index}", detail))
         points = stroke.points[::-1] if self.end[index] else stroke.points
-        self._bear(replace(stroke, points=points), index, bearer, float(self.place[index]))
+        self._add_from(replace(stroke, points=points), index, parent, float(self.place[index]))
 
-    def _bear(self, stroke: Stroke, index: int, bearer: int, place: float) -> None:
-        points, bearer, place = self._leaving(stroke.points, bearer, place)
+    def _add_from(self, stroke: Stroke, index: int, parent: int, place: float) -> None:
+        """Add a stroke's line from a place, px, along a parent."""
+        points, parent, place = self._leaving(stroke.points, parent, place)
         if len(points) == 0:
             return
-        bud = place_at(self.lines[bearer].points, place)
+        bud = place_at(self.lines[parent].points, place)
         near = float(np.linalg.norm(points[0] - bud)) <= RUNS_ALONG * self.height
         points = np.vstack([bud, points[1:] if near else points])
         if len(points) > 1:
-            self._add(Line(points, _radii(stroke, len(points)), bearer, place), index)
+            self._add(BranchLine(points, _radii(stroke, len(points)), parent, place), index)
 
-    def _leaving(self, points: Floats, bearer: int, place: float) -> tuple[Floats, int, float]:
-        """Cut off where a stroke (n, 2) still runs along a line, or beyond its bearer: what is left, and its bud."""
+    def _leaving(self, points: Floats, parent: int, place: float) -> tuple[Floats, int, float]:
+        """Cut off the part of a stroke (n, 2) along a line or beyond its parent; return the rest and its bud."""
         near = RUNS_ALONG * self.height
         arcs = arc_lengths(points)
         at = np.append(np.arange(0.0, arcs[-1], near), arcs[-1])
@@ -171,16 +172,16 @@ class _Linking:
             last = int(off.argmax()) if off.any() else len(some)
             on = np.flatnonzero(gaps[:last] <= near)
             if len(on):
-                cut, bearer, place = float(some[on[-1]]), int(lines[on[-1]]), float(places[on[-1]])
+                cut, parent, place = float(some[on[-1]]), int(lines[on[-1]]), float(places[on[-1]])
             if last < len(some):
                 break
         if cut >= arcs[-1]:
-            return points[:0], bearer, place
+            return points[:0], parent, place
         rest = points[arcs > cut]
-        return (np.vstack([place_at(points, cut), rest]) if cut > 0 else points), bearer, place
+        return (np.vstack([place_at(points, cut), rest]) if cut > 0 else points), parent, place
 
     def _nearest(self, points: Floats) -> tuple[Indices, Floats, Floats]:
-        """Find the line nearest to each point (m, 2), the place along it, and the gap (m,)."""
+        """Return the line (m,) nearest to each point (m, 2), and the place along it and the gap to it (m,), px."""
         end_to_end = np.concatenate([line.points for line in self.lines])
         firsts = np.cumsum([0, *(len(line.points) for line in self.lines)])
         begins = arc_lengths(end_to_end)
@@ -190,8 +191,8 @@ class _Linking:
         line = np.minimum(line, len(self.lines) - 1)
         return line, np.maximum(places - begins[firsts[line]], 0.0), gaps
 
-    def _split_one(self) -> bool:
-        """Let the first stroke that runs across what is linked, though its ends are apart, grow to both sides of it."""
+    def _split_crossing(self) -> bool:
+        """Split the first stroke that runs across a line, though its ends are apart; return whether there was one."""
         for index in self.waiting.tolist():
             stroke = self.strokes[index]
             length = float(arc_lengths(stroke.points)[-1])
@@ -200,18 +201,19 @@ class _Linking:
             middle = int(gaps.argmin())
             if gaps[middle] <= TOUCHING * self.reach:
                 self.waiting = self.waiting[self.waiting != index]
-                self._bear_both(index, int(lines[middle]), length * middle / (len(dense) - 1), float(places[middle]))
+                self._add_both(index, int(lines[middle]), length * middle / (len(dense) - 1), float(places[middle]))
                 return True
         return False
 
-    def _bear_both(self, index: int, bearer: int, at: float, place: float) -> None:
-        """Let a stroke grow from its bearer both ways, from a length along it on."""
+    def _add_both(self, index: int, parent: int, at: float, place: float) -> None:
+        """Add both halves of a stroke, cut at a length along it, as lines of its parent."""
         stroke = self.strokes[index]
         arcs, here = arc_lengths(stroke.points), place_at(stroke.points, at)
         for half in (stroke.points[arcs < at][::-1], stroke.points[arcs > at]):
             if len(half):
-                self._bear(replace(stroke, points=np.vstack([here, half])), index, bearer, place)
+                self._add_from(replace(stroke, points=np.vstack([here, half])), index, parent, place)
 
 
 def _radii(stroke: Stroke, count: int) -> Floats:
+    """Return a stroke's radius, px, for each of its points (n,); 0 where unknown."""
     return np.full(count, 0.0 if stroke.width is None else stroke.width / 2)
