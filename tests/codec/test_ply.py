@@ -38,6 +38,23 @@ def test_trimesh_reads_the_bark() -> None:
     assert (mesh.visual.vertex_colors[:, :3] == (90, 60, 30)).all()
 
 
+def test_normals_are_those_of_the_bark() -> None:
+    raw = read(encode_ply(bark(), None, None)).metadata["_ply_raw"]["vertex"]["data"]
+    assert np.array_equal(np.stack([raw[name] for name in ("nx", "ny", "nz")], axis=1), bark().mesh.normals)
+
+
+def test_the_header_explains_the_frame_and_the_labels_and_names_no_tool() -> None:
+    head = encode_ply(bark(), leaves(), atlas()).split(b"end_header\n")[0].decode()
+    assert [line for line in head.splitlines() if line.startswith("comment")] == [
+        "comment treestroke: metres, right-handed, +Y up; label 0 bark, 1 leaf"
+    ]
+    assert "http" not in head
+
+
+def test_the_same_tree_gives_the_same_bytes() -> None:
+    assert encode_ply(bark(), leaves(), atlas()) == encode_ply(bark(), leaves(), atlas())
+
+
 def test_faces_are_labelled() -> None:
     faces = read(encode_ply(bark(), leaves(), atlas())).metadata["_ply_raw"]["face"]["data"]
     assert faces["label"].ravel().tolist() == [0] * len(bark().mesh.triangles) + [1, 1]

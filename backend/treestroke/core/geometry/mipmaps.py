@@ -38,7 +38,12 @@ class MipLevels:
 
 
 def mip_texels(pixels: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Halve pixels (h, w, c), any unit, sides powers of two, by averaging until a side is 1: all texels (n, c)."""
+    """Average pixels (h, w, c), any unit, sides powers of two, to half the size until a side is 1: all texels (n, c).
+
+    Notes
+    -----
+    Williams, "Pyramidal Parametrics", 1983.
+    """
     copies = [pixels]
     while min(copies[-1].shape[:2]) > 1:
         last = copies[-1]

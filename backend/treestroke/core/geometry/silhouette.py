@@ -93,12 +93,12 @@ def silhouette_from(surfaces: Sequence[Surface], view: Framing, azimuth_rad: flo
 
 
 def silhouettes(surfaces: Sequence[Surface], view: Framing) -> Mask:
-    """Draw the silhouette masks (4, height, width) from `HALF_AZIMUTHS_RAD`."""
+    """Draw the silhouette masks (4, height, width), px, from `HALF_AZIMUTHS_RAD` (docs/decisions/0013)."""
     return np.stack([silhouette_from(surfaces, view, azimuth) for azimuth in HALF_AZIMUTHS_RAD.tolist()])
 
 
 def likeness(seen: Mask, wanted: Mask) -> float:
-    """Return the intersection over union, 0 to 1, of two masks (h, w) of one shape; 1 where both are empty."""
+    """Return the intersection over union, 0 to 1, of two masks (h, w) of one shape; 1 if both are empty."""
     union = int((seen | wanted).sum())
     return float((seen & wanted).sum()) / union if union else 1.0
 

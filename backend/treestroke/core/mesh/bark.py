@@ -1,4 +1,4 @@
-"""Bark texture from the trunk's own pixels."""
+"""The bark texture, from the trunk's pixels in a picture."""
 
 from dataclasses import dataclass
 
@@ -12,34 +12,34 @@ from treestroke.core.mesh.bark_pattern import BarkForm, bark_pattern
 from treestroke.core.types import Floats
 
 TEXTURE_SIZE = (512, 256)
-"""Rows, columns; the width stands for a third of the trunk's circumference."""
+"""Rows, columns; the width covers a third of the trunk's circumference."""
 _PX_PER_RADIAN = TEXTURE_SIZE[1] / (2.0 * np.pi / 3.0)
-_SEEN_RAD = 0.87  # of the trunk's front half, to either side; beyond, pixels are squeezed and often not bark
+_SEEN_RAD = 0.87  # angle read to either side of the trunk's front; beyond, pixels are squeezed and often not bark
 _MOST_ROWS = 1024  # px, eight trunk radii
 _DARK = 0.01  # linear light added before logarithms, so that black noise does not become contrast
-_LIGHT = (0.022, 0.55)  # linear, of the mean: a silhouette is lifted, glaring sun dimmed to leave room for detail
+_LIGHT = (0.022, 0.55)  # least and greatest mean, linear: a silhouette is lifted, glaring sun leaves room for detail
 _WARM_GREY = np.array([1.08, 0.98, 0.9])
-_SMOOTH = (70.0, 45.0)  # px along and across; slower changes are light, not bark
-_OUTLIER = 3.5  # deviations from the trunk's colour, from which on a pixel is leaf, grass or sky
-_COLOUR_KEPT = 0.5  # of the differences in hue; much of them is the camera's noise and light through leaves
-_GRAIN = 0.22  # deviation of log light of fissures that are our own
+_SMOOTH = (70.0, 45.0)  # px along and across; slower changes are lighting, not bark
+_OUTLIER = 3.5  # standard deviations from the trunk's colour, from which on a pixel is leaf, grass or sky
+_COLOUR_KEPT = 0.5  # of the differences in hue: much of them is the camera's noise and light through leaves
+_PATTERN = 0.22  # standard deviation of log light of the procedural pattern
 _MILD = 0.3  # of that, for a known form on bark that the photo shows
 _STRENGTH: dict[BarkForm | None, float] = {None: 1.0, "smooth": 0.4, "furrowed": 1.35, "plated": 1.25, "peeling": 0.8}
-_CONTRAST = (0.16, 0.42)  # least and greatest deviation of log light in the texture
+_CONTRAST = (0.16, 0.42)  # least and greatest standard deviation of log light in the texture
 
 
 @dataclass(frozen=True)
 class BarkParams:
-    """How bark is read from the photo.
+    """Reading of bark from a photo.
 
     Attributes
     ----------
     smallest_radius_px
-        Trunk stretches thinner than this show no bark; 0 as radius means hidden.
+        Trunk stretches thinner than this show no bark; a radius of 0 means hidden.
     hidden_colour
-        sRGB colour of bark where no trunk can be seen.
+        sRGB colour of bark where no trunk is visible.
     form
-        Its pattern; None is furrows, and only where the photo shows too little.
+        The form of bark; None for furrows, which are added only where the photo shows too little.
     """
 
     smallest_radius_px: float = 2.5
@@ -48,7 +48,7 @@ class BarkParams:
 
     def __post_init__(self) -> None:
         if not self.smallest_radius_px > 0 or not all(0 <= c <= 255 for c in self.hidden_colour):
-            raise ValueError(f"bark needs a positive radius and an 8-bit colour, got {self}")
+            raise ValueError(f"bark needs a positive least radius and an 8-bit colour, got {self}")
 
 
 def bark_texture(
@@ -59,11 +59,11 @@ def bark_texture(
     rng: np.random.Generator,
     grain: Floats | None = None,
 ) -> NDArray[np.uint8]:
-    """Make a bark texture (512, 256, 3) uint8 sRGB that repeats in both directions and holds no light of the photo.
+    """Make a bark texture (512, 256, 3), uint8 sRGB, that tiles in both directions, without the photo's lighting.
 
     The trunk's front is unrolled, cleaned of pixels that are not bark, freed of slow changes of light (its
-    mean colour stays), and quilted. The fewer pixels the trunk has, the more fissures of our own are added
-    to its colours; where none is to be seen they stand alone, in ``hidden_colour``. A known form
+    mean colour stays), and quilted. The fewer pixels the trunk has, the more of a procedural pattern is added
+    to its colours; where no trunk is visible, the pattern stands alone, in ``hidden_colour``. A known form
     is always added a little.
 
     Parameters
@@ -73,26 +73,26 @@ def bark_texture(
     trunk_px, radii_px
         (n, 2) the visible trunk's axis from the root up, photo points, and (n,) its radius there, px; n >= 2.
     grain
-        (512, 256) the pattern of our own, as `bark_pattern` draws it; None draws one of ``params.form``.
+        (512, 256) the procedural pattern, as `bark_pattern` draws it; None draws one of ``params.form``.
     """
     own = bark_pattern(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
     grain = _STRENGTH.get(params.form, 1.0) * own[..., None]
     found = _unrolled(photo, trunk_px, radii_px, params)
     hidden = _linear(np.array(params.hidden_colour, dtype=np.float64))
     if found is None:
-        return _painted(_GRAIN * grain, hidden)
+        return _painted(_PATTERN * grain, hidden)
     strip, pixels_per_pixel = found
     clean = _bark_like(strip)
     strip, clean = _clean_run(strip, clean)
     if not clean.any():
-        return _painted(_GRAIN * grain, hidden)
+        return _painted(_PATTERN * grain, hidden)
     if len(strip) < _PX_PER_RADIAN or clean.mean() < 0.5:
-        return _painted(_GRAIN * grain, _mean_colour(strip, clean))
+        return _painted(_PATTERN * grain, _mean_colour(strip, clean))
     detail = _flattened(strip, clean)
     quilted = quilt(*_tall_enough(detail, clean), QuiltParams(TEXTURE_SIZE), rng)
-    # an enlarged strip holds nothing finer than a photo pixel: give it fissures in its own contrast
+    # an enlarged strip has no detail finer than a photo pixel: the pattern adds some
     added = np.clip((pixels_per_pixel - 2.0) / 8.0, 0.0 if params.form is None else _MILD, 1.0)
-    return _painted(_evened(quilted) + added * _GRAIN * grain, _mean_colour(strip, clean))
+    return _painted(_evened(quilted) + added * _PATTERN * grain, _mean_colour(strip, clean))
 
 
 def _unrolled(
@@ -125,7 +125,7 @@ def _unrolled(
 
 
 def _bark_like(strip: Floats) -> NDArray[np.bool_]:
-    """Tell (h, w) which pixels of a strip have the colours of its middle's lower half."""
+    """Mark the pixels (h, w) of a strip (h, w, 3) that have the colours of the lower half of its middle."""
     logs = _log(strip)
     core = logs[len(logs) // 2 :, logs.shape[1] // 3 : -logs.shape[1] // 3].reshape(-1, 3)
     middle = np.median(core, axis=0)
@@ -137,12 +137,12 @@ def _bark_like(strip: Floats) -> NDArray[np.bool_]:
 
 
 def _opponent(logs: Floats) -> Floats:
-    """Red over green and blue over green (..., 2), in logarithms."""
+    """Log ratios (..., 2) of red to green and of blue to green."""
     return logs[..., (0, 2)] - logs[..., (1, 1)]
 
 
 def _clean_run(strip: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.bool_]]:
-    """Keep the longest run of rows that are mostly bark."""
+    """Select the longest run of rows that are mostly bark."""
     share = smoothed(clean.mean(axis=1), 6.0)
     bounds = np.flatnonzero(np.diff(np.concatenate([[False], share > 0.6, [False]]).astype(np.int8)))
     if bounds.size == 0:
@@ -153,7 +153,7 @@ def _clean_run(strip: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray
 
 
 def _flattened(strip: Floats, clean: NDArray[np.bool_]) -> Floats:
-    """Take slow changes of light off a strip: log light (h, w, 3), mean 0; pixels that are not bark are 0."""
+    """Remove slow changes of light from a strip: log light (h, w, 3) of mean 0; 0 where there is no bark."""
     logs = _log(strip)
     inner = cv2.erode(clean.astype(np.float64), np.ones((7, 7)))
     weight: Floats = np.asarray(cv2.GaussianBlur(inner, (25, 25), 3.0, borderType=cv2.BORDER_REPLICATE), np.float64)
@@ -166,7 +166,7 @@ def _flattened(strip: Floats, clean: NDArray[np.bool_]) -> Floats:
 
 
 def _slow(values: Floats) -> Floats:
-    """Blur values (h, w) or (h, w, c) widely, on an eighth of their size."""
+    """Blur values (h, w) or (h, w, c) widely, at an eighth of their resolution."""
     size = (max(values.shape[1] // 8, 1), max(values.shape[0] // 8, 1))
     small = cv2.resize(values, size, interpolation=cv2.INTER_AREA)
     along, across = _SMOOTH
@@ -175,26 +175,26 @@ def _slow(values: Floats) -> Floats:
 
 
 def _tall_enough(detail: Floats, clean: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.bool_]]:
-    """Mirror a short strip upward until patches have room to differ."""
+    """Mirror a short strip upward until it has room for different patches."""
     while len(detail) < 1.5 * QuiltParams().patch[0]:
         detail, clean = np.concatenate([detail[::-1], detail]), np.concatenate([clean[::-1], clean])
     return detail, clean
 
 
 def _evened(detail: Floats) -> Floats:
-    """Bring contrast (h, w, 3) into the range that bark has."""
+    """Scale detail (h, w, 3), log light, to a contrast that bark has."""
     spread = float(detail.mean(axis=2).std())
     return detail * float(np.clip(spread, *_CONTRAST) / max(spread, 0.5 * _CONTRAST[0]))
 
 
 def _mean_colour(strip: Floats, clean: NDArray[np.bool_]) -> Floats:
-    """Mean linear colour (3,) of a strip's bark, lifted where it is all but black."""
+    """Mean linear colour (3,) of a strip's bark, 0 to 1."""
     colour = np.exp(np.mean(_log(strip[clean]), axis=0)) - _DARK
     return np.asarray(np.maximum(colour, 0.0))
 
 
 def _painted(detail: Floats, colour: Floats) -> NDArray[np.uint8]:
-    """Multiply a mean colour (3,), linear, by detail (h, w, 1 or 3) in log light; to sRGB."""
+    """Multiply a mean colour (3,), linear, by detail (h, w, 1 or 3) in log light: sRGB (h, w, 3)."""
     light = float(colour @ (0.2126, 0.7152, 0.0722))
     colour = colour * min(1.0, _LIGHT[1] / max(light, 1e-9)) + max(_LIGHT[0] - light, 0.0) * _WARM_GREY
     factor = np.exp(detail)
@@ -204,11 +204,11 @@ def _painted(detail: Floats, colour: Floats) -> NDArray[np.uint8]:
 
 
 def _linear(srgb: Floats) -> Floats:
-    """Turn sRGB, 0 to 255, to linear light, 0 to 1."""
+    """Convert sRGB, 0 to 255, to linear light, 0 to 1 (IEC 61966-2-1)."""
     c = srgb / 255.0
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
 def _log(linear: Floats) -> Floats:
-    """Logarithm of light, bounded below."""
+    """Return the logarithm of light, bounded below."""
     return np.log(linear + _DARK)

@@ -75,6 +75,10 @@ def impostor(surfaces: Sequence[Surface]) -> Surface:
     -------
     A surface. Its texture (512, 1024, 4) has straight alpha, which equals `ALPHA_CUT` where 42 % of a texel is covered
     (80 % on a tree without leaves), and colours under its transparent part too; its normal map is in tangent space.
+
+    Notes
+    -----
+    Why crossed planes: docs/decisions/0013.
     """
     view = framing(surfaces, _FINER * _INNER)
     texels = [_premultiplied(surface.texture) for surface in surfaces]

@@ -61,7 +61,7 @@ class LimbAxes:
 
     @property
     def is_stem(self) -> Mask:
-        """Whether each limb (k,) grows from no other; bool."""
+        """The mask (k,) of the limbs that grow from no other."""
         return np.asarray(self.parent_radius == 0)
 
 

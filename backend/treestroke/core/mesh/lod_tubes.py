@@ -74,6 +74,10 @@ def lod_tubes(skeleton: Skeleton, params: LodParams) -> Mesh:
     ------
     ValueError
         The skeleton is not 3D or has no length.
+
+    Notes
+    -----
+    Why silhouettes decide what stays: docs/decisions/0013.
     """
     if skeleton.points.shape[1] != 3:
         raise ValueError(f"tubes need a 3D skeleton, got {skeleton.points.shape[1]} coordinates")

@@ -44,6 +44,11 @@ def bark_normal_map(texture: NDArray[np.uint8], pattern: Floats, params: NormalM
     ------
     ValueError
         Texture and pattern differ in size.
+
+    Notes
+    -----
+    The normals are those of a height field (Blinn, "Simulation of Wrinkled Surfaces", 1978), encoded as in glTF 2.0,
+    section 3.9.3.
     """
     if texture.shape[:2] != pattern.shape:
         raise ValueError(f"texture and pattern must be of one size, got {texture.shape} and {pattern.shape}")

@@ -73,6 +73,11 @@ def place_rings(axes: LimbAxes, detail: float, blunt: float, collared: float) ->
         Tips of at least this radius, metres, get a round end; thinner ones end in a point.
     collared
         Limbs of at least this radius, metres, get a collar where they leave their parent.
+
+    Notes
+    -----
+    Axes are cubic Hermite curves through the joints, with the tangents of a non-uniform Catmull-Rom spline; the
+    cross-sections of generalized cylinders stand on them (Bloomenthal, "Modeling the Mighty Maple", 1985).
     """
     tangents = _joint_tangents(axes)
     along = _arc(axes)

@@ -50,6 +50,10 @@ def rig_of(skeleton: Skeleton, leaf_joints: Indices | None) -> Rig:
     ----------
     leaf_joints
         (m,) index of the joint that each leaf hangs at, or None for a bare tree, which has no flutter bones.
+
+    Notes
+    -----
+    Why bones, how many, and why they only turn: docs/decisions/0012.
     """
     hung = np.empty(0, dtype=np.int64) if leaf_joints is None else leaf_joints
     cuts = _cuts(skeleton, np.bincount(hung, minlength=len(skeleton)).astype(np.float64))

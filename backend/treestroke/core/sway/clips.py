@@ -76,7 +76,8 @@ def wind_of(skeleton: Skeleton, names: Sequence[str], leaf_joints: Indices | Non
     """Animate a tree (metres, world): its rig, and a clip for each name, ``breeze`` or ``gust``.
 
     The root stands still. Thick wood turns little and slowly, thin wood far and fast, each bone with its own phase.
-    ``leaf_joints`` (m,) is the index of the joint that each leaf hangs at, as in `rig_of`.
+    ``leaf_joints`` (m,) is the index of the joint that each leaf hangs at, as in `rig_of`. Why sums of harmonics:
+    docs/decisions/0012.
 
     Raises
     ------

@@ -25,14 +25,15 @@ def softness(rig: Rig) -> Floats:
 
 
 def moving_branches(rig: Rig) -> NDArray[np.bool_]:
-    """Mark the bones (b,) that are branches: neither the root nor for flutter."""
+    """Return the mask (b,) of the bones that are branches: neither the root nor for flutter."""
     return np.array([name.startswith("branch") for name in rig.names])
 
 
 def swing_amplitudes(rig: Rig, turns: Floats) -> Floats:
     """Estimate how far each bone's end swings (b,), metres, when bones turn by ``turns`` (b,), radians.
 
-    Bones turn independently, so the squares of what the bones on the path to the root contribute add up.
+    Bones turn independently, so the squares of what the bones on the path to the root contribute add up. Why bones only
+    turn: docs/decisions/0012.
     """
     squares = np.zeros(len(turns))
     for bone in range(1, len(turns)):
