@@ -46,7 +46,7 @@ def test_a_folder_of_other_things_is_not_served(
     (tmp_path / "letter.txt").write_bytes(b"")
     assert main([command, "--data", str(tmp_path), *(["--port", "0"] if command == "serve" else [])]) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"treestroke: {tmp_path}: others on this machine may look into it")
+    assert line.startswith(f"treestroke: {tmp_path}: other users of this machine can read it")
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
 
 

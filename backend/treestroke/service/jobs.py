@@ -90,7 +90,7 @@ class Pulse:
             state = self._state
             # A database that is busy or full for a moment costs one beat; the lease outlasts several.
             with suppress(SQLAlchemyError):
-                with self._database.stating() as session:
+                with self._database.autocommitting() as session:
                     stop = heartbeat(session, self._job, *state)
                 self._order = {None: Superseded, True: Stop, False: None}[stop]
                 shown, beaten = state, time.monotonic()

@@ -125,7 +125,7 @@ class _Child:
 
     def __init__(self, seconds: float, memory: int) -> None:
         self._seconds, self._memory = seconds, memory
-        self._turn = threading.Lock()
+        self._lock = threading.Lock()
         self._running: _Running | None = None
         self._closed = threading.Event()
         self.failure: str | None = None
@@ -133,12 +133,12 @@ class _Child:
 
     def start(self) -> None:
         """Start the process if it does not run; if that fails, the next call tries again."""
-        with self._turn, suppress(CannotStart, Crashed):
+        with self._lock, suppress(CannotStart, Crashed):
             self._ready()
 
     def call(self, work: Callable[..., Any], args: tuple[object, ...], kwargs: dict[str, object]) -> Any:
         """Return what ``work`` returns in the process, after the calls that already wait for it."""
-        with self._turn:
+        with self._lock:
             connection = self._ready()
             try:
                 connection.send((work, args, kwargs))
