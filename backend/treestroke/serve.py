@@ -28,7 +28,7 @@ STOP_SECONDS = 10.0
 _POLL_SECONDS = 0.2
 _LONGEST_BACKOFF_SECONDS = 10.0
 _STABLE_AFTER_SECONDS = 3.0
-"""A process that ran longer than this did not fail at its start, so the backoff begins anew."""
+"""A process that ran longer than this did not fail at its start, so its backoff is reset."""
 _START_SECONDS = 60.0
 
 
@@ -59,8 +59,8 @@ class Child:
         ended.communicate()  # closes its standard input
         self._failures = 1 if now - self._started > _STABLE_AFTER_SECONDS else self._failures + 1
         self._next = now + min(0.1 * 2**self._failures, _LONGEST_BACKOFF_SECONDS)
-        told = f"treestroke: {self.module} ended ({ended.returncode}) and is started again"
-        print(told, file=sys.stderr, flush=True)
+        message = f"treestroke: {self.module} ended ({ended.returncode}) and is started again"
+        print(message, file=sys.stderr, flush=True)
 
     def _start(self) -> subprocess.Popen[bytes]:
         previous, self._run_id = self._run_id, secrets.token_hex(12)

@@ -235,7 +235,7 @@ def test_a_database_that_is_lost_or_empty_beside_files_is_ill(folder: Path) -> N
     for _ in range(2):
         found = findings(folder)["database"]
         assert (found.ok, found.mend) == (
-            False, "restore it from a copy, or move the folder 'blobs' away to start anew",
+            False, "restore it from a copy, or move the folder 'blobs' away to start with an empty database",
         )  # fmt: skip
         assert f"the database is lost or empty, but there are files in {folder / 'blobs'}" in found.found
         (folder / "treestroke.sqlite3").write_bytes(b"")

@@ -45,7 +45,7 @@ _WEB_PROCESS_ONLY = ("broker", "dispatcher", "tracers")
 
 @dataclass(frozen=True)
 class Finding:
-    """The result of one check: whether all is well, what was found, and how to mend it."""
+    """The result of one check: whether all is in order, what was found, and how to mend it."""
 
     part: str
     ok: bool
@@ -71,8 +71,8 @@ def readiness(shelf: Shelf, dispatcher: Dispatcher) -> Health:
     free = shutil.disk_usage(shelf.blobs.folder.parent).free
     checks["storage"] = "ok" if free > _MIN_FREE_BYTES else f"only {free // 10**6} MB free"
     down = checks["database"] != "ok"
-    well = all(check == "ok" for check in checks.values())
-    return Health(status="down" if down else "ok" if well else "degraded", checks=checks)
+    ok = all(check == "ok" for check in checks.values())
+    return Health(status="down" if down else "ok" if ok else "degraded", checks=checks)
 
 
 def examine(settings: Settings) -> Iterator[Finding]:
@@ -147,9 +147,9 @@ def _nearest(folder: Path) -> Path:
 
 def _disk(settings: Settings) -> Finding:
     free = shutil.disk_usage(_nearest(settings.folder)).free
-    well = free > _MIN_FREE_BYTES
-    mend = "" if well else f"free space until {_MIN_FREE_BYTES // 10**6} MB are free, or move the data folder"
-    return Finding("disk", well, f"{free // 10**6} MB free", mend)
+    ok = free > _MIN_FREE_BYTES
+    mend = "" if ok else f"free space until {_MIN_FREE_BYTES // 10**6} MB are free, or move the data folder"
+    return Finding("disk", ok, f"{free // 10**6} MB free", mend)
 
 
 def _tracers(settings: Settings) -> Finding:
@@ -288,7 +288,7 @@ def _workers(_: Settings, database: Database) -> Finding:
     before = _beats(database)
     if not before:
         waiting = _waiting(database)
-        mend = f"start {_SERVE}, or `treestroke worker` where workers run elsewhere" if waiting else ""
+        mend = f"start {_SERVE}, or `treestroke worker` if workers run elsewhere" if waiting else ""
         return Finding(
             "workers", not waiting, f"none is running; {waiting} models wait" if waiting else "none is running", mend
         )

@@ -1,8 +1,8 @@
 """A small pool of processes for work that a user waits for: decoding photos and tracing.
 
 Processes, because a graph cut holds Python's global lock all the time and because a decoder may crash: a process that
-dies or takes too long is replaced without effect on the others. Each is spawned anew: a fork server would start them
-faster, but if it or its socket were lost, no more could be started.
+dies or takes too long is replaced without effect on the others. They are spawned, not forked: a fork server would start
+them faster, but if it or its socket were lost, no more could be started.
 """
 
 import multiprocessing

@@ -75,7 +75,7 @@ def check_version(folder: Path) -> None:
     if not found and any(files for _, _, files in os.walk(folder / _BLOBS)):
         raise DataFolderError(
             f"{path}: the database is lost or empty, but there are files in {folder / _BLOBS}; restore it from a copy, "
-            f"or move the folder {_BLOBS!r} away to start anew"
+            f"or move the folder {_BLOBS!r} away to start with an empty database"
         )
     if unknown := found - known_revisions():
         raise DataFolderError(

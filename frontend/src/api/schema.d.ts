@@ -215,8 +215,8 @@ export interface paths {
          * Follow Model
          * @description Follow a model: ``snapshot``, then ``progress``, one ``preview``, and ``succeeded``, ``failed`` or ``canceled``.
          *
-         *     Only what must not be missed carries an id: ``preview`` and the last event. After a broken connection ``preview``
-         *     comes again unless ``Last-Event-ID`` says that it came; the last event always comes.
+         *     Only ``preview`` and the last event have an id. After a broken connection ``preview`` is sent again unless
+         *     ``Last-Event-ID`` says that it arrived; the last event is always sent.
          */
         get: operations["follow_model"];
         put?: never;
@@ -1474,12 +1474,12 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -1487,7 +1487,7 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -1517,7 +1517,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2456,12 +2456,12 @@ export interface operations {
                     "model/gltf-binary": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2469,7 +2469,7 @@ export interface operations {
                     "model/gltf-binary": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2499,7 +2499,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2551,12 +2551,12 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2564,7 +2564,7 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2594,7 +2594,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2646,12 +2646,12 @@ export interface operations {
                     "application/json": components["schemas"]["Strokes"];
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2659,7 +2659,7 @@ export interface operations {
                     "application/json": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2689,7 +2689,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2741,12 +2741,12 @@ export interface operations {
                     "application/zip": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2754,7 +2754,7 @@ export interface operations {
                     "application/zip": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2784,7 +2784,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2852,12 +2852,12 @@ export interface operations {
                     "text/csv; charset=utf-8": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2871,7 +2871,7 @@ export interface operations {
                     "text/csv; charset=utf-8": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2901,7 +2901,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2956,12 +2956,12 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2970,7 +2970,7 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -3000,7 +3000,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
