@@ -1,8 +1,10 @@
 """The launcher of web process and worker."""
 
 import subprocess
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 from tests.running import serving
@@ -13,12 +15,19 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 
 
+@pytest.fixture(autouse=True)
+def _own_environment() -> Iterator[None]:
+    """Undo what a command that runs in this process sets."""
+    with patch.dict("os.environ"):
+        yield
+
+
 def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with serving(tmp_path / "data"):
         for path in (tmp_path / "data").glob("*lock*"):
             path.unlink()
         assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 2
-        assert "another `treestroke serve` keeps its data there; stop it, or name another" in capsys.readouterr().err
+        assert "another `treestroke serve` uses this data folder; stop it, or name another" in capsys.readouterr().err
     assert (tmp_path / "data").stat().st_mode & 0o077 == 0
 
 
@@ -37,7 +46,7 @@ def test_a_folder_of_other_things_is_not_served(
     (tmp_path / "letter.txt").write_bytes(b"")
     assert main([command, "--data", str(tmp_path), *(["--port", "0"] if command == "serve" else [])]) == 1
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith(f"treestroke: {tmp_path}: others on this machine may look into it")
+    assert line.startswith(f"treestroke: {tmp_path}: other users of this machine can read it")
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
 
 
@@ -82,7 +91,7 @@ def test_a_process_that_gives_up_at_once_is_started_ever_more_slowly(
     starts: list[float] = []
     for _ in range(200):
         before = child._process
-        child.look()
+        child.keep_running()
         if child._process is not None and child._process is not before:
             starts.append(clock[0])
             subprocess.Popen.wait(child._process)

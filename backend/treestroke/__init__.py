@@ -1,8 +1,8 @@
-"""One photo of a real tree and a few loose strokes, or two sketches of a tree, become a 3D tree.
+"""A 3D tree from a photo of a real tree and a few strokes, or from two sketches of a tree.
 
-The calls are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)`` and
+The functions are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)`` and
 ``treestroke.sketch(front, side, settings, seed, report)``.
-They are imported at first use, so that ``treestroke --version`` and a wrong command answer at once.
+They are imported at first use, so that ``treestroke --version`` and a wrong command respond at once.
 """
 
 from importlib import import_module

@@ -274,8 +274,8 @@ def _doctor(options: argparse.Namespace) -> None:
 
     examined = ill = 0
     for finding in examine(settings):
-        examined, ill = examined + 1, ill + (not finding.well)
-        print(f"{'ok ' if finding.well else 'ILL'}  {finding.part:<{_PART_WIDTH}}  {finding.found}", flush=True)
+        examined, ill = examined + 1, ill + (not finding.ok)
+        print(f"{'ok ' if finding.ok else 'ILL'}  {finding.part:<{_PART_WIDTH}}  {finding.found}", flush=True)
         if finding.mend:
             print(f"     {'':<{_PART_WIDTH}}  mend: {finding.mend}", flush=True)
     if ill:

@@ -1,4 +1,4 @@
-"""Logs: one line an event, JSON where nobody looks and plain where somebody does; a line that repeats is told once."""
+"""Logs: one line for each event, plain on a terminal and JSON elsewhere; repeated lines are counted."""
 
 import logging
 import sys
@@ -9,13 +9,13 @@ from typing import TextIO
 
 import structlog
 
-_SECONDS = 10.0
-"""For so long what repeats a line is counted instead of written."""
-_MANY = 500
+_REPEAT_SECONDS = 10.0
+"""Time during which repetitions of a line are counted instead of written."""
+_MAX_LINES = 500
 
 
 class _Line:
-    """A line that was written, and what repeated it since."""
+    """A line that was written, and its repetitions since then."""
 
     def __init__(self, written: float) -> None:
         self.written, self.repeated = written, 0
@@ -23,54 +23,54 @@ class _Line:
 
 
 class ThinnedHandler(logging.StreamHandler[TextIO]):
-    """Writes a line that is new at once; of those that repeat one within some seconds the last alone, with how many."""
+    """Writes new lines at once; of repetitions within some seconds only the last, with their number."""
 
-    def __init__(self, stream: TextIO, seconds: float = _SECONDS) -> None:
+    def __init__(self, stream: TextIO, seconds: float = _REPEAT_SECONDS) -> None:
         super().__init__(stream)
         self._seconds = seconds
         self._lines: dict[Hashable, _Line] = {}
         self._timer: threading.Timer | None = None
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a record, or count it."""
+        """Write a record, or count it as a repetition."""
         key, now = _content(record), time.monotonic()
         line = self._lines.get(key)
         if line is None or (not line.repeated and now - line.written >= self._seconds):
-            if len(self._lines) >= _MANY:
-                self._lines = {one: line for one, line in self._lines.items() if line.repeated}
+            if len(self._lines) >= _MAX_LINES:
+                self._lines = {key: line for key, line in self._lines.items() if line.repeated}
             self._lines[key] = _Line(now)
             super().emit(record)
             return
         line.repeated, line.last = line.repeated + 1, record
-        if self._timer is None or not self._timer.is_alive():  # a fork has the object, but not its thread
-            self._timer = threading.Timer(self._seconds, self._tell_repeated)
+        if self._timer is None or not self._timer.is_alive():  # a forked process has the timer, but not its thread
+            self._timer = threading.Timer(self._seconds, self._write_repeated)
             self._timer.daemon = True
             self._timer.start()
 
     def close(self) -> None:
-        """Tell what was counted."""
-        self._tell_repeated()
+        """Write the counted repetitions, then close."""
+        self._write_repeated()
         super().close()
 
-    def _tell_repeated(self) -> None:
+    def _write_repeated(self) -> None:
         with self.lock:  # type: ignore[union-attr]
-            told, self._lines, self._timer = self._lines, {}, None
-            for line in told.values():
+            lines, self._lines, self._timer = self._lines, {}, None
+            for line in lines.values():
                 if line.last is not None:
-                    super().emit(_of_many(line.last, line.repeated))
+                    super().emit(_summary(line.last, line.repeated))
 
 
 def _content(record: logging.LogRecord) -> Hashable:
-    """Give all that a line says but its time: lines about different jobs are different."""
-    said = record.msg if isinstance(record.msg, dict) else {"event": record.getMessage()}
-    error = record.exc_info or said.get("exc_info")
+    """Return what a line says, without its time: lines about different jobs are different."""
+    values = record.msg if isinstance(record.msg, dict) else {"event": record.getMessage()}
+    error = record.exc_info or values.get("exc_info")
     error = sys.exception() if error is True else error[1] if isinstance(error, tuple) else error
-    content = {**said, "timestamp": None, "exc_info": repr(error)}
+    content = {**values, "timestamp": None, "exc_info": repr(error)}
     return record.name, record.levelno, repr(sorted(content.items()))
 
 
-def _of_many(record: logging.LogRecord, repeated: int) -> logging.LogRecord:
-    """Let a record stand for many; the trace is with the first of them."""
+def _summary(record: logging.LogRecord, repeated: int) -> logging.LogRecord:
+    """Return a record that stands for several; the traceback was written with the first of them."""
     record.repeated = repeated
     record.exc_info = record.exc_text = None
     if isinstance(record.msg, dict):
@@ -79,28 +79,28 @@ def _of_many(record: logging.LogRecord, repeated: int) -> logging.LogRecord:
 
 
 def _add_repeated(_logger: object, _name: str, event: structlog.typing.EventDict) -> structlog.typing.EventDict:
-    """Say how many lines one stands for, where it is more than one."""
+    """Add the number of lines that a summary stands for."""
     repeated = getattr(event["_record"], "repeated", 0)
     return {**event, "repeated": repeated} if repeated else event
 
 
-def _is_news(record: logging.LogRecord) -> bool:
-    """Leave out what uvicorn says of a request that is no HTTP: the service's own line names who sent it."""
+def _is_needed(record: logging.LogRecord) -> bool:
+    """Drop uvicorn's line on an invalid request: the service's own line has the sender."""
     return record.msg != "Invalid HTTP request received."
 
 
 def start_logging() -> None:
-    """Write structured lines to stderr; the libraries' own lines take the same form."""
-    watched = sys.stderr.isatty()
+    """Set up structured logging to stderr, for the libraries' lines too."""
+    on_terminal = sys.stderr.isatty()
     shared: list[structlog.typing.Processor] = [
         structlog.contextvars.merge_contextvars,
         structlog.processors.add_log_level,
-        structlog.processors.TimeStamper(fmt="%H:%M:%S" if watched else "iso", utc=not watched),
+        structlog.processors.TimeStamper(fmt="%H:%M:%S" if on_terminal else "iso", utc=not on_terminal),
         structlog.processors.StackInfoRenderer(),
     ]
-    shape: list[structlog.typing.Processor] = (
+    renderers: list[structlog.typing.Processor] = (
         [structlog.dev.ConsoleRenderer(pad_event_to=0, pad_level=False)]
-        if watched
+        if on_terminal
         else [structlog.processors.format_exc_info, structlog.processors.JSONRenderer()]
     )
     structlog.configure(
@@ -113,7 +113,7 @@ def start_logging() -> None:
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(
             foreign_pre_chain=shared,
-            processors=[_add_repeated, structlog.stdlib.ProcessorFormatter.remove_processors_meta, *shape],
+            processors=[_add_repeated, structlog.stdlib.ProcessorFormatter.remove_processors_meta, *renderers],
         )
     )
     root = logging.getLogger()
@@ -121,4 +121,4 @@ def start_logging() -> None:
     root.setLevel(logging.INFO)
     for noisy in ("alembic", "celery", "kombu", "uvicorn", "httpx"):
         logging.getLogger(noisy).setLevel(logging.WARNING)
-    logging.getLogger("uvicorn.error").addFilter(_is_news)
+    logging.getLogger("uvicorn.error").addFilter(_is_needed)

@@ -1,4 +1,4 @@
-"""Processes that end with the one that started them, however that one ends, and what that one tells them."""
+"""What a parent process tells its children, and children that end when their parent ends, however it ends."""
 
 import os
 import signal
@@ -6,31 +6,32 @@ import threading
 import time
 
 PARENT_HOLDS_STDIN = "PARENT_HOLDS_STDIN"
-"""Set where the parent holds this process's standard input open as long as it lives."""
+"""Environment variable: the parent keeps this process's standard input open for as long as it lives."""
+LISTENER = "LISTEN_FD"
+"""Environment variable: the descriptor of the socket on which the web process listens."""
 RUN_ID, PREVIOUS_RUN_ID = "RUN_ID", "PREVIOUS_RUN_ID"
-"""Set by a parent that starts a process again and again: the name of this run, and of the one that ended before it."""
-
-_LOOK_SECONDS = 0.5
+"""Environment variables: the id of this run of a process that is restarted, and of the run before it, which ended."""
+_POLL_SECONDS = 0.5
 
 
 def stop_with_parent() -> None:
-    """Stop this process, as by SIGTERM, when its parent is gone."""
+    """Send this process SIGTERM as soon as its parent ends, if the parent holds its standard input."""
     if os.environ.pop(PARENT_HOLDS_STDIN, None):
-        threading.Thread(target=_wait, name="lifeline", daemon=True).start()
+        threading.Thread(target=_wait_for_end_of_stdin, name="parent-process", daemon=True).start()
 
 
-def _wait() -> None:
+def _wait_for_end_of_stdin() -> None:
     while os.read(0, 1):
         pass
     os.kill(os.getpid(), signal.SIGTERM)
 
 
 def kill_with_parent(parent: int) -> None:
-    """Kill this process, a child of ``parent``, soon after that one is gone: nobody bounds its time any more."""
-    threading.Thread(target=_follow, args=(parent,), name="follow", daemon=True).start()
+    """Kill this process soon after ``parent``, its parent's process id, ended: nothing limits its time any more."""
+    threading.Thread(target=_wait_for_parent, args=(parent,), name="parent-process", daemon=True).start()
 
 
-def _follow(parent: int) -> None:
+def _wait_for_parent(parent: int) -> None:
     while os.getppid() == parent:
-        time.sleep(_LOOK_SECONDS)
+        time.sleep(_POLL_SECONDS)
     os.kill(os.getpid(), signal.SIGKILL)

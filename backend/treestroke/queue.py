@@ -1,4 +1,4 @@
-"""The queue: Celery, which carries the ids of jobs as hints. The jobs themselves are rows of the database."""
+"""The queue: Celery messages with the ids of jobs. The jobs themselves are rows of the database."""
 
 import json
 import secrets
@@ -15,20 +15,20 @@ from treestroke.settings import Settings
 
 TASK = "treestroke.grow"
 _SOCKET_SECONDS = 2.0
-"""A broker that does not answer within this is down."""
+"""A broker that does not respond within this time is down."""
 _POLL_SECONDS = 0.1
 _GRACE_SECONDS = 10
-"""After its own limit, which the job watches itself, a process that does not react is killed."""
+"""Time after a job's own limit, which it checks itself, at which a process that does not react is killed."""
 _LOST_SECONDS = 0.5
-"""After a process died, until its job is given back. No answer of it is waited for: what it did is in the database."""
+"""Time from a process's death until its job is taken back; its results are in the database, not in messages."""
 DRAIN_SECONDS = 7.0
-"""What a worker that is told to stop may still take for what it has begun."""
+"""Time that a worker which is told to stop has for its running jobs."""
 
 
 def make_queue(settings: Settings) -> Celery:
-    """Make the Celery application: no result backend, messages acknowledged when they are taken.
+    """Return the Celery application: no result backend, messages acknowledged when they are received.
 
-    A lost message, a lost worker and a message that comes twice are all mended by the row's lease.
+    The lease in the job's row covers lost messages, lost workers and messages that arrive twice.
     """
     app = Celery("treestroke", set_as_current=False, fixups=[])
     app.conf.update(
@@ -56,43 +56,43 @@ def make_queue(settings: Settings) -> Celery:
 
 
 def send_job_message(app: Celery, model: str) -> None:
-    """Tell the workers that a job waits.
+    """Send the workers a message that a job is queued.
 
     Raises
     ------
     kombu.exceptions.OperationalError, OSError
-        The broker does not take it.
+        The broker does not accept it.
     """
     app.send_task(TASK, args=[model], retry=False, ignore_result=True)
 
 
 class _FolderChannel(filesystem.Channel):
-    """Messages as files that are seen whole or not at all; kombu's own are seen while they are being written.
+    """Messages as files that become visible when they are complete; kombu's are visible while they are written.
 
-    One that is no message all the same is thrown away: it would end the worker that reads it.
+    A file that is not a message is removed: it would end the worker that reads it.
     """
 
     def _put(self, queue: str, payload: Any, **_: Any) -> None:  # type: ignore[override]
         name = f"{time.time_ns():020d}-{secrets.token_hex(8)}"
-        begun = Path(self.data_folder_out) / f"{name}.part"
-        begun.parent.mkdir(mode=0o700, parents=True, exist_ok=True)  # somebody may have removed it
+        unfinished = Path(self.data_folder_out) / f"{name}.part"
+        unfinished.parent.mkdir(mode=0o700, parents=True, exist_ok=True)  # it may have been removed
         try:
-            begun.write_text(json.dumps(payload))
-            begun.rename(begun.with_name(f"{name}.{queue}.msg"))
+            unfinished.write_text(json.dumps(payload))
+            unfinished.rename(unfinished.with_name(f"{name}.{queue}.msg"))
         except OSError:
-            begun.unlink(missing_ok=True)
+            unfinished.unlink(missing_ok=True)
             raise
 
     def _size(self, queue: str) -> int:
         return len(self._messages(queue))
 
     def _messages(self, queue: str) -> list[Path]:
-        """List the messages in their order; none where the folder is gone."""
+        """Return the messages in their order; none if the folder is missing."""
         return sorted(Path(self.data_folder_in).glob(f"*.{queue}.msg"))
 
     def _get(self, queue: str) -> Any:  # type: ignore[override]
         for path in self._messages(queue):
-            # Whoever removes it has it.
+            # Of several processes that read it, the one that removes the file receives the message.
             with suppress(FileNotFoundError, ValueError):
                 content = path.read_bytes()
                 path.unlink()
@@ -103,21 +103,21 @@ class _FolderChannel(filesystem.Channel):
 
 
 class _FolderTransport(filesystem.Transport):
-    """A folder that Celery's event loop looks into.
+    """A folder that Celery's event loop polls.
 
-    Only with its event loop has a pool a line of its own to each child. Otherwise the children share one, whose lock a
-    child that is killed at the wrong moment takes with it: nothing is ever grown again.
+    Only with the event loop does Celery's pool have a pipe to each child. Otherwise all children share one, and a child
+    that is killed while it holds the pipe's lock blocks the others for ever.
     """
 
     Channel = _FolderChannel
     implements = filesystem.Transport.implements.extend(asynchronous=True)
 
     def register_with_event_loop(self, connection: Any, loop: Any) -> None:
-        """Take a message now and then."""
-        loop.call_repeatedly(_POLL_SECONDS, self._look, connection)
+        """Poll for messages at intervals."""
+        loop.call_repeatedly(_POLL_SECONDS, self._poll, connection)
 
-    def _look(self, connection: Any) -> None:
-        with suppress(TimeoutError):  # there is none
+    def _poll(self, connection: Any) -> None:
+        with suppress(TimeoutError):  # no message
             self.drain_events(connection, timeout=0)
 
 

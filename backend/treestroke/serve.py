@@ -1,4 +1,4 @@
-"""`treestroke serve`: a web process and a worker, started, watched, restarted and stopped together."""
+"""`treestroke serve`: starts, supervises, restarts and stops a web process and a worker."""
 
 import errno
 import fcntl
@@ -11,70 +11,75 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Sequence
 from contextlib import closing, suppress
 from http.client import HTTPConnection
 from pathlib import Path
 from types import FrameType
 
 from treestroke.core.errors import SettingsError
-from treestroke.parent_process import PARENT_HOLDS_STDIN, PREVIOUS_RUN_ID, RUN_ID
+from treestroke.parent_process import LISTENER, PARENT_HOLDS_STDIN, PREVIOUS_RUN_ID, RUN_ID
 from treestroke.settings import Settings
 from treestroke.store.data_folder import check_version, prepare_folder
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 STOP_SECONDS = 10.0
-"""What the processes may take to finish or give back what they do."""
-_LOOK_SECONDS = 0.2
-_SLOWEST_RESTART_SECONDS = 10.0
-_WELL_AFTER_SECONDS = 3.0
+"""Time that the processes have to finish or give back their work."""
+_POLL_SECONDS = 0.2
+_LONGEST_BACKOFF_SECONDS = 10.0
+_STABLE_AFTER_SECONDS = 3.0
+"""A process that ran longer than this did not fail at its start, so its backoff is reset."""
 _START_SECONDS = 60.0
 
 
 class Child:
-    """One process that is started again whenever it ends.
+    """A process that is restarted whenever it ends.
 
-    Each run has a name, and is told that of the one before it, which is surely over.
+    Each run gets an id, and the id of the run before it, which has certainly ended.
     """
 
     def __init__(self, module: str, environment: dict[str, str], sockets: tuple[int, ...] = ()) -> None:
         self.module = module
         self._environment, self._sockets = environment, sockets
         self._process: subprocess.Popen[bytes] | None = None
-        self._run = ""
+        self._run_id = ""
         self._failures = 0
         self._next = self._started = 0.0
 
-    def look(self) -> None:
-        """Start the process where it does not run; one that keeps dying is started ever more slowly."""
+    def keep_running(self) -> None:
+        """Start the process if it does not run; wait longer each time if it keeps failing."""
         now = time.monotonic()
         if self._process is not None and self._process.poll() is not None:
-            self._process.communicate()  # it has nothing to say; this closes its lifeline
-            code = self._process.returncode
-            self._failures = 1 if now - self._started > _WELL_AFTER_SECONDS else self._failures + 1
-            self._next = now + min(0.1 * 2**self._failures, _SLOWEST_RESTART_SECONDS)
+            self._plan_restart(self._process, now)
             self._process = None
-            print(f"treestroke: {self.module} ended ({code}) and is started again", file=sys.stderr, flush=True)
         if self._process is None and now >= self._next:
-            before, self._run = self._run, secrets.token_hex(12)
-            command = [sys.executable, "-m", self.module]
-            # Standard output is the launcher's own, for its one line; what the processes have to say is on stderr.
-            self._process = subprocess.Popen(
-                command,
-                env={**self._environment, RUN_ID: self._run, PREVIOUS_RUN_ID: before},
-                pass_fds=self._sockets,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                process_group=0,  # Ctrl+C is for this process, which then stops the others in good order
-            )
-            self._started = now
+            self._process, self._started = self._start(), now
+
+    def _plan_restart(self, ended: subprocess.Popen[bytes], now: float) -> None:
+        ended.communicate()  # closes its standard input
+        self._failures = 1 if now - self._started > _STABLE_AFTER_SECONDS else self._failures + 1
+        self._next = now + min(0.1 * 2**self._failures, _LONGEST_BACKOFF_SECONDS)
+        message = f"treestroke: {self.module} ended ({ended.returncode}) and is started again"
+        print(message, file=sys.stderr, flush=True)
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        previous, self._run_id = self._run_id, secrets.token_hex(12)
+        return subprocess.Popen(
+            [sys.executable, "-m", self.module],
+            env={**self._environment, RUN_ID: self._run_id, PREVIOUS_RUN_ID: previous},
+            pass_fds=self._sockets,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,  # standard output is for the launcher's one line; processes log to stderr
+            process_group=0,  # Ctrl+C reaches the launcher alone, which then stops its processes in order
+        )
 
     def stop(self) -> None:
-        """Tell the process to stop."""
+        """Ask the process to stop."""
         if self._process is not None:
             self._process.terminate()
 
     def wait(self, deadline: float) -> None:
-        """Wait until it has stopped, and end it where it does not."""
+        """Wait until the process has stopped; kill it at the deadline."""
         if self._process is not None:
             try:
                 self._process.wait(max(deadline - time.monotonic(), 0.0))
@@ -84,60 +89,71 @@ class Child:
 
 
 def serve(settings: Settings) -> int:
-    """Run web process and worker until this process is told to stop.
+    """Run the web process and the worker until this process is told to stop; return the exit code.
 
-    The listening socket is this process's own: while a web process is replaced, requests wait instead of failing.
+    This process owns the listening socket: while a web process is restarted, requests wait instead of failing.
 
     Raises
     ------
     SettingsError
-        The address is not this machine's own: without keys nobody else may reach it. Or the port is taken.
+        The address is not a loopback address (without keys nobody else may reach the service), or the port is taken.
     DataFolderError
-        The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
+        Other users can read the data folder and it may not be the service's alone, or its database is lost or was
+        made by a newer treestroke.
     OSError
         The data folder cannot be written.
     """
     if settings.host not in LOOPBACK:
         raise SettingsError(
             f"--host {settings.host}: without keys only this machine may reach treestroke; take 127.0.0.1, or put a "
-            "server that asks for a password before it"
+            "server that asks for a password in front of it"
         )
-    folder = settings.folder
     with _listen(settings) as listener:
-        prepare_folder(folder)
-        _hold(folder)
-        check_version(folder)
-        _clear(folder / "tmp")
-        environment = {
-            **os.environ,
-            **settings.environment(),
-            "TREESTROKE_DATA": str(folder),
-            "TMPDIR": str(folder / "tmp"),
-            PARENT_HOLDS_STDIN: "1",
-        }
+        prepare_folder(settings.folder)
+        _lock(settings.folder)
+        check_version(settings.folder)
         port = listener.getsockname()[1]
-        children = [Child("treestroke.api", {**environment, "LISTEN_FD": str(listener.fileno())}, (listener.fileno(),))]
-        if settings.workers:
-            children.append(Child("treestroke.worker", environment))
-        stopping = False
-
-        def stop(_signal: int, _frame: FrameType | None) -> None:
-            nonlocal stopping
-            stopping = True
-
-        for name in (signal.SIGTERM, signal.SIGINT):
-            signal.signal(name, stop)
         threading.Thread(target=_announce, args=(address(settings, port), settings.host, port), daemon=True).start()
-        while not stopping:
-            for child in children:
-                child.look()
-            time.sleep(_LOOK_SECONDS)
-        deadline = time.monotonic() + STOP_SECONDS
-        for child in children:
-            child.stop()
-        for child in children:
-            child.wait(deadline)
+        _supervise(_children(settings, listener.fileno()))
     return 0
+
+
+def _children(settings: Settings, listener: int) -> list[Child]:
+    """Return the web process and, unless workers run elsewhere, the worker; not started yet."""
+    temporary = settings.folder / "tmp"
+    _empty(temporary)
+    environment = {
+        **os.environ,
+        **settings.environment(),
+        "TREESTROKE_DATA": str(settings.folder),
+        "TMPDIR": str(temporary),
+        PARENT_HOLDS_STDIN: "1",
+    }
+    children = [Child("treestroke.api", {**environment, LISTENER: str(listener)}, (listener,))]
+    if settings.workers:
+        children.append(Child("treestroke.worker", environment))
+    return children
+
+
+def _supervise(children: Sequence[Child]) -> None:
+    """Keep all processes running until SIGTERM or SIGINT, then stop them."""
+    stopping = False
+
+    def stop(_signal: int, _frame: FrameType | None) -> None:
+        nonlocal stopping
+        stopping = True
+
+    for name in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(name, stop)
+    while not stopping:
+        for child in children:
+            child.keep_running()
+        time.sleep(_POLL_SECONDS)
+    deadline = time.monotonic() + STOP_SECONDS
+    for child in children:
+        child.stop()
+    for child in children:
+        child.wait(deadline)
 
 
 def _listen(settings: Settings) -> socket.socket:
@@ -152,40 +168,40 @@ def _listen(settings: Settings) -> socket.socket:
         ) from None
 
 
-def _hold(folder: Path) -> None:
-    """Keep the data folder to this process, as long as it lives.
+def _lock(folder: Path) -> None:
+    """Lock the data folder for as long as this process lives.
 
-    The folder itself is locked: a file in it could be removed, and made anew by another process.
+    The lock is on the folder itself: a lock file could be removed and made again by another process.
     """
-    held = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)  # until this process ends
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)  # stays open until this process ends
     try:
-        fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise SettingsError(
-            f"--data {folder}: another `treestroke serve` keeps its data there; stop it, or name another folder"
+            f"--data {folder}: another `treestroke serve` uses this data folder; stop it, or name another folder"
         ) from None
 
 
-def _clear(folder: Path) -> None:
-    """Begin with an empty folder for what an earlier run left half done."""
+def _empty(folder: Path) -> None:
+    """Make the folder empty: an earlier run may have left temporary files."""
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
 
 
 def _announce(page: str, host: str, port: int) -> None:
-    """Say where the page is, once it answers."""
+    """Print the page's address as soon as it responds."""
     deadline = time.monotonic() + _START_SECONDS
     while time.monotonic() < deadline:
-        with suppress(OSError), closing(HTTPConnection(host, port, timeout=_START_SECONDS)) as line:
-            line.request("GET", "/livez")
-            line.getresponse()
+        with suppress(OSError), closing(HTTPConnection(host, port, timeout=_START_SECONDS)) as connection:
+            connection.request("GET", "/livez")
+            connection.getresponse()
             print(f"treestroke: open {page} in a browser; Ctrl+C ends it", flush=True)
             return
-        time.sleep(_LOOK_SECONDS)
-    print("treestroke: it does not answer; `treestroke doctor` says what is missing", file=sys.stderr, flush=True)
+        time.sleep(_POLL_SECONDS)
+    print("treestroke: it does not respond; `treestroke doctor` says what is missing", file=sys.stderr, flush=True)
 
 
 def address(settings: Settings, port: int) -> str:
-    """Write the page's address."""
+    """Return the address of the page."""
     host = f"[{settings.host}]" if ":" in settings.host else settings.host
     return f"http:{'//'}{host}:{port}/"

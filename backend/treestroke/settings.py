@@ -1,4 +1,4 @@
-"""The service's settings: environment variables, read once."""
+"""Settings of the service, read once from environment variables."""
 
 import os
 from pathlib import Path
@@ -18,7 +18,7 @@ def _setting(default: object, meaning: str, **bounds: float) -> object:
 
 
 class Settings(BaseSettings):
-    """How one deployment runs; each field is an environment variable with the prefix ``TREESTROKE_``."""
+    """Settings of a deployment; each field is an environment variable with the prefix ``TREESTROKE_``."""
 
     model_config = SettingsConfigDict(env_prefix=PREFIX, env_ignore_empty=True, frozen=True, allow_inf_nan=False)
 
@@ -56,44 +56,46 @@ class Settings(BaseSettings):
 
     @property
     def folder(self) -> Path:
-        """The data folder, absolute."""
+        """Absolute path of the data folder."""
         return self.data.expanduser().absolute()
 
     @property
     def embedded(self) -> bool:
-        """Whether the queue is a folder instead of a Redis."""
+        """Whether the queue is a folder rather than a Redis."""
         return not self.broker_url
 
     def environment(self) -> dict[str, str]:
-        """Give the variables from which another process reads these same settings."""
+        """Return the environment variables from which another process reads the same settings."""
         return {_variable(name): str(value) for name, value in self}
 
 
-def read_settings(**given: object) -> Settings:
-    """Read the settings from the environment; ``given`` (the command's flags) goes before it.
+def read_settings(**flags: object) -> Settings:
+    """Return the settings from the environment; ``flags`` of the command line take precedence.
 
     Raises
     ------
     SettingsError
-        A variable or a flag has a value that is not allowed, or there is no setting of its name.
+        A variable or a flag has a value that is not allowed, or a variable with the prefix is not a setting.
     """
     known = {_variable(name) for name in Settings.model_fields}
     for name in sorted(os.environ):
         if name.upper().startswith(PREFIX) and name.upper() not in known:
             raise SettingsError(f"{name}: there is no such setting; the settings are {', '.join(sorted(known))}")
     try:
-        settings = Settings(**given)  # type: ignore[arg-type]
-        settings.folder  # noqa: B018 - a home that cannot be found shows here
+        settings = Settings(**flags)  # type: ignore[arg-type]
+        settings.folder  # noqa: B018 - raises if the home folder is unknown
     except ValidationError as error:
         first = error.errors()[0]
         name = str(first["loc"][0])
-        where = f"--{name}" if name in given else _variable(name)
+        where = f"--{name}" if name in flags else _variable(name)
         raise SettingsError(f"{where}: {shown(first['input'])} is not allowed; {_allowed(first['msg'])}") from None
     except RuntimeError:
-        raise SettingsError("the data folder's home is unknown; name a folder by --data or TREESTROKE_DATA") from None
+        raise SettingsError(
+            "the user's home folder is unknown; name a data folder by --data or TREESTROKE_DATA"
+        ) from None
     if not settings.embedded and not settings.broker_url.startswith(("redis://", "rediss://")):
         raise SettingsError(
-            f"{_variable('broker_url')}: only a Redis is known; give redis://HOST:PORT/0 or leave it out"
+            f"{_variable('broker_url')}: only Redis is supported; give redis://HOST:PORT/0, or leave it out"
         )
     return settings
 
@@ -103,5 +105,5 @@ def _variable(name: str) -> str:
 
 
 def _allowed(message: str) -> str:
-    """Turn what pydantic says into the end of a sentence: "Input should be ..." to "it should be ..."."""
+    """Return pydantic's message as the end of a sentence: "Input should be ..." becomes "it should be ..."."""
     return message.replace("Input should", "it should", 1)

@@ -26,7 +26,7 @@ from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
 from treestroke.service.dispatch import holds_jobs, record_heartbeat, remove_worker
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
-from treestroke.service.jobs import Hint, grow_model
+from treestroke.service.jobs import Assignment, grow_model
 from treestroke.service.tracing_pool import limit_memory
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
@@ -36,55 +36,67 @@ from treestroke.store.leases import end, take_back
 from treestroke.store.tables import ModelRow
 
 NICENESS = 10
-"""Growing gives way to tracing, which somebody waits for with the pen in hand."""
-_BEAT_SECONDS = 2.0
-_SCHEMA_SECONDS = 60.0
-_LOOK_SECONDS = 0.2
-_IDLE_LOOKS = 2
-"""So often nothing must be under way before a worker leaves: a child may be about to take what it was given."""
-_unforked = threading.RLock()
+"""Growing runs at low priority: tracing has a person waiting for it."""
+_HEARTBEAT_SECONDS = 2.0
+_TABLES_SECONDS = 60.0
+"""Time that the web process has to make the database's tables."""
+_POLL_SECONDS = 0.2
+_IDLE_POLLS = 2
+"""A worker that is told to stop ends after finding no running job this often: a child may be about to claim one."""
+_no_fork = threading.RLock()
+"""Held while a child is forked and while this process uses the database."""
 log = structlog.get_logger()
 
 
 def main() -> int:
-    """Run a worker until it is told to stop.
+    """Run a worker until it is told to stop; return the exit code.
 
     Raises
     ------
     DataFolderError
-        The data folder is open to others and not plainly ours, or its database is lost or a newer program's.
+        Other users can read the data folder and it may not be the service's alone, or its database is lost or was
+        made by a newer treestroke.
     """
     settings = read_settings()
     start_logging()
     stop_with_parent()
     prepare_folder(settings.folder)
     database = Database(settings.folder)
-    os.register_at_fork(before=_unforked.acquire, after_in_parent=_unforked.release, after_in_child=_unforked.release)
+    os.register_at_fork(before=_no_fork.acquire, after_in_parent=_no_fork.release, after_in_child=_no_fork.release)
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
         return 1
     name = os.environ.pop(RUN_ID, "") or secrets.token_hex(12)
-    if before := os.environ.pop(PREVIOUS_RUN_ID, ""):
-        with _briefly(database):
-            remove_worker(database, before, problem_of("worker_lost"))
-    grown_by = engine_version()  # before any child is forked: it is that of the code which all of them have loaded
-    app = make_worker(settings, database, name)
-    signals.setup_logging.connect(_keep_logging, weak=False)
-    # Running as root is the container's or the person's choice; messages are JSON and hold an id.
-    warnings.simplefilter("ignore", SecurityWarning)
+    if previous := os.environ.pop(PREVIOUS_RUN_ID, ""):
+        with _without_forks(database):
+            remove_worker(database, previous, problem_of("worker_lost"))
+    engine = engine_version()  # cached before children are forked: it describes the code that all of them loaded
+    _run(make_worker(settings, database, name), database, name, engine)
+    with suppress(SQLAlchemyError):  # the dispatcher notices the missing heartbeat anyway
+        remove_worker(database, name)
+    log.info("worker_stopped", worker=name)
+    return 0
+
+
+def _run(app: Celery, database: Database, name: str, engine: str) -> None:
+    """Run Celery's worker until it is told to stop, with heartbeats in the database while it runs."""
     slots = app.conf.worker_concurrency
     stopped = threading.Event()
-    beats = threading.Thread(target=_beat, args=(database, name, slots, stopped), name="beats", daemon=True)
+    arguments = (database, name, slots, stopped)
+    heartbeats = threading.Thread(target=_send_heartbeats, args=arguments, name="heartbeats", daemon=True)
 
     @signals.worker_ready.connect(weak=False)
     def _begin(**_: object) -> None:
-        beats.start()
-        log.info("worker_ready", worker=name, slots=slots, engine=grown_by, process=os.getpid())
+        heartbeats.start()
+        log.info("worker_ready", worker=name, slots=slots, engine=engine, process=os.getpid())
 
     @signals.worker_shutting_down.connect(weak=False)
     def _end(**_: object) -> None:
         threading.Thread(target=_leave, args=(database, name), name="leaving", daemon=True).start()
 
+    signals.setup_logging.connect(_keep_logging, weak=False)
+    # Celery warns of running as root with pickled messages; messages here are JSON and hold an id.
+    warnings.simplefilter("ignore", SecurityWarning)
     app.Worker(
         hostname=f"treestroke@{socket.gethostname()}",
         pool_cls="prefork",
@@ -95,20 +107,16 @@ def main() -> int:
         quiet=True,
     ).start()
     stopped.set()
-    with suppress(SQLAlchemyError):  # others find out by themselves
-        remove_worker(database, name)
-    log.info("worker_stopped", worker=name)
-    return 0
 
 
 @contextmanager
-def _briefly(database: Database) -> Iterator[Database]:
-    """Use the database while no child is being forked, and close it again.
+def _without_forks(database: Database) -> Iterator[Database]:
+    """Use the database while no child is forked, and close it afterwards.
 
-    A child inherits what SQLite knows of the locks of its parent's connections: it would wait for ever for one that
-    was held at that moment, and would lose its own when the inherited connection is closed.
+    A forked child inherits SQLite's record of its parent's locks: it would wait for ever for a lock that was held at
+    that moment, and closing the inherited connection would release the child's own locks.
     """
-    with _unforked:
+    with _no_fork:
         try:
             yield database
         finally:
@@ -116,30 +124,30 @@ def _briefly(database: Database) -> Iterator[Database]:
 
 
 def _leave(database: Database, name: str) -> None:
-    """End a worker that is told to stop, as soon as nothing is being grown; what takes too long queues again.
+    """End this process as soon as no job of it is running; a job that takes too long is queued again.
 
-    All that matters is in the database by then. Celery would wait for its own processes, or for a broker that does
-    not answer. The children see that their parent is gone.
+    By then everything that matters is in the database. Celery itself would wait for its processes, or for a broker
+    that does not respond. The children notice that their parent has ended.
     """
     deadline, idle = time.monotonic() + DRAIN_SECONDS, 0
-    while time.monotonic() < deadline and idle < _IDLE_LOOKS:
-        time.sleep(_LOOK_SECONDS)
-        with suppress(SQLAlchemyError), _briefly(database):
+    while time.monotonic() < deadline and idle < _IDLE_POLLS:
+        time.sleep(_POLL_SECONDS)
+        with suppress(SQLAlchemyError), _without_forks(database):
             idle = 0 if holds_jobs(database, name) else idle + 1
-    with suppress(SQLAlchemyError), _briefly(database):
+    with suppress(SQLAlchemyError), _without_forks(database):
         remove_worker(database, name)
     log.info("worker_stopped", worker=name)
     os._exit(0)
 
 
 def _keep_logging(**_: object) -> None:
-    """Stand in for Celery's own set-up of the log, which would replace ours."""
+    """Do nothing: a receiver of this signal keeps Celery from replacing the log's configuration."""
 
 
-def make_worker(settings: Settings, database: Database, name: str) -> Celery:
-    """Make the Celery application with its one task."""
+def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
+    """Return the Celery application with its one task."""
     app = make_queue(settings)
-    opened: list[tuple[Database, Blobs]] = []
+    stores: list[tuple[Database, Blobs]] = []  # of each child, filled after the fork
     parent = os.getpid()
 
     @signals.worker_process_init.connect(weak=False)
@@ -147,20 +155,20 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
         kill_with_parent(parent)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
-        opened[:] = [(Database(settings.folder), Blobs(settings.folder))]
+        stores[:] = [(Database(settings.folder), Blobs(settings.folder))]
 
     class JobRequest(Request):
-        """Hears from the parent process what a child cannot say any more."""
+        """Records in the database, from the parent process, how a child was killed."""
 
         def on_timeout(self, soft: bool, timeout: float) -> None:
             super().on_timeout(soft, timeout)
             if not soft:
-                _close(database, self.id, "time_limit")
+                _record_end(database, self.id, "time_limit")
 
         def on_failure(self, exc_info: Any, *args: Any, **kwargs: Any) -> Any:
             error = exc_info.exception
-            if isinstance(getattr(error, "exc", error), WorkerLostError):  # billiard wraps what it reports
-                _close(database, self.id, "worker_lost")
+            if isinstance(getattr(error, "exc", error), WorkerLostError):  # billiard wraps the error
+                _record_end(database, self.id, "worker_lost")
             return super().on_failure(exc_info, *args, **kwargs)
 
     class Grow(Task):  # type: ignore[type-arg]
@@ -170,48 +178,49 @@ def make_worker(settings: Settings, database: Database, name: str) -> Celery:
         Request = JobRequest  # type: ignore[assignment]
 
         def run(self, model: str) -> None:
-            hint = Hint(model, str(self.request.id), name_of_worker, settings.model_seconds)
-            grow_model(*opened[0], hint)
+            child_database, blobs = stores[0]
+            assignment = Assignment(model, str(self.request.id), worker, settings.model_seconds)
+            grow_model(child_database, blobs, assignment)
 
-    name_of_worker = name
     app.register_task(Grow())
     return app
 
 
-def _close(database: Database, token: str, code: str) -> None:
-    """End or give back what a child held when it was killed."""
+def _record_end(database: Database, token: str, code: str) -> None:
+    """End the job of a child that was killed at its time limit, or take it back if the child was lost."""
     try:
-        with _briefly(database), database.writing() as session:
+        with _without_forks(database), database.writing() as session:
             job = session.scalars(select(ModelRow).where(ModelRow.claim == token, ModelRow.status == "running")).first()
             if job is not None and code == "time_limit":
                 end(session, job, "failed", problem_of(code))
             elif job is not None:
-                # A pool that is being stopped kills its children before long; that is no fault of theirs.
+                # A pool that is being stopped kills its children; that is not an error of the job.
                 take_back(session, job, None if state.should_stop is not None else problem_of(code))
     except SQLAlchemyError as error:
-        log.error("not_closed", token=token, code=code, error=str(error))
+        log.error("end_not_recorded", token=token, code=code, error=str(error))
     else:
         log.warning("child_lost", job=job.id if job else None, code=code)
 
 
-def _beat(database: Database, name: str, slots: int, stopped: threading.Event) -> None:
+def _send_heartbeats(database: Database, name: str, slots: int, stopped: threading.Event) -> None:
     while not stopped.is_set():
         try:
-            with _briefly(database):
+            with _without_forks(database):
                 record_heartbeat(database, name, slots)
         except SQLAlchemyError as error:
-            log.warning("beat_missed", error=str(error))
-        stopped.wait(_BEAT_SECONDS)
+            log.warning("heartbeat_missed", error=str(error))
+        stopped.wait(_HEARTBEAT_SECONDS)
 
 
 def _wait_for_tables(database: Database) -> bool:
-    deadline = time.monotonic() + _SCHEMA_SECONDS
+    """Wait until the database has the tables of this program; False if they are not there in time."""
+    deadline = time.monotonic() + _TABLES_SECONDS
     while time.monotonic() < deadline:
-        with _briefly(database):
+        with _without_forks(database):
             check_version(database.path.parent)
             if database.path.exists() and database.current():
                 return True
-        time.sleep(0.2)
+        time.sleep(_POLL_SECONDS)
     return False
 
 

@@ -45,11 +45,11 @@ class Served:
 
     @property
     def answering(self) -> int:
-        return sum(one.answering for one in list(self._server.server_state.connections))  # type: ignore[union-attr]
+        return sum(one.responding for one in list(self._server.server_state.connections))  # type: ignore[union-attr]
 
     @property
     def behind(self) -> int:
-        return sum(not one.worth[0] for one in list(self._server.server_state.connections))  # type: ignore[union-attr]
+        return sum(not one.priority[0] for one in list(self._server.server_state.connections))  # type: ignore[union-attr]
 
     def line(self, said: bytes = b"") -> socket.socket:
         """Open a connection and say something."""
@@ -98,7 +98,7 @@ def serving(keep_alive_s: int = 30, **limits: Any) -> Iterator[Served]:
         log_config=None,
         ws="none",
         timeout_keep_alive=keep_alive_s,
-        http=partial(Connection, **{"most": 100, **limits}),  # type: ignore[arg-type]
+        http=partial(Connection, **{"limit": 100, **limits}),  # type: ignore[arg-type]
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
@@ -174,7 +174,7 @@ def test_a_client_that_reads_nothing_is_given_up(path: bytes, keep_alive_s: int)
 
 
 def test_a_client_that_reads_a_little_now_and_then_is_given_up() -> None:
-    with serving(stalled_s=0.5, behind_s=0.1, slowest=1_000_000) as served:
+    with serving(stalled_s=0.5, behind_s=0.1, min_rate=1_000_000) as served:
         line = served.slow_line(b"/medium")
         wait_for(lambda: served.open, PATIENCE_SECONDS, "the connection")
         got = 0
@@ -186,7 +186,7 @@ def test_a_client_that_reads_a_little_now_and_then_is_given_up() -> None:
 
 
 def test_a_client_that_reads_slowly_and_fast_enough_gets_all() -> None:
-    with serving(stalled_s=0.5, behind_s=0.1, slowest=1000) as served:
+    with serving(stalled_s=0.5, behind_s=0.1, min_rate=1000) as served:
         line = served.line(GET.replace(b"/ ", b"/medium ", 1) + b"Connection: close\r\n\r\n")
         got = 0
         while part := line.recv(50_000):
@@ -196,7 +196,7 @@ def test_a_client_that_reads_slowly_and_fast_enough_gets_all() -> None:
 
 
 def test_who_does_not_read_makes_room_for_others() -> None:
-    with serving(most=2, behind_s=0.2) as served:
+    with serving(limit=2, behind_s=0.2) as served:
         for path in (b"/large", b"/small"):
             served.slow_line(path)
         wait_for(lambda: served.behind == 2, PATIENCE_SECONDS, "both being behind")
@@ -205,7 +205,7 @@ def test_who_does_not_read_makes_room_for_others() -> None:
 
 
 def test_silent_connections_make_room_the_oldest_first() -> None:
-    with serving(most=3) as served:
+    with serving(limit=3) as served:
         silent = [served.line() for _ in range(3)]
         for _ in range(2):
             assert served.ask().startswith(b"HTTP/1.1 200 ")
@@ -215,7 +215,7 @@ def test_silent_connections_make_room_the_oldest_first() -> None:
 
 
 def test_an_upload_under_way_makes_room_only_where_nobody_is_silent() -> None:
-    with serving(most=2) as served:
+    with serving(limit=2) as served:
         upload = served.line(b"POST /upload HTTP/1.1\r\nHost: x\r\nContent-Length: 2\r\n\r\n1")
         wait_for(lambda: served.answering, PATIENCE_SECONDS, "the upload")
         silent = served.line()
@@ -226,7 +226,7 @@ def test_an_upload_under_way_makes_room_only_where_nobody_is_silent() -> None:
 
 
 def test_where_every_request_is_whole_one_more_is_told_to_come_again() -> None:
-    with serving(most=2) as served:
+    with serving(limit=2) as served:
         lines = [served.line(GET.replace(b"/ ", b"/late ", 1) + b"\r\n") for _ in range(2)]
         wait_for(lambda: served.answering == 2, PATIENCE_SECONDS, "both requests")
         refused = rest(served.line())

@@ -18,7 +18,7 @@ from tests.api import drawn
 from tests.api.conftest import Service
 from tests.running import BACKEND
 
-from treestroke.store.data_folder import _OURS
+from treestroke.store.data_folder import _SERVICE_NAMES
 
 KINDS = {
     "tree.glb": "model/gltf-binary",
@@ -211,7 +211,7 @@ def test_a_served_folder_holds_only_what_the_next_start_knows_as_its_own(
 ) -> None:
     assert service.client.get(made["files"]["project"]).status_code == 200
     names = {path.name for path in service.data.iterdir()}
-    assert {"blobs", "projects", "treestroke.sqlite3"} <= names <= _OURS
+    assert {"blobs", "projects", "treestroke.sqlite3"} <= names <= _SERVICE_NAMES
 
 
 def test_the_report_is_the_command_lines(client: httpx.Client, made: dict[str, Any]) -> None:

@@ -275,7 +275,7 @@ async def _speak(
 
 def test_all_bodies_together_are_bounded() -> None:
     outcomes: list[int] = []
-    limited = BodyLimitMiddleware(_read_whole, lambda _: 1000, held=1500)
+    limited = BodyLimitMiddleware(_read_whole, lambda _: 1000, held_bytes=1500)
 
     async def come() -> None:
         bodies = _pieces(10, 100, 0.01)
@@ -314,7 +314,7 @@ def test_a_body_that_came_fast_and_fell_silent_is_given_up_as_soon_as_any_other(
 
 def test_silent_halves_of_bodies_make_room_for_one_that_comes() -> None:
     outcomes: dict[str, int] = {}
-    limited = BodyLimitMiddleware(_read_whole, lambda _: 1000, patience_s=1.5, slowest=1000.0, held=2100)
+    limited = BodyLimitMiddleware(_read_whole, lambda _: 1000, patience_s=1.5, min_rate=1000.0, held_bytes=2100)
 
     async def come(name: str, *pieces: bytes) -> None:
         left = list(pieces)

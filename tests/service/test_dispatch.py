@@ -62,12 +62,12 @@ def test_a_row_that_cannot_be_read_keeps_no_other_job_from_its_worker(
     assert [thread.name for thread in threading.enumerate()].count("dispatcher") == 1
 
 
-def test_a_dispatcher_says_that_it_does_not_run(dispatcher: Dispatcher) -> None:
-    assert dispatcher.state.startswith("does not run")
+def test_a_dispatcher_says_that_it_has_stopped(dispatcher: Dispatcher) -> None:
+    assert dispatcher.state.startswith("has stopped")
     dispatcher.start()
     assert dispatcher.state == "ok"
     dispatcher.stop()
-    assert dispatcher.state.startswith("does not run")
+    assert dispatcher.state.startswith("has stopped")
 
 
 def test_a_dispatcher_that_fails_again_and_again_says_so(
@@ -79,4 +79,4 @@ def test_a_dispatcher_that_fails_again_and_again_says_so(
     dispatcher.start()
     assert dispatcher.state == "ok"
     time.sleep(1.1)
-    assert "has not finished a round for 1 s" in dispatcher.state
+    assert "has finished no round for 1 s" in dispatcher.state

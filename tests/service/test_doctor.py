@@ -58,7 +58,7 @@ def findings(folder: Path, **given: object) -> dict[str, Finding]:
 
 
 def ill(folder: Path, **given: object) -> dict[str, str]:
-    return {part: finding.found for part, finding in findings(folder, **given).items() if not finding.well}
+    return {part: finding.found for part, finding in findings(folder, **given).items() if not finding.ok}
 
 
 def test_all_is_well(folder: Path) -> None:
@@ -68,7 +68,7 @@ def test_all_is_well(folder: Path) -> None:
         "workers",
     ]  # fmt: skip
     assert ill(folder) == {}
-    assert found["files"].found == "all 1 whole"
+    assert found["files"].found == "all 1 intact"
 
 
 @pytest.mark.parametrize(("broker_url", "missing"), [("", ""), ("redis://127.0.0.1/0", "missing: packaging")])
@@ -79,7 +79,7 @@ def test_what_the_worker_imports_for_a_redis_is_missed_where_there_is_one(
         monkeypatch.delitem(sys.modules, name, raising=False)
     monkeypatch.setitem(sys.modules, "packaging", None)
     packages = next(examine_installation(settings_of(folder, broker_url=broker_url)))
-    assert (packages.part, packages.well) == ("packages", not missing)
+    assert (packages.part, packages.ok) == ("packages", not missing)
     assert missing in packages.found
 
 
@@ -92,8 +92,8 @@ def test_tracers_that_cannot_start_are_ill(folder: Path) -> None:
         tracers = next(looks)
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-    assert (tracers.part, tracers.well) == ("tracers", False)
-    assert tracers.found == "none can be started: Too many open files"
+    assert (tracers.part, tracers.ok) == ("tracers", False)
+    assert tracers.found == "cannot be started: Too many open files"
     assert "ulimit" in tracers.mend
 
 
@@ -133,13 +133,13 @@ def test_a_web_process_that_does_not_run_is_for_its_owner_to_start(folder: Path)
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
     found = findings(folder, port=port)["web process"]
-    assert (found.well, found.found) == (True, f"none at 127.0.0.1:{port}")
+    assert (found.ok, found.found) == (True, f"none at 127.0.0.1:{port}")
 
 
 def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> None:
     found = findings(tmp_path / "a" / "b")
-    assert all(finding.well for finding in found.values())
-    assert "`treestroke serve` makes it" in found["data folder"].found
+    assert all(finding.ok for finding in found.values())
+    assert "`treestroke serve` creates it" in found["data folder"].found
     assert list(tmp_path.iterdir()) == []
 
 
@@ -165,15 +165,15 @@ def test_a_file_in_the_folder_s_place_is_ill(tmp_path: Path, below: str) -> None
 
 def test_a_disk_that_is_nearly_full_is_ill(small_disk: Path) -> None:
     found = findings(small_disk)
-    assert not found["disk"].well
+    assert not found["disk"].ok
     assert found["disk"].mend.startswith("free space")
 
 
 def test_a_queue_that_is_no_folder_is_ill(folder: Path) -> None:
-    assert findings(folder)["queue"].well
+    assert findings(folder)["queue"].ok
     (folder / "queue").touch()
     found = findings(folder)["queue"]
-    assert (found.well, found.found) == (False, f"{folder / 'queue'}: Not a directory")
+    assert (found.ok, found.found) == (False, f"{folder / 'queue'}: Not a directory")
     assert "move it away" in found.mend
 
 
@@ -182,7 +182,7 @@ def test_a_file_that_cannot_be_read_is_named_and_the_rest_is_looked_at(folder: P
     path.unlink()
     path.mkdir()
     found = findings(folder)
-    assert found["files"].found == f"1 of 1 bad: {path.name}: Is a directory"
+    assert found["files"].found == f"1 of 1 damaged or missing: {path.name}: Is a directory"
     assert "workers" in found
 
 
@@ -190,8 +190,8 @@ def test_a_redis_that_does_not_run_is_ill_and_nothing_else(folder: Path) -> None
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
     found = findings(folder, broker_url=f"redis://127.0.0.1:{port}/0")
-    assert [part for part, finding in found.items() if not finding.well] == ["queue"]
-    assert "start or free Redis" in found["queue"].mend
+    assert [part for part, finding in found.items() if not finding.ok] == ["queue"]
+    assert "start Redis or free its memory" in found["queue"].mend
 
 
 def test_a_redis_that_is_silent_is_ill_soon(folder: Path) -> None:
@@ -234,8 +234,8 @@ def test_a_database_that_is_lost_or_empty_beside_files_is_ill(folder: Path) -> N
     (folder / "treestroke.sqlite3").unlink()
     for _ in range(2):
         found = findings(folder)["database"]
-        assert (found.well, found.mend) == (
-            False, "restore it from a copy, or move the folder 'blobs' away to begin anew",
+        assert (found.ok, found.mend) == (
+            False, "restore it from a copy, or move the folder 'blobs' away to start with an empty database",
         )  # fmt: skip
         assert f"the database is lost or empty, but there are files in {folder / 'blobs'}" in found.found
         (folder / "treestroke.sqlite3").write_bytes(b"")
@@ -257,15 +257,15 @@ def test_a_database_of_another_version_is_ill(folder: Path) -> None:
 def test_files_that_are_damaged_or_gone_are_ill_and_named(folder: Path) -> None:
     (blob,) = (path for path in (folder / "blobs").rglob("*") if path.is_file())
     blob.write_bytes(b"phoso")
-    assert ill(folder) == {"files": f"1 of 1 bad: {blob.name}: damaged"}
+    assert ill(folder) == {"files": f"1 of 1 damaged or missing: {blob.name}: damaged"}
     blob.unlink()
-    assert ill(folder) == {"files": f"1 of 1 bad: {blob.name}: missing"}
+    assert ill(folder) == {"files": f"1 of 1 damaged or missing: {blob.name}: missing"}
 
 
 def test_a_folder_that_others_may_look_into_is_ill(folder: Path) -> None:
     folder.chmod(0o755)
     found = findings(folder)["data folder"]
-    assert (found.well, found.mend) == (False, f"chmod 700 {folder}")
+    assert (found.ok, found.mend) == (False, f"chmod 700 {folder}")
 
 
 def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
@@ -273,7 +273,7 @@ def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
     record_heartbeat(database, "dead-1", 1)
     database.close()
     began = time.monotonic()
-    assert ill(folder) == {"workers": "0 of 1 alive"}
+    assert ill(folder) == {"workers": "0 of 1 are running"}
     assert time.monotonic() - began < 6
 
 
@@ -285,6 +285,6 @@ def test_the_command_says_what_mends_it_and_leaves_with_1(
     shutil.rmtree(folder / "blobs")
     assert main(["doctor", "--data", str(folder)]) == 1
     told = capsys.readouterr()
-    assert "ILL  files          1 of 1 bad: " in told.out
+    assert "ILL  files          1 of 1 damaged or missing: " in told.out
     assert f"                    mend: restore them from a copy of {folder / 'blobs'}" in told.out
     assert told.err == "treestroke: 1 of 10 parts are ill\n"

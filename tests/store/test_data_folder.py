@@ -47,7 +47,7 @@ def test_a_folder_of_other_things_is_refused_and_left_as_it_is(tmp_path: Path) -
     folder.mkdir(0o755)
     (folder / "treestroke.sqlite3").write_bytes(b"")
     (folder / "holiday.jpg").write_bytes(b"")
-    with pytest.raises(DataFolderError, match=r"drwxr-xr-x.*'holiday.jpg'; name a folder of its own, such as --data "):
+    with pytest.raises(DataFolderError, match=r"drwxr-xr-x.*'holiday.jpg'; name a folder for treestroke alone"):
         prepare_folder(folder)
     assert mode(folder) == 0o755
     folder.chmod(0o700)

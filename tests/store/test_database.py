@@ -243,7 +243,7 @@ def test_what_is_committed_survives_a_power_cut(database: Database) -> None:
 
 def test_only_migrating_makes_the_file(tmp_path: Path) -> None:
     database = Database(tmp_path)
-    for use in (database.reading, database.writing, database.stating):
+    for use in (database.reading, database.writing, database.autocommitting):
         with pytest.raises(OperationalError) as refused, use() as session:
             session.scalars(select(ModelRow)).all()
         assert code_of(refused.value) == "database_unavailable"
@@ -277,7 +277,7 @@ def test_a_database_whose_file_is_removed_or_replaced_takes_nothing_until_it_is_
     database.path.rename(database.path.with_name("away"))
     if replaced:
         kept.rename(database.path)
-    for use in (database.reading, database.writing, database.stating):
+    for use in (database.reading, database.writing, database.autocommitting):
         with pytest.raises(OperationalError) as refused, use() as session:
             session.scalars(select(ModelRow)).all()
         assert code_of(refused.value) == "database_unavailable"

@@ -7,28 +7,29 @@ from functools import partial
 import uvicorn
 
 from treestroke.api.app import make_app
-from treestroke.api.connections import ACCEPTED, Connection, max_connections
+from treestroke.api.connections import ACCEPTED_AT_ONCE, Connection, max_connections
 from treestroke.logs import start_logging
-from treestroke.parent_process import stop_with_parent
+from treestroke.parent_process import LISTENER, stop_with_parent
 from treestroke.settings import read_settings
 
-LISTENER = "LISTEN_FD"
 _GRACE_SECONDS = 5
-_WAITING = 1024
+_KEEP_ALIVE_SECONDS = 30
+_BACKLOG = 1024
+"""Connections that may wait in the listening socket."""
 
 
 class _Server(uvicorn.Server):
-    """A server that takes connections a few at a time, and ends its event streams when it is told to stop."""
+    """A server that accepts a few connections at a time and ends its event streams when it is told to stop."""
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Begin to listen.
+        """Start to listen.
 
-        What is taken from a listening socket at once would be its backlog; both are told apart here, so that many
-        connections may wait to be taken, and are taken a few at a time.
+        uvicorn's ``backlog`` sets two numbers: how many connections may wait, and how many asyncio accepts at once.
+        The first is set again here, so that many may wait and few are accepted at once.
         """
         await super().startup(sockets)
-        for one in sockets or ():
-            one.listen(_WAITING)
+        for listener in sockets or ():
+            listener.listen(_BACKLOG)
 
     def handle_exit(self, sig: int, frame: object) -> None:
         app = self.config.app
@@ -43,17 +44,17 @@ def main() -> None:
     start_logging()
     stop_with_parent()
     listener = socket.socket(fileno=int(os.environ.pop(LISTENER)))
-    most = max_connections(settings.tracers)
+    limit = max_connections(settings.tracers)
     config = uvicorn.Config(
-        make_app(settings, places=most // 2),
-        http=partial(Connection, most=most),  # type: ignore[arg-type]
+        make_app(settings, places=limit // 2),
+        http=partial(Connection, limit=limit),  # type: ignore[arg-type]
         ws="none",
-        backlog=ACCEPTED,
+        backlog=ACCEPTED_AT_ONCE,
         log_config=None,
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=_GRACE_SECONDS,
-        timeout_keep_alive=30,
+        timeout_keep_alive=_KEEP_ALIVE_SECONDS,
     )
     _Server(config).run(sockets=[listener])
 

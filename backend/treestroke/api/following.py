@@ -1,4 +1,4 @@
-"""Models that are followed: one look at the database, four times a second, serves all streams of this process."""
+"""Followers of models: one query, four times a second, serves all event streams of this process."""
 
 import asyncio
 from collections.abc import Iterator
@@ -11,48 +11,48 @@ from sqlalchemy.exc import SQLAlchemyError
 from treestroke.service.stored_models import StoredModel, Version, find_changed
 from treestroke.store.database import Database
 
-_LOOK_SECONDS = 0.25
+_POLL_SECONDS = 0.25
 log = structlog.get_logger()
 
 
 class TooManyFollowers(Exception):
-    """As many requests follow models as may at once."""
+    """The limit of requests that follow models at once is reached."""
 
 
 class Follower:
-    """One request that follows a model, from what it saw of it on."""
+    """A request that waits for changes of a model."""
 
     def __init__(self, seen: StoredModel) -> None:
         self.model, self.version = seen.row.id, seen.version
         self._latest: StoredModel | None = seen
-        self._news = asyncio.Event()
+        self._changed = asyncio.Event()
 
     async def next_change(self) -> StoredModel | None:
-        """Wait until the model looks different, and give it; None where nothing more comes."""
-        await self._news.wait()
-        self._news.clear()
+        """Wait until the model has changed and return it; None if there will be no more changes."""
+        await self._changed.wait()
+        self._changed.clear()
         return self._latest
 
-    def tell(self, seen: StoredModel | None) -> None:
-        """Wake the request where this is news to it; None is the end."""
+    def update(self, seen: StoredModel | None) -> None:
+        """Wake the request if the model has changed; None ends its wait for good."""
         if seen is None or seen.version != self.version:
             self.version = seen.version if seen else self.version
             self._latest = seen
-            self._news.set()
+            self._changed.set()
 
 
 class Watcher:
-    """Looks at the models that are followed, as long as any is, and wakes those whose model has changed."""
+    """Polls the database for the models that are followed, while there are any, and wakes their followers."""
 
     def __init__(self, database: Database, places: int) -> None:
         self._database, self.places = database, places
         self._followers: set[Follower] = set()
         self._stopped = asyncio.Event()
-        self._looking: asyncio.Task[None] | None = None
+        self._polling: asyncio.Task[None] | None = None
 
     @contextmanager
     def follow(self, seen: StoredModel) -> Iterator[Follower]:
-        """Follow a model on, from what was seen of it.
+        """Follow a model from a known state on, until the context ends.
 
         Raises
         ------
@@ -63,38 +63,41 @@ class Watcher:
             raise TooManyFollowers
         follower = Follower(seen)
         self._followers.add(follower)
-        if self._looking is None:
-            self._looking = asyncio.create_task(self._run())
+        if self._polling is None:
+            self._polling = asyncio.create_task(self._run())
         try:
             yield follower
         finally:
             self._followers.discard(follower)
 
     def stop(self) -> None:
-        """End everything that is followed."""
+        """End the wait of all followers."""
         self._stopped.set()
 
     async def _run(self) -> None:
         try:
             while self._followers and not self._stopped.is_set():
                 with suppress(TimeoutError):
-                    await asyncio.wait_for(self._stopped.wait(), _LOOK_SECONDS)
-                await self._look()
+                    await asyncio.wait_for(self._stopped.wait(), _POLL_SECONDS)
+                await self._poll()
         finally:
-            self._looking = None
+            self._polling = None
             for follower in self._followers:
-                follower.tell(None)
+                follower.update(None)
 
-    async def _look(self) -> None:
+    async def _poll(self) -> None:
         followers = list(self._followers)
         versions: dict[str, Version | None] = {}
-        for one in followers:
-            versions[one.model] = one.version if versions.get(one.model, one.version) == one.version else None
+        for follower in followers:
+            same = versions.get(follower.model, follower.version) == follower.version
+            versions[follower.model] = (
+                follower.version if same else None
+            )  # followers at different states: always report
         try:
             changed = await run_in_threadpool(find_changed, self._database, versions)
         except SQLAlchemyError as error:
-            log.warning("look_failed", error=str(error))
+            log.warning("poll_failed", error=str(error))
             return
-        for one in followers:
-            if one.model in changed:
-                one.tell(changed[one.model])
+        for follower in followers:
+            if follower.model in changed:
+                follower.update(changed[follower.model])

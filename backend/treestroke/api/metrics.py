@@ -1,4 +1,4 @@
-"""Figures for Prometheus."""
+"""Metrics for Prometheus."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,7 @@ from treestroke.service.dispatch import queue_figures
 
 
 class _Queue(Collector):
-    """The queue as the database has it at this moment."""
+    """Reads the queue's figures from the database whenever they are asked for."""
 
     def __init__(self, app: FastAPI) -> None:
         self._app = app
@@ -24,6 +24,6 @@ class _Queue(Collector):
 
 
 def add_metrics(app: FastAPI) -> None:
-    """Count requests by route, and show all figures at /metrics."""
+    """Count requests by route, and serve all metrics at /metrics."""
     Instrumentator(excluded_handlers=["/metrics"]).instrument(app).expose(app, include_in_schema=False)
     REGISTRY.register(_Queue(app))

@@ -1,4 +1,4 @@
-"""What comes before every route: whose request it is, how long it may be, and what the answer's headers say."""
+"""ASGI middleware before every route: hosts, origins and security headers; methods; size and pace of bodies."""
 
 import asyncio
 import math
@@ -17,45 +17,45 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from treestroke.api.errors import Refusal, allowed_methods, nothing_there, problem
 
 HELD_BYTES = 400_000_000
-"""Of the bodies of all requests together; beyond it those that hardly come make room, or who comes is to come again."""
+"""Bytes of all bodies together. Beyond them slow bodies are dropped; if there are none, new bytes are refused."""
 PATIENCE_SECONDS = 15.0
-"""A body that says nothing, or is behind the slowest rate, for so long is given up, however fast it came before."""
-SLOWEST_BYTES_PER_SECOND = 20_000
-# A GLB's textures are read from blob: addresses, by fetch as well as by image.
-POLICY = (
+"""A request is refused when its body is this far behind `MIN_BYTES_PER_SECOND`, however fast it was before."""
+MIN_BYTES_PER_SECOND = 20_000
+# The page reads a GLB's textures from blob: addresses, by fetch and as images.
+CONTENT_SECURITY_POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob: data:; object-src 'none'; "
     "base-uri 'none'; frame-ancestors 'none'"
 )
-_READS = ("GET", "HEAD", "OPTIONS")
-_PASSED = ("GET", "POST", "PUT", "PATCH", "DELETE", "TRACE")
+_READING_METHODS = ("GET", "HEAD", "OPTIONS")
+_KNOWN_METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "TRACE")
 _OWN_SITES = ("same-origin", "none")
-"""What a browser says of a request by the service's own page, or by its user."""
+"""Values of Sec-Fetch-Site for requests by the service's own page, or by its user."""
 _HEADERS = {
     "x-content-type-options": "nosniff",
     "referrer-policy": "no-referrer",
     "cross-origin-resource-policy": "same-origin",
     "cross-origin-opener-policy": "same-origin",
-    "content-security-policy": POLICY,
+    "content-security-policy": CONTENT_SECURITY_POLICY,
 }
 
 
 class SecurityMiddleware:
-    """Refuses what is ambiguous, names another host or comes from another site, and sets the safe headers.
+    """Refuses requests that are ambiguous, name another host or come from another site; sets security headers.
 
-    A page elsewhere that a browser has open reaches 127.0.0.1 as its user does; it is told by its Origin, or, where a
-    name of its own was pointed here, by the Host.
+    Any page that is open in the user's browser can send requests to 127.0.0.1. Such a page is recognized by Origin,
+    or by Host if it made a host name of its own point here (DNS rebinding).
     """
 
     def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
         self._app, self._hosts = app, hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on, or refuse it."""
+        """Forward a request, or refuse it."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
 
-        async def safe(message: Message) -> None:
+        async def send_with_headers(message: Message) -> None:
             if message["type"] == "http.response.start":
                 headers = MutableHeaders(scope=message)
                 for name, value in _HEADERS.items():
@@ -63,103 +63,107 @@ class SecurityMiddleware:
                 headers.setdefault("cache-control", "no-store")
             await send(message)
 
-        await (self._refusal(scope, Headers(scope=scope)) or self._app)(scope, receive, safe)
+        await (self._refusal(scope, Headers(scope=scope)) or self._app)(scope, receive, send_with_headers)
 
     def _refusal(self, scope: Scope, headers: Headers) -> JSONResponse | None:
         host, origin = headers.get("host", ""), headers.get("origin")
         if "transfer-encoding" in headers and ("content-length" in headers or scope["http_version"] == "1.0"):
-            twice = "the request says twice how long its body is; send Content-Length or Transfer-Encoding"
-            return problem("bad_request", twice, headers={"Connection": "close"})
-        if _name(f"//{host}") not in self._hosts:
-            here = "this service answers on this machine only; open it as 127.0.0.1 or localhost"
-            return problem("foreign_host", here)
-        foreign = origin is not None and not (origin.split("://")[-1] == host and _name(origin) in self._hosts)
-        # A form may be sent without an origin; browsers add where it came from. Another port of a host is "same-site".
-        if foreign or (scope["method"] not in _READS and headers.get("sec-fetch-site", "none") not in _OWN_SITES):
-            return problem("foreign_origin", "this page is not of this service; open the service's own page")
+            detail = "the request gives the length of its body twice; send Content-Length or Transfer-Encoding"
+            return problem("bad_request", detail, headers={"Connection": "close"})
+        if _host_name(f"//{host}") not in self._hosts:
+            detail = "this service responds on this machine only; open it as 127.0.0.1 or localhost"
+            return problem("foreign_host", detail)
+        foreign = origin is not None and not (origin.split("://")[-1] == host and _host_name(origin) in self._hosts)
+        # A form may be sent without Origin; browsers then add Sec-Fetch-Site, "same-site" for another port of the host.
+        if foreign or (
+            scope["method"] not in _READING_METHODS and headers.get("sec-fetch-site", "none") not in _OWN_SITES
+        ):
+            return problem("foreign_origin", "this page does not belong to the service; open the service's own page")
         return None
 
 
 class MethodMiddleware:
-    """Answers HEAD as GET without its body, and OPTIONS by what may be asked.
+    """Responds to HEAD as to GET without the body, and to OPTIONS with the methods that a path has.
 
-    Any other method that nobody knows is refused here, before it is counted: each would be a series of its own.
+    Unknown methods are refused here, before the metrics count them: each would be a time series of its own.
     """
 
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on, or answer it."""
-        if scope["type"] != "http" or scope["method"] in _PASSED:
+        """Forward a request, or respond to it."""
+        if scope["type"] != "http" or scope["method"] in _KNOWN_METHODS:
             await self._app(scope, receive, send)
         elif scope["method"] == "HEAD":
             await self._app(_as_get(scope), receive, partial(_send_head, send))
         else:
             allowed = allowed_methods(scope["app"], scope["path"])
-            told = Response(status_code=HTTPStatus.NO_CONTENT, headers={"Allow": ", ".join(allowed)})
-            asked = scope["method"] == "OPTIONS" and allowed
-            await (told if asked else nothing_there(scope["method"], allowed))(scope, receive, send)
+            if scope["method"] == "OPTIONS" and allowed:
+                response = Response(status_code=HTTPStatus.NO_CONTENT, headers={"Allow": ", ".join(allowed)})
+            else:
+                response = nothing_there(scope["method"], allowed)
+            await response(scope, receive, send)
 
 
 class _Body:
-    """A request's body on its way: how much of it came, and how long it may still keep its reader waiting."""
+    """A request's body while it is received: how many bytes have arrived, and how long it may still be waited for."""
 
-    def __init__(self, receive: Receive, patience_s: float, slowest: float) -> None:
-        self._receive, self._patience_s, self._slowest = receive, patience_s, slowest
+    def __init__(self, receive: Receive, patience_s: float, min_rate: float) -> None:
+        self._receive, self._patience_s, self._min_rate = receive, patience_s, min_rate
         self._left_s = patience_s
         self._wait: asyncio.Timeout | None = None
-        self._given_up = False
-        self.got, self.whole = 0, False
+        self._dropped = False
+        self.received, self.complete = 0, False
 
-    async def piece(self) -> Message:
-        """Give the next piece; what comes in good time gives back patience, but never more than there was at first."""
+    async def receive_piece(self) -> Message:
+        """Return the next piece; each byte adds to the time that is left, up to the time at the start."""
         began = time.monotonic()
         try:
             async with asyncio.timeout(self._left_s) as self._wait:
                 message = await self._receive()
-                if self._given_up:  # and something came in the same moment
+                if self._dropped:  # while a piece arrived
                     raise TimeoutError
         except TimeoutError:
-            raise Refusal("body_too_slow", "the request's body comes too slowly; send it again") from None
+            raise Refusal("body_too_slow", "the request's body arrives too slowly; send it again") from None
         finally:
             self._wait = None
         size = len(message.get("body", b""))
-        left_s = self._left_s - (time.monotonic() - began) + size / self._slowest
+        left_s = self._left_s - (time.monotonic() - began) + size / self._min_rate
         self._left_s = min(left_s, self._patience_s)
-        self.got += size
-        self.whole = not message.get("more_body", False)
+        self.received += size
+        self.complete = not message.get("more_body", False)
         return message
 
     @property
-    def due(self) -> float:
-        """When this body is given up, by the loop's clock; never while nobody waits for it."""
+    def deadline(self) -> float:
+        """When the wait for this body ends, by the loop's clock in seconds; infinity while nobody waits for it."""
         return (self._wait and self._wait.when()) or math.inf
 
-    def give_up(self) -> None:
-        """End the wait for it at once."""
-        self._given_up = True
+    def drop(self) -> None:
+        """End the wait for this body at once."""
+        self._dropped = True
         if self._wait is not None:
             self._wait.reschedule(0.0)
 
 
 class BodyLimitMiddleware:
-    """Bounds a request's body, whatever its Content-Length says, and gives up on bodies that hardly come."""
+    """Limits the size of a request's body, whatever Content-Length says, and refuses bodies that arrive too slowly."""
 
     def __init__(
         self,
         app: ASGIApp,
         limit_of: Callable[[Scope], int],
         patience_s: float = PATIENCE_SECONDS,
-        slowest: float = SLOWEST_BYTES_PER_SECOND,
-        held: int = HELD_BYTES,
+        min_rate: float = MIN_BYTES_PER_SECOND,
+        held_bytes: int = HELD_BYTES,
     ) -> None:
         self._app, self._limit_of = app, limit_of
-        self._patience_s, self._slowest, self._free = patience_s, slowest, held
+        self._patience_s, self._min_rate, self._free = patience_s, min_rate, held_bytes
         self._bodies: set[_Body] = set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass a request on with its body counted."""
+        """Forward a request with the bytes of its body counted."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -168,48 +172,48 @@ class BodyLimitMiddleware:
         if declared.isdecimal() and int(declared) > limit:
             await problem("body_too_large", _too_large(limit))(scope, receive, send)
             return
-        body = _Body(receive, self._patience_s, self._slowest)
+        body = _Body(receive, self._patience_s, self._min_rate)
 
         async def counted() -> Message:
-            if body.whole:
-                return await receive()  # what comes now is the news that the client has gone
-            message = await body.piece()
+            if body.complete:
+                return await receive()  # what follows a body is the message that the client has disconnected
+            message = await body.receive_piece()
             self._free -= len(message.get("body", b""))
-            if body.got > limit:
+            if body.received > limit:
                 raise Refusal("body_too_large", _too_large(limit))
             self._make_room()
             if self._free < 0:
-                raise Refusal("overloaded", "too much is being sent at the moment; try again")
+                raise Refusal("overloaded", "too many bytes are being sent at the moment; try again")
             return message
 
         self._bodies.add(body)
         try:
             await self._app(scope, counted, send)
         finally:
-            self._forget(body)
+            self._release(body)
 
     def _make_room(self) -> None:
-        """Where all bodies together are too much, end those that have used up half of their patience."""
+        """Drop bodies that have used up half of their patience while all bodies together are too large."""
         late = asyncio.get_running_loop().time() + self._patience_s / 2
-        while self._free < 0 and (slowest := min(self._bodies, key=attrgetter("due"))).due < late:
-            slowest.give_up()
-            self._forget(slowest)
+        while self._free < 0 and (slowest := min(self._bodies, key=attrgetter("deadline"))).deadline < late:
+            slowest.drop()
+            self._release(slowest)
 
-    def _forget(self, body: _Body) -> None:
-        """Let what a body holds be free, once."""
+    def _release(self, body: _Body) -> None:
+        """Free a body's bytes, once."""
         if body in self._bodies:
             self._bodies.remove(body)
-            self._free += body.got
+            self._free += body.received
 
 
 def _as_get(scope: Scope) -> Scope:
-    """Ask for what GET would answer with; a part can be asked for by GET alone."""
+    """Return the request as GET, without Range, which is defined for GET alone."""
     headers = [(name, value) for name, value in scope["headers"] if name != b"range"]
     return {**scope, "method": "GET", "headers": headers}
 
 
 async def _send_head(send: Send, message: Message) -> None:
-    """Send the head of an answer and end it there: the application is told that the client has gone."""
+    """Send the head of a response and no body."""
     if message["type"] == "http.response.start":
         await send(message)
         await send({"type": "http.response.body"})
@@ -219,8 +223,8 @@ def _too_large(limit: int) -> str:
     return f"the request's body has more than {limit / 1e6:g} MB; make it smaller"
 
 
-def _name(address: str) -> str | None:
-    """Read the host's name, without its port, from an address."""
+def _host_name(address: str) -> str | None:
+    """Return the host of an address, without its port; None if the address is malformed."""
     try:
         return urlsplit(address).hostname
     except ValueError:

@@ -1,7 +1,7 @@
-"""The dispatcher: tells workers of jobs that wait, takes back the jobs of workers that are gone, and sweeps.
+"""The dispatcher: sends messages for queued jobs, takes back the jobs of workers that have gone, and starts sweeps.
 
-Leases are judged by the change of a row's ``beat`` as this process sees it on its own monotonic clock. No two
-machines need agree on the time, and a clock that jumps expires nothing.
+A lease has run out when the row's heartbeat counter (``beat``) has not changed for a while on this process's own
+monotonic clock. So machines need not agree on the time, and no lease runs out because a clock jumps.
 """
 
 import threading
@@ -28,24 +28,24 @@ _TICK_SECONDS = 0.5
 _BACKOFF_SECONDS = 2.0
 _SWEEP_SECONDS = 600.0
 _OVERDUE_SECONDS = 30.0
-"""Jobs wait for a dispatcher that has not done all its work once within this."""
+"""The service is degraded when the dispatcher has not finished a round within this time."""
 _UNKNOWN_SLOTS = 2
-"""Hints that are sent where no worker has spoken yet: one may be about to start."""
+"""Messages that are sent while no worker is known: one may be about to start."""
 LOST = Counter("treestroke_attempts_lost", "Attempts whose lease ran out.")
-SENT = Counter("treestroke_hints_sent", "Messages to the queue.")
-UNSENT = Counter("treestroke_hints_unsent", "Messages that the broker did not take.")
+SENT = Counter("treestroke_messages_sent", "Messages sent to the broker.")
+UNSENT = Counter("treestroke_messages_unsent", "Messages that the broker did not accept.")
 Key = TypeVar("Key", bound=Hashable)
 log = structlog.get_logger()
 
 
 class StallDetector(Generic[Key]):
-    """For how long each of some counters has stood still, by this process's monotonic clock."""
+    """Measures how long each of some counters has not changed, by this process's monotonic clock."""
 
     def __init__(self) -> None:
         self._seen: dict[Key, tuple[int, float]] = {}
 
     def stalled(self, counters: Iterable[tuple[Key, int]], seconds: float) -> set[Key]:
-        """Take all counters that there are now; give the keys of those that stood still for ``seconds``."""
+        """Record all present counters, and return the keys of those that have not changed for ``seconds``."""
         now = time.monotonic()
         before, self._seen = self._seen, {}
         for key, count in counters:
@@ -55,59 +55,56 @@ class StallDetector(Generic[Key]):
 
 
 class Dispatcher:
-    """A thread beside the web server; it holds nothing that another cannot find again in the database."""
+    """A thread of the web process. It keeps no state that a new one could not read from the database."""
 
     def __init__(self, database: Database, blobs: Blobs, send: Callable[[str], None], keep_days: float) -> None:
         self._database, self._send = database, send
         self._jobs, self._workers = StallDetector[tuple[str, int]](), StallDetector[str]()
         self._sent: dict[str, float] = {}
-        self._wake, self._stopped = threading.Event(), threading.Event()
+        self._notified, self._stopped = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
-        self._well_at = time.monotonic()
+        self._last_round = time.monotonic()
         self._sweeper = Sweeper(database, blobs, keep_days, self._stopped)
         self._sweeping = threading.Thread(target=self._sweep, name="sweeper", daemon=True)
-        self._quiet_until = 0.0
-        self.broker_takes = True
+        self._no_messages_until = 0.0
+        self.broker_accepts = True
 
     def start(self) -> None:
-        """Begin."""
+        """Start dispatching and sweeping."""
         self._thread.start()
         self._sweeping.start()
 
     @property
     def state(self) -> str:
-        """Say "ok", or what is wrong with it."""
+        """State of the dispatcher: "ok", or what is wrong."""
         if not self._thread.is_alive():
-            return "does not run; jobs wait until the service is started anew"
-        silent_s = time.monotonic() - self._well_at
-        return (
-            "ok" if silent_s < _OVERDUE_SECONDS else f"has not finished a round for {silent_s:.0f} s; its log says why"
-        )
+            return "has stopped; jobs wait until the service is restarted"
+        silent_s = time.monotonic() - self._last_round
+        return "ok" if silent_s < _OVERDUE_SECONDS else f"has finished no round for {silent_s:.0f} s; its log says why"
 
     def notify(self) -> None:
-        """Look at the queue now: something has changed."""
-        self._wake.set()
+        """Start the next round now: the queue has changed."""
+        self._notified.set()
 
     def stop(self) -> None:
-        """End; jobs that wait stay rows and are found by the next one."""
+        """Stop; queued jobs remain rows, which the next dispatcher finds."""
         self._stopped.set()
-        self._wake.set()
+        self._notified.set()
         for thread in (self._thread, self._sweeping):
             thread.join(timeout=_TICK_SECONDS)
 
     def _run(self) -> None:
         while not self._stopped.is_set():
-            # Each has its turn, whatever became of the others.
-            done = [_tried(step) for step in (self.recover, self.dispatch)]
-            if all(done):
-                self._well_at = time.monotonic()
+            succeeded = [_try(step) for step in (self.recover, self.dispatch)]  # both, even if the first fails
+            if all(succeeded):
+                self._last_round = time.monotonic()
             else:
                 self._stopped.wait(_BACKOFF_SECONDS)
-            self._wake.wait(_TICK_SECONDS)
-            self._wake.clear()
+            self._notified.wait(_TICK_SECONDS)
+            self._notified.clear()
 
     def recover(self) -> None:
-        """Take back the jobs whose worker has not beaten for a lease, and forget workers that are silent."""
+        """Take back the jobs whose lease has run out, and remove workers without a heartbeat."""
         with self._database.reading() as session:
             jobs = {job.id: job for job in session.scalars(select(ModelRow).where(ModelRow.status == "running"))}
             workers = {worker.id: worker for worker in session.scalars(select(Worker))}
@@ -124,8 +121,8 @@ class Dispatcher:
                 session.execute(delete(Worker).where(Worker.id == name, Worker.beat == workers[name].beat))
 
     def dispatch(self) -> None:
-        """Tell the workers of the jobs that are next, as many as they have hands for and one more each."""
-        if time.monotonic() < self._quiet_until:
+        """Send messages for the next jobs: as many as fill all slots, and one more for each slot."""
+        if time.monotonic() < self._no_messages_until:
             return
         with self._database.reading() as session:
             slots = session.scalar(select(func.sum(Worker.slots))) or 0
@@ -136,36 +133,37 @@ class Dispatcher:
         now = time.monotonic()
         self._sent = {id: at for id, at in self._sent.items() if id in next_ones}
         for id in next_ones:
-            # Where no worker lives one message is enough: more would only pile up until one comes.
+            # Without workers one message for each job is enough: more would pile up in the broker.
             due = id not in self._sent or (slots and now - self._sent[id] >= RESEND_SECONDS)
-            if due and not self._tell(id, now):
+            if due and not self._send_message(id, now):
                 return
 
     def sweep(self) -> None:
-        """Remove what is to go."""
+        """Remove old models, photos and files that no row refers to."""
         log.info("swept", **asdict(self._sweeper.sweep()))
 
     def _sweep(self) -> None:
-        """Sweep now and then, beside the dispatching: it may take a while."""
+        """Sweep at intervals, on a thread of its own: a sweep may take a while."""
         while not self._stopped.is_set():
-            _tried(self.sweep)
+            _try(self.sweep)
             self._stopped.wait(_SWEEP_SECONDS)
 
-    def _tell(self, id: str, now: float) -> bool:
+    def _send_message(self, id: str, now: float) -> bool:
+        """Send the message for a job; False if the broker does not accept it."""
         try:
             self._send(id)
-        except Exception as error:  # noqa: BLE001 - a broker fails in many ways; each means the same: later
+        except Exception as error:  # noqa: BLE001 - a broker fails in many ways, and all of them mean: try later
             UNSENT.inc()
-            self.broker_takes, self._quiet_until = False, time.monotonic() + _BACKOFF_SECONDS
-            log.warning("hint_unsent", job=id, error=str(error) or type(error).__name__)
+            self.broker_accepts, self._no_messages_until = False, time.monotonic() + _BACKOFF_SECONDS
+            log.warning("message_unsent", job=id, error=str(error) or type(error).__name__)
             return False
         SENT.inc()
-        self.broker_takes, self._sent[id] = True, now
+        self.broker_accepts, self._sent[id] = True, now
         return True
 
 
-def _tried(step: Callable[[], None]) -> bool:
-    """Take one of the dispatcher's steps; nothing that fails in it ends its thread."""
+def _try(step: Callable[[], None]) -> bool:
+    """Run a step and return whether it succeeded; an error is logged and does not end the thread."""
     try:
         step()
     except (SQLAlchemyError, OSError) as error:
@@ -178,24 +176,24 @@ def _tried(step: Callable[[], None]) -> bool:
 
 
 def record_heartbeat(database: Database, worker: str, slots: int) -> None:
-    """Write down that a worker lives."""
+    """Increase a worker's heartbeat counter, or add the worker."""
     with database.writing() as session:
-        beaten = session.execute(
+        updated = session.execute(
             update(Worker).where(Worker.id == worker).values(beat=Worker.beat + 1, slots=slots).returning(Worker.id)
         ).first()
-        if beaten is None:
+        if updated is None:
             session.add(Worker(id=worker, slots=slots, beat=1))
 
 
 def holds_jobs(database: Database, worker: str) -> bool:
-    """Tell whether a worker has jobs under way."""
+    """Tell whether a worker has running jobs."""
     with database.reading() as session:
         held = select(ModelRow.id).where(ModelRow.status == "running", ModelRow.worker == worker).limit(1)
         return session.scalar(held) is not None
 
 
 def remove_worker(database: Database, worker: str, error: dict[str, Any] | None = None) -> None:
-    """Write down that a worker stops, or by what ``error`` it ended: what it still held queues again at once."""
+    """Remove a worker that stops, or that ended by an ``error``, and take back its jobs at once."""
     with database.writing() as session:
         session.execute(delete(Worker).where(Worker.id == worker))
         for job in session.scalars(
@@ -205,20 +203,20 @@ def remove_worker(database: Database, worker: str, error: dict[str, Any] | None 
 
 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
-    """Give the queue's figures by name, each with what it means."""
+    """Return the queue's metrics by name, each with its description."""
     with database.reading() as session:
         counts = dict(session.execute(select(ModelRow.status, func.count()).group_by(ModelRow.status)).tuples().all())
         queued = select(ModelRow.created).where(ModelRow.status == "queued").order_by(ModelRow.number).limit(1)
         oldest = session.scalar(queued)
         slots = session.scalar(select(func.sum(Worker.slots))) or 0
     return {
-        "models_queued": ("Models that wait.", counts.get("queued", 0)),
+        "models_queued": ("Models that are queued.", counts.get("queued", 0)),
         "models_running": ("Models that are being grown.", counts.get("running", 0)),
-        "models_failed": ("Models that failed and are kept.", counts.get("failed", 0)),
-        "models_succeeded": ("Models that are kept.", counts.get("succeeded", 0)),
+        "models_failed": ("Failed models that are kept.", counts.get("failed", 0)),
+        "models_succeeded": ("Finished models that are kept.", counts.get("succeeded", 0)),
         "queue_age_seconds": (
-            "How long the oldest queued model waits.",
+            "Time since the oldest queued model was requested, in seconds.",
             max(time.time() - oldest, 0.0) if oldest else 0.0,
         ),
-        "worker_slots": ("Models that the workers alive grow at once.", slots),
+        "worker_slots": ("Models that all running workers can grow at once.", slots),
     }

@@ -1,4 +1,4 @@
-"""What is missing or broken, and how to mend it."""
+"""Checks of the installation and of the deployment: what is missing or broken, and how to mend it."""
 
 import os
 import shutil
@@ -28,36 +28,36 @@ from treestroke.store.database import Database
 from treestroke.store.queries import referenced
 from treestroke.store.tables import ModelRow, Worker
 
-_LEAST_FREE_BYTES = 500_000_000
+_MIN_FREE_BYTES = 500_000_000
 _BROKER_SECONDS = 2
 _WEB_SECONDS = 5.0
 _WATCH_SECONDS = 3.0
-"""A worker that lives beats within this."""
-_NAMED = 20
-"""Bad files that are told by name."""
+"""A running worker sends a heartbeat within this time."""
+_MAX_NAMED = 20
+"""Damaged files that are listed by name."""
 _SERVE = "`treestroke serve`"
-_PARTS = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
-_REDIS_PARTS = ("kombu.transport.redis",)
-"""What a worker imports, by name alone, once it queues on a Redis."""
-_ONLY_THERE = ("broker", "dispatcher", "tracers")
-"""What only the web process can tell of itself."""
+_PACKAGES = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
+_REDIS_PACKAGES = ("kombu.transport.redis",)
+"""Modules that are imported, by their names, only when the queue is a Redis."""
+_WEB_PROCESS_ONLY = ("broker", "dispatcher", "tracers")
+"""Checks that only the web process can make."""
 
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at: whether it is well, what was found, and what mends it."""
+    """The result of one check: whether all is in order, what was found, and how to mend it."""
 
     part: str
-    well: bool
+    ok: bool
     found: str
     mend: str = ""
 
 
 def readiness(shelf: Shelf, dispatcher: Dispatcher) -> Health:
-    """Tell whether requests can be taken, from what is at hand: cheap enough to be asked every second."""
+    """Return whether the service accepts requests, by checks that are cheap enough for every second."""
     failure = shelf.tracers.failure
     checks = {
-        "broker": "ok" if dispatcher.broker_takes else "does not take messages; jobs wait",
+        "broker": "ok" if dispatcher.broker_accepts else "does not accept messages; jobs wait",
         "dispatcher": dispatcher.state,
         "tracers": "ok" if failure is None else f"the last start failed ({failure}); the next request tries again",
     }
@@ -69,47 +69,47 @@ def readiness(shelf: Shelf, dispatcher: Dispatcher) -> Health:
     except SQLAlchemyError:
         checks["database"] = "unavailable"
     free = shutil.disk_usage(shelf.blobs.folder.parent).free
-    checks["storage"] = "ok" if free > _LEAST_FREE_BYTES else f"only {free // 10**6} MB free"
+    checks["storage"] = "ok" if free > _MIN_FREE_BYTES else f"only {free // 10**6} MB free"
     down = checks["database"] != "ok"
-    well = all(check == "ok" for check in checks.values())
-    return Health(status="down" if down else "ok" if well else "degraded", checks=checks)
+    ok = all(check == "ok" for check in checks.values())
+    return Health(status="down" if down else "ok" if ok else "degraded", checks=checks)
 
 
 def examine(settings: Settings) -> Iterator[Finding]:
-    """Look at everything that the service needs, one part after another; nothing is made that is not there yet."""
+    """Check everything that the service needs, part by part; nothing is created."""
     yield from examine_installation(settings)
     yield from examine_deployment(settings)
 
 
 def examine_installation(settings: Settings) -> Iterator[Finding]:
-    """Look at what was installed, and whether it starts."""
-    yield _parts(_PARTS if settings.embedded else (*_PARTS, *_REDIS_PARTS))
+    """Check what is installed, and whether it starts."""
+    yield _packages(_PACKAGES if settings.embedded else (*_PACKAGES, *_REDIS_PACKAGES))
     yield _engine()
     yield _tracers(settings)
 
 
 def examine_deployment(settings: Settings) -> Iterator[Finding]:
-    """Look at what runs and what is kept."""
+    """Check what runs and what is stored."""
     folder = _folder(settings)
     yield folder
     yield _disk(settings)
     yield _web_process(settings)
     yield _messages(settings) if settings.embedded else _redis(settings)
-    if folder.well:
+    if folder.ok:
         yield from _rows(settings)
 
 
-def _parts(names: Sequence[str]) -> Finding:
-    missing = sorted({lack for name in names if (lack := _lack(name)) is not None})
+def _packages(names: Sequence[str]) -> Finding:
+    missing = sorted({module for name in names if (module := _missing_module(name)) is not None})
     if missing:
         return Finding(
-            "packages", False, f"missing: {', '.join(missing)}", "run `make setup`, or install treestroke anew"
+            "packages", False, f"missing: {', '.join(missing)}", "run `make setup`, or install treestroke again"
         )
-    return Finding("packages", True, f"all there; treestroke {__version__}")
+    return Finding("packages", True, f"all installed; treestroke {__version__}")
 
 
-def _lack(name: str) -> str | None:
-    """Import a module; name what is missing for that, which may be another one."""
+def _missing_module(name: str) -> str | None:
+    """Import a module; return the name of the module that is missing, which may be another one, or None."""
     try:
         import_module(name)
     except ImportError as error:
@@ -118,75 +118,77 @@ def _lack(name: str) -> str | None:
 
 
 def _engine() -> Finding:
-    if _lack("treestroke.core.grow._engine") is None:
+    if _missing_module("treestroke.core.grow._engine") is None:
         return Finding("growth engine", True, "compiled")
-    mend = "install a C compiler and Python's headers (python3-dev), and install treestroke anew"
-    return Finding("growth engine", False, "not compiled: growth takes many times longer", mend)
+    mend = "install a C compiler and Python's headers (python3-dev), then install treestroke again"
+    return Finding("growth engine", False, "not compiled: growth is many times slower", mend)
 
 
 def _folder(settings: Settings) -> Finding:
     folder = settings.folder
-    there = _nearest(folder)
+    existing = _nearest(folder)
     mend = "choose another folder (--data, TREESTROKE_DATA), or make this one writable"
     try:
-        with tempfile.TemporaryFile(dir=there) as probe:
+        with tempfile.TemporaryFile(dir=existing) as probe:
             probe.write(b"well")
     except OSError as error:
-        return Finding("data folder", False, f"{there}: {error.strerror}", mend)
-    if there == folder and is_open_to_others(folder):
-        return Finding("data folder", False, f"{folder}: other users may look into it", f"chmod 700 {folder}")
-    return Finding("data folder", True, str(folder) if there == folder else f"{folder}: none yet; {_SERVE} makes it")
+        return Finding("data folder", False, f"{existing}: {error.strerror}", mend)
+    if existing == folder and is_open_to_others(folder):
+        return Finding("data folder", False, f"{folder}: other users can read it", f"chmod 700 {folder}")
+    return Finding(
+        "data folder", True, str(folder) if existing == folder else f"{folder}: not there yet; {_SERVE} creates it"
+    )
 
 
 def _nearest(folder: Path) -> Path:
-    """Give the folder, or where it is not there the nearest one above it."""
+    """Return the folder, or the nearest parent that exists."""
     return next(place for place in (folder, *folder.parents) if place.exists())
 
 
 def _disk(settings: Settings) -> Finding:
     free = shutil.disk_usage(_nearest(settings.folder)).free
-    well = free > _LEAST_FREE_BYTES
-    mend = "" if well else f"free space until {_LEAST_FREE_BYTES // 10**6} MB are free, or move the data folder"
-    return Finding("disk", well, f"{free // 10**6} MB free", mend)
+    ok = free > _MIN_FREE_BYTES
+    mend = "" if ok else f"free space until {_MIN_FREE_BYTES // 10**6} MB are free, or move the data folder"
+    return Finding("disk", ok, f"{free // 10**6} MB free", mend)
 
 
 def _tracers(settings: Settings) -> Finding:
-    """Start a process as the web process does, and have it answer."""
+    """Start a tracing process as the web process does, and call it."""
     pool = TracingPool(1, settings.trace_seconds, settings.memory_mb)
     try:
         pool("", os.getpid)
     except (CannotStart, Crashed) as error:
         mend = "allow more processes and open files (ulimit -u, ulimit -n), or more TREESTROKE_MEMORY_MB"
-        return Finding("tracers", False, f"none can be started: {error}", mend)
+        return Finding("tracers", False, f"cannot be started: {error}", mend)
     finally:
         pool.close()
-    return Finding("tracers", True, "one started and answered")
+    return Finding("tracers", True, "one started and responded")
 
 
 def _web_process(settings: Settings) -> Finding:
-    """Ask the web process, where one runs, how it is."""
+    """Ask the web process for its own checks, if one is running."""
     if settings.port == 0:
-        return Finding("web process", True, "not asked: port 0 is any free one")
+        return Finding("web process", True, "not checked: port 0 stands for any free port")
     at = httpx.URL(scheme="http", host=settings.host, port=settings.port, path="/readyz")
-    place, mend = f"{at.host}:{at.port}", f"start {_SERVE} anew; its log says why"
+    place, mend = f"{at.host}:{at.port}", f"restart {_SERVE}; its log says why"
     try:
         health = Health.model_validate_json(httpx.get(at, timeout=_WEB_SECONDS, trust_env=False).content)
     except httpx.ConnectError:
         return Finding("web process", True, f"none at {place}")
     except httpx.TransportError:
-        return Finding("web process", False, f"{place} does not answer within {_WEB_SECONDS:g} s", mend)
+        return Finding("web process", False, f"{place} does not respond within {_WEB_SECONDS:g} s", mend)
     except ValidationError:
-        mend = "take another port for treestroke (--port, TREESTROKE_PORT)"
+        mend = "use another port for treestroke (--port, TREESTROKE_PORT)"
         return Finding("web process", False, f"{place} is another program", mend)
     ill = {name: check for name, check in health.checks.items() if check != "ok"}
     if health.status != "down":
-        ill = {name: check for name, check in ill.items() if name in _ONLY_THERE}
-    said = "; ".join(f"{name}: {check}" for name, check in ill.items())
-    return Finding("web process", not ill, said or f"answers at {place}", mend if ill else "")
+        ill = {name: check for name, check in ill.items() if name in _WEB_PROCESS_ONLY}
+    found = "; ".join(f"{name}: {check}" for name, check in ill.items())
+    return Finding("web process", not ill, found or f"responds at {place}", mend if ill else "")
 
 
 def _messages(settings: Settings) -> Finding:
-    """Try the folder of the embedded queue, where there is one."""
+    """Check that the folder of the embedded queue, if it exists, can be written to."""
     folder = settings.folder / "queue"
     try:
         if folder.exists():
@@ -203,25 +205,27 @@ def _redis(settings: Settings) -> Finding:
         with Redis.from_url(
             settings.broker_url, socket_timeout=_BROKER_SECONDS, socket_connect_timeout=_BROKER_SECONDS
         ) as redis:
-            # A Redis that is full, or that cannot save, answers and yet takes nothing.
+            # A Redis that is full, or that cannot save, responds to reads but accepts no writes.
             redis.set("treestroke.doctor", "well", ex=1)
     except (RedisError, OSError, ValueError) as error:
-        mend = "start or free Redis, or correct TREESTROKE_BROKER_URL; until then jobs wait, and none is lost"
+        mend = (
+            "start Redis or free its memory, or correct TREESTROKE_BROKER_URL; until then jobs wait, and none is lost"
+        )
         return Finding("queue", False, " ".join(str(error).split()) or type(error).__name__, mend)
-    return Finding("queue", True, "Redis takes messages")
+    return Finding("queue", True, "Redis accepts messages")
 
 
 def _rows(settings: Settings) -> Iterator[Finding]:
-    """Look into the database: sound, of this version, every file there, workers alive."""
+    """Check the database: whether it is sound and of this version, its files are whole and its workers run."""
     database = Database(settings.folder)
     if not database.path.is_file():
-        yield _refused(settings.folder) or Finding("database", True, f"none yet; {_SERVE} makes it")
+        yield _refused(settings.folder) or Finding("database", True, f"not there yet; {_SERVE} creates it")
         return
     try:
-        for look in (_soundness, _files, _workers):
-            finding = look(settings, database)
+        for check in (_soundness, _files, _workers):
+            finding = check(settings, database)
             yield finding
-            if not finding.well and finding.part == "database":
+            if not finding.ok and finding.part == "database":
                 return
     except (SQLAlchemyError, sqlite3.Error) as error:
         yield _unsound(database, str(getattr(error, "orig", error)))
@@ -231,9 +235,9 @@ def _rows(settings: Settings) -> Iterator[Finding]:
 
 def _soundness(_: Settings, database: Database) -> Finding:
     with database.reading() as session:
-        said = session.execute(text("PRAGMA quick_check(1)")).scalar()
-    if said != "ok":
-        return _unsound(database, " ".join(str(said).split()))
+        result = session.execute(text("PRAGMA quick_check(1)")).scalar()
+    if result != "ok":
+        return _unsound(database, " ".join(str(result).split()))
     if refused := _refused(database.path.parent):
         return refused
     if not database.current():
@@ -242,12 +246,12 @@ def _soundness(_: Settings, database: Database) -> Finding:
 
 
 def _refused(folder: Path) -> Finding | None:
-    """Say why a start would refuse the database."""
+    """Return the reason why the service would refuse the database at its start; None if it would not."""
     try:
         check_version(folder)
     except DataFolderError as error:
-        what, _sign, mend = str(error).partition("; ")
-        return Finding("database", False, what, mend)
+        reason, _separator, mend = str(error).partition("; ")
+        return Finding("database", False, reason, mend)
     return None
 
 
@@ -256,18 +260,20 @@ def _unsound(database: Database, why: str) -> Finding:
 
 
 def _files(settings: Settings, database: Database) -> Finding:
-    """Read every file that a row refers to, a few at a time, and compare it with its name."""
+    """Compare every file that a row refers to with its SHA-256, one range of names at a time."""
     blobs, count, bad = Blobs(settings.folder), 0, list[str]()
-    for beginning in (f"{number:02x}" for number in range(256)):
+    for prefix in (f"{number:02x}" for number in range(256)):
         with database.reading() as session:
-            named = referenced(session, beginning)
-        count += len(named)
-        bad += [str(error) for error in (_damage(blobs, name) for name in sorted(named)) if error is not None]
+            names = referenced(session, prefix)
+        count += len(names)
+        bad += [str(error) for error in (_damage(blobs, name) for name in sorted(names)) if error is not None]
     if bad:
-        more = f", and {len(bad) - _NAMED} more" if len(bad) > _NAMED else ""
-        mend = f"restore them from a copy of {blobs.folder}; or upload the photos, or ask for the models, again"
-        return Finding("files", False, f"{len(bad)} of {count} bad: {', '.join(bad[:_NAMED])}{more}", mend)
-    return Finding("files", True, f"all {count} whole")
+        more = f", and {len(bad) - _MAX_NAMED} more" if len(bad) > _MAX_NAMED else ""
+        mend = f"restore them from a copy of {blobs.folder}; or upload the photos and request the models again"
+        return Finding(
+            "files", False, f"{len(bad)} of {count} damaged or missing: {', '.join(bad[:_MAX_NAMED])}{more}", mend
+        )
+    return Finding("files", True, f"all {count} intact")
 
 
 def _damage(blobs: Blobs, name: str) -> Damaged | None:
@@ -282,14 +288,16 @@ def _workers(_: Settings, database: Database) -> Finding:
     before = _beats(database)
     if not before:
         waiting = _waiting(database)
-        mend = f"start {_SERVE}, or `treestroke worker` where workers run elsewhere" if waiting else ""
-        return Finding("workers", not waiting, f"none runs; {waiting} models wait" if waiting else "none runs", mend)
+        mend = f"start {_SERVE}, or `treestroke worker` if workers run elsewhere" if waiting else ""
+        return Finding(
+            "workers", not waiting, f"none is running; {waiting} models wait" if waiting else "none is running", mend
+        )
     deadline = time.monotonic() + _WATCH_SECONDS
     while not _all_beat(before, now := _beats(database)) and time.monotonic() < deadline:
         time.sleep(0.1)
     alive = sum(before.get(name) != beat for name, beat in now.items())
-    mend = "" if alive else f"start {_SERVE}, which clears them away, or `treestroke worker`"
-    return Finding("workers", alive > 0, f"{alive} of {len(now)} alive", mend)
+    mend = "" if alive else f"start {_SERVE}, which removes them, or `treestroke worker`"
+    return Finding("workers", alive > 0, f"{alive} of {len(now)} are running", mend)
 
 
 def _all_beat(before: dict[str, int], now: dict[str, int]) -> bool:

@@ -1,4 +1,4 @@
-"""Which engine grows trees here: named so that another one, whose trees may look otherwise, has another name."""
+"""The version of the engine, which changes whenever the trees that it grows may change."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -14,9 +14,9 @@ from treestroke import __version__
 
 PACKAGES = ("core", "codec")
 MODULES = ("execution", "files", "inputs", "jobs", "model", "report")
-"""Of this package: what brings input to a tree and a tree to files."""
+"""Modules of ``service`` on the way from the inputs to a tree and its files."""
 _BELOW = ("limits", "wire_strokes")
-"""Of the whole package: what input may hold."""
+"""Modules of the whole package that say what inputs may hold."""
 LIBRARIES = {
     "numpy": np.__version__,
     "opencv": cv2.__version__,
@@ -24,27 +24,27 @@ LIBRARIES = {
     "maxflow": maxflow.__version__,
 }
 _BUILT = {".pyc", ".pyi", ".so", ".pyd"}
-"""Made of the sources, for one machine, or read by type checkers alone."""
+"""Compiled from the sources for one machine, or read by type checkers alone."""
 _DIGITS = 12
 
 
 @cache
 def engine_version() -> str:
-    """Give the engine's name: program, version, and a digest of what makes the tree."""
+    """Return program, version, and a digest of the code that makes trees."""
     return f"treestroke {__version__}+{digest(Path(__file__).parents[1], LIBRARIES)}"
 
 
 def digest(package: Path, libraries: Mapping[str, str]) -> str:
-    """Hash the sources below ``package`` that make a tree, and the versions of ``libraries``; the place is left out."""
-    found = hashlib.sha256(repr(sorted(libraries.items())).encode())
+    """Return a hash of the sources in ``package`` that make trees, and of the versions of ``libraries``."""
+    hashed = hashlib.sha256(repr(sorted(libraries.items())).encode())
     for path in sorted(sources(package)):
         content = hashlib.sha256(path.read_bytes()).hexdigest()
-        found.update(f"{path.relative_to(package).as_posix()} {content}\n".encode())
-    return found.hexdigest()[:_DIGITS]
+        hashed.update(f"{path.relative_to(package).as_posix()} {content}\n".encode())
+    return hashed.hexdigest()[:_DIGITS]
 
 
 def sources(package: Path) -> Iterator[Path]:
-    """Give the files that make a tree, in any order."""
+    """Yield the source files that make trees, in any order."""
     for name in PACKAGES:
         yield from (path for path in (package / name).rglob("*") if path.is_file() and path.suffix not in _BUILT)
     yield from (package / "service" / f"{name}.py" for name in MODULES)

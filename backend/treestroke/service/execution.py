@@ -12,7 +12,7 @@ from treestroke.core.progress import Report
 
 
 class Stopwatch:
-    """A progress report that charges the time between calls to the stage under way, and passes the calls on."""
+    """A progress report that adds the time between calls to the current stage, and forwards the calls."""
 
     def __init__(self, report: Report, clock: Callable[[], float] = time.perf_counter) -> None:
         self.seconds: defaultdict[str, float] = defaultdict(float)
@@ -22,18 +22,18 @@ class Stopwatch:
         self._since = clock()
 
     def __call__(self, stage: str, fraction: float) -> None:
-        """Charge the time since the last call; a new stage's name begins that stage."""
-        self._charge(stage)
+        """Add the time since the last call to the current stage, then continue with ``stage``."""
+        self._add_time(stage)
         self._report(stage, fraction)
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
-        """Time one stage that does not report by itself."""
+        """Measure a stage that does not report progress itself."""
         self(name, 0.0)
         yield
         self(name, 1.0)
 
-    def _charge(self, stage: str) -> None:
+    def _add_time(self, stage: str) -> None:
         now = self._clock()
         if self._stage:
             self.seconds[self._stage] += now - self._since
@@ -42,7 +42,7 @@ class Stopwatch:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Hold BLAS, OpenMP and OpenCV to one thread."""
+    """Limit BLAS, OpenMP and OpenCV to one thread: sums keep their order, and a server grows one model on each core."""
     before = cv2.getNumThreads()
     cv2.setNumThreads(1)
     try:

@@ -1,4 +1,4 @@
-"""What went wrong through no fault of the input: its code, and words for the person who waits."""
+"""Failures that the input did not cause: their codes, and what the user is told."""
 
 import errno
 import sqlite3
@@ -11,19 +11,22 @@ from sqlalchemy.exc import TimeoutError as NoConnection
 from treestroke.core.errors import TreestrokeError
 
 _DETAILS = {
-    "worker_lost": ("The process that grew the tree was lost three times. Try again; if it stays so, report it.", True),
+    "worker_lost": (
+        "The process that grew the tree ended unexpectedly three times. Try again; if it happens again, report it.",
+        True,
+    ),
     "time_limit": ("The tree took longer to grow than this service allows. Try fewer iterations.", False),
     "out_of_memory": ("The tree needs more memory than this service allows. Try a smaller photo.", False),
     "input_damaged": (
-        "A stored file that the tree is made of is damaged or gone. Upload the photo again, and ask for a new model.",
+        "A stored file that the tree is made of is damaged or missing. Upload the photo again and request a new model.",
         False,
     ),
-    "engine_error": ("The tree could not be grown; this is our mistake, and it is in the log.", False),
-    "storage_full": ("The service's disk is full. Make room on it, then try again.", True),
-    "storage_read_only": ("The service may not write to its data folder. Give it back to its user.", True),
+    "engine_error": ("The tree could not be grown. This is an error in treestroke; the log has the details.", False),
+    "storage_full": ("The service's disk is full. Free some space, then try again.", True),
+    "storage_read_only": ("The service may not write to its data folder. Make its user the folder's owner.", True),
     "storage_broken": ("The service's disk or database cannot be read or written. See `treestroke doctor`.", False),
-    "file_missing": ("A file that belongs here is missing on the service's disk. See `treestroke doctor`.", False),
-    "too_many_files": ("The service has as many files and connections open as it may. Try again.", True),
+    "file_missing": ("A file is missing on the service's disk. See `treestroke doctor`.", False),
+    "too_many_files": ("The service has reached its limit of open files and connections. Try again.", True),
     "database_busy": ("The database is busy. Try again.", True),
     "database_unavailable": ("The database cannot be opened at the moment. Try again.", True),
 }
@@ -51,28 +54,28 @@ _BY_SQLITE = {
 
 
 def problem_of(code: str) -> dict[str, Any]:
-    """Say a failure as plain values: ``code``, ``detail``, and whether it may help to try again."""
+    """Return a failure as plain values: ``code``, ``detail``, and whether it is worth trying again (``retryable``)."""
     detail, retryable = _DETAILS[code]
     return {"code": code, "detail": detail, "retryable": retryable}
 
 
 def code_of(error: Exception) -> str:
-    """Name what went wrong: what the system or the database says it was, or else a mistake of ours."""
+    """Return the code of an error of the system or the database; ``engine_error`` for any other error."""
     if ran_out_of_memory(error):
         return "out_of_memory"
     if isinstance(error, NoConnection):
         return "database_busy"
     if isinstance(error, DBAPIError):
-        # The low byte is the kind, what is above it tells more.
+        # The low byte is the primary result code, the others extend it.
         return _BY_SQLITE.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF, "engine_error")
     return _BY_ERRNO.get((isinstance(error, OSError) and error.errno) or 0, "engine_error")
 
 
 def problem_of_input(error: TreestrokeError) -> dict[str, Any]:
-    """Say what is wrong with the input."""
+    """Return an error of the input as plain values."""
     return {"code": "input_unusable", "detail": str(error), "retryable": False}
 
 
 def ran_out_of_memory(error: Exception) -> bool:
-    """Tell whether an error means that memory ran out: OpenCV says so in a way of its own."""
+    """Tell whether an error means that memory ran out; OpenCV has an error of its own for that."""
     return isinstance(error, MemoryError) or (isinstance(error, cv2.error) and error.code == cv2.Error.StsNoMem)

@@ -1,4 +1,4 @@
-"""The files of one tree, as its settings ask for them."""
+"""The files of a tree that its settings ask for."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -24,7 +24,7 @@ from treestroke.core.sway.skinning import skin
 from treestroke.core.sway.wind import Wind
 
 Bundle = Mapping[str, bytes]
-"""Files that belong together, by name: the first names the others."""
+"""Files that belong together, by name; the first refers to the others."""
 ENDINGS = {
     "gltf": "gltf",
     "obj": "obj",
@@ -36,24 +36,23 @@ ENDINGS = {
     "swc": "swc",
     "csv": "skeleton.csv",
 }
-"""How the names of further files end."""
+"""Endings of the names of further files, by the setting's name for them."""
 CLIPS = {"none": (), "breeze": ("breeze",), "all": ("breeze", "gust")}
-
-
+"""Animation clips for each value of the setting ``wind``."""
 PLAIN = np.full((1, 1, 3), 128, dtype=np.uint8)
-"""What the collision solid wears, which nobody sees."""
+"""Texture (1, 1, 3), sRGB 0 to 255, of the collision solid, which is never drawn."""
 
 
 def tree_files(
     tree: TreeModel, settings: ModelSettings, name: str, generator: str, report: Report
 ) -> dict[str, Bundle]:
-    """Write a tree: its GLB, its levels of detail and what else the settings name, each under its bundle's name.
+    """Return a tree's files: its GLB, its levels of detail and the further files that the settings name, by bundle.
 
-    ``name`` begins all names. ``report`` is called with the stages levels (where there are any) and write.
+    All names begin with ``name``. ``report`` is called with the stages levels (if there are any) and write.
     """
     writer = _Writer(tree, settings, name, generator, _wind(tree, settings))
     coarse = None if settings.lod == "none" else levels(tree, report)
-    recipes = writer.glbs(coarse) | {f"{name}.{ENDINGS[one]}": partial(writer.other, one) for one in settings.files}
+    recipes = writer.glbs(coarse) | {f"{name}.{ENDINGS[kind]}": partial(writer.other, kind) for kind in settings.files}
     bundles = {}
     for done, (bundle, make) in enumerate(recipes.items()):
         report("write", done / len(recipes))
@@ -63,19 +62,19 @@ def tree_files(
 
 
 def check_files(settings: ModelSettings) -> None:
-    """Refuse, before any work, a file that needs a package which is not installed.
+    """Check that the packages which the files need are installed.
 
     Raises
     ------
     SettingsError
-        There is such a file.
+        A package is missing.
     """
     if "usdz" in settings.files:
         require_usd()
 
 
 def files_on_offer() -> tuple[str, ...]:
-    """Name the further files that can be written here."""
+    """Return the names of the further files that the installed packages can write."""
     return tuple(file for file in FILES if file != "usdz" or has_usd())
 
 
@@ -84,36 +83,36 @@ def _wind(tree: TreeModel, settings: ModelSettings) -> Wind | None:
     return wind_of(tree.grown.skeleton, clips, None if tree.cards is None else tree.cards.joints) if clips else None
 
 
-def _chained(own: list[Part], coarser: list[list[Part]], impostor: Part) -> list[Part]:
-    """Let each part know those that take its place further off; the last part ends as the impostor."""
+def _with_coarser(fine: list[Part], coarser: list[list[Part]], impostor: Part) -> list[Part]:
+    """Return the parts with the parts that replace them at a distance; the impostor replaces the last one."""
     found = []
-    for part in own:
-        later = tuple(one for level in coarser for one in level if one.material == part.material)
-        found.append(replace(part, coarser=(*later, impostor) if part is own[-1] else later))
+    for part in fine:
+        same = tuple(other for level in coarser for other in level if other.material == part.material)
+        found.append(replace(part, coarser=(*same, impostor) if part is fine[-1] else same))
     return found
 
 
 class _Writer:
-    """Writes one tree under one name."""
+    """Writes the files of one tree; all their names begin alike."""
 
     def __init__(self, tree: TreeModel, settings: ModelSettings, name: str, generator: str, wind: Wind | None) -> None:
         self._tree, self._settings, self._name = tree, settings, name
         self._generator, self._wind = generator, wind
 
     def glbs(self, coarse: Levels | None) -> dict[str, Callable[[], Bundle]]:
-        """Give the makers of the GLB and of its levels, which are files of their own or lie in the one."""
-        own = self._parts(Level(self._tree.bark, self._tree.leaf))
+        """Return functions that write the GLB and its levels of detail, as files of their own or in the one file."""
+        fine = self._parts(Level(self._tree.bark, self._tree.leaf))
         if coarse is None:
-            return self._glb("", own)
+            return self._glb("", fine)
         coarser = [self._parts(level, f"_lod{at}") for at, level in enumerate((coarse.lod1, coarse.lod2), start=1)]
         impostor = Part("impostor", coarse.impostor)
         if self._settings.lod == "one":
-            return self._glb("", _chained(own, coarser, impostor))
-        files = {"": own, ".lod1": coarser[0], ".lod2": coarser[1], ".impostor": [impostor]}
+            return self._glb("", _with_coarser(fine, coarser, impostor))
+        files = {"": fine, ".lod1": coarser[0], ".lod2": coarser[1], ".impostor": [impostor]}
         return {bundle: make for infix, parts in files.items() for bundle, make in self._glb(infix, parts).items()}
 
     def other(self, kind: str) -> Bundle:
-        """Write the tree in another form."""
+        """Return the tree in another format."""
         tree, name = self._tree, self._name
         file = f"{name}.{ENDINGS[kind]}"
         match kind:
@@ -139,7 +138,7 @@ class _Writer:
                 return {file: encode_csv(tree.grown.skeleton, tree.grown.born)}
 
     def _instanced(self) -> bytes:
-        """Write leaves as instances; a tree without any is bark alone."""
+        """Return a GLB with leaves as instances; without leaves, of the bark alone."""
         tree, bark = self._tree, Part("bark", self._tree.bark)
         if tree.cards is None or tree.atlas is None:
             return encode_glb([bark], tree.camera, generator=self._generator)
@@ -150,14 +149,14 @@ class _Writer:
         return {file: lambda: {file: self._encoded(parts)}}
 
     def _encoded(self, parts: list[Part]) -> bytes:
-        moving = self._wind if any(part.skin is not None for part in parts) else None
+        wind = self._wind if any(part.skin is not None for part in parts) else None
         compress = self._settings.compress
-        return encode_glb(parts, self._tree.camera, generator=self._generator, wind=moving, compress=compress)
+        return encode_glb(parts, self._tree.camera, generator=self._generator, wind=wind, compress=compress)
 
     def _parts(self, level: Level, suffix: str = "") -> list[Part]:
-        worn: list[tuple[MaterialName, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]
-        return [self._part(name, surface, suffix) for name, surface in worn if surface is not None]
+        surfaces: list[tuple[MaterialName, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]
+        return [self._part(material, surface, suffix) for material, surface in surfaces if surface is not None]
 
-    def _part(self, name: MaterialName, surface: Surface, suffix: str) -> Part:
-        moved = None if self._wind is None else skin(self._wind.rig, surface.mesh, leaves=name == "leaf")
-        return Part(name, surface, moved, suffix)
+    def _part(self, material: MaterialName, surface: Surface, suffix: str) -> Part:
+        weights = None if self._wind is None else skin(self._wind.rig, surface.mesh, leaves=material == "leaf")
+        return Part(material, surface, weights, suffix)

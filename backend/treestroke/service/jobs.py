@@ -38,8 +38,8 @@ log = structlog.get_logger()
 
 
 @dataclass(frozen=True)
-class Hint:
-    """A message to a worker: the model's id, a token of its own, the worker, and the seconds that it may take."""
+class Assignment:
+    """A job that a worker is to grow: the model's id, a token of its own, the worker, and the seconds that it may take."""
 
     model: str
     token: str
@@ -102,7 +102,7 @@ class Heartbeat:
             state = self._state
             # A database that is busy or full for a moment costs one beat; the lease outlasts several.
             with suppress(SQLAlchemyError):
-                with self._database.stating() as session:
+                with self._database.autocommitting() as session:
                     stop = heartbeat(session, self._job, *state)
                 self._stop_by = {None: Superseded, True: Canceled, False: None}[stop]
                 shown, beaten = state, time.monotonic()
@@ -115,19 +115,19 @@ class Heartbeat:
         return False
 
 
-def grow_model(database: Database, blobs: Blobs, hint: Hint) -> None:
-    """Grow the model that a hint names, unless another worker does or did, and publish it whole or not at all."""
+def grow_model(database: Database, blobs: Blobs, assignment: Assignment) -> None:
+    """Grow the model that a job message names, unless another worker does or did, and publish it whole or not at all."""
     with database.writing() as session:
-        job = claim(session, hint.model, hint.token, hint.worker, engine_version())
+        job = claim(session, assignment.model, assignment.token, assignment.worker, engine_version())
         parts = {} if job is None else queries.parts(session, [job.id])[job.id]
     if job is None:
-        log.info("hint_ignored", job=hint.model)
+        log.info("job_message_ignored", job=assignment.model)
         return
     with structlog.contextvars.bound_contextvars(job=job.id, attempt=job.attempt):
         log.info("job_started")
         try:
             inputs = Inputs.of(parts)
-            with Heartbeat(database, job, inputs.source, hint.seconds) as heartbeat:
+            with Heartbeat(database, job, inputs.source, assignment.seconds) as heartbeat:
                 report, files = _make(database, blobs, job, inputs, heartbeat)
             _publish(database, job, report, files)
         except Superseded:

@@ -1,4 +1,4 @@
-"""Results written whole or not at all."""
+"""Files that are written completely or not at all."""
 
 import os
 import secrets
@@ -8,34 +8,36 @@ from pathlib import Path
 
 
 def write_atomically(contents: Mapping[Path, bytes]) -> None:
-    """Write files, each beside its place and then renamed, so that a failure leaves no new file and no damaged old one.
+    """Write files, so that a failure leaves neither a new file nor a damaged old one.
 
-    A link is followed to the file that it names; what is no plain file (a device, a pipe) is written to directly.
+    Each is written to a temporary file in its folder and then renamed. Symbolic links are followed; what is not a
+    regular file (a device, a pipe) is written directly.
 
     Raises
     ------
     OSError
-        The disk is full, or a place may not be written.
+        The disk is full, or a file may not be written.
     """
-    staged: dict[Path, Path] = {}
+    temporary: dict[Path, Path] = {}
     try:
         for path, data in contents.items():
             if path.exists() and not path.is_file():
                 path.write_bytes(data)
             else:
-                place = path.resolve()
-                staged[place] = beside = place.with_name(f".treestroke-{secrets.token_hex(8)}")
-                _write_through(beside, data)
-        for place, beside in staged.items():
-            beside.replace(place)
-            _sync_folder(place.parent)
+                target = path.resolve()
+                temporary[target] = written = target.with_name(f".treestroke-{secrets.token_hex(8)}")
+                _write_synced(written, data)
+        for target, written in temporary.items():
+            written.replace(target)
+            _sync_folder(target.parent)
     finally:
-        for beside in staged.values():
+        for written in temporary.values():
             with suppress(FileNotFoundError):
-                beside.unlink()
+                written.unlink()
 
 
-def _write_through(path: Path, data: bytes) -> None:
+def _write_synced(path: Path, data: bytes) -> None:
+    """Write a new file and wait until it is on disk."""
     with path.open("xb") as file:
         file.write(data)
         file.flush()
@@ -43,7 +45,7 @@ def _write_through(path: Path, data: bytes) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    """Make a rename last over a power cut."""
+    """Wait until a rename in the folder is on disk, so that it survives a power cut."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:
         os.fsync(descriptor)

@@ -1,4 +1,4 @@
-"""Blobs: immutable files named by the SHA-256 of what they hold, so that the same bytes are stored once."""
+"""Blobs: immutable files named by the SHA-256 of their content, so that equal content is stored once."""
 
 import errno
 import hashlib
@@ -12,38 +12,36 @@ from pathlib import Path
 
 from treestroke.store.atomic_write import write_atomically
 
-_REMEMBERED = 1024
-"""Files that are known to be sound as long as their times stay what they are."""
+_MAX_VERIFIED = 1024
+"""Files whose content was verified and need not be read again while their metadata stays the same."""
 _SETTLED_NS = 10**9
-"""After a file was written: a second change at the same moment would not show in its times."""
-
-
-_OURS = (errno.EMFILE, errno.ENFILE, errno.ENOMEM)
-"""What keeps this process from reading any file."""
+"""Time after a write: a second write within the resolution of a file's times could not be seen in them."""
+_PROCESS_ERRORS = (errno.EMFILE, errno.ENFILE, errno.ENOMEM)
+"""Errors that keep this process from reading any file: they say nothing about the file."""
 
 
 class Damaged(Exception):
-    """A stored file is not there, cannot be read, or does not hold what its name says."""
+    """A stored file is missing, cannot be read, or its content does not have the SHA-256 of its name."""
 
 
 class Blobs:
-    """A folder of blobs."""
+    """The blobs of a data folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "blobs"
-        self._sound: dict[str, tuple[int, ...]] = {}
+        self._verified: dict[str, tuple[int, ...]] = {}
         self._lock = threading.Lock()
 
     def put(self, content: bytes) -> str:
-        """Store bytes and give their SHA-256; when this returns they survive a power cut.
+        """Store bytes and return their SHA-256; from then on they survive a power cut.
 
-        They are written anew even where they stand already: what was damaged is sound again, and a sweep that took
-        the file for a stray sees that somebody wants it.
+        They are written even if the blob exists: that repairs a damaged file, and shows a sweep, which may be about
+        to remove the file, that it is needed.
 
         Raises
         ------
         OSError
-            The disk is full or may not be written.
+            The disk is full or not writable.
         """
         sha256 = hashlib.sha256(content).hexdigest()
         path = self.path(sha256)
@@ -52,37 +50,37 @@ class Blobs:
         return sha256
 
     def path(self, sha256: str) -> Path:
-        """Say where a blob is, or would be."""
+        """Return the path of a blob, which need not exist."""
         return self.folder / sha256[:2] / sha256
 
     def get(self, sha256: str) -> bytes:
-        """Read a blob.
+        """Return a blob's content.
 
         Raises
         ------
         Damaged
-            As `read_blob`.
+            The blob is missing, cannot be read, or has another SHA-256.
         """
         return read_blob(self.path(sha256))
 
     def check(self, sha256: str) -> Path:
-        """Give a blob's place once what it holds is known to be whole; it is read, in pieces, after every change.
+        """Return a blob's path after verifying its content; it is read again only if the file has changed since.
 
         Raises
         ------
         Damaged
-            The blob is missing, cannot be read, or holds other bytes than its name says.
+            The blob is missing, cannot be read, or has another SHA-256.
         """
         path = self.path(sha256)
         try:
             now = path.stat()
             state = (now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns)
-            if self._sound.get(sha256) == state:
+            if self._verified.get(sha256) == state:
                 return path
             with path.open("rb") as file:
                 found = hashlib.file_digest(file, "sha256").hexdigest()
         except OSError as error:
-            raise _harm(path, error) from error
+            raise _read_error(path, error) from error
         if found != sha256:
             raise Damaged(f"{path.name}: damaged")
         if time.time_ns() - now.st_ctime_ns > _SETTLED_NS:
@@ -90,14 +88,15 @@ class Blobs:
         return path
 
     def places(self) -> Iterator[tuple[str, list[Path]]]:
-        """Give all files folder by folder, half-written ones too; a folder's name begins its blobs' names."""
+        """Yield all files by folder, half-written ones included; a folder's name is the prefix of its blobs' names."""
         for folder in sorted(self.folder.iterdir()) if self.folder.is_dir() else ():
             yield folder.name, list(folder.iterdir())
 
     def remove(self, path: Path, state: str) -> bool:
-        """Remove a file whose `state_of` is this one; one that is written again at this moment survives.
+        """Remove a file if its `state_of` is ``state``, and return whether it was removed.
 
-        It is moved aside first, and back where it is another one.
+        The file is renamed first, and renamed back if it has changed: so a file that is written again at the same
+        moment is kept.
         """
         aside = path.with_name(f".swept-{secrets.token_hex(8)}")
         with suppress(FileNotFoundError):
@@ -113,36 +112,36 @@ class Blobs:
 
     def _remember(self, sha256: str, state: tuple[int, ...]) -> None:
         with self._lock:
-            self._sound[sha256] = state
-            if len(self._sound) > _REMEMBERED:
-                del self._sound[next(iter(self._sound))]
+            self._verified[sha256] = state
+            if len(self._verified) > _MAX_VERIFIED:
+                del self._verified[next(iter(self._verified))]
 
 
 def state_of(path: Path) -> str:
-    """Name a file's present state, which stays when it is renamed and changes when it is written anew."""
+    """Return an identifier of a file's content on disk: it survives renaming and changes when the file is written."""
     now = path.stat()
     return f"{now.st_ino}.{now.st_mtime_ns}"
 
 
 def read_blob(path: Path) -> bytes:
-    """Read the blob at a place and compare it with its name.
+    """Return the content of the blob at ``path``, verified against its name.
 
     Raises
     ------
     Damaged
-        It is missing, cannot be read, or holds other bytes than its name says.
+        The blob is missing, cannot be read, or has another SHA-256.
     """
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise _harm(path, error) from error
+        raise _read_error(path, error) from error
     if hashlib.sha256(content).hexdigest() != path.name:
         raise Damaged(f"{path.name}: damaged")
     return content
 
 
-def _harm(path: Path, error: OSError) -> Exception:
-    """Say what is wrong with a blob that cannot be read; the error itself where nothing can."""
-    if error.errno in _OURS:
+def _read_error(path: Path, error: OSError) -> Exception:
+    """Return the error for a blob that cannot be read: the same error if the process can read no file at all."""
+    if error.errno in _PROCESS_ERRORS:
         return error
     return Damaged(f"{path.name}: {'missing' if isinstance(error, FileNotFoundError) else error.strerror}")

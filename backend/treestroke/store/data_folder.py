@@ -8,9 +8,9 @@ from pathlib import Path
 
 DATABASE = "treestroke.sqlite3"
 _DATABASE_FILES = {DATABASE, *(f"{DATABASE}-{part}" for part in ("journal", "shm", "wal"))}
-_OURS = {"blobs", "projects", "queue", "tmp", *_DATABASE_FILES, "lock"}
-"""What the service makes; ``lock`` lies in folders that earlier versions served."""
-_OF_THE_DISK = {"lost+found"}
+_SERVICE_NAMES = {"blobs", "projects", "queue", "tmp", *_DATABASE_FILES, "lock"}
+"""Names that the service creates; ``lock`` is left of earlier versions."""
+_FILE_SYSTEM_NAMES = {"lost+found"}
 _BLOBS = "blobs"
 _MIGRATIONS = Path(__file__).parent / "migrations" / "versions"
 _BUSY_SECONDS = 10
@@ -21,59 +21,61 @@ class DataFolderError(Exception):
 
 
 def prepare_folder(folder: Path) -> None:
-    """Make the data folder, or see to it that nobody else may look into the one that is there.
+    """Create the data folder, or make an existing one private; files of this process are private from now on.
 
-    A folder that holds nothing but ours is closed to others. One that holds more is left as it is: it may be a home, or
-    everybody's. Whatever this process makes from now on is this user's alone as well.
+    An existing folder's permissions are changed only if it has nothing but the service's files. Otherwise it may be a
+    home folder, or shared on purpose.
 
     Raises
     ------
     DataFolderError
-        The folder is open to others, and not plainly ours.
+        Other users can read the folder, and it is not the service's alone.
     OSError
-        It cannot be made.
+        The folder cannot be created.
     """
     os.umask(0o077)
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     if not is_open_to_others(folder):
         return
     found = folder.stat()
-    strange = {path.name for path in folder.iterdir()} - _OURS - _OF_THE_DISK
-    if found.st_uid != os.geteuid() or strange:
-        why = f"it also holds {sorted(strange)[0]!r}" if strange else "it belongs to another user"
+    foreign = {path.name for path in folder.iterdir()} - _SERVICE_NAMES - _FILE_SYSTEM_NAMES
+    if found.st_uid != os.geteuid() or foreign:
+        why = f"it also holds {sorted(foreign)[0]!r}" if foreign else "it belongs to another user"
         raise DataFolderError(
-            f"{folder}: others on this machine may look into it ({stat.filemode(found.st_mode)}), and {why}; "
-            f"name a folder of its own, such as --data {folder / 'treestroke'}; or, where all of it is the service's, "
-            f"`chmod 700 {folder}`"
+            f"{folder}: other users of this machine can read it ({stat.filemode(found.st_mode)}), and {why}; "
+            f"name a folder for treestroke alone, such as --data {folder / 'treestroke'}; or, if all of it is "
+            f"treestroke's, run `chmod 700 {folder}`"
         )
     folder.chmod(0o700)
 
 
 def is_open_to_others(folder: Path) -> bool:
-    """Tell whether another user of this machine may look into a folder, or change it."""
+    """Tell whether other users of this machine may read or change a folder."""
     return bool(folder.stat().st_mode & (stat.S_IRWXG | stat.S_IRWXO))
 
 
 def check_version(folder: Path) -> None:
-    """Refuse a database that a newer program made, or that is none; one that is not there yet is well.
+    """Check that this program can use the folder's database; a folder without database and files is new.
 
-    One that is lost is not: by an empty database all files are strays, and would be removed.
+    Files without a database mean that it was lost. Served with an empty database, all of them would be removed, since
+    no row refers to them.
 
     Raises
     ------
     DataFolderError
-        It is of another kind.
+        The database is lost, cannot be read, or was made by a newer program.
     """
     path = folder / DATABASE
     try:
         found = _revisions(path) if path.is_file() else set[str]()
     except sqlite3.DatabaseError as error:
-        what = f"{path}: the database cannot be read ({error})"
-        raise DataFolderError(f"{what}; restore it from a copy, or name another folder by --data") from error
+        raise DataFolderError(
+            f"{path}: the database cannot be read ({error}); restore it from a copy, or name another folder by --data"
+        ) from error
     if not found and any(files for _, _, files in os.walk(folder / _BLOBS)):
         raise DataFolderError(
             f"{path}: the database is lost or empty, but there are files in {folder / _BLOBS}; restore it from a copy, "
-            f"or move the folder {_BLOBS!r} away to begin anew"
+            f"or move the folder {_BLOBS!r} away to start with an empty database"
         )
     if unknown := found - known_revisions():
         raise DataFolderError(
@@ -83,7 +85,7 @@ def check_version(folder: Path) -> None:
 
 
 def known_revisions() -> set[str]:
-    """Give the versions of the database that this program can read or bring up to date."""
+    """Return the revisions of the database that this program can use or migrate."""
     return {path.name.partition("_")[0] for path in _MIGRATIONS.glob("[0-9]*.py")}
 
 

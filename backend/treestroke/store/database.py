@@ -1,4 +1,4 @@
-"""The database: opened, migrated, and used in short transactions."""
+"""The database: opening it, migrating it, and short transactions."""
 
 import sqlite3
 import threading
@@ -17,32 +17,32 @@ from sqlalchemy.orm import Session
 
 from treestroke.store.data_folder import DATABASE
 
-_WRITES, _STATES = "treestroke_writes", "treestroke_states"
+_WRITE, _AUTOCOMMIT = "treestroke_write", "treestroke_autocommit"
+"""Execution options of connections: a transaction that writes, or one for each statement."""
 _BUSY_SECONDS = 10
-"""How long a writer waits for another."""
+"""Time that a writer waits for another."""
 _READERS = 10
-"""Connections that are kept for reading: each has two files open."""
+"""Connections in the pool for reading; each has two files open."""
 
 
 class Database:
-    """SQLite in WAL mode: many readers beside one writer, from several processes.
+    """SQLite in WAL mode: many readers and one writer, from several processes.
 
-    A committed change survives a power cut: what was accepted is never lost. Only `migrate` makes the file; once it is
-    gone from its place, or another is there, nothing more is read or written until the database is closed: what went to
-    the old file would be lost.
+    A committed change survives a power cut. Only `migrate` creates the file. If the file is removed or replaced,
+    nothing more is read or written until the database is closed: changes to the old file would be lost.
     """
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / DATABASE
-        there = URL.create("sqlite", database=self.path.absolute().as_uri(), query={"mode": "rw", "uri": "true"})
-        self._readers, self._writer = _engine(there, _READERS), _engine(there, 1)
-        self._turn = threading.Lock()
+        url = URL.create("sqlite", database=self.path.absolute().as_uri(), query={"mode": "rw", "uri": "true"})
+        self._readers, self._writer = _engine(url, _READERS), _engine(url, 1)
+        self._write_lock = threading.Lock()
         self._opened: tuple[int, int] | None = None
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
-        """Open a session that sees one state of the database and changes nothing."""
-        self._look_at_file()
+        """Open a session that reads one snapshot of the database and changes nothing."""
+        self._check_file()
         with Session(self._readers, expire_on_commit=False) as session:
             yield session
 
@@ -53,38 +53,38 @@ class Database:
         Raises
         ------
         OperationalError
-            Others write for longer than a writer waits, or the file is gone.
+            Other writers took longer than a writer waits, or the file was removed or replaced.
         """
-        with self._write_by(_WRITES) as session, session.begin():
+        with self._write_by(_WRITE) as session, session.begin():
             yield session
 
     @contextmanager
-    def stating(self) -> Iterator[Session]:
+    def autocommitting(self) -> Iterator[Session]:
         """Open a session in which each statement is a transaction of its own.
 
-        The one lock that all writers share is then held inside SQLite alone. A process that stands still, or that is
-        busy in a library with Python's lock held, would keep everybody else from writing between two statements.
+        The lock that all writers share is then held only while SQLite runs a statement. Otherwise a process that is
+        stopped between two statements, or waits for Python's global lock, would keep all others from writing.
         """
-        with self._write_by(_STATES) as session:
+        with self._write_by(_AUTOCOMMIT) as session:
             yield session
 
     @contextmanager
     def _write_by(self, option: str) -> Iterator[Session]:
-        """Open a session on the one connection that writes; who waits for it holds none that others could read by."""
-        if not self._turn.acquire(timeout=_BUSY_SECONDS):
+        """Open a session on the one connection that writes; waiting for it occupies no connection for reading."""
+        if not self._write_lock.acquire(timeout=_BUSY_SECONDS):
             raise OperationalError("BEGIN IMMEDIATE", None, sqlite3.OperationalError("database is locked"))
         try:
-            self._look_at_file()
+            self._check_file()
             with (
                 self._writer.connect().execution_options(**{option: True}) as connection,
                 Session(connection, expire_on_commit=False) as session,
             ):
                 yield session
         finally:
-            self._turn.release()
+            self._write_lock.release()
 
-    def _look_at_file(self) -> None:
-        """Refuse a file that is not the one which was opened first."""
+    def _check_file(self) -> None:
+        """Raise if the file is not the one that was opened first."""
         found = _identity(self.path)
         self._opened = self._opened or found
         if found is None or found != self._opened:
@@ -93,13 +93,14 @@ class Database:
             raise OperationalError("open", None, error)
 
     def migrate(self) -> None:
-        """Bring the tables to the newest form, from nothing or from any older one.
+        """Create the tables, or migrate them from any older revision, in one transaction.
 
-        A table that is made anew is dropped for a moment: rows that refer to its rows must not go with them.
+        Foreign keys are not enforced meanwhile: a table that changes is dropped and created again, and the rows that
+        refer to it must stay.
         """
         engine = _engine(URL.create("sqlite", database=str(self.path)), 1, foreign_keys=False)
         try:
-            with engine.connect().execution_options(**{_WRITES: True}) as connection:
+            with engine.connect().execution_options(**{_WRITE: True}) as connection, connection.begin():
                 settings = _migrations()
                 settings.attributes["connection"] = connection
                 command.upgrade(settings, "head")
@@ -107,7 +108,7 @@ class Database:
             engine.dispose()
 
     def current(self) -> bool:
-        """Tell whether the tables have the form that this program knows."""
+        """Tell whether the tables have the revision that this program needs."""
         with self._readers.connect() as connection:
             found = MigrationContext.configure(connection).get_current_revision()
         return found == ScriptDirectory.from_config(_migrations()).get_current_head()
@@ -126,7 +127,7 @@ def _migrations() -> Config:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Tell one file from another that takes its place."""
+    """Return what identifies a file, whatever its path; None if there is none."""
     try:
         found = path.stat()
     except FileNotFoundError:
@@ -134,9 +135,9 @@ def _identity(path: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-def _engine(place: URL, connections: int, foreign_keys: bool = True) -> Engine:
+def _engine(url: URL, connections: int, foreign_keys: bool = True) -> Engine:
     engine = create_engine(
-        place,
+        url,
         pool_size=connections,
         max_overflow=0,
         connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False},
@@ -144,14 +145,14 @@ def _engine(place: URL, connections: int, foreign_keys: bool = True) -> Engine:
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: Any, _: object) -> None:
-        connection.isolation_level = None  # transactions begin below, not by the driver's guess
+        connection.isolation_level = None  # transactions begin in `_begin` below, not implicitly in the driver
         for pragma in ("journal_mode=WAL", "synchronous=FULL", f"foreign_keys={'ON' if foreign_keys else 'OFF'}"):
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")
     def _begin(connection: Connection) -> None:
         options = connection.get_execution_options()
-        if not options.get(_STATES, False):
-            connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get(_WRITES, False) else "BEGIN")
+        if not options.get(_AUTOCOMMIT, False):
+            connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get(_WRITE, False) else "BEGIN")
 
     return engine

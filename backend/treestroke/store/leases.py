@@ -1,4 +1,4 @@
-"""The lease on a job: claimed, kept by beats, given back or ended. Each change holds only for the attempt it names.
+"""The lease on a job: claimed, kept by heartbeats, taken back or ended. Each change applies to one attempt only.
 
 queued -> running -> succeeded | failed | canceled        running -> queued where an attempt was lost
 """
@@ -18,9 +18,9 @@ Ending = Literal["succeeded", "failed", "canceled"]
 
 
 def claim(session: Session, model: str, token: str, worker: str, engine: str) -> ModelRow | None:
-    """Take a queued job for one more attempt; None where somebody was first or nothing is left to do.
+    """Start one more attempt of a queued job and return its row; None if it is no longer queued.
 
-    From now on the row names the ``engine`` that grows it, whichever it was asked of.
+    The row now has the ``engine`` that grows the tree, which may be another than when the model was requested.
     """
     return session.scalars(
         update(ModelRow)
@@ -45,27 +45,27 @@ def claim(session: Session, model: str, token: str, worker: str, engine: str) ->
 def heartbeat(
     session: Session, job: ModelRow, phase: str | None, phase_fraction: float, progress: float
 ) -> bool | None:
-    """Say that an attempt lives and how far it is; tell whether it is to stop, or None where it is no longer ours."""
-    change = _ours(job).values(
+    """Record a heartbeat and the progress; return whether the attempt is to stop, or None if it was taken back."""
+    change = _attempt(job).values(
         beat=ModelRow.beat + 1, seq=ModelRow.seq + 1, phase=phase, phase_fraction=phase_fraction, progress=progress
     )
-    # No RETURNING: the change is to be over when SQLite comes back.
+    # Without RETURNING the statement, and its lock, ends as soon as SQLite returns.
     if session.connection().execute(change).rowcount == 0:
         return None
     return session.scalar(select(ModelRow.cancel).where(ModelRow.id == job.id))
 
 
 def add_file(session: Session, job: ModelRow, name: str, blob: str, size: int, **values: Any) -> bool:
-    """Publish one file of a job under way, with other ``values`` of its row; False where it is no longer ours."""
-    if session.scalars(_ours(job).values(seq=ModelRow.seq + 1, **values).returning(ModelRow.id)).first() is None:
+    """Publish a file of a running job and set ``values`` of its row; False if the attempt was taken back."""
+    if session.scalars(_attempt(job).values(seq=ModelRow.seq + 1, **values).returning(ModelRow.id)).first() is None:
         return False
     session.merge(File(model=job.id, name=name, blob=blob, bytes=size))
     return True
 
 
 def succeed(session: Session, job: ModelRow, report: dict[str, Any], files: dict[str, tuple[str, int]]) -> bool:
-    """Publish a model and its files, (blob, size) by name; False where it is not ours any more or was to be stopped."""
-    change = _ours(job).where(ModelRow.cancel.is_(False)).values(**_ended("succeeded"), progress=1.0, report=report)
+    """Publish a model and its files, (blob, bytes) by name; False if the attempt was taken back or is to stop."""
+    change = _attempt(job).where(ModelRow.cancel.is_(False)).values(**_ended("succeeded"), progress=1.0, report=report)
     if session.scalars(change.returning(ModelRow.id)).first() is None:
         return False
     for name, (blob, size) in files.items():
@@ -74,19 +74,19 @@ def succeed(session: Session, job: ModelRow, report: dict[str, Any], files: dict
 
 
 def end(session: Session, job: ModelRow, status: Literal["failed", "canceled"], error: dict[str, Any] | None) -> bool:
-    """End an attempt without a model; False where it is no longer ours."""
-    change = _ours(job).values(**_ended(status), error=error)
+    """End an attempt without a model; False if it was taken back."""
+    change = _attempt(job).values(**_ended(status), error=error)
     return session.scalars(change.returning(ModelRow.id)).first() is not None
 
 
 def take_back(session: Session, job: ModelRow, error: dict[str, Any] | None) -> bool:
-    """Take an attempt back: the job queues again, or ends where it was to be stopped or has used its attempts up.
+    """Take an attempt back: the job is queued again, or ends if it was to stop or has used up its attempts.
 
-    ``error`` says what went wrong; None where nothing did, and the job queues again however often it was begun.
-    False where the attempt that ``job`` shows is over already, or has beaten since.
+    ``error`` is what went wrong; with None nothing did, and the job is queued again however many attempts it had.
+    False if the attempt in ``job`` has ended, or has sent a heartbeat since ``job`` was read.
     """
-    lost = _ours(job).where(ModelRow.beat == job.beat)
-    # Asked of the row, not of ``job``: the wish to stop may have come a moment ago.
+    lost = _attempt(job).where(ModelRow.beat == job.beat)
+    # The row decides, not ``job``: the request to stop may have arrived a moment ago.
     stopped = lost.where(ModelRow.cancel.is_(True)).values(**_ended("canceled"))
     if session.scalars(stopped.returning(ModelRow.id)).first() is not None:
         return True
@@ -100,7 +100,7 @@ def take_back(session: Session, job: ModelRow, error: dict[str, Any] | None) -> 
 
 
 def cancel(session: Session, model: str) -> None:
-    """Ask for a job's end: at once where it still queues, and where it runs as soon as its worker hears of it."""
+    """Cancel a queued job at once, and ask the worker of a running one to stop it."""
     session.execute(
         update(ModelRow).where(ModelRow.id == model, ModelRow.status == "queued").values(**_ended("canceled"))
     )
@@ -111,7 +111,7 @@ def cancel(session: Session, model: str) -> None:
     )
 
 
-def _ours(job: ModelRow) -> Any:
+def _attempt(job: ModelRow) -> Any:
     return update(ModelRow).where(ModelRow.id == job.id, ModelRow.status == "running", ModelRow.attempt == job.attempt)
 
 

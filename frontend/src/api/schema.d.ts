@@ -215,8 +215,8 @@ export interface paths {
          * Follow Model
          * @description Follow a model: ``snapshot``, then ``progress``, one ``preview``, and ``succeeded``, ``failed`` or ``canceled``.
          *
-         *     Only what must not be missed carries an id: ``preview`` and the last event. After a broken connection ``preview``
-         *     comes again unless ``Last-Event-ID`` says that it came; the last event always comes.
+         *     Only ``preview`` and the last event have an id. After a broken connection ``preview`` is sent again unless
+         *     ``Last-Event-ID`` says that it arrived; the last event is always sent.
          */
         get: operations["follow_model"];
         put?: never;
@@ -1466,12 +1466,12 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -1479,7 +1479,7 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -1509,7 +1509,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2464,12 +2464,12 @@ export interface operations {
                     "model/gltf-binary": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2477,7 +2477,7 @@ export interface operations {
                     "model/gltf-binary": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2507,7 +2507,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2559,12 +2559,12 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2572,7 +2572,7 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2602,7 +2602,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2654,12 +2654,12 @@ export interface operations {
                     "application/json": components["schemas"]["Strokes"];
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2667,7 +2667,7 @@ export interface operations {
                     "application/json": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2697,7 +2697,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2749,12 +2749,12 @@ export interface operations {
                     "application/zip": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2762,7 +2762,7 @@ export interface operations {
                     "application/zip": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2792,7 +2792,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2860,12 +2860,12 @@ export interface operations {
                     "text/csv; charset=utf-8": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2879,7 +2879,7 @@ export interface operations {
                     "text/csv; charset=utf-8": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -2909,7 +2909,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2964,12 +2964,12 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description The part that Range asks for */
+            /** @description The part that Range requests */
             206: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
                     ETag?: string;
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };
@@ -2978,7 +2978,7 @@ export interface operations {
                     "image/png": string;
                 };
             };
-            /** @description If-None-Match names this very file */
+            /** @description If-None-Match has this file's ETag */
             304: {
                 headers: {
                     /** @description SHA-256 of the file, in quotes */
@@ -3008,7 +3008,7 @@ export interface operations {
             /** @description Requested Range Not Satisfiable */
             416: {
                 headers: {
-                    /** @description bytes FIRST-LAST/ALL */
+                    /** @description bytes FIRST-LAST/SIZE */
                     "Content-Range"?: string;
                     [name: string]: unknown;
                 };

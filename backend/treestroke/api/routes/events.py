@@ -1,4 +1,4 @@
-"""A model's events, as they happen."""
+"""A model's events as a stream (server-sent events)."""
 
 from collections.abc import AsyncIterator
 from typing import Annotated
@@ -25,18 +25,18 @@ _RETRY_MS = 2000
 
 
 def _seen(shelf: ShelfOf, id: ModelId) -> StoredModel:
-    """Find the model before the stream begins, while the answer can still be 404."""
+    """Return the model; before the stream begins, while the response can still be a problem."""
     return stored_models.find_model(shelf.database, id)
 
 
 async def _follower(watcher: WatcherOf, seen: Annotated[StoredModel, Depends(_seen)]) -> AsyncIterator[Follower]:
-    """Take a place before the stream begins, while the answer can still be 503; it is free when the request is over."""
+    """Yield a follower of the model; before the stream begins, while the response can still be a problem."""
     with watcher.follow(seen) as follower:
         yield follower
 
 
 def _growth(shelf: Shelf, seen: StoredModel) -> str | None:
-    """Read the grown skeleton; None where its file is damaged, of which a stream under way cannot make an error."""
+    """Return the grown skeleton as JSON; None if its file is damaged, because a stream cannot become a problem."""
     try:
         return shelf.blobs.get(seen.files[GROWTH].blob).decode()
     except Damaged as error:
@@ -53,25 +53,25 @@ async def follow_model(
 ) -> AsyncIterator[ServerSentEvent]:
     """Follow a model: ``snapshot``, then ``progress``, one ``preview``, and ``succeeded``, ``failed`` or ``canceled``.
 
-    Only what must not be missed carries an id: ``preview`` and the last event. After a broken connection ``preview``
-    comes again unless ``Last-Event-ID`` says that it came; the last event always comes.
+    Only ``preview`` and the last event have an id. After a broken connection ``preview`` is sent again unless
+    ``Last-Event-ID`` says that it arrived; the last event is always sent.
     """
-    told = int(last_event_id) if last_event_id and last_event_id.isdecimal() else 0
+    sent = int(last_event_id) if last_event_id and last_event_id.isdecimal() else 0
     shown, latest = model_view(seen), seen
     yield ServerSentEvent(event="snapshot", data=shown, retry=_RETRY_MS)
     while True:
         row = latest.row
-        if row.preview_seq and row.preview_seq > told and GROWTH in latest.files:
-            told = row.preview_seq
+        if row.preview_seq and row.preview_seq > sent and GROWTH in latest.files:
+            sent = row.preview_seq
             if growth := await run_in_threadpool(_growth, shelf, latest):
-                yield ServerSentEvent(event="preview", raw_data=growth, id=str(told))
+                yield ServerSentEvent(event="preview", raw_data=growth, id=str(sent))
         if row.status in TERMINAL:
             yield ServerSentEvent(event=row.status, data=model_view(latest), id=str(row.seq))
             return
-        # One that is deleted meanwhile is canceled too, and whoever follows it is told so.
-        if (news := await follower.next_change()) is None:
+        # A model that is deleted meanwhile is also canceled, and that is sent as its last event.
+        if (change := await follower.next_change()) is None:
             return
-        latest = news
+        latest = change
         if (now := model_view(latest)) != shown and now.status not in TERMINAL:
             shown = now
             yield ServerSentEvent(event="progress", data=now)
