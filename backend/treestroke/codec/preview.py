@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.geometry.raster import Planes, pixel_centres, planes, visible_triangles
 from treestroke.core.types import Floats, Indices
@@ -97,7 +97,7 @@ class _Drawing:
     skins: tuple[_Skin, _Skin]
 
 
-def draw_preview(bark: Surface, leaf: Surface | None, camera: Camera) -> NDArray[np.uint8]:
+def draw_preview(bark: Surface, leaf: Surface | None, camera: OrthographicCamera) -> NDArray[np.uint8]:
     """Draw a tree twice, side by side: as the photo frames it, and turned by 40 degrees from slightly above.
 
     Sun from the upper left with soft shadows in the crown and on the ground, and light from the sky. Textures that
@@ -128,11 +128,11 @@ def _scene(bark: Surface, leaf: Surface | None) -> _Scene:
     )
 
 
-def _views(scene: _Scene, camera: Camera) -> tuple[_View, _View]:
+def _views(scene: _Scene, camera: OrthographicCamera) -> tuple[_View, _View]:
     return _front(scene, camera), _three_quarter(scene)
 
 
-def _front(scene: _Scene, camera: Camera) -> _View:
+def _front(scene: _Scene, camera: OrthographicCamera) -> _View:
     """Frame as the photo does; a very wide or tall photo is cut or set into a wider picture about its root.
 
     One that shows a tree too wide for that is set into a taller picture.

@@ -15,7 +15,7 @@ import numpy as np
 from treestroke.codec.gltf.book import RELIEF_QUALITY, encode_picture
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.errors import SettingsError
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
 
 _ALIGNED = 64  # bytes: where the content of each file in a package starts, by USDZ's specification
@@ -41,7 +41,7 @@ def require_usd() -> None:
         raise SettingsError.at(("files",), _MISSING, "usd_missing")
 
 
-def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) -> bytes:
+def encode_usdz(bark: Surface, leaf: Surface | None, camera: OrthographicCamera, stem: str) -> bytes:
     """Write a tree as a USDZ package: metres, Y up, UsdPreviewSurface, one mesh each for bark and leaf.
 
     The layer's own values hold the photo's camera. Shades of leaves are left out: UsdPreviewSurface mixes no vertex
@@ -71,7 +71,7 @@ def _relief(part: str) -> str:
     return f"textures/{part}_relief.jpg"
 
 
-def _layer(name: str, worn: Mapping[str, Surface], camera: Camera) -> bytes:
+def _layer(name: str, worn: Mapping[str, Surface], camera: OrthographicCamera) -> bytes:
     """Write the scene as binary USD."""
     from pxr import Kind, Usd, UsdGeom
 

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, unseen
-from treestroke.core.pipeline.growing import see
+from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import check_seed
 from treestroke.core.progress import Report, silent
@@ -66,7 +66,7 @@ def model(
     with one_thread():
         with watch.stage("decode"):
             picture = load_photo(photo, watch, mended.append)
-        seen = see(picture, given, None, watch, beside)
+        seen = read_photo(picture, given, None, watch, beside)
         made = make(
             lambda rng, show: model_photo(seen, chosen, rng, watch, show, pictures), chosen, seed, watch, on_grown, name
         )

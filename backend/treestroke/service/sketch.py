@@ -10,7 +10,7 @@ from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, unseen
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
-from treestroke.core.pipeline.sketching import SeenSketches, grow_sketches, model_sketches, see_sketches
+from treestroke.core.pipeline.sketching import SketchEvidence, grow_sketches, model_sketches, read_sketches
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.drawing import Drawing
@@ -36,7 +36,7 @@ from treestroke.service.threads import one_thread
 class SketchTrace:
     """What sketches show, and the tree that default settings and seed 0 let grow of them, where it was asked for."""
 
-    seen: SeenSketches
+    seen: SketchEvidence
     grown: GrownTree | None
 
     def answer(self) -> dict[str, Any]:
@@ -66,7 +66,7 @@ def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool
         A sketch cannot be used; the message says what, where and how to mend it.
     """
     with one_thread():
-        seen = see_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
+        seen = read_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
         return SketchTrace(seen, grow_sketches(seen, ModelSettings(), np.random.default_rng(0)) if grow else None)
 
 
@@ -102,7 +102,7 @@ def sketch(
         with watch.stage("decode"):
             drawn, beside = load_sketch(front, "front"), None if side is None else load_sketch(side, "side")
             picture = None if photo is None else load_photo(photo, watch, mended.append)
-        seen = see_sketches(drawn, beside, picture, watch)
+        seen = read_sketches(drawn, beside, picture, watch)
         made = make(
             lambda rng, show: model_sketches(seen, chosen, rng, watch, show, pictures),
             chosen,

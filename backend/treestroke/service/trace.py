@@ -104,7 +104,7 @@ def trace(
         if last is not None and same_strokes(last.given, given):
             found = last.found
         else:
-            found = trace_photo(picture, given, None if last is None else last.found.seen.foliage)
+            found = trace_photo(picture, given, None if last is None else last.found.evidence.foliage)
         found = beside(found, None if side is None else load_sketch(side, "side"))
         grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(found.foliage) if last is None else last.rings

@@ -16,7 +16,7 @@ from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
 from treestroke.core.errors import PhotoError, TreestrokeError
 from treestroke.core.pipeline.sides import draw_side
-from treestroke.core.pipeline.sketching import see_sketches
+from treestroke.core.pipeline.sketching import read_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
 from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.core.types import Picture
@@ -121,7 +121,7 @@ def check_wish(photo: Path | None, parts: Mapping[str, bytes], within: Place = (
 
 def _draw_up(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:
     if "front" in sketches:
-        see_sketches(sketches["front"], sketches.get("side"), picture)
+        read_sketches(sketches["front"], sketches.get("side"), picture)
     elif "side" in sketches:
         draw_side(sketches["side"], "side")
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from treestroke.codec.gltf.book import Book
 from treestroke.codec.gltf.tree import MATERIALS, Part, head_of
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.cards import CORNERS
@@ -17,7 +17,7 @@ _BULGE = 0.5
 """How far the normal of a card's corner leans out, as a slope: a card alone knows nothing of the crown."""
 
 
-def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: Camera, *, generator: str) -> bytes:
+def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: OrthographicCamera, *, generator: str) -> bytes:
     """Write a tree as a GLB with a node for each tile of the atlas, and for each mirrored one, that many cards share.
 
     Each card has its place, turn, size and, as ``_COLOR_0``, its shade. The extension is named as used, not as

@@ -9,7 +9,7 @@ from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.levels import add_levels
 from treestroke.codec.gltf.rig import add_wind
 from treestroke.codec.skeleton import plain_camera
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.sway.wind import Skin, Wind
 
@@ -67,7 +67,12 @@ class Part:
 
 
 def encode_glb(
-    parts: Sequence[Part], camera: Camera, *, generator: str, wind: Wind | None = None, compress: bool = False
+    parts: Sequence[Part],
+    camera: OrthographicCamera,
+    *,
+    generator: str,
+    wind: Wind | None = None,
+    compress: bool = False,
 ) -> bytes:
     """Write a tree as a self-contained GLB.
 
@@ -80,7 +85,9 @@ def encode_glb(
     return (compressed(book) if compress else book).glb(head)
 
 
-def write_book(parts: Sequence[Part], camera: Camera, generator: str, wind: Wind | None) -> tuple[Book, dict[str, Any]]:
+def write_book(
+    parts: Sequence[Part], camera: OrthographicCamera, generator: str, wind: Wind | None
+) -> tuple[Book, dict[str, Any]]:
     """Fill the tables, and give what stands before them."""
     book = Book()
     roots = [_add(book, part, wind) for part in parts]
@@ -103,7 +110,7 @@ def _add(book: Book, part: Part, wind: Wind | None) -> int:
     return book.add(name, part.surface, material, wrap, part.skin if wind else None, worn)
 
 
-def head_of(roots: list[int], camera: Camera, generator: str) -> dict[str, Any]:
+def head_of(roots: list[int], camera: OrthographicCamera, generator: str) -> dict[str, Any]:
     """Give what stands before the tables: one scene, and how the photo saw it."""
     scene = {"nodes": roots, "extras": {"photo": plain_camera(camera)}}
     return {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [scene]}

@@ -3,8 +3,8 @@
 import numpy as np
 
 from treestroke.core.grow._engine import Engine
-from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.evaluator import Choice, Rules, Shoot, turn_library
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import Subtree
 from treestroke.core.types import Floats, Indices
 
@@ -29,7 +29,7 @@ def _neighbours(points: Floats) -> tuple[Indices, Indices]:
 class CompiledEvaluator:
     """An `Evaluator` on the extension ``_engine``; how it saves work stands at the head of ``_engine.c``."""
 
-    def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
+    def __init__(self, crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
         turned = turn_library(library, rules.angles)
         self._order = np.zeros(0, dtype=np.int64)
         self._engine = Engine(

@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import Subtree
 from treestroke.core.types import Floats, Indices
 
@@ -111,7 +111,7 @@ def turn_library(library: tuple[Subtree, ...], angles: int) -> TurnedLibrary:
     return TurnedLibrary(counts, parents, fractions, vectors)
 
 
-def evaluator_for(crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> Evaluator:
+def evaluator_for(crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> Evaluator:
     """Make the compiled evaluator, or the plain one (slow, same choices) where the extension was not built."""
     try:
         from treestroke.core.grow.compiled import CompiledEvaluator

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import Chain
-from treestroke.core.grow.crown import Crown, in_mask
+from treestroke.core.grow.growth_space import GrowthSpace, in_mask
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
@@ -78,7 +78,7 @@ class _Spots(NamedTuple):
 
 
 def curved(
-    visible: Skeleton, seen: int, chains: list[Chain], table: BranchTable, crown: Crown, rng: np.random.Generator
+    visible: Skeleton, seen: int, chains: list[Chain], table: BranchTable, crown: GrowthSpace, rng: np.random.Generator
 ) -> Form:
     """Bend the shoots and join them with the visible tree (px), whose joints stay where they are.
 
@@ -91,7 +91,7 @@ def curved(
 
 
 def _bend(
-    visible: Skeleton, chains: list[Chain], table: BranchTable, crown: Crown, rng: np.random.Generator
+    visible: Skeleton, chains: list[Chain], table: BranchTable, crown: GrowthSpace, rng: np.random.Generator
 ) -> _Curves:
     """Bend level after level, as a shoot's base lies on its bearer's curve."""
     count = len(table.bearer)
@@ -129,7 +129,7 @@ def _bend_level(curves: _Curves, shoots: Indices, base: Floats, tips: Floats, be
     curves.wave[shoots], curves.ripple[shoots] = across[0] * length * WAVER, across[1] * length * WAVER / 2
 
 
-def _straighten(curves: _Curves, shoots: Indices, crown: Crown) -> None:
+def _straighten(curves: _Curves, shoots: Indices, crown: GrowthSpace) -> None:
     """Bend shoots (m,) less where they would leave the crown."""
     share = np.zeros(len(shoots))
     left = np.ones(len(shoots), dtype=bool)
@@ -200,7 +200,13 @@ def _kept_spots(branch: Indices, along: Floats, fork: Indices, gap: Floats) -> I
 
 
 def _join(
-    visible: Skeleton, seen: int, chains: list[Chain], table: BranchTable, curves: _Curves, spots: _Spots, crown: Crown
+    visible: Skeleton,
+    seen: int,
+    chains: list[Chain],
+    table: BranchTable,
+    curves: _Curves,
+    spots: _Spots,
+    crown: GrowthSpace,
 ) -> Form:
     """Put the visible joints, those that shoots need on them, and the shoots' own joints into one tree."""
     on_chain = spots.branch < len(chains)

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.evaluator import TIE, Choice, Rules, Shoot, turn_library
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import Subtree
 from treestroke.core.types import Floats, Indices
 
@@ -51,7 +51,7 @@ def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
 class PlainEvaluator:
     """An `Evaluator` that keeps no more than each attractor's distance."""
 
-    def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
+    def __init__(self, crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
         self._crown, self._rules = crown, rules
         self._library = turn_library(library, rules.angles)
         self._bases = self._tips = np.zeros((0, 3))
