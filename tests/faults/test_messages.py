@@ -34,10 +34,12 @@ def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(servi
     for id in (*ids, *ids, "mdl_nobody"):
         send_job_message(queue, id)
     before = service.finish(ids)
-    ignored = len(service.logged("hint_ignored"))
+    ignored = len(service.logged("job_message_ignored"))
     for id in ids:
         send_job_message(queue, id)
-    wait_for(lambda: len(service.logged("hint_ignored")) >= ignored + 2, 20, "two more hints that are ignored")
+    wait_for(
+        lambda: len(service.logged("job_message_ignored")) >= ignored + 2, 20, "two more messages that are ignored"
+    )
     assert [(row["status"], row["attempt"]) for row in before] == [("succeeded", 1)] * 2
     assert [service.row(id) for id in ids] == before
 

@@ -5,7 +5,7 @@ from tests.api import drawn
 
 from treestroke.service import model_request, photos, stored_models
 from treestroke.service.engine_version import engine_version
-from treestroke.service.jobs import Hint, grow_model
+from treestroke.service.jobs import Assignment, grow_model
 from treestroke.service.photos import Shelf
 
 
@@ -18,7 +18,7 @@ def test_a_model_whose_input_is_damaged_fails_and_says_so(shelf: Shelf, part: st
     content = bytearray(place.read_bytes())
     content[-1] ^= 1
     place.write_bytes(content)
-    grow_model(shelf.database, shelf.blobs, Hint(row.id, "token", "worker", 60))
+    grow_model(shelf.database, shelf.blobs, Assignment(row.id, "token", "worker", 60))
     after = stored_models.find_model(shelf.database, row.id).row
     assert (after.status, after.error and after.error["code"]) == ("failed", "input_damaged")
     assert after.engine == engine_version()

@@ -13,7 +13,7 @@ from tests.conftest import DATA
 
 from treestroke.service import stored_models
 from treestroke.service.doctor import examine_deployment
-from treestroke.service.jobs import Hint, grow_model
+from treestroke.service.jobs import Assignment, grow_model
 from treestroke.service.projects import Projects
 from treestroke.service.retention import Sweeper
 from treestroke.settings import read_settings
@@ -76,7 +76,7 @@ def test_project_files_have_the_same_bytes(upgraded: Upgraded) -> None:
 
 
 def test_a_queued_model_grows(upgraded: Upgraded) -> None:
-    grow_model(upgraded.database, upgraded.blobs, Hint(upgraded.told["queued"]["id"], "token", "worker", 60))
+    grow_model(upgraded.database, upgraded.blobs, Assignment(upgraded.told["queued"]["id"], "token", "worker", 60))
     model = upgraded.model("queued")
     assert (model.row.status, model.row.error) == ("succeeded", None)
     assert upgraded.blobs.get(model.files["tree.glb"].blob).startswith(b"glTF")

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.geometry.raster import Planes, pixel_centres, planes, visible_triangles
 from treestroke.core.types import Floats, Indices
@@ -120,7 +120,7 @@ class _Drawing:
     textures: tuple[_Texture, _Texture]
 
 
-def draw_preview(bark: Surface, leaf: Surface | None, camera: Camera) -> NDArray[np.uint8]:
+def draw_preview(bark: Surface, leaf: Surface | None, camera: OrthographicCamera) -> NDArray[np.uint8]:
     """Draw a tree twice, side by side: as the photo frames it, and turned by 40 degrees from slightly above.
 
     The sun shines from the upper left, with soft shadows in the crown and on the ground, beside light from the sky.
@@ -152,12 +152,12 @@ def _scene(bark: Surface, leaf: Surface | None) -> _Scene:
     )
 
 
-def _views(scene: _Scene, camera: Camera) -> tuple[_View, _View]:
+def _views(scene: _Scene, camera: OrthographicCamera) -> tuple[_View, _View]:
     """Return the two views of the picture."""
     return _front(scene, camera), _three_quarter(scene)
 
 
-def _front(scene: _Scene, camera: Camera) -> _View:
+def _front(scene: _Scene, camera: OrthographicCamera) -> _View:
     """Frame the tree as the photo does; a very wide or tall photo is cropped or extended about its root.
 
     A photo in which the tree would be too wide for the view is extended upward.

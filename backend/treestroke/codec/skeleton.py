@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -28,7 +28,7 @@ def plain_skeleton(skeleton: Skeleton | None, stroke: NDArray[np.int64]) -> dict
     }
 
 
-def plain_camera(camera: Camera) -> dict[str, Any]:
+def plain_camera(camera: OrthographicCamera) -> dict[str, Any]:
     """Return a camera as it stands in the GLB's ``extras.photo``: px and metres per pixel."""
     return {
         "width": camera.width,

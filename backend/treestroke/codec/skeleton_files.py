@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.codec.skeleton import plain_camera
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.skeleton.measure import generations, path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
@@ -26,7 +26,7 @@ _SWC_HEAD = """# treestroke.skeleton 1
 """
 
 
-def encode_skeleton_json(skeleton: Skeleton, born: NDArray[np.int64] | None, camera: Camera) -> bytes:
+def encode_skeleton_json(skeleton: Skeleton, born: NDArray[np.int64] | None, camera: OrthographicCamera) -> bytes:
     """Encode a skeleton (metres) as JSON: schema, version, unit, frame, the photo's camera, a list for each column.
 
     ``born`` (n,) is the round of growth in which each joint appeared; without it the column is absent.

@@ -16,7 +16,7 @@ import numpy as np
 from treestroke.codec.gltf.document import NORMAL_MAP_QUALITY, encode_picture
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.errors import SettingsError
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Mesh, Surface
 
 _ALIGNED = 64  # bytes: alignment of each file's content in a package, by the USDZ specification
@@ -51,7 +51,7 @@ def require_usd() -> None:
         raise SettingsError.at(("files",), _MISSING, "usd_missing")
 
 
-def encode_usdz(bark: Surface, leaf: Surface | None, camera: Camera, stem: str) -> bytes:
+def encode_usdz(bark: Surface, leaf: Surface | None, camera: OrthographicCamera, stem: str) -> bytes:
     """Encode a tree as a USDZ package: metres, Y up, UsdPreviewSurface, one mesh each for bark and leaf.
 
     The layer's custom data hold the photo's camera. Shades of leaves are left out: UsdPreviewSurface cannot multiply
@@ -81,7 +81,7 @@ def _normal_map_file(part: str) -> str:
     return f"textures/{part}_relief.jpg"
 
 
-def _layer(name: str, surfaces: Mapping[str, Surface], camera: Camera) -> bytes:
+def _layer(name: str, surfaces: Mapping[str, Surface], camera: OrthographicCamera) -> bytes:
     """Encode the scene as binary USD."""
     from pxr import Kind, Usd, UsdGeom
 

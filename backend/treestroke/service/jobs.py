@@ -39,7 +39,7 @@ log = structlog.get_logger()
 
 @dataclass(frozen=True)
 class Assignment:
-    """A job that a worker is to grow: the model's id, a token of its own, the worker, and the seconds that it may take."""
+    """A job for a worker: the model's id, a token of this try, the worker, and the seconds that it may take."""
 
     model: str
     token: str
@@ -116,7 +116,7 @@ class Heartbeat:
 
 
 def grow_model(database: Database, blobs: Blobs, assignment: Assignment) -> None:
-    """Grow the model that a job message names, unless another worker does or did, and publish it whole or not at all."""
+    """Grow a model, unless another worker does or did, and publish it whole or not at all."""
     with database.writing() as session:
         job = claim(session, assignment.model, assignment.token, assignment.worker, engine_version())
         parts = {} if job is None else queries.parts(session, [job.id])[job.id]

@@ -11,10 +11,9 @@ from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
-from treestroke.core.pipeline.growing import see
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
-from treestroke.core.pipeline.sketching import model_sketches, see_sketches
+from treestroke.core.pipeline.sketching import model_sketches, read_sketches
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
@@ -202,12 +201,12 @@ def make_tree(inputs: Inputs[PartLike], options: Options, report: Report = silen
 
 def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     require_trunk(parts["strokes"])
-    seen = see(parts["photo"], parts["strokes"], None, report, parts.get("side"))
+    seen = read_photo(parts["photo"], parts["strokes"], None, report, parts.get("side"))
     return lambda rng, on_grown: model_photo(seen, settings, rng, report, on_grown, _own_pictures(parts))
 
 
 def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
-    seen = see_sketches(parts["front"], parts.get("side"), parts.get("photo"), report)
+    seen = read_sketches(parts["front"], parts.get("side"), parts.get("photo"), report)
     return lambda rng, on_grown: model_sketches(seen, settings, rng, report, on_grown, _own_pictures(parts))
 
 

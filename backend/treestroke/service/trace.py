@@ -12,7 +12,7 @@ from treestroke.core.imaging.outline import rings_of_mask
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
 from treestroke.core.pipeline.photo import PhotoTrace, beside, grow_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sketching import SeenSketches, grow_sketches, see_sketches
+from treestroke.core.pipeline.sketching import SketchEvidence, grow_sketches, read_sketches
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
 from treestroke.core.trace.drawing import Drawing
@@ -106,7 +106,7 @@ def trace(
         if last is not None and same_strokes(last.given, given):
             found = last.found
         else:
-            found = trace_photo(picture, given, None if last is None else last.found.seen.foliage)
+            found = trace_photo(picture, given, None if last is None else last.found.evidence.foliage)
         found = beside(found, None if side is None else load_sketch(side, "side"))
         grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(found.foliage) if last is None else last.rings
@@ -128,7 +128,7 @@ def trace(
 class SketchTrace:
     """The branches that sketches show and, where asked for, the tree grown of them by default settings and seed 0."""
 
-    seen: SeenSketches
+    seen: SketchEvidence
     grown: GrownTree | None
 
     def answer(self) -> dict[str, Any]:
@@ -158,7 +158,7 @@ def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool
         A sketch cannot be used; the message says what, where and how to mend it.
     """
     with one_thread():
-        seen = see_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
+        seen = read_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
         return SketchTrace(seen, grow_sketches(seen, ModelSettings(), np.random.default_rng(0)) if grow else None)
 
 

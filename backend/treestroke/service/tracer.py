@@ -16,7 +16,7 @@ from treestroke.codec.sketch import sketch_of
 from treestroke.codec.strokes import strokes_of
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.sides import draw_side
-from treestroke.core.pipeline.sketching import see_sketches
+from treestroke.core.pipeline.sketching import read_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
 from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.core.types import Picture
@@ -119,7 +119,7 @@ def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> N
 
 def _draw_up(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:
     if "front" in sketches:
-        see_sketches(sketches["front"], sketches.get("side"), picture)
+        read_sketches(sketches["front"], sketches.get("side"), picture)
     elif "side" in sketches:
         draw_side(sketches["side"], "side")
 

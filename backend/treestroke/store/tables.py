@@ -56,7 +56,7 @@ class PhotoRow(Aged, Table):
 
 
 class ModelRow(Aged, Table):
-    """A tree that was asked for, is being made, or is made. This row is the job; a queue message only says that it waits.
+    """A tree that was asked for, is being made, or is made. This row is the job; a message only says that it waits.
 
     ``attempt`` is the fence: each change made by a worker names its attempt, and is refused once another attempt has
     the job. ``beat`` rises while that attempt lives. ``seq`` rises with every change that viewers are shown.

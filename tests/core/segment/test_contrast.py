@@ -4,7 +4,7 @@ from tests.conftest import DATA
 from tests.pictures import SKY, disc, leaves_on_sky, noisy, ring
 
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.pipeline.growing import see
+from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.segment.contrast import stands_out
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.service.inputs import load_photo, load_strokes
@@ -48,5 +48,5 @@ def test_crowns_of_real_trees_stand_out(strokes) -> None:
 
 def test_a_crown_in_the_sky_is_warned_of_beside_its_stroke() -> None:
     photo = noisy(np.full((240, 320, 3), SKY, np.float64))
-    seen = see(photo, Strokes(Stroke(ring(70, (160.0, 100.0)))))
+    seen = read_photo(photo, Strokes(Stroke(ring(70, (160.0, 100.0)))))
     assert [(warning.code, warning.stroke) for warning in seen.warnings] == [("crown_unclear", "crown")]

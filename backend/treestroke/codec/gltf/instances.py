@@ -4,7 +4,7 @@ import numpy as np
 
 from treestroke.codec.gltf.document import Document
 from treestroke.codec.gltf.tree import MATERIALS, Part, head_of
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.cards import CORNERS
@@ -17,7 +17,7 @@ _BULGE = 0.5
 """Slope of the normals at a card's corners, outward: a single card does not know its place in the crown."""
 
 
-def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: Camera, *, generator: str) -> bytes:
+def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: OrthographicCamera, *, generator: str) -> bytes:
     """Encode a tree as a GLB with an instanced node for each tile of the atlas and for each mirrored one.
 
     Each instance has its translation, rotation, scale and, as ``_COLOR_0``, its shade. The extension is used, not

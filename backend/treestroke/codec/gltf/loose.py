@@ -6,14 +6,14 @@ from urllib.parse import quote
 
 from treestroke.codec.gltf.document import Document
 from treestroke.codec.gltf.tree import Part, build_document
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.sway.wind import Wind
 
 _ENDINGS = {"image/jpeg": "jpg", "image/png": "png"}
 
 
 def encode_gltf(
-    parts: Sequence[Part], camera: Camera, *, generator: str, stem: str, wind: Wind | None = None
+    parts: Sequence[Part], camera: OrthographicCamera, *, generator: str, stem: str, wind: Wind | None = None
 ) -> dict[str, bytes]:
     """Encode a tree as ``stem.gltf``, ``stem.bin``, ``stem_bark.jpg``, ``stem_leaf.png`` ...: bytes by name.
 

@@ -9,7 +9,7 @@ from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
 from treestroke.codec.gltf.rig import add_wind
 from treestroke.codec.skeleton import plain_camera
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.sway.wind import Skin, Wind
 
@@ -69,7 +69,12 @@ class Part:
 
 
 def encode_glb(
-    parts: Sequence[Part], camera: Camera, *, generator: str, wind: Wind | None = None, compress: bool = False
+    parts: Sequence[Part],
+    camera: OrthographicCamera,
+    *,
+    generator: str,
+    wind: Wind | None = None,
+    compress: bool = False,
 ) -> bytes:
     """Encode a tree as a self-contained GLB.
 
@@ -83,7 +88,7 @@ def encode_glb(
 
 
 def build_document(
-    parts: Sequence[Part], camera: Camera, generator: str, wind: Wind | None
+    parts: Sequence[Part], camera: OrthographicCamera, generator: str, wind: Wind | None
 ) -> tuple[Document, dict[str, Any]]:
     """Build the document of a tree, and the entries of its JSON that come before the tables."""
     document = Document()
@@ -106,7 +111,7 @@ def _add(document: Document, part: Part, wind: Wind | None) -> int:
     return document.add(name, part.surface, MATERIALS[part.material], part.skin if wind else None, material_name)
 
 
-def head_of(roots: list[int], camera: Camera, generator: str) -> dict[str, Any]:
+def head_of(roots: list[int], camera: OrthographicCamera, generator: str) -> dict[str, Any]:
     """Return the entries before the tables: the asset, and one scene with the photo's camera."""
     scene = {"nodes": roots, "extras": {"photo": plain_camera(camera)}}
     return {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [scene]}

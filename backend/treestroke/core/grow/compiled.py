@@ -3,7 +3,7 @@
 import numpy as np
 
 from treestroke.core.grow._engine import Engine
-from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.placements import Choice, Rules, Shoot, turn_library
 from treestroke.core.types import Floats, Indices
@@ -29,7 +29,7 @@ def _group(points: Floats) -> tuple[Indices, Indices]:
 class CompiledEvaluator:
     """An `Evaluator` on the extension ``_engine``; the head of ``_engine.c`` says how it saves work."""
 
-    def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
+    def __init__(self, crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
         turned = turn_library(library, rules.angles)
         self._order = np.zeros(0, dtype=np.int64)
         self._engine = Engine(

@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.geometry.views import CrownViews
-from treestroke.core.types import Floats, Indices
+from treestroke.core.geometry.crown_volume import CrownVolume
+from treestroke.core.types import Floats, Indices, Mask
 
 CELLS = 1500
 """About so many cells lie in the crown: each is as wide as a small branch is long."""
@@ -21,8 +19,8 @@ class CrownCells:
 
     Attributes
     ----------
-    views, envelope
-        What bounds the crown: a place is inside where both views show it and the solid holds it.
+    volume
+        The crown.
     corner
         (3,) the box's least X, Y and Z, metres.
     side
@@ -35,8 +33,7 @@ class CrownCells:
         Metres of branches in each cell, flat; changed by `lay`.
     """
 
-    views: CrownViews
-    envelope: Envelope
+    volume: CrownVolume
     corner: Floats
     side: float
     shape: tuple[int, int, int]
@@ -44,18 +41,18 @@ class CrownCells:
     wood: Floats
 
     @property
-    def volume(self) -> float:
-        """The crown's, cubic metres."""
+    def cubic_metres(self) -> float:
+        """Volume of the cells inside."""
         return self.count * self.side**3
 
     @property
     def size(self) -> float:
         """Side, metres, of a cube as large as the crown."""
-        return float(self.volume ** (1 / 3))
+        return float(self.cubic_metres ** (1 / 3))
 
-    def inside(self, points: Floats, reach: Floats | float = 1.0) -> NDArray[np.bool_]:
-        """Tell which points (n, 3) lie in both views, and in the solid or no further out than ``reach`` (n,)."""
-        return np.asarray(self.views.inside(points) & (self.envelope.reach(points) <= np.maximum(reach, 1.0)))
+    def inside(self, points: Floats, reach: Floats | float = 1.0) -> Mask:
+        """Tell which points (n, 3), metres, pictures show in the crown and lie within a ``reach`` (n,) of 1 or more."""
+        return np.asarray(self.volume.shown(points) & (self.volume.reach(points) <= np.maximum(reach, 1.0)))
 
     def lay(self, points: Floats, lengths: Floats) -> None:
         """Add branches: pieces of so many metres (n,) about points (n, 3)."""
@@ -74,35 +71,22 @@ class CrownCells:
         return np.asarray((place[:, 0] * self.shape[1] + place[:, 1]) * self.shape[2] + place[:, 2])
 
 
-def crown_cells(views: CrownViews, envelope: Envelope) -> CrownCells:
-    """Lay cells over the part of the solid that both views show; none of them is inside where there is no such part."""
-    low, high = _box(envelope)
-    coarse = _laid(views, envelope, low, high, max(float((high - low).max()) / _COARSE, 1e-6))
+def crown_cells(volume: CrownVolume) -> CrownCells:
+    """Lay about `CELLS` cells over a crown; none of them is inside where the crown is empty."""
+    coarse = _laid(volume, max(float(np.ptp(volume.bounds, axis=0).max()) / _COARSE, 1e-6))
     if coarse.count == 0:
         return coarse
-    return _laid(views, envelope, low, high, (coarse.volume / CELLS) ** (1 / 3))
+    return _laid(volume, (coarse.cubic_metres / CELLS) ** (1 / 3))
 
 
-def _box(envelope: Envelope) -> tuple[Floats, Floats]:
-    """Find the least and greatest corner of the solid."""
-    rows, scale = np.flatnonzero(envelope.radius_px > 0), envelope.camera.metres_per_pixel
-    if len(rows) == 0:
-        return np.zeros(3), np.zeros(3)
-    middle = (envelope.middle_px[rows] - envelope.camera.root_px[0]) * scale
-    radius, deep, away = envelope.radius_px[rows] * scale, envelope.radius_px[rows] * scale, np.zeros(len(rows))
-    if envelope.depth is not None:
-        deep, away = envelope.depth.radius_px[rows] * scale, envelope.depth.middle_px[rows] * scale
-    top, bottom = (envelope.camera.root_px[1] - np.array([rows[0], rows[-1] + 1])) * scale
-    low = np.array([(middle - radius).min(), bottom, (away - deep).min()])
-    return low, np.array([(middle + radius).max(), top, (away + deep).max()])
-
-
-def _laid(views: CrownViews, envelope: Envelope, low: Floats, high: Floats, side: float) -> CrownCells:
+def _laid(volume: CrownVolume, side: float) -> CrownCells:
+    """Lay cells of a side, metres, over the volume's box."""
+    low, high = volume.bounds
     across, up, deep = (np.maximum(np.ceil((high - low) / side), 1)).astype(int).tolist()
     corner = (low + high - side * np.array([across, up, deep])) / 2
     middles = corner + side * (np.indices((across, up, deep)).reshape(3, -1).T + 0.5)
-    count = int((views.inside(middles) & (envelope.reach(middles) <= 1)).sum())
-    return CrownCells(views, envelope, corner, side, (across, up, deep), count, np.zeros(len(middles)))
+    count = int(volume.inside(middles).sum())
+    return CrownCells(volume, corner, side, (across, up, deep), count, np.zeros(len(middles)))
 
 
 def _blurred(values: Floats) -> Floats:

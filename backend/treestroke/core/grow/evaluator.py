@@ -1,11 +1,11 @@
 """The choice between the compiled evaluator and the plain one."""
 
-from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.placements import Evaluator, Rules
 
 
-def evaluator_for(crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> Evaluator:
+def evaluator_for(crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> Evaluator:
     """Make the compiled evaluator, or the plain one (slow, same choices) where the extension was not built."""
     try:
         from treestroke.core.grow.compiled import CompiledEvaluator

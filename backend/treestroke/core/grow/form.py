@@ -12,7 +12,7 @@ import numpy as np
 
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.grow.branches import Chain
-from treestroke.core.grow.crown import Crown, in_mask
+from treestroke.core.grow.growth_space import GrowthSpace, in_mask
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Mask
 
@@ -100,7 +100,7 @@ class _Spots(NamedTuple):
     fork: Indices
 
 
-def curve_shoots(visible: VisibleTree, table: BranchTable, crown: Crown, rng: np.random.Generator) -> Form:
+def curve_shoots(visible: VisibleTree, table: BranchTable, crown: GrowthSpace, rng: np.random.Generator) -> Form:
     """Bend the shoots and join them with the visible tree, whose joints stay where they are.
 
     Joints that extend the visible stem count as grown in the first iteration. Joints of shoots that would leave the
@@ -111,7 +111,7 @@ def curve_shoots(visible: VisibleTree, table: BranchTable, crown: Crown, rng: np
     return _join(visible, table, curves, spots, crown.mask)
 
 
-def _bend(visible: VisibleTree, table: BranchTable, crown: Crown, rng: np.random.Generator) -> _Curves:
+def _bend(visible: VisibleTree, table: BranchTable, crown: GrowthSpace, rng: np.random.Generator) -> _Curves:
     """Bend level after level, as a shoot's base lies on its parent's curve."""
     count = len(table.parent)
     curves = _Curves(*np.zeros((6, count, 3)))
@@ -146,7 +146,7 @@ def _bend_level(curves: _Curves, shoots: Indices, parent_direction: Floats, nois
     curves.wave[shoots], curves.ripple[shoots] = across[0] * length * WAVE, across[1] * length * WAVE / 2
 
 
-def _straighten(curves: _Curves, shoots: Indices, crown: Crown) -> None:
+def _straighten(curves: _Curves, shoots: Indices, crown: GrowthSpace) -> None:
     """Bend shoots (m,) less where they would leave the crown."""
     share = np.zeros(len(shoots))
     left = np.ones(len(shoots), dtype=bool)

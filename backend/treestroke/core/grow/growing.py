@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from treestroke.core.grow.branches import Chain, split_chains
-from treestroke.core.grow.crown import Crown, in_mask
 from treestroke.core.grow.form import BranchTable
+from treestroke.core.grow.growth_space import GrowthSpace, in_mask
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.placements import Choice, Evaluator, Rules, Shoot
@@ -27,7 +27,12 @@ class Growing:
     """The growing tree: its branches as columns, filled up to ``count``, and the evaluator that measures them."""
 
     def __init__(
-        self, visible: Skeleton, crown: Crown, library: tuple[Subtree, ...], params: GrowthParams, evaluator: Evaluator
+        self,
+        visible: Skeleton,
+        crown: GrowthSpace,
+        library: tuple[Subtree, ...],
+        params: GrowthParams,
+        evaluator: Evaluator,
     ) -> None:
         self.params, self.crown, self.library = params, crown, library
         self.evaluator = evaluator
@@ -154,7 +159,7 @@ def rules_for(params: GrowthParams, unit: float) -> Rules:
     )
 
 
-def _chains(visible: Skeleton, crown: Crown, params: GrowthParams) -> list[Chain]:
+def _chains(visible: Skeleton, crown: GrowthSpace, params: GrowthParams) -> list[Chain]:
     """Split the visible tree into chains, px."""
     rows = np.flatnonzero(crown.mask.any(axis=1))
     height = float(rows[-1] - rows[0] + 1)

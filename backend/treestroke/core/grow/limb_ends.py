@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import successors_by_wood
-from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.form import UP_IN_PICTURE
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.skeleton.measure import path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import limbs
@@ -56,7 +56,7 @@ class _End(NamedTuple):
     reach: float
 
 
-def with_limbs_carried_on(skeleton: Skeleton, crown: Crown) -> Skeleton:
+def with_limbs_carried_on(skeleton: Skeleton, crown: GrowthSpace) -> Skeleton:
     """Carry on the limbs of a visible tree (px) that end under the crown or in it with free room ahead.
 
     What is carried on ends inside the crown and below the tree's highest joint. It may cross a gap between a limb's
@@ -93,7 +93,7 @@ def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
     return _End(int(limb[-1]), unit(skeleton.points[limb[-1]] - skeleton.points[before], UP_IN_PICTURE), radius, reach)
 
 
-def _best_path(skeleton: Skeleton, end: _End, crown: Crown, height: float) -> Floats:
+def _best_path(skeleton: Skeleton, end: _End, crown: GrowthSpace, height: float) -> Floats:
     """Choose the curve (k, 3) with most free room along it, without its start; (0, 3) where there is none."""
     start = skeleton.points[end.joint]
     others = skeleton.points[_away(skeleton, end.joint, AIM_SHARE * height)]
@@ -134,7 +134,7 @@ def _curve(start: Floats, way: Floats, chord: Floats, step: float) -> Floats:
     return np.asarray(start + t**2 * (3 - 2 * t) * chord + inner)
 
 
-def _inside(path: Floats, crown: Crown) -> NDArray[np.bool_]:
+def _inside(path: Floats, crown: GrowthSpace) -> NDArray[np.bool_]:
     """Tell which points (k, 3) lie in the crown, clear of the envelope's surface."""
     row = np.clip(np.floor(path[:, 1]).astype(np.int64), 0, len(crown.middle) - 1)
     inner = np.hypot(path[:, 0] - crown.middle[row], path[:, 2]) <= WITHIN * crown.radius[row]

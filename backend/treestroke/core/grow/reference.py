@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.grow.crown import Crown
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.placements import TIE, Choice, Rules, Shoot, turn_library
 from treestroke.core.types import Floats, Indices
@@ -51,7 +51,7 @@ def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
 class PlainEvaluator:
     """An `Evaluator` that keeps each attractor's distance and nothing else."""
 
-    def __init__(self, crown: Crown, library: tuple[Subtree, ...], rules: Rules) -> None:
+    def __init__(self, crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
         self._crown, self._rules = crown, rules
         self._library = turn_library(library, rules.angles)
         self._bases = self._tips = np.zeros((0, 3))

@@ -6,15 +6,17 @@ again and again; a shoot that leaves the crown is clipped, and the crown bounds 
 go; subtrees on a stem are stretched toward the crown's edge.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import dataclass
 
-from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.grow.crown import crown_of, pixels_of, world_of
+import numpy as np
+
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.form import VisibleTree, curve_shoots
 from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.grown import Grown
+from treestroke.core.grow.growth_space import growth_space, pixel_frame
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.limb_ends import with_limbs_carried_on
 from treestroke.core.grow.params import GrowthParams
@@ -28,44 +30,58 @@ REACHED_PX = 10.0
 """An image attractor counts as reached within this distance of a branch, px of a crown 1,000 px wide."""
 
 
+@dataclass(frozen=True, eq=False)
+class CrownToFill:
+    """What growth fills: a crown volume, and its foliage with holes closed as a front camera shows it."""
+
+    volume: CrownVolume
+    front: Silhouette[OrthographicCamera]
+
+
+@dataclass(frozen=True, eq=False)
+class Replacement:
+    """How growth fills it: the subtrees that replace branches, one or more, and the figures."""
+
+    library: tuple[Subtree, ...]
+    params: GrowthParams
+
+
 def grow(
     skeleton: Skeleton,
-    mask: NDArray[np.bool_],
-    envelope: Envelope,
-    library: tuple[Subtree, ...],
-    params: GrowthParams,
+    crown: CrownToFill,
+    method: Replacement,
     rng: np.random.Generator,
     report: Report = silent,
 ) -> Grown:
     """Fill the crown of a lifted tree (3D, metres, measured radii) with branches.
 
-    ``mask`` (height, width) is the foliage with its holes closed, ``envelope`` how deep it is. New joints project
-    into the mask and lie within the envelope, save where a stem or limb is carried on from below the foliage into it;
-    visible joints stay where they are. Without iterations no limb is carried on and no twig grows.
+    New joints project into the front silhouette and lie within the volume, save where a stem or limb is carried on from
+    below the foliage into it; visible joints stay where they are. Without iterations no limb is carried on and no twig
+    grows. ``report("grow", fraction)`` is called with each iteration.
 
     Raises
     ------
     ValueError
-        The mask is empty or does not fit the envelope, or the library is empty.
+        The silhouette is empty or does not fit its camera, or the library is empty.
     """
-    if not library or not mask.any():
-        raise ValueError(f"growth needs foliage and at least one subtree, got {mask.sum()} px and {len(library)}")
-    camera = envelope.camera
-    scale = camera.metres_per_pixel
-    visible = Skeleton(pixels_of(skeleton.points, camera), skeleton.radii / scale, skeleton.parents)
-    visible = with_leader(visible, mask, envelope, params.leader)
-    crown = crown_of(mask, envelope, foot_of(visible, mask))
-    visible = with_limbs_carried_on(visible, crown) if params.iterations else visible
-    evaluator = evaluator_for(crown, library, rules_for(params, crown.unit))
-    growth = Growing(visible, crown, library, params, evaluator)
+    params, mask = method.params, crown.front.mask
+    if not method.library or not mask.any():
+        raise ValueError(f"growth needs foliage and a subtree, got {mask.sum()} px and {len(method.library)}")
+    camera, frame = crown.front.camera, pixel_frame(crown.volume, crown.front.camera)
+    visible = Skeleton(frame.pixels_of(skeleton.points), camera.pixels_from_metres(skeleton.radii), skeleton.parents)
+    visible = with_leader(visible, mask, frame.sections, params.leader)
+    space = growth_space(crown.front, frame.sections, foot_of(visible, mask))
+    visible = with_limbs_carried_on(visible, space) if params.iterations else visible
+    evaluator = evaluator_for(space, method.library, rules_for(params, space.unit))
+    growth = Growing(visible, space, method.library, params, evaluator)
     choices = growth.run(rng, report)
-    form = curve_shoots(VisibleTree(visible, len(skeleton), growth.chains), growth.table(), crown, rng)
-    form = with_twigs(form, crown, params.twigs if choices else 0, rng)
-    radii = pipe_radii(form.points, form.parents, form.measured, params.tip_px * crown.unit)
+    form = curve_shoots(VisibleTree(visible, len(skeleton), growth.chains), growth.table(), space, rng)
+    form = with_twigs(form, space, params.twigs if choices else 0, rng)
+    radii = pipe_radii(form.points, form.parents, form.measured, params.tip_px * space.unit)
     distances = growth.evaluator.image_distances()
     return Grown(
-        Skeleton(world_of(form.points, camera), radii * scale, form.parents),
+        Skeleton(frame.world_of(form.points), camera.metres_from_pixels(radii), form.parents),
         form.born,
         np.array(choices, dtype=np.int64).reshape(-1, 3),
-        float((distances <= REACHED_PX * crown.unit).mean()) if len(distances) else 0.0,
+        float((distances <= REACHED_PX * space.unit).mean()) if len(distances) else 0.0,
     )

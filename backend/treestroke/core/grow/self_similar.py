@@ -14,9 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.geometry.views import CrownViews
 from treestroke.core.grow.crown_cells import CrownCells, crown_cells
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.parent_branches import ParentBranches, across, parents_from_main, parents_from_small
@@ -116,20 +115,33 @@ class _Shoots:
         return _Shoots(self.nodes[index], self.points[index], self.kept[index])
 
 
+@dataclass(frozen=True)
+class _Plan:
+    """A level's number, from 1, and how many small branches it may have at most."""
+
+    number: int
+    most: int
+    params: SelfSimilarParams
+
+
 @dataclass(frozen=True, eq=False)
 class _Level:
-    """What rules one level: length of each bearer's (k,) copies, the greatest, and the fair share of wood in a cell."""
+    """What small branches of one level follow.
+
+    ``lengths`` (k,) are those of each parent branch's copies and ``longest`` their upper bound, metres; ``fair`` is the
+    wood, metres, that a cell would hold if all were equal.
+    """
 
     lengths: Floats
     longest: float
     fair: float
+    cells: CrownCells
     params: SelfSimilarParams
 
 
 def grow_small(
     main: Branched,
-    views: CrownViews,
-    envelope: Envelope,
+    volume: CrownVolume,
     params: SelfSimilarParams,
     rng: np.random.Generator,
     report: Report = silent,
@@ -139,13 +151,13 @@ def grow_small(
     The joints of ``main`` come first, in their order and where they were, born 0; those of small branches, born at
     their level, lie in both views. ``report("grow", fraction)`` is called level by level. Deterministic.
     """
-    skeleton, cells = main.skeleton, crown_cells(views, envelope)
-    cells.lay(skeleton.points, edge_lengths(skeleton) * views.inside(skeleton.points))
+    skeleton, cells = main.skeleton, crown_cells(volume)
+    cells.lay(skeleton.points, edge_lengths(skeleton) * volume.shown(skeleton.points))
     points, parents, born = [skeleton.points], [skeleton.parents], [np.zeros(len(main), dtype=np.int64)]
     left, count, bearers = params.most, len(main), parents_from_main(main, params.share, _pieces(1, len(main), params))
     for number in range(1, params.levels + 1 if cells.count else 1):
         quota = int(np.ceil(left / (FAN ** np.arange(params.levels - number + 1)).sum()))
-        shoots = _sprouted(bearers, cells, number, quota, params, rng)
+        shoots = _sprouted(bearers, cells, _Plan(number, quota, params), rng)
         joints = _numbered(shoots, bearers, count)
         own = joints[:, 1:] >= 0
         points.append(shoots.points[:, 1:][own])
@@ -183,21 +195,15 @@ def _finished(points: Floats, parents: Indices, born: Indices, main: Skeleton) -
     return Grown(Skeleton(points, radii, parents), born, np.zeros((0, 3), dtype=np.int64))
 
 
-def _sprouted(
-    bearers: ParentBranches,
-    cells: CrownCells,
-    number: int,
-    quota: int,
-    params: SelfSimilarParams,
-    rng: np.random.Generator,
-) -> _Shoots:
-    """Let up to ``quota`` small branches of a level grow, on all bearers at a time, each from its tip down."""
-    buds = _buds(bearers, cells, round(SPARE * quota), params.spacing * cells.size * 0.5 ** (number - 1))
-    level = _ruled(bearers, bearers.branch[buds], cells, number, params)
+def _sprouted(bearers: ParentBranches, cells: CrownCells, plan: _Plan, rng: np.random.Generator) -> _Shoots:
+    """Let the small branches of a level grow, on all parent branches at a time, each from its tip down."""
+    spacing = plan.params.spacing * cells.size * 0.5 ** (plan.number - 1)
+    buds = _buds(bearers, cells, round(SPARE * plan.most), spacing)
+    level = _ruled(bearers, bearers.branch[buds], cells, plan)
     rank, before = _ranks(bearers.branch[buds]), np.zeros((len(bearers.lengths), 3))
-    grown, left = [_best(buds[:0], bearers, before, cells, level, rng)], quota
+    grown, left = [_best(buds[:0], bearers, before, level, rng)], plan.most
     for turn in range(int(rank.max(initial=-1)) + 1):
-        shoots = _best(buds[rank == turn], bearers, before, cells, level, rng).at(slice(left))
+        shoots = _best(buds[rank == turn], bearers, before, level, rng).at(slice(left))
         own = np.arange(1, shoots.points.shape[1]) <= shoots.kept[:, None]
         cells.lay(shoots.points[:, 1:][own], np.sqrt((np.diff(shoots.points, axis=1) ** 2).sum(axis=2))[own])
         before[bearers.branch[shoots.nodes]] = shoots.points[:, -1] - shoots.points[:, 0]
@@ -205,21 +211,20 @@ def _sprouted(
     return _Shoots(*(np.concatenate([getattr(one, name) for one in grown]) for name in ("nodes", "points", "kept")))
 
 
-def _ruled(
-    bearers: ParentBranches, branch: Indices, cells: CrownCells, number: int, params: SelfSimilarParams
-) -> _Level:
+def _ruled(bearers: ParentBranches, branch: Indices, cells: CrownCells, plan: _Plan) -> _Level:
     """Set the lengths of a level, longer where branches stand far apart, and what wood is fair in the cells they reach.
 
     ``branch`` (b,) is that of each bud.
     """
-    size, copied = cells.size * 0.5 ** (number - 1), params.share * bearers.lengths
-    apart = np.sqrt(cells.volume / (np.pi * max(float(bearers.weight.sum()), 1e-12)))
+    params = plan.params
+    size, copied = cells.size * 0.5 ** (plan.number - 1), params.share * bearers.lengths
+    apart = np.sqrt(cells.cubic_metres / (np.pi * max(float(bearers.weight.sum()), 1e-12)))
     stretch = np.clip(apart / max(FILLED * float(copied[branch].mean()), 1e-12), 1, STRETCHED) if len(branch) else 1.0
     lengths = np.maximum(stretch * copied, np.minimum(SHORTEST * size, copied / params.share / 2))
     longest = params.longest * size
     likely = np.minimum(lengths[branch], longest).sum() / SPARE
     reached = max(1, int((cells.around() > 0).sum()))
-    return _Level(lengths, longest, float(cells.wood.sum() + likely) / min(reached, cells.count), params)
+    return _Level(lengths, longest, float(cells.wood.sum() + likely) / min(reached, cells.count), cells, params)
 
 
 def _buds(bearers: ParentBranches, cells: CrownCells, count: int, spacing: float) -> Indices:
@@ -242,15 +247,13 @@ def _ranks(branch: Indices) -> Indices:
     return np.asarray(last[np.searchsorted(last, np.arange(len(branch)))] - np.arange(len(branch)))
 
 
-def _best(
-    nodes: Indices, bearers: ParentBranches, before: Floats, cells: CrownCells, level: _Level, rng: np.random.Generator
-) -> _Shoots:
+def _best(nodes: Indices, bearers: ParentBranches, before: Floats, level: _Level, rng: np.random.Generator) -> _Shoots:
     """Try copies at each node (b,), take the one that reaches the emptiest part of the crown, and drop poor ones."""
-    params, wood = level.params, cells.around()
+    params, cells, wood = level.params, level.cells, level.cells.around()
     directions = _directions(bearers.along[nodes], before[bearers.branch[nodes]], params, rng)
     points = _copies(nodes, bearers, directions, level, rng)
     own, shape = points[:, :, 1:].reshape(-1, 3), (*points.shape[:2], points.shape[2] - 1)
-    reach = np.repeat(cells.envelope.reach(bearers.points[nodes]) + SLACK, shape[1] * shape[2])
+    reach = np.repeat(cells.volume.reach(bearers.points[nodes]) + SLACK, shape[1] * shape[2])
     inside = np.cumprod(cells.inside(own, reach).reshape(shape), axis=2)
     around = cells.at(own, wood).reshape(shape)
     kept = inside.sum(axis=2)

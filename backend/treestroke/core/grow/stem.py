@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.outline_volume import Sections
 from treestroke.core.grow.branches import successors_by_wood
-from treestroke.core.grow.crown import in_mask
+from treestroke.core.grow.growth_space import in_mask
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
@@ -30,7 +30,7 @@ def foot_of(skeleton: Skeleton, mask: NDArray[np.bool_]) -> Floats:
     return np.array(skeleton.points[stem[int(np.argmax(inside)) if inside.any() else -1]])
 
 
-def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], envelope: Envelope, share: float) -> Skeleton:
+def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], sections: Sections, share: float) -> Skeleton:
     """Carry the first stem (px) on to a share of the crown's height, where no joint reaches that height.
 
     It goes straight to the envelope's middle, or as near to the top as it can without leaving the foliage once it
@@ -42,7 +42,7 @@ def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], envelope: Envelope,
     stem = stem_of(skeleton)
     for aim in np.arange(share, highest + SLACK, -0.05):
         y = rows[-1] + 1 - aim * height
-        top = np.array([envelope.middle_px[int(np.clip(y, 0, len(mask) - 1))], y, 0.0])
+        top = np.array([sections.middle_px[int(np.clip(y, 0, len(mask) - 1))], y, 0.0])
         way = _way(skeleton.points[stem[-1]], top, JOINT_SHARE * height)
         inside = in_mask(way, mask)
         if inside.any() and inside[int(np.argmax(inside)) :].all():

@@ -3,22 +3,21 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.grow.crown import in_mask, pixels_of
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root
 
 
-def trimmed(grown: Grown, foliage: NDArray[np.bool_], camera: Camera) -> Grown:
-    """Drop the ends that grew out of the foliage (h, w), where no leaf would hide them; what comes back into it stays.
+def trimmed(grown: Grown, foliage: Silhouette[Camera]) -> Grown:
+    """Drop the ends that grew out of the foliage, where no leaf would hide them; what comes back into it stays.
 
     Growth bridges the bays and gaps of a crown, for branches pass there. Visible joints stay.
     """
     tree = grown.skeleton
-    wanted = (grown.born == 0) | in_mask(pixels_of(tree.points, camera), foliage)
+    wanted = (grown.born == 0) | foliage.shows(tree.points)
     kept = accumulate_to_root(tree, wanted.astype(np.float64)) > 0
     number = np.cumsum(kept) - 1
     parents = np.where(tree.parents < 0, -1, number[tree.parents])[kept]

@@ -7,8 +7,8 @@ forward and rise a little.
 import numpy as np
 
 from treestroke.core.geometry.vectors import unit
-from treestroke.core.grow.crown import Crown
 from treestroke.core.grow.form import UP_IN_PICTURE, Form
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root
@@ -25,7 +25,7 @@ FINE_PX = 500.0
 """Greatest total length of wood beyond a joint with a twig, px of a crown 1,000 px wide."""
 
 
-def with_twigs(form: Form, crown: Crown, most: int, rng: np.random.Generator) -> Form:
+def with_twigs(form: Form, crown: GrowthSpace, most: int, rng: np.random.Generator) -> Form:
     """Add up to ``most`` twigs to a tree (px), all within the crown; they count as grown with their parent joint."""
     seats = _seats(form, crown.unit, most)
     if len(seats) == 0:

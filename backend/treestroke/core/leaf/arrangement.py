@@ -121,14 +121,10 @@ def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np
     return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng), axis[:, 1])
 
 
-def pose_over(
-    seats: Seats, centres: Floats, half_sizes: Floats, crown_middle: Floats, rng: np.random.Generator
-) -> Poses:
-    """Set a spray at each centre (n, 3) that is to be covered: as if it hung from its seat, and turned to be seen."""
+def pose_over(seats: Seats, centres: Floats, half_sizes: Floats, outward: Floats, rng: np.random.Generator) -> Poses:
+    """Set a spray at each centre (n, 3), metres, as if it hung from its seat; it faces about ``outward`` (n, 3)."""
     way = centres - seats.points
     axis = unit(0.6 * seats.directions + unit(way) + rng.normal(0, 0.5, way.shape), UP)
-    outward = unit(centres - crown_middle, UP)
-    outward[:, 2] += np.where(outward[:, 2] < 0, -1.0, 1.0)
     return Poses(centres, *_frames(axis, outward, half_sizes, rng), unit(way, UP)[:, 1])
 
 

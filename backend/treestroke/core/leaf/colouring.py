@@ -1,10 +1,12 @@
 """Which tile and how much light each card gets: colour from the photo where it shows the place."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.camera import in_picture
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.paint.palette import nearest_colour
 from treestroke.core.paint.seasons import Recolour
@@ -46,75 +48,123 @@ class _Waves:
 
 
 @dataclass(frozen=True, eq=False)
+class _CellColours:
+    """The colours of all views' cells, one view after the other.
+
+    ``labs`` and ``broad_labs`` (cells, 3) are those of `FoliageGrid`; ``first`` (views,) is each view's first cell.
+    """
+
+    grids: tuple[FoliageGrid, ...]
+    labs: Floats
+    broad_labs: Floats
+    first: Indices
+
+    @staticmethod
+    def of(grids: Sequence[FoliageGrid]) -> "_CellColours":
+        first = np.cumsum([0] + [len(grid.labs) for grid in grids[:-1]])
+        labs, broad = (np.concatenate([getattr(grid, name) for grid in grids]) for name in ("labs", "broad_labs"))
+        return _CellColours(tuple(grids), labs, broad, first)
+
+    def cells_of(self, points: Floats, view: Indices) -> Indices:
+        """Cells (n,) onto which points (n, 3), metres, project, each in its own view (n,)."""
+        cells = np.empty(len(points), dtype=np.int64)
+        for number, grid in enumerate(self.grids):
+            cells[view == number] = self.first[number] + grid.cells_of(points[view == number])
+        return cells
+
+
+@dataclass(frozen=True, eq=False)
 class Colouring:
     """Chooses tiles for places in one crown.
 
     Attributes
     ----------
-    grid, envelope
-        The photo's colours and the crown's solid.
+    colours, volume
+        The views' colours and the crown.
     tile_labs
         (k, 3) mean colours of the atlas's tiles, CIE Lab.
     sideways, updown
         Smooth fields that say from where a hidden place fetches its colour.
+    height
+        The foliage's in the first view, metres.
     recolour
-        How the photo's colours became the tiles', or None where they are the same.
+        How the pictures' colours became the tiles', or None where they are the same.
     mood
         Smooth field that says where in a season's colours a clump stands, if they are recoloured.
     """
 
-    grid: FoliageGrid
-    envelope: Envelope
+    colours: _CellColours
+    volume: CrownVolume
     tile_labs: Floats
     sideways: _Waves
     updown: _Waves
+    height: float
     recolour: Recolour | None = None
     mood: _Waves | None = None
 
     def tiles(self, points: Floats, rng: np.random.Generator) -> Indices:
-        """Choose a tile for each place (n, 3), metres: of the photo's colour there if it shows the place.
+        """Choose a tile (n,) for each place (n, 3), metres: of the colour there in the view that shows the place best.
 
-        Hidden places take the colour of another place of about the same height, displaced smoothly in space, so
-        that clumps persist, while the back is no mirror image and no colour is smeared along the view.
+        That is the view toward which the place stands furthest out of the crown. Places that no view shows take the
+        colour of another place of about the same height, displaced smoothly in space, so that clumps persist, while the
+        back is no mirror image and no colour is smeared along the view.
         """
-        half_depth, nearness = self.envelope.half_depth(points), points[:, 2] - self.envelope.middles(points)[:, 2]
+        view, nearness = self._best_view(points)
+        half_depth = self.volume.half_depth(points)
         hidden = np.clip((SHOWN_DEPTH * half_depth - nearness) / np.maximum(half_depth, 1e-6), 0, 1)
-        radius = self.envelope.radius_px.max() * self.grid.camera.metres_per_pixel
-        height = self.grid.inside.shape[0] * self.grid.cell_m
-        x = points[:, 0] + hidden * SIDEWAYS * radius * self.sideways.at(points)
-        y = points[:, 1] + hidden * UPDOWN * height * self.updown.at(points)
-        x, y = self._folded(x, y)
-        cells, scatter = self.grid.flat_cells(x, y), rng.normal(0, COLOUR_SCATTER, points.shape)
+        right = np.stack([grid.camera.right() for grid in self.colours.grids])[view]
+        x = (points * right).sum(axis=1) + hidden * SIDEWAYS * self.volume.widest * self.sideways.at(points)
+        y = points[:, 1] + hidden * UPDOWN * self.height * self.updown.at(points)
+        cells = self.colours.cells_of(self._folded(x, y, right), view)
+        scatter = rng.normal(0, COLOUR_SCATTER, points.shape)
         if self.recolour is not None and self.mood is not None:
             moods = _shares(self.mood.at(points) + rng.normal(0, MOOD_SCATTER, len(points)))
-            labs = self.recolour.at(self.grid.labs[cells], moods)
+            labs = self.recolour.at(self.colours.labs[cells], moods)
             return nearest_colour(labs + scatter, self.tile_labs)[0]
-        tiles, square = nearest_colour(self.grid.labs[cells] + scatter, self.tile_labs)
+        tiles, square = nearest_colour(self.colours.labs[cells] + scatter, self.tile_labs)
         foreign = square > FOREIGN**2
-        tiles[foreign] = nearest_colour(self.grid.broad_labs[cells[foreign]] + scatter[foreign], self.tile_labs)[0]
+        broad = self.colours.broad_labs[cells[foreign]] + scatter[foreign]
+        tiles[foreign] = nearest_colour(broad, self.tile_labs)[0]
         return tiles
 
-    def _folded(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
-        """Fold places back at the crown's outline instead of smearing its border outward."""
-        camera, envelope = self.grid.camera, self.envelope
-        rows = np.flatnonzero(envelope.radius_px > 0)
-        row = np.clip(camera.root_px[1] - y / camera.metres_per_pixel, rows[0], rows[-1]).astype(np.int64)
-        middle = (envelope.middle_px[row] - camera.root_px[0]) * camera.metres_per_pixel
-        radius = np.maximum(envelope.radius_px[row] * camera.metres_per_pixel, 1e-6)
-        turn = (x - middle) / radius
-        folded = 1 - np.abs(np.mod(turn + 1, 4) - 2)
-        inward = np.asarray(middle + folded * radius)
-        return inward, np.asarray((camera.root_px[1] - row - 0.5) * camera.metres_per_pixel)
+    def _best_view(self, points: Floats) -> tuple[Indices, Floats]:
+        """Find the view (n,) toward which each place (n, 3) stands furthest from the axis, and how far (n,), metres."""
+        outward = points - self.volume.axis(points[:, 1])
+        cameras = [grid.camera for grid in self.colours.grids]
+        nearness = np.stack([(outward * camera.toward_viewer(points)).sum(axis=1) for camera in cameras])
+        if len(cameras) == 1:
+            return np.zeros(len(points), dtype=np.int64), nearness[0]
+        shown = np.stack([in_picture(camera, points) for camera in cameras])
+        view = np.argmax(np.where(shown, nearness, -np.inf), axis=0)
+        return view, nearness[view, np.arange(len(points))]
+
+    def _folded(self, x: Floats, y: Floats, right: Floats) -> Floats:
+        """Fold places back at the crown's outline instead of smearing its border outward: (n, 3), metres.
+
+        ``x`` (n,), metres, counts along the directions ``right`` (n, 3) of the views, ``y`` (n,) upward.
+        """
+        low, high = self.volume.bounds[:, 1].tolist()
+        inset = 1e-9 * (high - low)
+        y = np.clip(y, low + inset, high - inset)
+        axis, radius = self.volume.axis(y), np.maximum(self.volume.half_width(y), 1e-6)
+        middle = (axis * right).sum(axis=1)
+        folded = 1 - np.abs(np.mod((x - middle) / radius + 1, 4) - 2)
+        return np.asarray((middle + folded * radius)[:, None] * right + (axis - middle[:, None] * right))
 
 
 def colouring_of(
-    grid: FoliageGrid, envelope: Envelope, tile_labs: Floats, recolour: Recolour | None, rng: np.random.Generator
+    grids: Sequence[FoliageGrid],
+    volume: CrownVolume,
+    tile_labs: Floats,
+    recolour: Recolour | None,
+    rng: np.random.Generator,
 ) -> Colouring:
-    """Draw the smooth displacements for one crown."""
-    width = 2 * envelope.radius_px.max() * grid.camera.metres_per_pixel
+    """Draw the smooth displacements for one crown; ``tile_labs`` (k, 3) are its tiles' colours, CIE Lab."""
+    width = 2 * volume.widest
     sideways, updown = _draw_waves(width, rng), _draw_waves(width, rng)
     mood = None if recolour is None else _draw_waves(CLUMP * width, rng)
-    return Colouring(grid, envelope, tile_labs, sideways, updown, recolour, mood)
+    height = grids[0].inside.shape[0] * grids[0].cell_m
+    return Colouring(_CellColours.of(grids), volume, tile_labs, sideways, updown, height, recolour, mood)
 
 
 def _shares(values: Floats) -> Floats:
@@ -130,15 +180,14 @@ def _draw_waves(width: float, rng: np.random.Generator) -> _Waves:
     return _Waves(directions * 2 * np.pi / lengths, rng.uniform(0, 2 * np.pi, WAVES))
 
 
-def shades(points: Floats, lift: Floats, envelope: Envelope) -> Floats:
-    """Brightness of places (n, 3) in the crown, DARKEST to 1.
+def shades(points: Floats, lift: Floats, volume: CrownVolume) -> Floats:
+    """Brightness (n,) of places (n, 3), metres, in the crown, DARKEST to 1.
 
     Light falls in from outside and above: brightness grows with the reach from the crown's axis and with height,
-    and cards above their branch (lift towards 1) are brighter than those below it (towards -1).
+    and cards above their branch (``lift`` (n,) towards 1) are brighter than those below it (towards -1).
     """
-    rows = np.flatnonzero(envelope.radius_px > 0)
-    top, bottom = (envelope.camera.root_px[1] - np.array([rows[0], rows[-1] + 1])) * envelope.camera.metres_per_pixel
+    bottom, top = volume.bounds[:, 1].tolist()
     height = np.clip((points[:, 1] - bottom) / (top - bottom), 0, 1)
-    openness = np.clip(np.hypot(envelope.reach(points), np.maximum(0, 2 * height - 1)), 0, 1)
+    openness = np.clip(np.hypot(volume.reach(points), np.maximum(0, 2 * height - 1)), 0, 1)
     light = np.clip(1.15 * openness + 0.2 * height + 0.12 * lift - 0.15, 0, 1)
     return np.asarray(DARKEST + (1 - DARKEST) * light * light * (3 - 2 * light))

@@ -47,22 +47,19 @@ def outlines_of(alphas: NDArray[np.uint8]) -> Outlines:
 
 
 def share_inside(leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:
-    """Share of each card's opaque dots that project into the foliage, or onto wood that they lie behind (m,)."""
+    """Share (m,) of each card's opaque dots that project into the foliage, or onto wood that the card lies behind."""
     cells = _cells(leaves, outlines.probes[leaves.tiles], grid)
-    return np.asarray((grid.front.ravel()[cells] > leaves.centres[:, 2:]).mean(axis=1))
+    return np.asarray(grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None]).mean(axis=1))
 
 
 def cover(covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> None:
-    """Mark in ``covered``, flat as the grid's cells, what the cards hide."""
+    """Mark in ``covered``, flags (cells,), flat as the grid, what the cards hide."""
     for tile, dots in enumerate(outlines.dots):
         covered[_cells(leaves.select(leaves.tiles == tile), dots[None], grid)] = True
 
 
 def _cells(leaves: Leaves, dots: Floats, grid: FoliageGrid) -> Indices:
     """Grid cells (m, p) of dots (m or 1, p, 2) on cards."""
-    across = dots[..., 0] * np.where(leaves.flips, -1.0, 1.0)[:, None]
-    x, y = (
-        leaves.centres[:, axis, None] + across * leaves.rights[:, axis, None] + dots[..., 1] * leaves.ups[:, axis, None]
-        for axis in (0, 1)
-    )
-    return grid.flat_cells(x, y)
+    across = dots[..., :1] * np.where(leaves.flips, -1.0, 1.0)[:, None, None]
+    points = leaves.centres[:, None] + across * leaves.rights[:, None] + dots[..., 1:] * leaves.ups[:, None]
+    return grid.cells_of(points.reshape(-1, 3)).reshape(points.shape[:2])

@@ -5,13 +5,14 @@ their twig, with random factors in place and direction. Ours keep a distance fro
 crown shows them.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette, shown_by_all
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.geometry.views import CrownViews
 from treestroke.core.leaf.arrangement import Seats, seats_along, thin_edges
 from treestroke.core.leaf.leaves import Leaves, join_leaves
 from treestroke.core.paint.atlas import TILE_SIDE, Atlas, tile_labs
@@ -43,6 +44,8 @@ class FruitParams:
 
     Attributes
     ----------
+    aspect
+        Height over width of the fruit's picture.
     width
         Width of the narrowest and the widest fruit, shares of the crown's width, for a picture no taller than wide.
     per_metre
@@ -53,6 +56,7 @@ class FruitParams:
         Least distance between two fruit, in widths.
     """
 
+    aspect: float = 1.0
     width: tuple[float, float] = (0.012, 0.018)
     per_metre: float = 30.0
     fewest: int = 60
@@ -62,38 +66,34 @@ class FruitParams:
     def __post_init__(self) -> None:
         if not 0 < self.width[0] <= self.width[1] <= 0.2:
             raise ValueError(f"width must be two shares, 0 to 0.2, the smaller first, got {self.width}")
-        if not (0 <= self.fewest <= self.most and self.per_metre >= 0 and self.apart >= 0):
+        if not (0 <= self.fewest <= self.most and self.per_metre >= 0 and self.apart >= 0 and self.aspect > 0):
             raise ValueError(f"counts must be in order, and nothing negative, got {self}")
 
 
 def hang_fruit(
     skeleton: Skeleton,
-    envelope: Envelope,
-    views: CrownViews,
-    picture: Picture,
+    volume: CrownVolume,
+    silhouettes: Sequence[Silhouette[Camera]],
     params: FruitParams,
     rng: np.random.Generator,
 ) -> Leaves:
     """Hang fruit on the twigs of a grown tree, metres: first one card of each fruit, then the card that crosses it.
 
-    Every fruit's middle and lower end lie inside the views and its middle inside the envelope. They come in random
-    order, so that any first few are spread over the crown. Their tiles (m,) are indices set by `with_fruit`.
-
-    Source: the paper on two sketches, section 7; we add the least distance and the likelihood by reach.
+    Every fruit's middle and lower end lie inside all silhouettes and its middle inside the volume. They come in random
+    order, so that the first few stand all over the crown. Their tile is yet to be named (`with_fruit`).
     """
-    side = params.per_metre * np.sqrt(2 * envelope.radius_px.sum()) * envelope.camera.metres_per_pixel
-    count = int(np.clip(round(float(side)), params.fewest, params.most))
+    count = int(np.clip(round(params.per_metre * float(np.sqrt(volume.front_area))), params.fewest, params.most))
     seats = seats_along(skeleton, thin_edges(skeleton).astype(np.float64), TRIED * count, rng)
-    aspect = picture.shape[0] / picture.shape[1]
-    crown_m = 2 * float(envelope.radius_px.max()) * envelope.camera.metres_per_pixel
-    width = crown_m * rng.uniform(*params.width, len(seats)) * float(np.clip(aspect, 1, TALLEST))
-    drop = width * aspect
-    around = unit(_around(seats, rng) + _outward(seats.points, envelope), UP)
+    width = 2 * volume.widest * rng.uniform(*params.width, len(seats)) * float(np.clip(params.aspect, 1, TALLEST))
+    drop = width * params.aspect
+    around = unit(_around(seats, rng) + _outward(seats.points, volume), UP)
     feet = seats.points + STALK * width[:, None] * around
     half = 0.5 * np.maximum(width, drop) / (1 - 2 * MARGIN)
     middles = feet - drop[:, None] / 2 * UP
-    inside = views.inside(middles) & views.inside(feet - drop[:, None] * UP) & (envelope.reach(middles) <= 1)
-    likelihood = np.where(inside, np.clip(envelope.reach(middles), 0.05, 1) ** OUTWARD, 0.0)
+    reach = volume.reach(middles)
+    ends = feet - drop[:, None] * UP
+    inside = shown_by_all(silhouettes, middles) & shown_by_all(silhouettes, ends) & (reach <= 1)
+    likelihood = np.where(inside, np.clip(reach, 0.05, 1) ** OUTWARD, 0.0)
     chosen = _chosen(middles, likelihood, params.apart * width, count, rng)
     return _crossed(feet[chosen], half[chosen], seats.joints[chosen], rng)
 
@@ -127,10 +127,9 @@ def _around(seats: Seats, rng: np.random.Generator) -> Floats:
     return np.asarray(across)
 
 
-def _outward(points: Floats, envelope: Envelope) -> Floats:
-    """Return level unit vectors (n, 3) away from the middles of the crown's sections."""
-    middles = envelope.middles(points)
-    return unit((points - middles) * np.array([1.0, 0.0, 1.0]), UP)
+def _outward(points: Floats, volume: CrownVolume) -> Floats:
+    """Give level unit vectors (n, 3) away from the middles of the crown's sections."""
+    return unit((points - volume.axis(points[:, 1])) * np.array([1.0, 0.0, 1.0]), UP)
 
 
 def _chosen(points: Floats, likelihood: Floats, apart: Floats, count: int, rng: np.random.Generator) -> Indices:

@@ -1,11 +1,15 @@
 """Further cards where the foliage is still seen through."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 
+from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.arrangement import Seats, pose_over, seats_along
-from treestroke.core.leaf.crown import SIDES, Crown
 from treestroke.core.leaf.grid import FoliageGrid
+from treestroke.core.leaf.leaf_crown import SIDES, LeafCrown
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
@@ -14,65 +18,86 @@ SIZES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.4, 0.3)
 """Sizes of the cards, round by round, the large ones first."""
 TARGET = 0.985
 """Share of the foliage's cells at which covering stops."""
-BEARERS = 8000
+SEATS = 8000
 """Places on all branches, thick ones too, that such cards may hang from."""
 NEAR, REACH = 0.045, 0.08
-"""How far such a card usually and at most stands off its branch in the photo, as shares of the tree's height."""
+"""How far such a card usually and at most stands off its branch in the picture, as shares of the tree's height."""
 FAR_SHARE = 0.02
 """Share of the cards that may stand further off than NEAR: an end of the crown that growth did not reach."""
 THICKNESS = 0.012
 """Standard deviation of such cards' depth about that of their branch, as a share of the tree's height."""
 
 
-def cover_gaps(
-    leaves: Leaves, skeleton: Skeleton, crown: Crown, share: float, most: int, rng: np.random.Generator
-) -> list[Leaves]:
-    """Set cards over what the leaves leave open, in smaller and smaller sizes, at most so many.
+@dataclass(frozen=True)
+class GapParams:
+    """How far gaps are covered.
 
-    Ends when ``share`` of what can be covered is. Places too far from any branch stay open.
+    Attributes
+    ----------
+    share
+        Share, 0 to 1, of what can be covered that is covered.
+    most
+        Most cards that are added.
     """
-    seats = seats_along(skeleton, np.ones(len(skeleton), dtype=np.bool_), BEARERS, rng)
+
+    share: float
+    most: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Gaps:
+    """What covers the gaps of one view: the view's grid, the seats, and how many cards may stand far from theirs."""
+
+    grid: FoliageGrid
+    crown: LeafCrown
+    seats: Seats
+    far: int
+
+
+def cover_gaps(
+    leaves: Leaves, skeleton: Skeleton, crown: LeafCrown, params: GapParams, rng: np.random.Generator
+) -> list[Leaves]:
+    """Set cards over what the leaves leave open in each view, in smaller and smaller sizes.
+
+    Places too far from any branch stay open.
+    """
+    seats = seats_along(skeleton, np.ones(len(skeleton), dtype=np.bool_), SEATS, rng)
     if len(seats) == 0:
         return []
-    nearest, inside = _nearest_seats(seats, crown.grid), crown.grid.inside.ravel()
-    covered, patches = np.zeros(inside.size, dtype=np.bool_), [leaves]
-    far = int(FAR_SHARE * len(leaves) / len(SIZES))
-    for scale in SIZES:
-        crown.hide(covered, patches[-1])
-        gaps = np.flatnonzero(inside & ~covered)
-        left, surplus = most - sum(map(len, patches[1:])), len(gaps) - (1 - TARGET * share) * inside.sum()
-        if surplus <= 0 or left <= 0:
-            break
-        chosen = rng.choice(gaps, min(_count(surplus, scale, crown), left, len(gaps)), replace=False)
-        centres, index = _centres(chosen, nearest[chosen], seats, crown, far, rng)
-        patches.append(_patch(centres, seats.at(index), scale, crown, rng))
+    far, patches = int(FAR_SHARE * len(leaves) / len(SIZES)), [leaves]
+    for grid in crown.grids:
+        patches += _cover_view(patches, _Gaps(grid, crown, seats, far), params, rng)
     return patches[1:]
 
 
-def _count(cells: float, scale: float, crown: Crown) -> int:
+def _cover_view(patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator) -> list[Leaves]:
+    """Set cards over what all ``patches`` leave open in one view; the first of them does not count as added."""
+    grid, crown, inside = gaps.grid, gaps.crown, gaps.grid.inside.ravel()
+    nearest, covered, added = _nearest_seats(gaps.seats, grid), np.zeros(inside.size, dtype=np.bool_), list[Leaves]()
+    for patch in patches[:-1]:
+        crown.hide(covered, patch, grid)
+    for scale in SIZES:
+        crown.hide(covered, (added or patches)[-1], grid)
+        open_cells = np.flatnonzero(inside & ~covered)
+        left = params.most - sum(map(len, [*patches[1:], *added]))
+        surplus = len(open_cells) - (1 - TARGET * params.share) * inside.sum()
+        if surplus <= 0 or left <= 0:
+            break
+        count = min(_count(surplus, scale, gaps), left, len(open_cells))
+        chosen = rng.choice(open_cells, count, replace=False)
+        added.append(_patch(chosen, gaps.seats.at(nearest[chosen]), scale, gaps, rng))
+    return added
+
+
+def _count(cells: float, scale: float, gaps: _Gaps) -> int:
     """How many cards of a size could cover so many cells, half of them in vain."""
-    card_cells = 0.3 * (scale * crown.side * sum(SIDES) / 2 / crown.grid.cell_m) ** 2
+    card_cells = 0.3 * (scale * gaps.crown.side * sum(SIDES) / 2 / gaps.grid.cell_m) ** 2
     return int(np.ceil(1.5 * cells / max(card_cells, 1.0)))
 
 
-def _centres(
-    gaps: Indices, nearest: Indices, seats: Seats, crown: Crown, far: int, rng: np.random.Generator
-) -> tuple[Floats, Indices]:
-    """Place centres (n, 3) over gaps (m,), about as deep as the seat ``nearest`` (m,) in the photo, and tell that seat.
-
-    Gaps out of reach are left out, and so are all but ``far`` of those that are not near.
-    """
-    x, y = crown.grid.x_y_of(gaps, rng.random((len(gaps), 2)))
-    distance = np.hypot(x - seats.points[nearest, 0], y - seats.points[nearest, 1])
-    beyond = distance > NEAR * crown.height
-    kept = (distance <= REACH * crown.height) & (~beyond | (np.cumsum(beyond) <= far))
-    z = seats.points[nearest[kept], 2] + rng.normal(0, THICKNESS * crown.height, np.count_nonzero(kept))
-    return np.stack([x[kept], y[kept], z], axis=1), nearest[kept]
-
-
 def _nearest_seats(seats: Seats, grid: FoliageGrid) -> Indices:
-    """Find the seat nearest in the photo to each cell, flat, to within a cell."""
-    cells = grid.flat_cells(seats.points[:, 0], seats.points[:, 1])
+    """Find the seat nearest in the picture to each cell, flat, to within a cell."""
+    cells = grid.cells_of(seats.points)
     free = np.ones(grid.inside.size, dtype=np.uint8)
     free[cells] = 0
     _, labels = cv2.distanceTransformWithLabels(
@@ -83,7 +108,32 @@ def _nearest_seats(seats: Seats, grid: FoliageGrid) -> Indices:
     return np.asarray(seat_of[labels.ravel()])
 
 
-def _patch(centres: Floats, seats: Seats, scale: float, crown: Crown, rng: np.random.Generator) -> Leaves:
-    """Set cards of one size at centres (n, 3), each borne by its seat; those that do not fit are left out."""
-    poses = pose_over(seats, centres, scale * crown.half_sizes(len(seats), rng), crown.middle, rng)
-    return crown.dressed(poses, seats, rng)[0]
+def _patch(cells: Indices, seats: Seats, scale: float, gaps: _Gaps, rng: np.random.Generator) -> Leaves:
+    """Set cards of one size over cells (m,), each borne by its seat; those that do not fit are left out."""
+    crown = gaps.crown
+    centres, kept = _centres(cells, seats, gaps, rng)
+    seats, half_sizes = seats.at(kept), scale * crown.half_sizes(len(centres), rng)
+    outward = _seen_from(gaps.grid, centres, unit(centres - crown.middle, UP))
+    return crown.dressed(pose_over(seats, centres, half_sizes, outward, rng), seats, rng)[0]
+
+
+def _centres(cells: Indices, seats: Seats, gaps: _Gaps, rng: np.random.Generator) -> tuple[Floats, Indices]:
+    """Place centres (n, 3), metres, over cells (m,), about as deep in the view as their seats (m,): centres, and which.
+
+    Cells out of reach are left out, and so are all but ``far`` of those that are not near.
+    """
+    camera, height = gaps.grid.camera, gaps.crown.height
+    points_px, depth = gaps.grid.pixels_of(cells, rng.random((len(cells), 2))), camera.depth(seats.points)
+    way = camera.world_from_pixels(points_px, depth) - seats.points
+    distance = np.sqrt((way**2).sum(axis=1))
+    beyond = distance > NEAR * height
+    kept = np.flatnonzero((distance <= REACH * height) & (~beyond | (np.cumsum(beyond) <= gaps.far)))
+    depth = depth[kept] - rng.normal(0, THICKNESS * height, len(kept))
+    return camera.world_from_pixels(points_px[kept], depth), kept
+
+
+def _seen_from(grid: FoliageGrid, centres: Floats, outward: Floats) -> Floats:
+    """Turn directions (n, 3) out of the crown toward or away from the viewer of a view, as they point already."""
+    toward = grid.camera.toward_viewer(centres)
+    away = (outward * toward).sum(axis=1, keepdims=True) < 0
+    return np.asarray(outward + np.where(away, -1.0, 1.0) * toward)

@@ -1,4 +1,4 @@
-"""The foliage as the photo shows it, on a coarse grid: where it is and what colour it has."""
+"""The foliage as one view shows it, on a coarse grid: where it is and what colour it has."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -7,9 +7,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.paint.palette import flattened, lab_from_rgb
-from treestroke.core.types import Floats, Indices, Mask, Picture
+from treestroke.core.types import Floats, Indices, Mask
 
 CELLS_ACROSS = 500
 """Cells over the foliage's width: a spray is about 10 cells wide, a leaf 2 to 3."""
@@ -23,21 +24,23 @@ LOCAL_CELLS, BROAD_CELLS = 0.6, 5.0
 
 @dataclass(frozen=True, eq=False)
 class FoliageGrid:
-    """Square cells over the foliage's box.
+    """Square cells over the foliage's box in a picture.
 
     Attributes
     ----------
     camera
-        The photo's camera.
+        The picture's camera.
     step_px
         Side of a cell, px.
     corner_px
         (x, y) of the grid's top-left corner, px.
+    cell_m
+        Side of a cell at the crown's middle, metres.
     inside
         (rows, columns) whether most of the cell is foliage.
-    front
-        (rows, columns) world Z, metres, behind which leaves may lie: infinite in the foliage, that of the wood where
-        wood is seen, minus infinite elsewhere.
+    leaves_from
+        (rows, columns) depth, metres, from which on leaves may lie: minus infinity in the foliage, that of the wood
+        where wood is seen, infinity elsewhere.
     labs, broad_labs
         (rows * columns, 3) mean of the foliage's colour over a leaf and over a spray, CIE Lab, light flattened as
         the atlas's; outside the foliage the colour of the nearest part of it.
@@ -46,70 +49,76 @@ class FoliageGrid:
     camera: Camera
     step_px: float
     corner_px: tuple[float, float]
+    cell_m: float
     inside: Mask
-    front: NDArray[np.float32]
+    leaves_from: NDArray[np.float32]
     labs: Floats
     broad_labs: Floats
 
-    @property
-    def cell_m(self) -> float:
-        """Side of a cell, metres."""
-        return self.step_px * self.camera.metres_per_pixel
+    def cells_of(self, points_world: Floats) -> Indices:
+        """Index (n,) into the flattened grid of the cells onto which world points (n, 3), metres, project.
 
-    def columns_rows(self, x_m: Floats, y_m: Floats) -> tuple[Floats, Floats]:
-        """Place world X and Y, metres, in the grid: continuous columns and rows."""
-        root_x, root_y = self.camera.root_px
-        column = (x_m / self.camera.metres_per_pixel + root_x - self.corner_px[0]) / self.step_px
-        row = (root_y - self.corner_px[1] - y_m / self.camera.metres_per_pixel) / self.step_px
-        return column, row
-
-    def flat_cells(self, x_m: Floats, y_m: Floats) -> Indices:
-        """Index into the flattened grid of the cells that hold world X and Y; points outside give its border."""
-        column, row = self.columns_rows(x_m, y_m)
+        Points that project beside the grid get the nearest cell of its border.
+        """
         rows, columns = self.inside.shape
-        column_index = np.clip(column, 0, columns - 1).astype(np.int64)
-        return np.asarray(np.clip(row, 0, rows - 1).astype(np.int64) * columns + column_index)
+        x, y = self.camera.cropped(self.corner_px, (columns, rows)).pixels_from_world(points_world).T
+        column = np.clip(x / self.step_px, 0, columns - 1).astype(np.int64)
+        return np.asarray(np.clip(y / self.step_px, 0, rows - 1).astype(np.int64) * columns + column)
 
-    def x_y_of(self, flat: Indices, within: Floats) -> tuple[Floats, Floats]:
-        """World X and Y of places within cells: flat index (n,) and position in the cell (n, 2), 0 to 1."""
-        row, column = np.divmod(flat, self.inside.shape[1])
-        x_px = self.corner_px[0] + (column + within[:, 0]) * self.step_px
-        y_px = self.corner_px[1] + (row + within[:, 1]) * self.step_px
-        points = self.camera.world_from_pixels(np.stack([x_px, y_px], axis=1))
-        return points[:, 0], points[:, 1]
+    def pixels_of(self, cells: Indices, within: Floats) -> Floats:
+        """Return picture points (n, 2), px, in cells of flat index (n,), at positions (n, 2), shares of a cell."""
+        row, column = np.divmod(cells, self.inside.shape[1])
+        return np.array(self.corner_px) + (np.stack([column, row], axis=1) + within) * self.step_px
+
+    def deeper(self, cells: Indices, depth_m: Floats) -> Mask:
+        """Tell whether leaves may lie at depths (...), metres, in cells of flat index (...): flags (...)."""
+        return np.asarray(self.leaves_from.ravel()[cells] < depth_m)
 
 
-def foliage_grid(photo: Picture, front: NDArray[np.float32], camera: Camera) -> FoliageGrid:
-    """Lay a grid over the foliage and average the photo (h, w, 3) in its cells.
+def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
+    """Lay a grid over a view's foliage and average the picture's colours in its cells.
 
-    ``front`` (h, w) is infinite in the foliage, the wood's world Z where the photo shows wood, else minus infinite.
+    ``crown_middle`` (3,), world, metres, is where the side of a cell is measured.
 
     Raises
     ------
     ValueError
-        There is no foliage, or the map is not of the photo's size.
+        The view shows no foliage.
     """
-    mask = np.isposinf(front)
-    if mask.shape != photo.shape[:2] or not mask.any():
-        raise ValueError(f"a foliage grid needs a mask with foliage of the photo's size, got {mask.shape}")
+    mask = view.foliage
+    if not mask.any():
+        raise ValueError("a foliage grid needs a view that shows foliage")
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     top, bottom, left, right = int(rows[0]), int(rows[-1]) + 1, int(columns[0]), int(columns[-1]) + 1
     step = max(MIN_STEP_PX, (right - left) / CELLS_ACROSS)
     step = step if step >= 1 else 1 / round(1 / step)  # finer cells than pixels share the pixels' borders
     shrink = cv2.INTER_AREA if step >= 1 else cv2.INTER_NEAREST
     size = (max(1, round((right - left) / step)), max(1, round((bottom - top) / step)))
-    part = mask[top:bottom, left:right].astype(np.uint8)
-    foliage = cv2.bitwise_and(photo[top:bottom, left:right], photo[top:bottom, left:right], mask=part)
+    box = (slice(top, bottom), slice(left, right))
+    part = mask[box].astype(np.uint8)
+    foliage = cv2.bitwise_and(view.picture[box], view.picture[box], mask=part)
     share = _padded(cv2.resize(part * np.uint8(255), size, interpolation=shrink) / np.float32(255))
     total = _padded(cv2.resize(foliage, size, interpolation=shrink).reshape(*size[::-1], 3))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
     fine, broad = (_mean_labs(total, share, sigma, inside) for sigma in (LOCAL_CELLS, BROAD_CELLS))
-    near = cv2.resize(front[top:bottom, left:right].astype(np.float32), size, interpolation=cv2.INTER_NEAREST)
-    near = np.pad(near, PADDING, constant_values=-np.inf)
-    behind = np.where(inside, np.inf, np.where(np.isfinite(near), near, -np.inf)).astype(np.float32)
     nearest = _nearest_inside(inside)
-    corner = (left - PADDING * step, top - PADDING * step)
-    return FoliageGrid(camera, step, corner, inside, behind, fine[nearest], broad[nearest])
+    return FoliageGrid(
+        camera=view.camera,
+        step_px=step,
+        corner_px=(left - PADDING * step, top - PADDING * step),
+        cell_m=step * float(view.camera.pixel_size(crown_middle[None])[0]),
+        inside=inside,
+        leaves_from=_depths(view.leaves_from[box], inside, size),
+        labs=fine[nearest],
+        broad_labs=broad[nearest],
+    )
+
+
+def _depths(leaves_from: NDArray[np.float32], inside: Mask, size: tuple[int, int]) -> NDArray[np.float32]:
+    """Depth (rows, columns), metres, from which on leaves may lie; ``size`` is the grid's without its border."""
+    near = cv2.resize(leaves_from, size, interpolation=cv2.INTER_NEAREST)
+    near = np.pad(near, PADDING, constant_values=np.inf)
+    return np.where(inside, -np.inf, np.where(np.isfinite(near), near, np.inf)).astype(np.float32)
 
 
 def _padded(image: NDArray[Any]) -> NDArray[np.float32]:

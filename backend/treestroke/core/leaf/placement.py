@@ -9,9 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.geometry.envelope import Envelope
 from treestroke.core.leaf.arrangement import (
     Poses,
     Seats,
@@ -20,12 +18,10 @@ from treestroke.core.leaf.arrangement import (
     pose_on_branches,
     seats_along,
 )
-from treestroke.core.leaf.crown import Crown, crown_of
-from treestroke.core.leaf.gaps import cover_gaps
-from treestroke.core.leaf.grid import foliage_grid
-from treestroke.core.leaf.leaf_density import bearing
+from treestroke.core.leaf.gaps import GapParams, cover_gaps
+from treestroke.core.leaf.leaf_crown import LeafCrown
+from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
-from treestroke.core.paint.atlas import Atlas
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, FoliageKind, Indices
@@ -38,8 +34,6 @@ SHRINKING = (1.0, 0.8, 0.6, 0.45)
 """Sizes at which a card that would leave the foliage is tried again, each time turned anew."""
 BUD = 0.1
 """Size of a bud, against a card's."""
-LEAST_SIZE = 0.3
-"""Least factor on a card's side."""
 
 
 @dataclass(frozen=True)
@@ -48,8 +42,6 @@ class LeafParams:
 
     Attributes
     ----------
-    size
-        Factor on the side of a card (1.5 to 3 % of the crown's width), 0.3 to 3.
     density
         Factor on the number of cards, 0 to 3; 0 bears none, under 1 leaves part of the foliage uncovered.
     max_cards
@@ -58,14 +50,11 @@ class LeafParams:
         What the twigs bear; ``bare`` bears nothing.
     """
 
-    size: float = 1.0
     density: float = 1.0
     max_cards: int = 25_000
     kind: FoliageKind = "leaves"
 
     def __post_init__(self) -> None:
-        if not LEAST_SIZE <= self.size <= 3:
-            raise ValueError(f"size must be 0.3 to 3, got {self.size}")
         if not 0 <= self.density <= 3:
             raise ValueError(f"density must be 0 to 3, got {self.density}")
         if self.max_cards < 0 or self.kind not in ("leaves", "needles", "bare"):
@@ -74,38 +63,33 @@ class LeafParams:
 
 def place_leaves(
     skeleton: Skeleton,
-    front: NDArray[np.float32],
-    envelope: Envelope,
-    photo: NDArray[np.uint8],
-    atlas: Atlas,
+    crown: LeafCrown,
     params: LeafParams,
     rng: np.random.Generator,
     report: Report = silent,
 ) -> Leaves:
-    """Hang cards on a grown tree.
+    """Hang cards on a grown tree (metres) in its crown.
 
-    The skeleton is in metres, envelope the crown's solid; front (h, w) is infinite in the foliage of the photo
-    (h, w, 3), the wood's world Z where wood is seen, else minus infinite. Every card's centre projects into the
-    foliage, or onto wood that it lies behind, and its leaves at most by a few per cent outside; nearly all cards stand
-    nearer to a branch than 4.5 % of the tree's height. Each twig's end bears a card, or a bud (a tiny card) where that
-    would lie outside, or density under 1 leaves none. A bare tree, density 0 or no foliage gives none.
+    In every view that sees it, a card's centre projects into the foliage, or onto wood that it lies behind, and its
+    leaves at most by a few per cent outside; nearly all cards stand nearer to a branch than 4.5 % of the tree's height.
+    Each twig's end bears a card, or a bud (a tiny card) where that would lie outside, or density under 1 leaves none. A
+    bare tree or density 0 bears nothing. ``report("leaf", fraction)`` is called.
     """
-    if params.kind == "bare" or params.density == 0 or params.max_cards == 0 or not np.isposinf(front).any():
+    if params.kind == "bare" or params.density == 0 or params.max_cards == 0:
         return no_leaves()
-    grid = foliage_grid(photo, front, envelope.camera)
-    crown = crown_of(grid, envelope, atlas, params.size, rng)
-    wanted = params.density * LAYERS * grid.inside.sum() * grid.cell_m**2 / crown.card_area
+    wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    weights = bearing(skeleton, grid, envelope, crown.height, even=params.kind == "needles")
+    weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind == "needles")
     along = _on_branches(seats_along(skeleton, weights, count, rng), crown, rng)
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)
-    patches = cover_gaps(leaves, skeleton, crown, min(1.0, params.density), params.max_cards - len(along), rng)
+    gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
+    patches = cover_gaps(leaves, skeleton, crown, gaps, rng)
     report("leaf", 1.0)
     return join_leaves([leaves, *patches])
 
 
-def _at_tips(seats: Seats, density: float, crown: Crown, rng: np.random.Generator) -> Leaves:
+def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
     """End each twig in a card, in a share of them by the density; where it would leave the foliage, in a bud."""
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
@@ -119,7 +103,7 @@ def _at_tips(seats: Seats, density: float, crown: Crown, rng: np.random.Generato
     return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
 
 
-def _on_branches(seats: Seats, crown: Crown, rng: np.random.Generator) -> Leaves:
+def _on_branches(seats: Seats, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
     """Hang a card on each seat, unless it would leave the foliage."""
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
@@ -129,7 +113,7 @@ def _on_branches(seats: Seats, crown: Crown, rng: np.random.Generator) -> Leaves
 
 
 def _fitted(
-    seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: Crown, rng: np.random.Generator
+    seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: LeafCrown, rng: np.random.Generator
 ) -> tuple[Leaves, Indices]:
     """Set a card on each seat; those that would leave the foliage are turned and shrunk a few times, then left."""
     found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
@@ -42,10 +43,18 @@ class LiftParams:
             raise ValueError(f"lifting needs a slope >= 0, a slope to try and a share of the depth, got {self}")
 
 
+@dataclass(frozen=True, eq=False)
+class SeenCrown:
+    """A crown volume and the front camera in whose picture the tree was traced."""
+
+    volume: CrownVolume
+    camera: OrthographicCamera
+
+
 def lift(
     skeleton: Skeleton,
     stroke: Indices,
-    envelope: Envelope,
+    crown: SeenCrown,
     rng: np.random.Generator,
     params: LiftParams = LiftParams(),
 ) -> Skeleton:
@@ -56,10 +65,8 @@ def lift(
     its joints furthest from all limbs before it, heaviest limbs first among siblings; ``rng`` decides to which side
     when both are equal.
     """
-    camera = envelope.camera
-    flat = Skeleton(
-        camera.world_from_pixels(skeleton.points), skeleton.radii * camera.metres_per_pixel, skeleton.parents
-    )
+    points, radii = crown.camera.world_from_pixels(skeleton.points), crown.camera.metres_from_pixels(skeleton.radii)
+    flat = Skeleton(points, radii, skeleton.parents)
     weights = accumulate_to_root(flat, edge_lengths(flat))
     same = stroke == stroke[np.maximum(flat.parents, 0)]
     chains = limbs(flat, heaviest_children(flat, np.where(same, weights + weights.max(), weights)))
@@ -67,7 +74,7 @@ def lift(
     placed = [flat.points[chains[0]]]
     for chain in _by_order(chains[1:], weights):
         first = int(flat.parents[chain[0]] >= 0 or len(chain) > 1)
-        options = _options(flat.points[chain], float(depth[chain[0]]), envelope, params)
+        options = _options(flat.points[chain], float(depth[chain[0]]), crown.volume, params)
         best = options[_furthest(options, placed, rng)]
         depth[chain[first:]] = best[first:, 2]
         placed.append(best)
@@ -85,12 +92,12 @@ def _by_order(chains: list[Indices], weights: Floats) -> list[Indices]:
     return [chains[n] for n in order]
 
 
-def _options(points: Floats, start: float, envelope: Envelope, params: LiftParams) -> Floats:
+def _options(points: Floats, start: float, volume: CrownVolume, params: LiftParams) -> Floats:
     """Give the limb's joints (slopes, n, 3) at each slope, bounded by the envelope."""
     steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     slopes = np.linspace(-params.steepest, params.steepest, params.slopes) * _leaning(points)
-    most = _bounds(points, abs(start), steps, envelope, params)
+    most = _bounds(points, abs(start), steps, volume, params)
     eased = along**2 / (along + 0.25 * along[-1] + 1e-9)
     depth = np.clip(start + slopes[:, None] * eased, -most, most)
     lifted = np.broadcast_to(points, (len(slopes), *points.shape)).copy()
@@ -98,14 +105,13 @@ def _options(points: Floats, start: float, envelope: Envelope, params: LiftParam
     return lifted
 
 
-def _bounds(points: Floats, start: float, steps: Floats, envelope: Envelope, params: LiftParams) -> Floats:
+def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, params: LiftParams) -> Floats:
     """Bound the depth of a limb's joints (n,), metres, by the envelope, under the crown by its slope alone.
 
     The bound itself is no steeper than a limb may be: else a limb that enters the crown would jump aside.
     """
-    row = np.floor(envelope.camera.pixels_from_world(points)[:, 1]).astype(np.int64)
-    open_air = envelope.radius_px[np.clip(row, 0, len(envelope.radius_px) - 1)] <= 0
-    most = np.where(open_air, np.inf, np.maximum(params.inside * envelope.half_depth(points), start))
+    open_air = volume.half_width(points[:, 1]) <= 0
+    most = np.where(open_air, np.inf, np.maximum(params.inside * volume.half_depth(points), start))
     for i in range(len(steps) - 1, -1, -1):
         most[i] = min(most[i], most[i + 1] + params.steepest * steps[i])
     most[0] = max(most[0], start)

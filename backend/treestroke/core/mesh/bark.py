@@ -6,10 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.appearance import StemPixels
 from treestroke.core.geometry.polyline import smoothed
 from treestroke.core.imaging.quilting import QuiltParams, quilt
 from treestroke.core.mesh.bark_pattern import BarkForm, bark_pattern
-from treestroke.core.types import Floats
+from treestroke.core.types import Floats, Picture
 
 TEXTURE_SIZE = (512, 256)
 """Rows, columns; the width covers a third of the trunk's circumference."""
@@ -52,9 +53,8 @@ class BarkParams:
 
 
 def bark_texture(
-    photo: NDArray[np.uint8],
-    trunk_px: Floats,
-    radii_px: Floats,
+    picture: Picture,
+    stem: StemPixels,
     params: BarkParams,
     rng: np.random.Generator,
     grain: Floats | None = None,
@@ -68,16 +68,16 @@ def bark_texture(
 
     Parameters
     ----------
-    photo
+    picture
         (h, w, 3) sRGB.
-    trunk_px, radii_px
-        (n, 2) the visible trunk's axis from the root up, photo points, and (n,) its radius there, px; n >= 2.
+    stem
+        The trunk's visible axis and radius in it, px.
     grain
         (512, 256) the procedural pattern, as `bark_pattern` draws it; None draws one of ``params.form``.
     """
     own = bark_pattern(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
     grain = _STRENGTH.get(params.form, 1.0) * own[..., None]
-    found = _unrolled(photo, trunk_px, radii_px, params)
+    found = _unrolled(picture, stem, params)
     hidden = _linear(np.array(params.hidden_colour, dtype=np.float64))
     if found is None:
         return _painted(_PATTERN * grain, hidden)
@@ -95,10 +95,9 @@ def bark_texture(
     return _painted(_evened(quilted) + added * _PATTERN * grain, _mean_colour(strip, clean))
 
 
-def _unrolled(
-    photo: NDArray[np.uint8], trunk_px: Floats, radii_px: Floats, params: BarkParams
-) -> tuple[Floats, float] | None:
+def _unrolled(picture: Picture, stem: StemPixels, params: BarkParams) -> tuple[Floats, float] | None:
     """Unroll the trunk's front to a strip (h, w, 3) of linear light, top first, and say how much it was enlarged."""
+    trunk_px, radii_px = stem.points_px, stem.radii_px
     step = np.linalg.norm(np.diff(trunk_px, axis=0), axis=1)
     arc = np.concatenate([[0.0], np.cumsum(step)])
     shown = radii_px >= params.smallest_radius_px
@@ -117,7 +116,7 @@ def _unrolled(
     place = here[:, None, :] + aside[None, :, None] * (reach[:, None] * right)[:, None, :]
     # photo points name pixel corners, OpenCV pixel centres
     x, y = (place - 0.5).astype(np.float32).transpose(2, 0, 1)
-    strip = cv2.remap(photo, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    strip = cv2.remap(picture, x, y, cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
     kept = reach >= params.smallest_radius_px
     if not kept.any():
         return None

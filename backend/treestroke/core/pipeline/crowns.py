@@ -4,6 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Mask
 
@@ -15,6 +16,11 @@ CLUMP, FRAY = 0.045, 0.05
 """Size of its clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
 GAP = 1.9
 """Deviations of clumps' density below their mean at which sky is seen through."""
+
+
+def seen_from_front(tree: Skeleton, camera: OrthographicCamera) -> Skeleton:
+    """Project a 3D skeleton, metres, to its 2D skeleton in a picture, px."""
+    return Skeleton(camera.pixels_from_world(tree.points), camera.pixels_from_metres(tree.radii), tree.parents)
 
 
 def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:

@@ -5,12 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.appearance import View
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.geometry.views import CrownViews, View
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
+from treestroke.core.leaf.leaf_crown import LEAST_SIZE, leaf_crown
 from treestroke.core.leaf.leaves import Leaves, no_leaves
-from treestroke.core.leaf.placement import LEAST_SIZE, LeafParams, place_leaves
+from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
 from treestroke.core.mesh.bark_pattern import bark_pattern
 from treestroke.core.mesh.normal_map import NormalMapParams, bark_normal_map
@@ -23,6 +25,7 @@ from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import Report, silent
+from treestroke.core.types import Mask, Picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +45,8 @@ class OwnPictures:
 
 
 NO_PICTURES = OwnPictures()
+OWN_COLOUR_SHARE = 0.1
+"""Of the foliage's pixels: if more are leaves by their own colour, colours are taken from those alone."""
 
 
 def leaf_surface(
@@ -74,31 +79,41 @@ def _leaves(
     report: Report,
 ) -> tuple[Leaves, Atlas | None]:
     """Hang leaves; a tree that bears none has no atlas of them."""
-    portrait = tree.portrait
-    leafy = np.isposinf(portrait.front)
-    if tree.kind == "bare" or settings.leaf_density == 0 or not leafy.any():
+    leafy = tuple(view for view in tree.appearance.views if view.foliage.any())
+    if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None
-    pure = portrait.leaves & leafy
-    coloured = pure if pure.sum() > 0.1 * leafy.sum() else leafy
     species = SPECIES.get(settings.species, AUTO)
-    style = LeafStyle(species, settings.season, portrait.shows_leaves, picture)
-    atlas = leaf_atlas(portrait.photo, coloured, tree.kind, rng, style)
+    look = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture)
+    atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, look)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind == "needles")
-    least = max(LEAST_SIZE, size * settings.leaf_size)
-    params = LeafParams(least, density * settings.leaf_density, kind=tree.kind)
-    what = tree.grown.skeleton, portrait.front, tree.envelope, portrait.photo
-    return place_leaves(*what, atlas, params, rng, report), atlas
+    crown = leaf_crown(leafy, tree.volume, atlas, max(LEAST_SIZE, size * settings.leaf_size), rng)
+    params = LeafParams(density * settings.leaf_density, kind=tree.kind)
+    return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas
+
+
+def _coloured(views: tuple[View, ...]) -> tuple[Picture, Mask]:
+    """Lay the views' pictures side by side, and mark the pixels that have the leaves' colours."""
+    height = max(view.camera.height for view in views)
+    pictures, masks = [], []
+    for view in views:
+        pure = view.leaf_coloured & view.foliage
+        below = ((0, height - view.camera.height), (0, 0))
+        pictures.append(np.pad(view.picture, (*below, (0, 0))))
+        masks.append(np.pad(pure if pure.sum() > OWN_COLOUR_SHARE * view.foliage.sum() else view.foliage, below))
+    return np.hstack(pictures), np.hstack(masks)
 
 
 def _with_fruit(
     tree: GrownTree, leaves: Leaves, atlas: Atlas | None, picture: NDArray[np.uint8], rng: np.random.Generator
 ) -> tuple[Leaves, Atlas]:
-    """Hang fruit too, by numbers of its own: leaves and wood are those of the tree without fruit."""
-    own, envelope = rng.spawn(1)[0], tree.envelope
-    crown = closed(tree.likeness | np.isposinf(tree.portrait.front), CLOSED_SHARE["bare"])
-    views = CrownViews(View(crown, envelope.camera))
-    fruit = hang_fruit(tree.grown.skeleton, envelope, views, picture, FruitParams(), own)
+    """Hang fruit too, by random numbers of its own: leaves and wood are those of the tree without fruit."""
+    crowns = [
+        Silhouette(closed(view.tree | view.foliage, CLOSED_SHARE["bare"]), view.camera)
+        for view in tree.appearance.views
+    ]
+    params = FruitParams(aspect=picture.shape[0] / picture.shape[1])
+    fruit = hang_fruit(tree.grown.skeleton, tree.volume, crowns, params, rng.spawn(1)[0])
     return with_fruit(leaves, atlas if len(leaves) else None, fruit, picture)
 
 
@@ -106,10 +121,10 @@ def bark_surface(
     tree: GrownTree, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> Surface:
     """Wrap the grown tree in bark that is read off the first stem's visible pixels."""
-    wrapping, portrait = tubes(tree.grown.skeleton), tree.portrait
+    wrapping, view = tubes(tree.grown.skeleton), tree.appearance.bark_view
     report("mesh", 0.6)
     bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
     grain = bark_pattern(TEXTURE_SIZE, rng, bark.form)
     params = BarkParams(hidden_colour=bark.colour, form=bark.form if known else None)
-    texture = bark_texture(portrait.photo, portrait.stem, portrait.stem_radii, params, rng, grain)
+    texture = bark_texture(view.picture, view.stem, params, rng, grain)
     return Surface(wrapping, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))

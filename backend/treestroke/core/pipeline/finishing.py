@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.grow.grown import Grown
 from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area
@@ -31,8 +30,6 @@ class TreeModel:
         That of the picture at its own size.
     grown
         The skeleton, and how it grew.
-    envelope
-        The crown's solid.
     bark, leaf
         What is seen of it; no leaf where it bears none.
     cards, atlas
@@ -41,9 +38,8 @@ class TreeModel:
         (h, w), at the working size, what the front view should cover: foliage and branches that were seen.
     """
 
-    camera: Camera
+    camera: OrthographicCamera
     grown: Grown
-    envelope: Envelope
     bark: Surface
     leaf: Surface | None
     cards: Leaves | None
@@ -90,7 +86,6 @@ def finish(
     return TreeModel(
         camera=tree.camera,
         grown=tree.grown,
-        envelope=tree.envelope,
         bark=bark,
         leaf=leaf,
         cards=sprays,
@@ -112,9 +107,7 @@ def _measures(tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Me
         leaves = leaves.select(~fruit_among(leaves, atlas))
     crown = leaves.centres if leaves is not None and len(leaves) else None
     area = 0.0 if leaves is None or atlas is None else leaf_area(leaves, atlas)
-    stature = tree.stature
-    what = tree.grown.skeleton, stature.height, stature.trunk_seen, crown, area, stature.crown, stature.scale
-    return measure_tree(*what)
+    return measure_tree(tree.grown.skeleton, tree.stature, crown, area)
 
 
 def _branch_count(tree: Skeleton) -> int:

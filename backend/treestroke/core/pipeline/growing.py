@@ -1,25 +1,34 @@
 """The photo's first half of the recipe, which the live tree and the model share: to a grown tree."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.grow.grown import Grown
-from treestroke.core.grow.library import Subtree, choose_library
-from treestroke.core.grow.params import GrowthParams, growth_for
-from treestroke.core.grow.replacement import grow
+from treestroke.core.appearance import Appearance, StemPixels, View
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
+from treestroke.core.geometry.outline_volume import turned_outline
+from treestroke.core.grow.library import choose_library
+from treestroke.core.grow.params import growth_for
+from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
-from treestroke.core.lift.spread import lift
+from treestroke.core.lift.spread import SeenCrown, lift
 from treestroke.core.paint.seasons import LEAFY
 from treestroke.core.paint.species import AUTO, SPECIES
-from treestroke.core.pipeline.crowns import CLOSED_SHARE, LEAFED_SHARE, closed, drawn, drawn_depth, frayed
-from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Reading, Stature
+from treestroke.core.pipeline.crowns import (
+    CLOSED_SHARE,
+    LEAFED_SHARE,
+    closed,
+    drawn,
+    drawn_depth,
+    frayed,
+    seen_from_front,
+)
+from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sides import Side, crown_height, deepened, draw_side, side_of, with_depth
-from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, look
+from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
+from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.kind import UNSURE, foliage_kind
@@ -29,7 +38,7 @@ from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
-from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale
+from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Stature
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
@@ -54,13 +63,13 @@ _KINDS: dict[str, FoliageKind] = {"leaves": "leaves", "needles": "needles", "bar
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
+class PhotoEvidence:
     """What photo and strokes show, at the working size, and a sketch of the tree's left side where there is one.
 
     Nothing is traced without a branch stroke.
     """
 
-    sight: WorkingCopy
+    working: WorkingCopy
     foliage: Foliage
     traced: Traced | None
     side: Drawing | None = None
@@ -69,7 +78,46 @@ class Seen:
     def warnings(self) -> tuple[StrokeWarning, ...]:
         """What was mended, and what makes the reading doubtful."""
         unclear = () if self.foliage.clear else (UNCLEAR,)
-        return (*self.sight.warnings, *unclear, *(() if self.side is None else self.side.warnings))
+        return (*self.working.warnings, *unclear, *(() if self.side is None else self.side.warnings))
+
+    @property
+    def height_px(self) -> float:
+        """The tree's height, px of the working copy."""
+        return self.working.height_px(self.foliage.mask)
+
+
+@dataclass(frozen=True, eq=False)
+class _PhotoCrown:
+    """The crown that a photo shows.
+
+    Attributes
+    ----------
+    kind
+        What the twigs bear.
+    shows_leaves
+        Whether the photo shows leaves, or the tree has none.
+    wood
+        (h, w) the traced branches.
+    front
+        The foliage with its holes closed.
+    as_seen, volume
+        The crown's volume as wide as the photo shows it, and as growth may fill it.
+    side
+        The tree's left side, where there is a sketch of it.
+    """
+
+    kind: FoliageKind
+    shows_leaves: bool
+    wood: Mask
+    front: Silhouette[OrthographicCamera]
+    as_seen: CrownVolume
+    volume: CrownVolume
+    side: Side | None
+
+    @property
+    def camera(self) -> OrthographicCamera:
+        """That of the working copy."""
+        return self.front.camera
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,13 +142,13 @@ class _Lifted:
     score: dict[str, float]
 
 
-def see(
+def read_photo(
     photo: Picture,
     strokes: Strokes,
     known: Foliage | None = None,
     report: Report = silent,
     side: Sketch | None = None,
-) -> Seen:
+) -> PhotoEvidence:
     """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3), sRGB.
 
     Raises
@@ -110,19 +158,21 @@ def see(
     """
     beside = None if side is None else draw_side(side, "side")
     report("foliage", 0.0)
-    sight = look(photo, strokes)
+    working = working_copy(photo, strokes)
     report("foliage", 0.05)
-    foliage = known or segment_foliage(sight.photo, sight.strokes.crown.points, report=report)
+    foliage = known or segment_foliage(working.photo, working.strokes.crown.points, report=report)
     if not strokes.branches:
-        return Seen(sight, foliage, None, beside)
+        return PhotoEvidence(working, foliage, None, beside)
     report("trace", 0.0)
-    height_px = sight.height_px(foliage.mask)
+    height_px = working.height_px(foliage.mask)
     surroundings = Surroundings(foliage.leaf, foliage.ground, foliage.region)
-    traced = trace_branches(sight.photo, sight.strokes, surroundings, height_px)
-    return Seen(sight, foliage, traced, beside)
+    traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
+    return PhotoEvidence(working, foliage, traced, beside)
 
 
-def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, report: Report = silent) -> GrownTree:
+def grow_tree(
+    evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
+) -> GrownTree:
     """Lift what was traced into the world and let it fill the crown.
 
     Raises
@@ -130,121 +180,127 @@ def grow_tree(seen: Seen, settings: ModelSettings, rng: np.random.Generator, rep
     ValueError
         Nothing was traced.
     """
-    sight, foliage, traced = seen.sight, seen.foliage, seen.traced
+    traced, foliage = evidence.traced, evidence.foliage
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
     report("lift", 0.0)
-    shown = _shown_kind(sight, foliage, settings)
-    kind = borne_kind(shown, settings)
-    wood = drawn(traced.skeleton, foliage.mask.shape)
-    shows_leaves = shown != "bare" or kind == "bare"
-    crown = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
-    camera = sight.camera(foliage.mask, settings.height)
-    envelope = envelope_of_mask(crown, camera)
-    bulged = envelope.widened(BULGE)
-    if seen.side is not None:
-        side = side_of(seen.side, crown_height, sight.height_px(foliage.mask), camera.metres_per_pixel)
-        envelope, bulged = deepened(envelope, side), deepened(bulged, side)
-        lifted = _turned(traced, side, sight.height_px(foliage.mask), camera)
-    else:
-        lifted = _spread(traced, bulged, JOINT_SHARE * sight.height_px(foliage.mask), rng)
+    crown = _crown_of(evidence, traced, settings)
+    lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
-    library = choose_library(settings.library, kind, lifted.tree)
-    grown = _filled(lifted.tree, crown, bulged, library, growth_for(kind, settings.iterations), rng, report)
-    leafy = foliage.mask if shows_leaves else frayed(crown, rng)
-    grown = grown if kind == "bare" else trimmed(grown, leafy | wood, camera)
-    front = _front(foliage, traced, lifted, leafy, shows_leaves)
-    stem = np.flatnonzero(traced.stroke == 0)
-    radii = np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)
+    method = Replacement(
+        choose_library(settings.library, crown.kind, lifted.tree), growth_for(crown.kind, settings.iterations)
+    )
+    grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
+    leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
+    tree = leafy | crown.wood
+    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
-        kind=kind,
+        kind=crown.kind,
         grown=grown,
-        envelope=bulged,
-        camera=sight.unreduced(camera),
-        portrait=Portrait(sight.photo, shows_leaves, foliage.pure, front, traced.skeleton.points[stem], radii),
-        stature=_stature(sight, foliage, camera, traced, stem, envelope),
-        likeness=leafy | wood,
+        volume=crown.volume,
+        appearance=_appearance(evidence, traced, crown, lifted, leafy),
+        camera=evidence.working.unreduced(crown.camera),
+        likeness=tree,
+        stature=_stature(evidence, traced, crown),
         score={"attractors_reached": grown.attractors_reached, **lifted.score},
-        reading=_reading(seen, settings),
-        warnings=seen.warnings,
+        reading=_reading(evidence, settings),
+        warnings=evidence.warnings,
     )
 
 
-def _reading(seen: Seen, settings: ModelSettings) -> Reading:
-    """Tell what was read in the photo, and what makes that doubtful."""
-    told = settings.foliage != "auto" or settings.season in LEAFY
-    sureness = 1.0 if told else seen.foliage.sureness
-    doubts = [warning.code for warning in seen.warnings if warning.code in DOUBTFUL]
-    return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
+def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) -> _PhotoCrown:
+    """Close the foliage to a crown and make a volume of it."""
+    foliage = evidence.foliage
+    shown = _shown_kind(evidence.working, foliage, settings)
+    kind = borne_kind(shown, settings)
+    wood = drawn(traced.skeleton, foliage.mask.shape)
+    shows_leaves = shown != "bare" or kind == "bare"
+    mask = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
+    front = Silhouette(mask, evidence.working.camera(foliage.mask, settings.height))
+    outline = turned_outline(front)
+    bulged = outline.widened(BULGE)
+    if evidence.side is None:
+        return _PhotoCrown(kind, shows_leaves, wood, front, outline, bulged, None)
+    side = side_of(evidence.side, crown_height, evidence.height_px, front.camera)
+    as_seen, volume = outline.with_side(side.crown), bulged.with_side(side.crown)
+    return _PhotoCrown(kind, shows_leaves, wood, front, as_seen, volume, side)
 
 
-def _stature(
-    sight: WorkingCopy, foliage: Foliage, camera: Camera, traced: Traced, stem: Indices, crown: Envelope
-) -> Stature:
-    """Tell the tree's height by the scale that the strokes or the settings set, and whether its trunk is seen."""
-    known, error, metres = sight.strokes.scale, 0.0, camera.metres_per_pixel
-    if known is not None:
-        ends_px = ENDS_PX * max(sight.photo.shape) / WORKING_SIDE
-        error = min(0.9, ends_px / float(np.hypot(*(known.points[1] - known.points[0]))))
-    heights = (traced.skeleton.points[stem[0], 1] - traced.skeleton.points[stem, 1]) * metres
-    seen = bool(traced.measured[stem[np.abs(heights - BREAST_HEIGHT).argmin()]])
-    scale = Scale(metres * sight.scale, known is not None, error)
-    return Stature(sight.height_px(foliage.mask) * metres, scale, seen, crown)
-
-
-def _spread(traced: Traced, envelope: Envelope, step: float, rng: np.random.Generator) -> _Lifted:
-    """Guess the depth of what was traced."""
-    visible, owner = densified(traced.skeleton, step)
-    return _Lifted(lift(visible, traced.stroke[owner], envelope, rng), visible, owner, {})
-
-
-def _turned(traced: Traced, side: Side, height_px: float, camera: Camera) -> _Lifted:
-    """Take the depth of what was traced from the left side."""
-    visible, owner = densified(traced.skeleton, JOINT_SHARE * height_px)
-    stroke, weights = traced.stroke[owner], accumulate_to_root(visible, edge_lengths(visible))
+def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator) -> _Lifted:
+    """Turn what was traced into the world: by the left side, or with a guessed depth."""
+    visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
+    stroke = traced.stroke[owner]
+    if crown.side is None:
+        return _Lifted(lift(visible, stroke, SeenCrown(crown.volume, crown.camera), rng), visible, owner, {})
+    weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
-    deep = with_depth(front, side, height_px, camera)
+    deep = with_depth(front, crown.side, evidence.height_px, crown.camera)
     tree = deep.tree.skeleton
-    seen = Skeleton(camera.pixels_from_world(tree.points), tree.radii / camera.metres_per_pixel, tree.parents)
-    return _Lifted(tree, seen, owner[deep.front], deep.score)
+    return _Lifted(tree, seen_from_front(tree, crown.camera), owner[deep.front], deep.score)
 
 
-def _filled(
-    lifted: Skeleton,
-    crown: Mask,
-    envelope: Envelope,
-    library: tuple[Subtree, ...],
-    params: GrowthParams,
-    rng: np.random.Generator,
-    report: Report,
-) -> Grown:
-    """Let a lifted tree fill its crown; one that is not as deep as wide is filled as if it were."""
-    if envelope.depth is None:
-        return grow(lifted, crown, envelope, library, params, rng, report)
-    rounded = Skeleton(envelope.rounded(lifted.points), lifted.radii, lifted.parents)
-    grown = grow(rounded, crown, replace(envelope, depth=None), library, params, rng, report)
-    tree = grown.skeleton
-    return replace(grown, skeleton=Skeleton(envelope.unrounded(tree.points), tree.radii, tree.parents))
+def _appearance(
+    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, lifted: _Lifted, leafy: Mask
+) -> Appearance:
+    """Gather what the photo shows; ``leafy`` (h, w) is where the tree is to have leaves."""
+    stem = np.flatnonzero(traced.stroke == 0)
+    view = View(
+        camera=crown.camera,
+        picture=evidence.working.photo,
+        leaves_from=_leaves_from(evidence.foliage, traced, crown, lifted, leafy),
+        leaf_coloured=evidence.foliage.pure,
+        tree=leafy | crown.wood,
+        stem=StemPixels(
+            traced.skeleton.points[stem], np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)
+        ),
+    )
+    return Appearance((view,), crown.shows_leaves)
 
 
-def _front(foliage: Foliage, traced: Traced, lifted: _Lifted, leafy: Mask, shows_leaves: bool) -> NDArray[np.float32]:
-    """World Z (h, w), metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
+def _leaves_from(
+    foliage: Foliage, traced: Traced, crown: _PhotoCrown, lifted: _Lifted, leafy: Mask
+) -> NDArray[np.float32]:
+    """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 
     What is a leaf by its colour hangs before the wood.
     """
-    what = lifted.visible, traced.measured[lifted.owner], lifted.tree.points[:, 2], foliage.mask.shape
-    wood, middle = drawn_depth(*what, 1.0), drawn_depth(*what, BARE_BREADTH)
-    front = np.where(np.isnan(wood) | ~foliage.region, -np.inf, wood)
-    leaves = foliage.pure & ~traced.wood & shows_leaves
-    front[leafy & (np.isnan(middle) | leaves)] = np.inf
-    return front.astype(np.float32)
+    depth, seen = crown.camera.depth(lifted.tree.points), traced.measured[lifted.owner]
+    wood, middle = (
+        drawn_depth(lifted.visible, seen, depth, foliage.mask.shape, breadth) for breadth in (1.0, BARE_BREADTH)
+    )
+    leaves_from = np.where(np.isnan(wood) | ~foliage.region, np.inf, wood)
+    leaves = foliage.pure & ~traced.wood & crown.shows_leaves
+    leaves_from[leafy & (np.isnan(middle) | leaves)] = -np.inf
+    return leaves_from.astype(np.float32)
 
 
-def _shown_kind(sight: WorkingCopy, foliage: Foliage, settings: ModelSettings) -> FoliageKind:
+def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Stature:
+    """Tell the tree's height by the scale that the strokes or the settings set, and whether its trunk is seen."""
+    working, camera = evidence.working, crown.camera
+    known, error, stem = working.strokes.scale, 0.0, np.flatnonzero(traced.stroke == 0)
+    if known is not None:
+        ends_px = ENDS_PX * max(working.photo.shape) / WORKING_SIDE
+        error = min(0.9, ends_px / float(np.hypot(*(known.points[1] - known.points[0]))))
+    rows = traced.skeleton.points[:, 1]
+    heights = camera.metres_from_pixels(rows[stem[0]] - rows[stem])
+    trunk_seen = bool(traced.measured[stem[np.abs(heights - BREAST_HEIGHT).argmin()]])
+    scale = Scale(float(working.unreduced(camera).metres_from_pixels(1.0)), known is not None, error)
+    return Stature(float(camera.metres_from_pixels(evidence.height_px)), scale, trunk_seen, crown.as_seen)
+
+
+def _reading(evidence: PhotoEvidence, settings: ModelSettings) -> Reading:
+    """Tell what was read in the photo, and what makes that doubtful."""
+    told = settings.foliage != "auto" or settings.season in LEAFY
+    sureness = 1.0 if told else evidence.foliage.sureness
+    doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
+    return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
+
+
+def _shown_kind(working: WorkingCopy, foliage: Foliage, settings: ModelSettings) -> FoliageKind:
     """Take the kind that was asked for, or judge by the picture; a season may ask for leaves that it does not show."""
     if settings.foliage == "auto" or settings.season in LEAFY:
-        return foliage_kind(foliage.look, foliage.mask, sight.strokes.branches[0].points)
+        return foliage_kind(foliage.look, foliage.mask, working.strokes.branches[0].points)
     return _KINDS[settings.foliage]
 
 

@@ -2,16 +2,14 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.appearance import Appearance
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
-from treestroke.core.survey.measures import Scale
-from treestroke.core.types import Floats, FoliageKind, Indices, Mask, Picture
+from treestroke.core.survey.measures import Stature
+from treestroke.core.types import FoliageKind, Indices, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,55 +28,7 @@ class LiveTree:
 
     skeleton: Skeleton
     born: Indices
-    camera: Camera
-
-
-@dataclass(frozen=True, eq=False)
-class Portrait:
-    """The picture that a tree is dressed after, at the working size; blank where it was drawn on white.
-
-    Attributes
-    ----------
-    photo
-        (h, w, 3), sRGB.
-    shows_leaves
-        Whether it shows leaves, in their colours.
-    leaves
-        (h, w) pixels that by their own colour are leaves.
-    front
-        (h, w) world Z, metres, behind which leaves may lie: infinite in the foliage, that of the wood where it is seen.
-    stem, stem_radii
-        (m, 2) and (m,) places along the first stem, root first, px, and its radius where it is seen, else 0.
-    """
-
-    photo: Picture
-    shows_leaves: bool
-    leaves: Mask
-    front: NDArray[np.float32]
-    stem: Floats
-    stem_radii: Floats
-
-
-@dataclass(frozen=True, eq=False)
-class Stature:
-    """How large a tree is, and how that is known.
-
-    Attributes
-    ----------
-    height
-        From its root to the top of its foliage, metres.
-    scale
-        What metres rest on.
-    trunk_seen
-        Whether it is seen how thick the trunk is at breast height.
-    crown
-        The crown's solid as wide as it is seen.
-    """
-
-    height: float
-    scale: Scale
-    trunk_seen: bool
-    crown: Envelope
+    camera: OrthographicCamera
 
 
 @dataclass(frozen=True)
@@ -102,7 +52,7 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class GrownTree:
-    """A tree that has grown.
+    """A tree that has grown, whatever it was seen in.
 
     Attributes
     ----------
@@ -110,16 +60,16 @@ class GrownTree:
         What the twigs bear.
     grown
         The whole tree.
-    envelope
-        The crown's solid, in the frame of the working size.
+    volume
+        The crown.
+    appearance
+        What its leaves, fruit and bark are made to look like.
     camera
-        That of the picture at its own size.
-    portrait
-        What it is dressed after.
+        That of the front picture at its own size: the frame that files and previews name.
+    likeness
+        (h, w) what the front view should cover, at any size: foliage and branches that were seen.
     stature
         What it is measured by.
-    likeness
-        (h, w), at the working size, what the front view should cover: foliage and branches that were seen.
     score
         How well it does what it was grown for, by name.
     reading
@@ -130,11 +80,11 @@ class GrownTree:
 
     kind: FoliageKind
     grown: Grown
-    envelope: Envelope
-    camera: Camera
-    portrait: Portrait
-    stature: Stature
+    volume: CrownVolume
+    appearance: Appearance
+    camera: OrthographicCamera
     likeness: Mask
+    stature: Stature
     score: dict[str, float]
     reading: Reading
     warnings: tuple[StrokeWarning, ...]

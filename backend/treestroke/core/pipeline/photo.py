@@ -7,7 +7,7 @@ import numpy as np
 
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
-from treestroke.core.pipeline.growing import Seen, grow_tree, see
+from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
@@ -26,7 +26,7 @@ class PhotoTrace:
     ----------
     foliage
         (h, w) leaf pixels.
-    seen
+    evidence
         What both of them show, at the working size.
     skeleton
         The visible branches; None without a branch stroke.
@@ -37,7 +37,7 @@ class PhotoTrace:
     """
 
     foliage: Mask
-    seen: Seen
+    evidence: PhotoEvidence
     skeleton: Skeleton | None
     stroke: Indices
     warnings: tuple[StrokeWarning, ...]
@@ -54,7 +54,7 @@ def trace_photo(photo: Picture, strokes: Strokes, known: Foliage | None = None) 
     StrokesError
         The strokes do not describe a tree.
     """
-    return _in_photo(see(photo, strokes, known))
+    return _in_photo(read_photo(photo, strokes, known))
 
 
 def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
@@ -65,19 +65,19 @@ def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
     StrokesError
         The sketch does not describe a tree.
     """
-    if side is None and traced.seen.side is None:
+    if side is None and traced.evidence.side is None:
         return traced
-    seen = replace(traced.seen, side=None if side is None else draw_side(side, "side"))
-    return replace(traced, seen=seen, warnings=seen.warnings)
+    evidence = replace(traced.evidence, side=None if side is None else draw_side(side, "side"))
+    return replace(traced, evidence=evidence, warnings=evidence.warnings)
 
 
 def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:
     """Let what was traced grow as `model_photo` does; nothing grows without a branch stroke."""
-    return None if traced.seen.traced is None else grow_tree(traced.seen, settings, rng).live
+    return None if traced.evidence.traced is None else grow_tree(traced.evidence, settings, rng).live
 
 
 def model_photo(
-    seen: Seen,
+    evidence: PhotoEvidence,
     settings: ModelSettings,
     rng: np.random.Generator,
     report: Report = silent,
@@ -94,17 +94,17 @@ def model_photo(
     ValueError
         Nothing was traced, or a picture of a leaf or fruit is none or transparent.
     """
-    tree = grow_tree(seen, settings, rng, report)
+    tree = grow_tree(evidence, settings, rng, report)
     on_grown(tree.live)
     return finish(tree, settings, rng, report, pictures)
 
 
-def _in_photo(seen: Seen) -> PhotoTrace:
-    """Bring what was seen to the photo's own size."""
-    scale, foliage, traced = seen.sight.scale, seen.foliage, seen.traced
-    mask = cv2.resize(foliage.mask.astype(np.uint8), seen.sight.size, interpolation=cv2.INTER_NEAREST).astype(bool)
+def _in_photo(evidence: PhotoEvidence) -> PhotoTrace:
+    """Bring what was read to the photo's own size."""
+    scale, size, traced = evidence.working.scale, evidence.working.size, evidence.traced
+    mask = cv2.resize(evidence.foliage.mask.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST).astype(bool)
     if traced is None:
-        return PhotoTrace(mask, seen, None, np.empty(0, dtype=np.int64), seen.warnings)
+        return PhotoTrace(mask, evidence, None, np.empty(0, dtype=np.int64), evidence.warnings)
     small = traced.skeleton
     full = Skeleton(small.points / scale, small.radii / scale, small.parents)
-    return PhotoTrace(mask, seen, full, traced.stroke, seen.warnings)
+    return PhotoTrace(mask, evidence, full, traced.stroke, evidence.warnings)

@@ -6,9 +6,8 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope
-from treestroke.core.geometry.views import View
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.lift.retrieval import PAIRED, retrieve_depth
 from treestroke.core.skeleton.branched import Branched
@@ -37,7 +36,7 @@ class Side:
     """
 
     tree: Branched
-    crown: View
+    crown: Silhouette[OrthographicCamera]
 
 
 def draw_side(sketch: Sketch, place: str) -> Drawing:
@@ -76,17 +75,18 @@ def in_units(tree: Branched, height_px: float) -> Branched:
 
 
 def side_of(
-    drawing: Drawing, height_of: Callable[[Drawing], float], front_height_px: float, metres_per_pixel: float
+    drawing: Drawing, height_of: Callable[[Drawing], float], front_height_px: float, front: OrthographicCamera
 ) -> Side:
-    """Scale the left side so that its height, as ``height_of`` takes it, is the front's, whose px the scale is for."""
+    """Scale the left side so that its height, as ``height_of`` takes it, is that of the tree in the front's picture."""
     height_px = height_of(drawing)
     scale = front_height_px / height_px
     margin = MARGIN * front_height_px
     root, crown = drawing.tree.skeleton.points[0] * scale, drawing.crown * scale
     corner = np.floor(np.minimum(crown.min(axis=0), root) - margin)
     width, height = (np.ceil(np.maximum(crown.max(axis=0), root) + margin) - corner).astype(int).tolist()
-    camera = Camera(width, height, metres_per_pixel, (float(root[0] - corner[0]), float(root[1] - corner[1])))
-    return Side(in_units(drawing.tree, height_px), View(fill_outline(crown - corner, height, width), camera))
+    root_px = float(root[0] - corner[0]), float(root[1] - corner[1])
+    camera = replace(front, width=width, height=height, root_px=root_px, from_left=True)
+    return Side(in_units(drawing.tree, height_px), Silhouette(fill_outline(crown - corner, height, width), camera))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,16 +108,11 @@ class Deep:
     score: dict[str, float]
 
 
-def with_depth(front: Branched, side: Side, height_px: float, camera: Camera) -> Deep:
+def with_depth(front: Branched, side: Side, height_px: float, camera: OrthographicCamera) -> Deep:
     """Turn a front (px of a camera) into a 3D tree by the depth of its left side."""
     flat = in_units(front, height_px)
     retrieved = retrieve_depth(flat, side.tree)
-    skeleton, metres = retrieved.tree.skeleton, height_px / UNITS * camera.metres_per_pixel
+    skeleton, metres = retrieved.tree.skeleton, float(camera.metres_from_pixels(height_px / UNITS))
     tree = Skeleton(skeleton.points * metres, skeleton.radii * metres, skeleton.parents)
     score = asdict(fidelity(flat, side.tree, retrieved.tree, retrieved.origin == PAIRED))
     return Deep(Branched(tree, retrieved.tree.branch), retrieved.front, score)
-
-
-def deepened(envelope: Envelope, side: Side) -> Envelope:
-    """Give a crown the depth of its left side."""
-    return envelope.with_side(side.crown.mask, side.crown.camera)

@@ -5,24 +5,24 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
+from treestroke.core.appearance import Appearance, StemPixels, View
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.geometry.views import CrownViews, View
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
+from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.lift.spread import lift
-from treestroke.core.pipeline.crowns import drawn, frayed
+from treestroke.core.lift.spread import SeenCrown, lift
+from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
 from treestroke.core.pipeline.growing import borne_kind
-from treestroke.core.pipeline.grown_tree import GrownTree, Portrait, Reading, Stature
+from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import (
     Side,
     crown_height,
-    deepened,
     draw_side,
     side_of,
     stroke_height,
@@ -35,9 +35,9 @@ from treestroke.core.segment.kind import foliage_kind
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, StrokeWarning
-from treestroke.core.survey.measures import BREAST_HEIGHT, Scale
+from treestroke.core.survey.measures import BREAST_HEIGHT, Scale, Stature
 from treestroke.core.trace.drawing import Drawing
-from treestroke.core.types import Floats, FoliageKind, Mask, Picture
+from treestroke.core.types import FoliageKind, Mask, Picture
 
 WORKING_HEIGHT = 1000.0
 """Height, px, that a tree is brought to."""
@@ -54,7 +54,7 @@ ONE_SIDE = StrokeWarning(
 
 
 @dataclass(frozen=True, eq=False)
-class SeenSketches:
+class SketchEvidence:
     """What the sketches show, each on its own canvas, and the front's photo (h, w, 3) where it was drawn over one."""
 
     front: Drawing
@@ -69,17 +69,51 @@ class SeenSketches:
 
 @dataclass(frozen=True, eq=False)
 class _Frame:
-    """The front at the working size: ``scale`` times its canvas, its camera there, its skeleton px, its crown."""
+    """The front at the working size.
 
+    Attributes
+    ----------
+    evidence
+        What it was brought from.
+    scale
+        Its size over that of its canvas.
+    tree
+        Its skeleton, px.
+    crown
+        Its crown.
+    side
+        The left side at the same scale.
+    """
+
+    evidence: SketchEvidence
     scale: float
-    camera: Camera
     tree: Branched
-    crown: Mask
+    crown: Silhouette[OrthographicCamera]
+    side: Side | None
+
+    @property
+    def height_px(self) -> float:
+        """Height of the front's strokes, px."""
+        return stroke_height(self.evidence.front) * self.scale
+
+    @property
+    def camera(self) -> OrthographicCamera:
+        """The front's, at this size."""
+        return self.crown.camera
 
 
-def see_sketches(
+@dataclass(frozen=True, eq=False)
+class _Lifted:
+    """The drawn branches in 3D (metres), the crown's volume, and how true the branches are to the sketches."""
+
+    tree: Branched
+    volume: CrownVolume
+    score: dict[str, float]
+
+
+def read_sketches(
     front: Sketch, side: Sketch | None = None, photo: Picture | None = None, report: Report = silent
-) -> SeenSketches:
+) -> SketchEvidence:
     """Find the 2D skeletons of a front sketch and, where there is one, of a left-side sketch.
 
     ``photo`` (h, w, 3), sRGB, is what the front was drawn over: the tree takes its colours.
@@ -94,33 +128,27 @@ def see_sketches(
         front = _over(front, photo)
     drawing = draw_side(front, "front")
     report("trace", 0.5)
-    return SeenSketches(drawing, None if side is None else draw_side(side, "side"), photo)
+    return SketchEvidence(drawing, None if side is None else draw_side(side, "side"), photo)
 
 
 def grow_sketches(
-    seen: SeenSketches, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
+    evidence: SketchEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> GrownTree:
     """Join the sketches to a 3D tree and let small branches fill its crown.
 
     Other seeds give other small branches; with one sketch alone, also another depth.
     """
     report("lift", 0.0)
-    frame = _framed(seen, settings.height)
-    side = None
-    if seen.side is not None:
-        side = side_of(seen.side, stroke_height, _height_px(seen, frame), frame.camera.metres_per_pixel)
-    envelope = envelope_of_mask(frame.crown, frame.camera)
-    envelope = envelope if side is None else deepened(envelope, side)
-    main, score = _main_branches(seen, frame, side, envelope, rng)
+    frame = _framed(evidence, settings.height)
+    lifted = _lifted(frame, rng)
     report("grow", 0.0)
-    views = CrownViews(View(frame.crown, frame.camera), None if side is None else side.crown)
     params = SelfSimilarParams(most=SMALL_BRANCHES * settings.iterations)
-    grown = grow_small(main, views, envelope, params, rng, report)
-    return _grown_tree(seen, settings, frame, envelope, main, grown, score, rng)
+    grown = grow_small(lifted.tree, lifted.volume, params, rng, report)
+    return _grown_tree(frame, settings, lifted, grown, rng)
 
 
 def model_sketches(
-    seen: SeenSketches,
+    evidence: SketchEvidence,
     settings: ModelSettings,
     rng: np.random.Generator,
     report: Report = silent,
@@ -128,7 +156,7 @@ def model_sketches(
     pictures: OwnPictures = NO_PICTURES,
 ) -> TreeModel:
     """Turn sketches into a tree, as `treestroke.core.pipeline.photo.model_photo` does a photo."""
-    tree = grow_sketches(seen, settings, rng, report)
+    tree = grow_sketches(evidence, settings, rng, report)
     on_grown(tree.live)
     return finish(tree, settings, rng, report, pictures)
 
@@ -149,103 +177,90 @@ def _over(front: Sketch, photo: Picture) -> Sketch:
     return replace(front, canvas=size)
 
 
-def _framed(seen: SeenSketches, height_m: float) -> _Frame:
+def _framed(evidence: SketchEvidence, height_m: float) -> _Frame:
     """Bring the front to the working size and set its scale: the height is that of the crown's top."""
-    front, (width, height) = seen.front, seen.front.size
+    front, (width, height) = evidence.front, evidence.front.size
     scale = min(WORKING_HEIGHT / crown_height(front), WORKING_SIDE / max(width, height))
-    scale = scale if seen.photo is None else min(scale, 1.0)
+    scale = scale if evidence.photo is None else min(scale, 1.0)
     skeleton = front.tree.skeleton
     tree = Branched(Skeleton(skeleton.points * scale, skeleton.radii * scale, skeleton.parents), front.tree.branch)
     root_x, root_y = (skeleton.points[0] * scale).tolist()
     size = max(1, round(width * scale)), max(1, round(height * scale))
-    camera = Camera(*size, height_m / (crown_height(front) * scale), (root_x, root_y))
-    return _Frame(scale, camera, tree, fill_outline(front.crown * scale, size[1], size[0]))
+    camera = OrthographicCamera(*size, height_m / (crown_height(front) * scale), (root_x, root_y))
+    crown = Silhouette(fill_outline(front.crown * scale, size[1], size[0]), camera)
+    if evidence.side is None:
+        return _Frame(evidence, scale, tree, crown, None)
+    side = side_of(evidence.side, stroke_height, stroke_height(front) * scale, camera)
+    return _Frame(evidence, scale, tree, crown, side)
 
 
-def _height_px(seen: SeenSketches, frame: _Frame) -> float:
-    return stroke_height(seen.front) * frame.scale
-
-
-def _main_branches(
-    seen: SeenSketches, frame: _Frame, side: Side | None, envelope: Envelope, rng: np.random.Generator
-) -> tuple[Branched, dict[str, float]]:
-    """Give the drawn branches depth: from the side, or by spreading them; tell how true they are to the sketches."""
-    if side is None:
-        return Branched(lift(frame.tree.skeleton, frame.tree.branch, envelope, rng), frame.tree.branch), {}
-    deep = with_depth(frame.tree, side, _height_px(seen, frame), frame.camera)
-    return deep.tree, deep.score
+def _lifted(frame: _Frame, rng: np.random.Generator) -> _Lifted:
+    """Turn the drawn branches into the world: by the left side, or by spreading them in depth."""
+    outline = turned_outline(frame.crown)
+    if frame.side is None:
+        tree = lift(frame.tree.skeleton, frame.tree.branch, SeenCrown(outline, frame.camera), rng)
+        return _Lifted(Branched(tree, frame.tree.branch), outline, {})
+    deep = with_depth(frame.tree, frame.side, frame.height_px, frame.camera)
+    return _Lifted(deep.tree, outline.with_side(frame.side.crown), deep.score)
 
 
 def _grown_tree(
-    seen: SeenSketches,
-    settings: ModelSettings,
-    frame: _Frame,
-    envelope: Envelope,
-    main: Branched,
-    grown: Grown,
-    score: dict[str, float],
-    rng: np.random.Generator,
+    frame: _Frame, settings: ModelSettings, lifted: _Lifted, grown: Grown, rng: np.random.Generator
 ) -> GrownTree:
     """Gather what the tree is dressed and measured by."""
-    camera, radii = frame.camera, grown.skeleton.radii[: len(main)]
-    wood = _in_picture(Skeleton(main.skeleton.points, radii, main.skeleton.parents), camera)
+    main, camera = lifted.tree, frame.camera
+    radii = grown.skeleton.radii[: len(main)]
+    wood = seen_from_front(Skeleton(main.skeleton.points, radii, main.skeleton.parents), camera)
     stem = main.branch == 0
     leafy = _leafy(frame, grown, rng)
-    kind, portrait = _portrait(seen, settings, frame, leafy, wood.points[stem], wood.radii[stem])
-    root_x, root_y = camera.root_px
+    kind, view, shows_leaves = _view(frame, settings, leafy, StemPixels(wood.points[stem], wood.radii[stem]))
+    tree = (leafy & (kind != "bare")) | drawn(wood, leafy.shape)
     return GrownTree(
         kind=kind,
         grown=grown,
-        envelope=envelope,
-        camera=Camera(
-            *seen.front.size,
-            camera.metres_per_pixel * frame.scale,
-            (root_x / frame.scale, root_y / frame.scale),
-        ),
-        portrait=portrait,
-        stature=_stature(seen, frame, envelope),
-        likeness=(leafy & (kind != "bare")) | drawn(wood, leafy.shape),
-        score=score,
+        volume=lifted.volume,
+        appearance=Appearance((replace(view, tree=tree),), shows_leaves),
+        camera=camera.enlarged(frame.scale, frame.evidence.front.size),
+        likeness=tree,
+        stature=_stature(frame, lifted.volume),
+        score=lifted.score,
         reading=AS_DRAWN,
-        warnings=seen.warnings,
+        warnings=frame.evidence.warnings,
     )
 
 
 def _leafy(frame: _Frame, grown: Grown, rng: np.random.Generator) -> Mask:
     """Tell where the tree is to have leaves: near its branches, in a crown whose outline is frayed."""
-    wood = drawn(_in_picture(grown.skeleton, frame.camera), frame.crown.shape)
+    wood = drawn(seen_from_front(grown.skeleton, frame.camera), frame.crown.mask.shape)
     away = cv2.distanceTransform((~wood).astype(np.uint8), cv2.DIST_L2, 5)
-    return np.asarray(frayed(frame.crown, rng, np.inf) & (away <= LEAFED_SHARE * WORKING_HEIGHT))
+    return np.asarray(frayed(frame.crown.mask, rng, np.inf) & (away <= LEAFED_SHARE * WORKING_HEIGHT))
 
 
-def _portrait(
-    seen: SeenSketches, settings: ModelSettings, frame: _Frame, leafy: Mask, stem: Floats, stem_radii: Floats
-) -> tuple[FoliageKind, Portrait]:
-    """Take colours from the photo that the front was drawn over; on white they are the species' own."""
-    front = np.where(leafy, np.inf, -np.inf).astype(np.float32)
-    if seen.photo is None:
+def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels) -> tuple[FoliageKind, View, bool]:
+    """Take colours from the photo that the front was drawn over; on white they are the species' own.
+
+    Returns what the twigs bear, the view of the foliage alone, and whether it shows leaves.
+    """
+    leaves_from = np.where(leafy, -np.inf, np.inf).astype(np.float32)
+    photo = frame.evidence.photo
+    if photo is None:
         season = "summer" if settings.season == "photo" else settings.season
         kind = borne_kind("bare", replace(settings, season=season))
         blank = np.full((*leafy.shape, 3), 255, dtype=np.uint8)
-        return kind, Portrait(blank, False, leafy, front, stem, np.zeros(len(stem)))
-    photo = seen.photo
+        unseen_stem = replace(stem, radii_px=np.zeros(len(stem.radii_px)))
+        return kind, View(frame.camera, blank, leaves_from, leafy, leafy, unseen_stem), False
     if frame.scale != 1.0:
         photo = np.asarray(cv2.resize(photo, leafy.shape[::-1], interpolation=cv2.INTER_AREA), dtype=np.uint8)
-    foliage = segment_foliage(photo, seen.front.crown * frame.scale)
-    shown = foliage_kind(foliage.look, foliage.mask, stem)
-    kind = borne_kind(shown, settings)
-    return kind, Portrait(photo, shown != "bare", foliage.pure, front, stem, stem_radii)
+    foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
+    shown = foliage_kind(foliage.look, foliage.mask, stem.points_px)
+    view = View(frame.camera, photo, leaves_from, foliage.pure, leafy, stem)
+    return borne_kind(shown, settings), view, shown != "bare"
 
 
-def _stature(seen: SeenSketches, frame: _Frame, envelope: Envelope) -> Stature:
+def _stature(frame: _Frame, volume: CrownVolume) -> Stature:
     """Tell the tree's height, which was given, and whether a brush told how thick the trunk is."""
-    metres, trunk = frame.camera.metres_per_pixel, frame.tree.branch == 0
-    heights = (frame.camera.root_px[1] - frame.tree.skeleton.points[trunk, 1]) * metres
-    drawn_at = frame.tree.skeleton.radii[trunk][np.abs(heights - BREAST_HEIGHT).argmin()] > 0
-    height = crown_height(seen.front) * frame.scale * metres
-    return Stature(height, Scale(metres * frame.scale, False, 0.0), bool(drawn_at), envelope)
-
-
-def _in_picture(tree: Skeleton, camera: Camera) -> Skeleton:
-    """See a 3D tree, metres, from the front: px."""
-    return Skeleton(camera.pixels_from_world(tree.points), tree.radii / camera.metres_per_pixel, tree.parents)
+    camera, skeleton, trunk = frame.camera, frame.tree.skeleton, frame.tree.branch == 0
+    heights = camera.heights_from_rows(skeleton.points[trunk, 1])
+    drawn_at = skeleton.radii[trunk][np.abs(heights - BREAST_HEIGHT).argmin()] > 0
+    height = float(camera.metres_from_pixels(crown_height(frame.evidence.front) * frame.scale))
+    return Stature(height, Scale(float(camera.metres_from_pixels(frame.scale)), False, 0.0), bool(drawn_at), volume)

@@ -1,11 +1,11 @@
 """The working copy of a photo and its strokes, and the camera that took it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.stroke_rules import mend_strokes
 from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
 from treestroke.core.types import Mask, Picture
@@ -28,32 +28,28 @@ class WorkingCopy:
     warnings: tuple[StrokeWarning, ...]
 
     def height_px(self, mask: Mask) -> float:
-        """Measure the tree, px, from its root to its topmost leaf, or to the crown's top where there is no leaf."""
+        """Measure the tree, px, from its root to the foliage's top (h, w), or to the crown's where there is no leaf."""
         rows = np.flatnonzero(mask.any(axis=1))
         top = float(rows[0]) if rows.size else float(self.strokes.crown.points[:, 1].min())
         return max(float(self.strokes.branches[0].points[0, 1]) - top, 1.0)
 
-    def camera(self, mask: Mask, height_m: float) -> Camera:
-        """Set the scale by the known length, or by the tree's height where there is none."""
+    def camera(self, mask: Mask, height_m: float) -> OrthographicCamera:
+        """Return the camera of the copy; its scale follows from the known length, else from the tree's height, metres.
+
+        ``mask`` (h, w) is the foliage.
+        """
         root, known = self.strokes.branches[0].points[0], self.strokes.scale
         scale = height_m / self.height_px(mask)
         if known is not None:
             scale = known.metres / float(np.hypot(*(known.points[1] - known.points[0])))
-        return Camera(self.photo.shape[1], self.photo.shape[0], scale, (float(root[0]), float(root[1])))
+        return OrthographicCamera(self.photo.shape[1], self.photo.shape[0], scale, (float(root[0]), float(root[1])))
 
-    def unreduced(self, camera: Camera) -> Camera:
-        """Give the same camera for the photo at its own size."""
-        root_x, root_y = camera.root_px
-        return replace(
-            camera,
-            width=self.size[0],
-            height=self.size[1],
-            metres_per_pixel=camera.metres_per_pixel * self.scale,
-            root_px=(root_x / self.scale, root_y / self.scale),
-        )
+    def unreduced(self, camera: OrthographicCamera) -> OrthographicCamera:
+        """Return the same camera for the photo at its own size."""
+        return camera.enlarged(self.scale, self.size)
 
 
-def look(photo: Picture, strokes: Strokes) -> WorkingCopy:
+def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
     """Mend the strokes and reduce a large photo (h, w, 3), strokes and all.
 
     Raises

@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.skeleton.measure import edge_lengths, generations
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
@@ -56,6 +56,28 @@ class Scale:
 
 
 @dataclass(frozen=True, eq=False)
+class Stature:
+    """How large a tree is, and how that is known.
+
+    Attributes
+    ----------
+    height
+        From its root to the top of its foliage, metres.
+    scale
+        What metres rest on.
+    trunk_seen
+        Whether it is seen how thick the trunk is at breast height.
+    crown
+        The crown's volume, as wide as it is seen.
+    """
+
+    height: float
+    scale: Scale
+    trunk_seen: bool
+    crown: CrownVolume
+
+
+@dataclass(frozen=True, eq=False)
 class Measures:
     """All figures of a tree, and the number of its branches in each order: stems, what leaves them, and so on."""
 
@@ -64,98 +86,88 @@ class Measures:
     branches_by_order: tuple[int, ...]
 
 
-def measure_tree(
-    skeleton: Skeleton,
-    height: float,
-    trunk_seen: bool,
-    foliage: Floats | None,
-    leaf_area: float,
-    envelope: Envelope,
-    scale: Scale,
-) -> Measures:
-    """Take a tree's measures.
+def measure_tree(skeleton: Skeleton, stature: Stature, foliage: Floats | None, leaf_area: float) -> Measures:
+    """Measure a grown tree (metres) as it was built.
 
     Parameters
     ----------
     skeleton
-        The grown tree, metres.
-    height
-        From its root to the top of its foliage in the photo, metres.
-    trunk_seen
-        Whether the photo shows how thick it is at breast height.
+        The whole tree.
+    stature
+        How large it is said to be.
     foliage
-        (m, 3) places of its leaves, metres; None on a bare tree, whose twigs then are the crown.
+        (m, 3) the middles of its leaves, metres; None on a bare tree, whose twigs then are the crown.
     leaf_area
         One side of all leaves, square metres.
-    envelope
-        The crown's solid.
-    scale
-        What metres rest on.
     """
-    crown = skeleton.points if foliage is None else foliage
+    crown, scale = skeleton.points if foliage is None else foliage, stature.scale
+    volume = _Quantity("m³", "crown_volume", "derived", f"of the solid {stature.crown.shape}")
     figures = {
-        "height": _height(height, scale),
-        "crown_width": _figure(_spread(crown[:, 0]), "m", "crown_width", scale, "measured", WIDTH),
-        "crown_depth": _depth(_spread(crown[:, 2]), envelope, scale),
-        "trunk_diameter": _trunk(skeleton, trunk_seen, scale),
-        "crown_volume": _volume(envelope, scale),
-        "leaf_area": _figure(leaf_area, "m²", "leaf_area", scale, "derived", LEAF_AREA),
+        "height": _height(stature.height, scale),
+        "crown_width": _figure(_spread(crown[:, 0]), _WIDTH, scale),
+        "crown_depth": _figure(_spread(crown[:, 2]), _DEPTH_SEEN if stature.crown.depth_seen else _DEPTH, scale),
+        "trunk_diameter": _figure(_trunk_diameter(skeleton), _TRUNK if stature.trunk_seen else _HIDDEN_TRUNK, scale),
+        "crown_volume": _figure(stature.crown.cubic_metres, volume, scale),
+        "leaf_area": _figure(leaf_area, _LEAF_AREA, scale),
     }
     return Measures(scale, figures, _by_order(skeleton))
 
 
-HEIGHT = "from the root to the topmost leaf or twig"
-WIDTH = "of the crown from side to side as the front shows it, without the outermost hundredth of the leaves"
-DEPTH = "of the crown along the view, which no single picture shows: as grown"
-DEPTH_SEEN = "of the crown from back to front as its left side shows it, without the outermost hundredth of the leaves"
-DIAMETER = f"of the thickest stem {BREAST_HEIGHT} m above the root"
-VOLUME = "of the solid whose level sections are circles as wide as the crown's front"
-VOLUME_OF_TWO = "of the solid whose level sections are ellipses as wide as the crown's front, as deep as its left side"
-LEAF_AREA = "one side of all leaves, as grown: the photo shows the outermost only"
+@dataclass(frozen=True)
+class _Quantity:
+    """What a figure is: its unit, its range among `RANGES`, what it rests on and what it means."""
+
+    unit: str
+    range: str
+    basis: Basis
+    meaning: str
+
+
+_HEIGHT = _Quantity("m", "height", "measured", "from the root to the topmost leaf or twig")
+_WIDTH = _Quantity(
+    "m",
+    "crown_width",
+    "measured",
+    "of the crown from side to side as the front shows it, without the outermost hundredth of the leaves",
+)
+_DEPTH = _Quantity(
+    "m", "crown_depth", "derived", "of the crown along the view, which no single picture shows: as grown"
+)
+_DEPTH_SEEN = _Quantity(
+    "m",
+    "crown_width",
+    "measured",
+    "of the crown from back to front as its left side shows it, without the outermost hundredth of the leaves",
+)
+_DIAMETER = f"of the thickest stem {BREAST_HEIGHT} m above the root"
+_TRUNK = _Quantity("m", "trunk_diameter", "measured", _DIAMETER)
+_HIDDEN_TRUNK = _Quantity("m", "hidden_trunk_diameter", "derived", _DIAMETER)
+_LEAF_AREA = _Quantity(
+    "m²", "leaf_area", "derived", "one side of all leaves, as grown: the photo shows the outermost only"
+)
 
 
 def _height(height: float, scale: Scale) -> Measure:
-    """Take a height that was given as it is."""
+    """Return a height; one that was given has no range."""
     if not scale.known:
-        return Measure(height, "m", height, height, "given", HEIGHT)
-    return _figure(height, "m", "height", scale, "measured", HEIGHT)
+        return Measure(height, _HEIGHT.unit, height, height, "given", _HEIGHT.meaning)
+    return _figure(height, _HEIGHT, scale)
 
 
-def _figure(value: float | None, unit: str, name: str, scale: Scale, basis: Basis, meaning: str) -> Measure:
+def _figure(value: float | None, quantity: _Quantity, scale: Scale) -> Measure:
     """Bound a figure by its own range and by the scale's, as often as metres are in its unit."""
     if value is None:
-        return Measure(None, unit, None, None, basis, meaning)
-    power = {"m": 1, "m²": 2, "m³": 3}[unit]
-    less, more = RANGES[name]
+        return Measure(None, quantity.unit, None, None, quantity.basis, quantity.meaning)
+    power = {"m": 1, "m²": 2, "m³": 3}[quantity.unit]
+    less, more = RANGES[quantity.range]
     low, high = (1 - less) * (1 - scale.error) ** power, (1 + more) * (1 + scale.error) ** power
-    return Measure(value, unit, value * low, value * high, basis, meaning)
+    return Measure(value, quantity.unit, value * low, value * high, quantity.basis, quantity.meaning)
 
 
 def _spread(places: Floats) -> float:
     """Measure from side to side without the outermost few."""
     low, high = np.quantile(places, (SPREAD_SHARE, 1 - SPREAD_SHARE))
     return float(high - low)
-
-
-def _depth(depth: float, envelope: Envelope, scale: Scale) -> Measure:
-    """Take a depth that was drawn as sure as a width."""
-    if envelope.depth is None:
-        return _figure(depth, "m", "crown_depth", scale, "derived", DEPTH)
-    return _figure(depth, "m", "crown_width", scale, "measured", DEPTH_SEEN)
-
-
-def _volume(envelope: Envelope, scale: Scale) -> Measure:
-    """Add up the solid's level sections, circles or ellipses."""
-    deep, meaning = envelope.radius_px, VOLUME
-    if envelope.depth is not None:
-        deep, meaning = envelope.depth.radius_px, VOLUME_OF_TWO
-    volume = float(np.pi * (envelope.radius_px * deep).sum() * envelope.camera.metres_per_pixel**3)
-    return _figure(volume, "m³", "crown_volume", scale, "derived", meaning)
-
-
-def _trunk(skeleton: Skeleton, seen: bool, scale: Scale) -> Measure:
-    name: str = "trunk_diameter" if seen else "hidden_trunk_diameter"
-    return _figure(_trunk_diameter(skeleton), "m", name, scale, "measured" if seen else "derived", DIAMETER)
 
 
 def _trunk_diameter(skeleton: Skeleton) -> float | None:

@@ -1,7 +1,7 @@
 import numpy as np
+from treestroke.core.geometry.views import CrownViews, View, from_left
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.views import CrownViews, View, from_left
 
 CAMERA = Camera(100, 100, 0.1, (50.0, 90.0))
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
+from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
 
 CAMERA = Camera(200, 200, 0.1, (100.0, 190.0))
 

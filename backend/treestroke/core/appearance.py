@@ -1,0 +1,90 @@
+"""What pictures show of a tree: where its leaves and wood are, and which colours they have."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.types import Floats, Mask, Picture
+
+
+@dataclass(frozen=True, eq=False)
+class StemPixels:
+    """Where a picture shows the first stem.
+
+    Attributes
+    ----------
+    points_px
+        (m, 2) points along its axis, root first, px; two or more.
+    radii_px
+        (m,) its radius there, px; 0 where it is hidden.
+    """
+
+    points_px: Floats
+    radii_px: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What one picture (h, w) shows of a tree; blank where it was drawn on white.
+
+    Attributes
+    ----------
+    camera
+        The picture's camera.
+    picture
+        (h, w, 3) sRGB.
+    leaves_from
+        (h, w) depth in this camera, metres, from which on leaves may lie: minus infinity in the foliage, the wood's
+        depth where wood is seen, infinity elsewhere.
+    leaf_coloured
+        (h, w) pixels that by their own colour are leaves.
+    tree
+        (h, w) foliage and wood that are seen.
+    stem
+        Where bark is read.
+    """
+
+    camera: Camera
+    picture: Picture
+    leaves_from: NDArray[np.float32]
+    leaf_coloured: Mask
+    tree: Mask
+    stem: StemPixels
+
+    def __post_init__(self) -> None:
+        shape = (self.camera.height, self.camera.width)
+        maps = self.leaves_from.shape, self.leaf_coloured.shape, self.tree.shape, self.picture.shape[:2]
+        if any(found != shape for found in maps):
+            raise ValueError(f"a view's maps must be of its camera's size {shape}, got {maps}")
+
+    @property
+    def foliage(self) -> Mask:
+        """(h, w) pixels of the foliage."""
+        return np.isneginf(self.leaves_from)
+
+
+@dataclass(frozen=True, eq=False)
+class Appearance:
+    """What leaves, fruit and bark are made to look like.
+
+    Attributes
+    ----------
+    views
+        One or more; the first sets the sizes of leaves.
+    shows_leaves
+        Whether they show leaves in their colours.
+    """
+
+    views: tuple[View, ...]
+    shows_leaves: bool
+
+    def __post_init__(self) -> None:
+        if not self.views:
+            raise ValueError("an appearance needs a view")
+
+    @property
+    def bark_view(self) -> View:
+        """The view that shows the stem largest."""
+        return max(self.views, key=lambda view: float(view.stem.radii_px.sum()))

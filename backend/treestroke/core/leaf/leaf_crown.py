@@ -1,0 +1,144 @@
+"""The crown that cards are placed in."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.appearance import View
+from treestroke.core.geometry.camera import in_picture
+from treestroke.core.geometry.crown_volume import CrownVolume
+from treestroke.core.leaf.arrangement import Poses, Seats
+from treestroke.core.leaf.colouring import DARKEST, Colouring, colouring_of, shades
+from treestroke.core.leaf.coverage import Outlines, cover, outlines_of, share_inside
+from treestroke.core.leaf.grid import FoliageGrid, foliage_grid
+from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
+from treestroke.core.paint.cut_outs import SOLID_ALPHA
+from treestroke.core.types import Floats, Mask
+
+SIDES = (0.015, 0.03)
+"""Smallest and largest side of a card of size 1, as shares of the crown's width."""
+FLICKER = 0.05
+"""Standard deviation of a card's brightness, so that neighbours stand out from each other."""
+FITTING = 0.92
+"""Share of a card's opaque dots that must lie in the foliage. Higher loses more of the foliage at its outline than it
+gains beside it (5 photos: 0.96 costs 1 to 3 % of silhouette IoU)."""
+FLAT = 0.02
+"""Distance from the root's plane, as a share of the tree's height, at which a card may lie outside a volume whose depth
+is assumed: such volumes come from smoothed outlines."""
+LEAST_SIZE, MOST_SIZE = 0.3, 3.0
+"""Bounds of the factor on a card's side, which is 1.5 to 3 % of the crown's width."""
+MIDDLE = 0.6
+"""How far down from the foliage's top, as a share of its height, the point is that cards face away from."""
+
+
+@dataclass(frozen=True, eq=False)
+class LeafCrown:
+    """The views' foliage, the crown's volume, the colours and the atlas's tiles, with sizes in metres.
+
+    Attributes
+    ----------
+    grids
+        The foliage of each view, one at least.
+    volume, colouring, outlines
+        Where the crown is, which tile goes where, and the tiles' opaque dots.
+    middle
+        (3,) the point that cards face away from, world.
+    height
+        The tree's height above its root.
+    side
+        The crown's width times the size factor.
+    card_area
+        Mean opaque area of a card, square metres.
+    """
+
+    grids: tuple[FoliageGrid, ...]
+    volume: CrownVolume
+    colouring: Colouring
+    outlines: Outlines
+    middle: Floats
+    height: float
+    side: float
+    card_area: float
+
+    @property
+    def foliage_area(self) -> float:
+        """Area of the foliage in a view, square metres; of several views the mean."""
+        return float(np.mean([grid.inside.sum() * grid.cell_m**2 for grid in self.grids]))
+
+    def half_sizes(self, count: int, rng: np.random.Generator) -> Floats:
+        """Draw half sides of cards (count,), metres."""
+        return self.side * rng.uniform(*SIDES, count) / 2
+
+    def coloured(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> Leaves:
+        """Return cards with their tiles and their light."""
+        tiles, flips = self.colouring.tiles(poses.centres, rng), rng.random(len(seats)) < 0.5
+        light = shades(poses.centres, poses.lift, self.volume) + rng.normal(0, FLICKER, len(seats))
+        light = np.clip(light, DARKEST, 1.0)
+        return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
+
+    def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> tuple[Leaves, Mask]:
+        """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,)."""
+        leaves = self.coloured(poses, seats, rng)
+        kept = self._fitting(leaves)
+        return leaves.select(kept), kept
+
+    def hide(self, covered: NDArray[np.bool_], leaves: Leaves, grid: FoliageGrid) -> None:
+        """Mark in ``covered``, flags (cells,), flat as a view's grid, what cards hide."""
+        cover(covered, leaves, self.outlines, grid)
+
+    def _fitting(self, leaves: Leaves) -> Mask:
+        """Which cards (m,) lie in the volume, and in the foliage, or behind the wood, of each view that sees them."""
+        fits, excluded = np.zeros((2, len(leaves)), dtype=np.bool_)
+        for grid in self.grids:
+            behind = grid.deeper(grid.cells_of(leaves.centres), grid.camera.depth(leaves.centres))
+            shown = behind & (share_inside(leaves, self.outlines, grid) >= FITTING)
+            fits |= shown
+            excluded |= ~shown & in_picture(grid.camera, leaves.centres)
+        return np.asarray(fits & ~excluded & self.volume.admits(leaves.centres, FLAT * self.height))
+
+
+def leaf_crown(
+    views: Sequence[View], volume: CrownVolume, atlas: Atlas, size: float, rng: np.random.Generator
+) -> LeafCrown:
+    """Gather what placing cards in a crown needs; ``size`` is a factor on their sides.
+
+    The first view's foliage sets the sizes: the tree's height is that of its top above the root.
+
+    Raises
+    ------
+    ValueError
+        A view shows no foliage, or the factor is out of bounds.
+    """
+    if not LEAST_SIZE <= size <= MOST_SIZE:
+        raise ValueError(f"size must be {LEAST_SIZE} to {MOST_SIZE}, got {size}")
+    alphas, inner = tile_alphas(atlas), volume.bounds.mean(axis=0)
+    grids = tuple(foliage_grid(view, inner) for view in views)
+    top, centre, bottom = _heights(grids[0], inner)
+    columns = np.flatnonzero(grids[0].inside.any(axis=0))
+    side = size * float(columns[-1] - columns[0] + 1) * grids[0].cell_m
+    middle = volume.axis(np.array([centre]))[0]
+    middle[1] = centre
+    return LeafCrown(
+        grids=grids,
+        volume=volume,
+        colouring=colouring_of(grids, volume, tile_labs(atlas), atlas.recolour, rng),
+        outlines=outlines_of(alphas),
+        middle=middle,
+        height=max(top, top - bottom),
+        side=side,
+        card_area=float((alphas >= SOLID_ALPHA).mean()) * (side * sum(SIDES) / 2) ** 2,
+    )
+
+
+def _heights(grid: FoliageGrid, inner: Floats) -> tuple[float, float, float]:
+    """Heights, metres, of the foliage's top, the point at `MIDDLE` and its bottom, at the depth of ``inner`` (3,)."""
+    rows = np.flatnonzero(grid.inside.any(axis=1))
+    shown = np.array([rows[0], MIDDLE * rows[-1] + (1 - MIDDLE) * rows[0], rows[-1] + 1])
+    places = np.stack([np.full(3, 0.5 * grid.inside.shape[1]), shown], axis=1)
+    points_px = np.array(grid.corner_px) + places * grid.step_px
+    depth = float(grid.camera.depth(inner[None])[0])
+    top, centre, bottom = grid.camera.world_from_pixels(points_px, depth)[:, 1].tolist()
+    return top, centre, bottom
