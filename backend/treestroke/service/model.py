@@ -11,6 +11,7 @@ from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
+from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.pipeline.sketching import model_sketches, read_sketches
