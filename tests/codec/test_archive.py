@@ -20,7 +20,7 @@ def test_equal_members_give_equal_bytes() -> None:
     assert zipped({"a.txt": b"A"}) == zipped({"a.txt": b"A"})
 
 
-def test_files_are_packed_piece_by_piece_to_the_same_bytes(tmp_path: Path) -> None:
+def test_files_are_packed_in_chunks_to_the_same_bytes(tmp_path: Path) -> None:
     members = {"photo.png": bytes(range(256)) * 80_000, "strokes.json": b"[1.5, 2.5], " * 500_000}
     for name, content in members.items():
         (tmp_path / name).write_bytes(content)

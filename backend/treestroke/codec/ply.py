@@ -1,5 +1,6 @@
 """A tree as binary PLY: coloured vertices, triangles labelled as wood or leaf."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,6 @@ from treestroke.core.types import Floats
 BARK, LEAF = 0, 1
 """Labels of the faces."""
 _COMMENT = b"comment treestroke: metres, right-handed, +Y up; label 0 bark, 1 leaf\n"
-_TRIMESH_COMMENT = b"comment https://github.com/mikedh/trimesh\n"
 _GAMMA = 2.2
 """Shades are factors on linear light, colours are sRGB."""
 
@@ -54,7 +54,7 @@ def encode_ply(bark: Surface, cards: Leaves | None, atlas: Atlas | None) -> byte
         validate=False,
     )
     content: bytes = export_ply(whole, vertex_normal=True)
-    return content.replace(_TRIMESH_COMMENT, _COMMENT, 1)
+    return re.sub(rb"comment .*\n", _COMMENT, content, count=1)  # in place of trimesh's own comment
 
 
 def _bark_colours(bark: Surface) -> Floats:

@@ -178,7 +178,7 @@ def test_vertices_that_two_meshes_share_keep_their_numbers() -> None:
     assert json.dumps(document.tables) == before
 
 
-def test_a_mesh_that_is_moved_already_is_refused() -> None:
+def test_a_mesh_with_a_transform_is_refused() -> None:
     document = skinned()
     document.row("nodes", {"name": "odd", "mesh": 0, "translation": [1, 0, 0]})
     with pytest.raises(ValueError, match="node odd"):

@@ -46,7 +46,7 @@ def turned(quaternion: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return vectors + 2 * np.cross(axis, np.cross(axis, vectors) + real * vectors)
 
 
-def test_instances_stand_where_the_cards_stand() -> None:
+def test_instances_are_where_the_cards_are() -> None:
     document, content = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
     placed = []
     for node in document["nodes"][1:-1]:

@@ -41,7 +41,7 @@ def test_each_node_names_its_own_levels(gltf: pygltflib.GLTF2) -> None:
     assert names(gltf, foliage.extensions["MSFT_lod"]["ids"]) == ["leaf_lod1", "leaf_lod2", "impostor"]
 
 
-def test_wood_goes_where_the_impostor_comes(gltf: pygltflib.GLTF2) -> None:
+def test_wood_is_hidden_where_the_impostor_is_shown(gltf: pygltflib.GLTF2) -> None:
     wood, foliage = (gltf.nodes[index].extras["MSFT_screencoverage"] for index in gltf.scenes[0].nodes)
     assert foliage == [*wood, 0.0]
     assert wood == sorted(wood, reverse=True)

@@ -30,7 +30,7 @@ def test_files_are_named_by_the_stem() -> None:
     assert [image["uri"] for image in document["images"]] == ["my%20oak_bark.jpg", "my%20oak_leaf.png"]
 
 
-def test_pictures_are_what_they_were() -> None:
+def test_pictures_are_those_of_the_glb() -> None:
     files = encode_gltf(parts(), CAMERA, generator="x", stem="oak")
     assert np.array_equal(np.asarray(Image.open(BytesIO(files["oak_leaf.png"]))), parts()[1].surface.texture)
 

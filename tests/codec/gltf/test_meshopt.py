@@ -21,7 +21,7 @@ def test_attributes_return_unchanged(count: int, stride: int) -> None:
     assert np.array_equal(unfold_one(encode_attributes(elements), count, stride), elements)
 
 
-def test_what_changes_little_takes_little() -> None:
+def test_small_changes_take_few_bytes() -> None:
     elements = np.repeat(np.arange(256, dtype=np.uint8), 16)[:, None] * np.ones(4, dtype=np.uint8)
     assert len(encode_attributes(elements)) == 1 + 16 * 4 * 4 + 255 * 4 * 4 + 32  # 2 bits a byte where one changes
     assert len(encode_attributes(np.zeros((4096, 4), np.uint8))) == 1 + 16 * 4 * 4 + 32
@@ -48,7 +48,7 @@ def test_triangles_without_any_order_return() -> None:
         assert np.array_equal(turned(read), turned(triangles))
 
 
-def test_narrow_indices_unfold_too() -> None:
+def test_16_bit_indices_are_decoded_too() -> None:
     triangles = np.array([[0, 1, 2], [2, 1, 3], [9, 3, 7]])
     read = unfold_one(encode_triangles(triangles), 9, 2, "TRIANGLES").view("<u2").reshape(-1, 3)
     assert np.array_equal(turned(read), turned(triangles))

@@ -65,7 +65,7 @@ def test_joints_stand_where_bones_start_and_inverse_binds_undo_them(gltf: pygltf
     assert np.array_equal(matrices[:, :, :3], np.tile(np.eye(4)[:, :3], (len(joints), 1, 1)))
 
 
-def test_branch_bones_tell_their_radius(gltf: pygltflib.GLTF2, wind: Wind) -> None:
+def test_branch_bones_have_their_radius(gltf: pygltflib.GLTF2, wind: Wind) -> None:
     told = [(gltf.nodes[index].extras or {}).get("radius", 0.0) for index in gltf.skins[0].joints]
     assert told == pytest.approx(wind.rig.radii, abs=1e-6)
 
@@ -103,7 +103,7 @@ def test_times_are_bounded_and_shared(gltf: pygltflib.GLTF2) -> None:
             assert gltf.accessors[index].max == pytest.approx([float(seconds.max())])
 
 
-def test_without_wind_the_file_is_as_if_nothing_held(part: Part) -> None:
+def test_without_wind_the_file_is_that_of_a_mesh_without_attachment(part: Part) -> None:
     still = encode_glb([part], CAMERA, generator="treestroke 1")
     bare = replace(part, surface=replace(part.surface, mesh=replace(part.surface.mesh, attachment=None)), skin=None)
     assert still == encode_glb([bare], CAMERA, generator="treestroke 1")

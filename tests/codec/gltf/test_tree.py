@@ -74,7 +74,7 @@ def test_trimesh_reads_both_parts_by_name() -> None:
     assert np.allclose(scene.geometry["bark"].bounds, [positions.min(axis=0), positions.max(axis=0)])
 
 
-def test_the_scene_tells_where_the_photo_stood() -> None:
+def test_the_scene_holds_the_photo_s_camera() -> None:
     scene = document(encode_glb([Part("bark", bark())], CAMERA, generator="treestroke 1"))["scenes"][0]
     photo = {"width": 640, "height": 480, "metres_per_pixel": 0.01, "root": [320.5, 450.25]}
     assert scene == {"nodes": [0], "extras": {"photo": photo}}

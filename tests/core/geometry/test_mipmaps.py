@@ -20,7 +20,7 @@ def texel(surface: Surface, side_px: float, x: float, y: float) -> int:
     return int(MipLevels(surface, corners_px).texels(triangle, np.array([x]), np.array([y]))[0])
 
 
-def test_copies_follow_each_other_down_to_one_texel() -> None:
+def test_mipmap_levels_follow_each_other_down_to_one_texel() -> None:
     pixels = np.random.default_rng(0).random((8, 8, 2)).astype(np.float32)
     copies = mip_texels(pixels)
     assert len(copies) == 64 + 16 + 4 + 1
@@ -29,7 +29,7 @@ def test_copies_follow_each_other_down_to_one_texel() -> None:
 
 
 @pytest.mark.parametrize(("side_px", "wanted"), [(8.0, 3 * 8 + 5), (4.0, 64 + 1 * 4 + 2), (1.0, 84)])
-def test_the_copy_fits_the_size_on_the_picture(side_px: float, wanted: int) -> None:
+def test_the_mipmap_level_fits_the_size_on_the_picture(side_px: float, wanted: int) -> None:
     assert texel(square(4), side_px, 5.5 / 8 * side_px, 3.5 / 8 * side_px) == wanted
 
 

@@ -74,12 +74,12 @@ def test_a_corner_is_kept() -> None:
     assert simplified(line, 0.1).tolist() == [0, 2, 4]
 
 
-def test_distance_is_to_the_piece_and_not_to_its_line() -> None:
+def test_distance_is_to_the_segment_and_not_to_its_line() -> None:
     points = np.array([[0.0, 3.0], [5.0, 2.0], [13.0, 4.0]])
     assert distances_to_segment(points, np.zeros(2), np.array([10.0, 0.0])).tolist() == [3.0, 2.0, 5.0]
 
 
-def test_a_piece_without_length_is_a_point() -> None:
+def test_a_segment_without_length_is_a_point() -> None:
     assert distances_to_segment(np.array([[3.0, 4.0]]), np.zeros(2), np.zeros(2)).tolist() == [5.0]
 
 

@@ -21,7 +21,7 @@ def test_the_nearest_triangle_is_shown() -> None:
     assert set(np.unique(shown)) == {-1, 1}
 
 
-def test_what_is_cut_away_shows_what_lies_behind() -> None:
+def test_a_point_cut_away_shows_the_triangle_behind() -> None:
     shown = visible_triangles(
         np.array([RIGHT_HALF] * 2), np.array([1.0, 0.0]), lambda t, x, y: (t == 1) | (y > 10), 20, 40
     )

@@ -72,6 +72,6 @@ def test_a_unit_vector_points_the_same_way(vector: list[float]) -> None:
     np.testing.assert_allclose(found * np.linalg.norm(vector), vector, rtol=1e-12, atol=1e-9)
 
 
-def test_vectors_without_length_become_what_was_asked_for() -> None:
+def test_vectors_without_length_become_the_given_one() -> None:
     assert unit(np.zeros((2, 3)), UP).tolist() == [[0, 1, 0]] * 2
     assert unit(np.zeros(3)).tolist() == [0, 0, 0]

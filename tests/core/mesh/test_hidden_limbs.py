@@ -12,7 +12,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 
 
 def trunk_with(line: list[list[float]], radius: float = 0.03) -> Skeleton:
-    """Build a trunk, 0.4 m thick, that bears a line of joints at 2 m."""
+    """Build a trunk, 0.4 m thick, with a line of joints at 2 m."""
     trunk = [[0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 3, 0], [0, 4, 0]]
     radii = [0.2] * 5 + [radius] * len(line)
     parents = [-1, 0, 1, 2, 3, 2, *range(5, 4 + len(line))]

@@ -69,7 +69,7 @@ def test_from_the_right_what_is_in_front_stands_left(two_balls: Surface) -> None
     assert side[128, 200, :3] == pytest.approx(RED, abs=2)
 
 
-def test_colours_go_on_beneath_the_clear_part(two_balls: Surface) -> None:
+def test_colours_continue_under_transparent_texels(two_balls: Surface) -> None:
     picture = tile(two_balls.texture, 4)
     clear = picture[picture[..., 3] == 0]
     assert len(clear) > 5_000

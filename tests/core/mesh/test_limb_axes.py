@@ -4,7 +4,7 @@ from tests.builders import fork, oak, stick
 from treestroke.core.mesh.limb_axes import limb_axes, removal_errors, simplified, subset
 
 
-def test_limbs_hold_every_edge_once() -> None:
+def test_limbs_contain_every_edge_once() -> None:
     tree = oak()
     axes = limb_axes(tree, 1e-4)
     steps = np.linalg.norm(np.diff(axes.points, axis=0), axis=1)[np.diff(axes.limb) == 0]

@@ -52,12 +52,12 @@ def test_vertices_are_attached_to_near_joints_of_the_whole_tree() -> None:
     assert np.linalg.norm(mesh.positions - place, axis=1).max() < 0.6
 
 
-def test_a_stick_stays_one_and_as_tall() -> None:
+def test_a_stick_stays_one_tube_and_as_tall() -> None:
     mesh = lod_tubes(stick(), LodParams(LEAST_TRIANGLES, 100))
     assert length(mesh) == pytest.approx(4.0, rel=0.02)
 
 
-def test_the_trunk_outlives_the_twigs() -> None:
+def test_twigs_are_dropped_before_the_trunk() -> None:
     tree = oak(orders=5)
     mesh = lod_tubes(tree, LodParams(LEAST_TRIANGLES, 200))
     assert mesh.attachment is not None

@@ -31,7 +31,7 @@ def test_a_normal_map_repeats_without_seam_in_both_directions():
         assert np.abs(lines[0] - lines[-1]).mean() < 1.5 * step.max()
 
 
-def test_a_dark_furrow_lies_deep_its_sides_face_each_other():
+def test_a_dark_furrow_lies_deep_and_its_sides_face_each_other():
     texture = np.full((*SIZE, 3), 150, np.uint8)
     texture[:, 30:34] = 40
     found = normals(bark_normal_map(texture, np.zeros(SIZE), NormalMapParams(0.02, from_texture=1.0)))

@@ -180,7 +180,7 @@ def _texture_stretch(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     return length[:, 0], length[:, 1]
 
 
-def test_a_point_where_nothing_grows_is_refused() -> None:
+def test_a_skeleton_without_length_is_refused() -> None:
     with pytest.raises(ValueError, match="without length"):
         tubes(Skeleton(np.zeros((1, 3)), np.ones(1), np.array([-1])), TubeParams())
 

@@ -74,7 +74,7 @@ def test_bones_of_a_limb_follow_one_another() -> None:
     assert rig.ends[-1] == pytest.approx([0, 4, 0])
 
 
-def test_wood_goes_over_to_a_bone_without_a_kink() -> None:
+def test_weights_blend_into_a_bone_without_a_kink() -> None:
     tree = stick(joints=400)
     rig = rig_of(tree, None)
     bends = np.abs(np.diff(np.where(rig.joint_bones[:, 1] == 2, rig.joint_share, np.nan), n=2))

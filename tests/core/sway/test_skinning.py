@@ -30,7 +30,7 @@ def held_cards(tree: Skeleton, joints: np.ndarray) -> Mesh:
 
 @given(skeletons())
 @settings(deadline=None, max_examples=40)
-def test_weights_sum_to_255_and_what_weighs_nothing_is_bone_0(tree: Skeleton) -> None:
+def test_weights_sum_to_255_and_bones_of_weight_0_are_bone_0(tree: Skeleton) -> None:
     joints = np.arange(len(tree))
     rig = rig_of(tree, joints)
     rng = np.random.default_rng(len(tree))
@@ -43,13 +43,13 @@ def test_weights_sum_to_255_and_what_weighs_nothing_is_bone_0(tree: Skeleton) ->
         assert bound.bones.max() < len(rig.names)
 
 
-def test_unturned_bones_leave_a_photographed_tree_as_it_was(maple: TreeModel, blown: Wind) -> None:
+def test_bones_at_rest_leave_a_photographed_tree_as_it_was(maple: TreeModel, blown: Wind) -> None:
     for mesh, leaves in ((maple.bark.mesh, False), (maple.leaf.mesh, True)):
         bound = skin(blown.rig, mesh, leaves=leaves)
         assert moved(blown.rig, REST, 0.0, bound, mesh.positions) == pytest.approx(mesh.positions, abs=1e-6)
 
 
-def test_a_vertex_follows_the_joints_it_stands_between() -> None:
+def test_a_vertex_follows_the_joints_that_it_is_attached_to() -> None:
     tree = fork()
     rig = rig_of(tree, None)
     mesh = tubes(tree)

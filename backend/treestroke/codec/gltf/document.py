@@ -85,10 +85,12 @@ class Document:
         return self.row("nodes", {"name": name, "mesh": mesh, **({} if skin is None else {"skin": 0})})
 
     def _part(self, mesh: Mesh, kept: Mask, material: int, skin: Skin | None) -> dict[str, Any]:
+        """Return a primitive of the triangles in a mask (t,), with a material."""
         part, vertices = submesh(mesh, kept)
         return self.primitive(part, material, None if skin is None else skin.at(vertices))
 
     def _shared_material(self, name: str, surface: Surface, material: Material) -> int:
+        """Add a material unless a surface with the same arrays has added it."""
         key = (id(surface.texture), id(surface.normal_map), id(material))
         if key not in self.materials:
             self.materials[key] = self.material(name, surface, material)

@@ -117,7 +117,7 @@ def _hexagons(axes: LimbAxes, ends: Indices) -> Floats:
 
 def _hull_triangles(corners: Floats) -> NDArray[np.uint32]:
     """Triangles (t, 3) of the convex hull of each group of corners (p, c, 3), counter-clockwise from outside."""
-    from scipy.spatial import ConvexHull  # imported here: most trees need no hulls
+    from scipy.spatial import ConvexHull  # imported here: it takes half a second, and most trees need no hulls
 
     groups = []
     for group, points in enumerate(corners):

@@ -47,9 +47,9 @@ class _Picture:
     Attributes
     ----------
     colours, normals
-        (h, w, 3) linear colours, and unit normals with x right, y up, z to the viewer; 0 where cover is no tree.
+        (h, w, 3) linear colours, and unit normals with x right, y up, z to the viewer; 0 where there is no tree.
     cover
-        (h, w) 1 where cover is a surface, else 0.
+        (h, w) 1 where there is a surface, else 0.
     wood
         (h, w) whether that is opaque, a surface without alpha.
     """
