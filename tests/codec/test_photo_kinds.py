@@ -109,7 +109,7 @@ def test_other_and_damaged_tiffs_are_left_to_their_decoder(data: bytes) -> None:
 
 
 @pytest.mark.parametrize(
-    ("data", "said"), [(b"", "the file is empty"), (b"no photo", "this is no photo"), (bytes(9), "")]
+    ("data", "said"), [(b"", "the file is empty"), (b"no photo", "this is not a photo"), (bytes(9), "")]
 )
 def test_what_has_no_name_is_refused_all_the_same(data: bytes, said: str) -> None:
     assert kind_of(data) is None
