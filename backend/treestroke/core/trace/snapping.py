@@ -18,7 +18,7 @@ def snap(line_px: Floats, odds: NDArray[np.float32], reach_px: float, step_px: f
 
     The stroke is first smoothed; then the cheapest sequence of sideways offsets is found exactly, by dynamic
     programming: branch odds (h, w), smoothed over a branch's width, attract the line, distance from the stroke and
-    bending hold it back. The ends stay near the stroke's own.
+    bending hold it back. The ends stay near the stroke's own. Source: Amini, Weymouth and Jain 1990.
     """
     smooth = _smooth(line_px, step_px, 2.5 * reach_px)
     offsets = np.linspace(-reach_px, reach_px, OFFSETS)
