@@ -8,9 +8,8 @@ from treestroke.core.grow.compiled import CompiledEvaluator
 from treestroke.core.grow.crown import Crown, crown_of
 from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.growing import rules_for
-from treestroke.core.grow.library import TYPE_1, TYPE_2
+from treestroke.core.grow.library import TYPE_1
 from treestroke.core.grow.params import GrowthParams
-from treestroke.core.grow.placements import turn_library
 from treestroke.core.grow.reference import PlainEvaluator
 
 
@@ -30,10 +29,3 @@ def test_without_the_extension_growth_goes_on_by_the_plain_evaluator(
     monkeypatch.setitem(sys.modules, "treestroke.core.grow._engine", None)
     monkeypatch.delitem(sys.modules, "treestroke.core.grow.compiled")
     assert isinstance(evaluator_for(crown, TYPE_1, rules_for(GrowthParams(1), crown.unit)), PlainEvaluator)
-
-
-def test_a_quarter_turn_takes_forward_to_the_right() -> None:
-    turned = turn_library(TYPE_2, 4).vectors
-    np.testing.assert_allclose(turned[:, 1, :, 0], turned[:, 0, :, 2], atol=1e-12)
-    np.testing.assert_allclose(turned[:, 1, :, 1], turned[:, 0, :, 1], atol=1e-12)
-    np.testing.assert_allclose(turned[:, 1, :, 2], -turned[:, 0, :, 0], atol=1e-12)

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter
 from tests.pictures import wood_mask
 
 from treestroke.core.geometry.polyline import distances_to_segment, resample
-from treestroke.core.trace.snapping import blurred, snap
+from treestroke.core.trace.snapping import blur, snap
 
 STRAIGHT = np.array([[120.0, 280.0], [150.0, 20.0]])
 NOWHERE = np.full((300, 300), -6.0, np.float32)
@@ -57,6 +57,6 @@ def test_a_stroke_of_two_near_points_is_kept() -> None:
 def test_blurring_keeps_a_straight_line_and_any_line_s_ends() -> None:
     ramp = np.stack([np.arange(20.0), 3 * np.arange(20.0)], axis=1)
     rough = np.random.default_rng(0).normal(size=(20, 2))
-    assert blurred(ramp, 4.0) == pytest.approx(ramp)
-    assert blurred(rough, 4.0)[[0, -1]] == pytest.approx(rough[[0, -1]])
-    assert np.diff(blurred(rough, 4.0), axis=0).std() < 0.2 * np.diff(rough, axis=0).std()
+    assert blur(ramp, 4.0) == pytest.approx(ramp)
+    assert blur(rough, 4.0)[[0, -1]] == pytest.approx(rough[[0, -1]])
+    assert np.diff(blur(rough, 4.0), axis=0).std() < 0.2 * np.diff(rough, axis=0).std()

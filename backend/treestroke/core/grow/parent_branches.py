@@ -88,7 +88,7 @@ def parents_from_small(points: Floats, joints: Indices, share: float, pieces: in
     """Make parents of k small branches: points (k, m + 1, 3), metres, from the bud on.
 
     ``joints`` (k, m + 1) are indices of joints in the tree, -1 where the branch was cut; ``share`` and ``pieces`` as in
-    `parents_from_main`.
+    `parents_from_main`. Source: two-sketches paper, section 6.
     """
     k, m = len(points), points.shape[1] - 1
     steps = np.sqrt((np.diff(points, axis=1) ** 2).sum(axis=2))

@@ -33,6 +33,8 @@ def align_heights(leader: Floats, follower: Floats, start: int) -> Indices:
     Returns
     -------
     (n,) index of the follower's point at each of the leader's points.
+
+    Source: two-sketches paper, section 5.1, rule 1; Sakoe and Chiba 1978 for the dynamic programming.
     """
     cost = _unit_costs(leader, follower)
     edges = np.diff(follower[:, 1])

@@ -87,7 +87,7 @@ def align_switching(trie: PathTrie, leader: int, path: Indices, first: int, para
     """Align a path (n,) of the leader's joint indices with several branches; None where that is not possible.
 
     The joints from index ``first`` on are new; the alignment begins where the path leaves the tree. Positions are in
-    sketch units.
+    sketch units. Source: two-sketches paper, section 5.2, whose choice is greedy; Viterbi 1967.
     """
     begin = max(0, first - LOOK_BACK)
     graph = _Graph(trie, leader, path[begin:], first - begin, params)

@@ -212,7 +212,10 @@ class PathTrie:
         return 0, -1
 
     def insert(self, leader: int, pair: PathPair, origins: Indices) -> None:
-        """Add the part of a path pair that is new; ``origins`` (n,) are the origin flags of its points."""
+        """Add the part of a path pair that is new; ``origins`` (n,) are the origin flags of its points.
+
+        It leaves the tree where either path does. Source: two-sketches paper, section 5.2 (extension).
+        """
         first, parent = self.branching(leader, pair)
         new = pair.cut(first, len(pair))
         points = self._placed(leader, new)

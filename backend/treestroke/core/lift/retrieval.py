@@ -23,7 +23,8 @@ with one of the front (paper, 5.3); a branch at a height that the other sketch d
 ATTEMPTS = ((0.5, False), (0.8, True))
 """Assignments that are tried, the first always. For each, the greatest burden for a unit of length with which a branch
 is paired in the first round (branches above it wait, since what the others leave may suit them better), and whether in
-the second round all of the front come before the side. Small differences decide much, so the flattest tree loses."""
+the second round all of the front come before the side. Small differences have great effects, so the less flat of both
+trees is taken."""
 ACCEPTED_FLAT_SHARE = 0.15
 """Share of the limbs' length in the planes of view up to which no further assignment is tried."""
 MANY_BRANCHES = 150
@@ -51,15 +52,19 @@ class Retrieved:
 
 
 def retrieve_depth(front: Branched, side: Branched, params: RetrievalParams = DEFAULTS) -> Retrieved:
-    """Join a front and a left-side sketch to one 3D tree."""
+    """Join a front and a left-side sketch to one 3D tree.
+
+    Both are 2D, in sketch units: x right, y up, the root at the origin, a height of 1000. Source: two-sketches paper,
+    section 5.
+    """
     sketches = prepare_sketch(front, params.step), prepare_sketch(side, params.step)
-    tries: list[PathTrie] = []
+    assigned: list[PathTrie] = []
     branches = sum(len(sketch.paths) for sketch in sketches)
     for max_burden, front_first in ATTEMPTS if branches < MANY_BRANCHES else ATTEMPTS[:1]:
-        if not tries or _flat_share(tries[-1]) > ACCEPTED_FLAT_SHARE:
-            empty = PathTrie(sketches, tries[0].alignments) if tries else PathTrie(sketches)
-            tries.append(_assign(empty, params, max_burden, front_first))
-    tree, joints, origin = prune(min(tries, key=_flat_share))
+        if not assigned or _flat_share(assigned[-1]) > ACCEPTED_FLAT_SHARE:
+            empty = PathTrie(sketches, assigned[0].alignments) if assigned else PathTrie(sketches)
+            assigned.append(_assign(empty, params, max_burden, front_first))
+    tree, joints, origin = prune(min(assigned, key=_flat_share))
     return Retrieved(tree, sketches[0].source_joint[joints[0]], sketches[1].source_joint[joints[1]], origin)
 
 

@@ -107,7 +107,7 @@ class Graph:
         self.arcs[number] = replace(arc, ends=ends)
 
 
-def thinned(ink: Mask) -> Mask:
+def thin(ink: Mask) -> Mask:
     """Return ink, a mask (h, w), thinned to lines one pixel wide (Guo and Hall 1989)."""
     rows, columns = np.flatnonzero(ink.any(axis=1)), np.flatnonzero(ink.any(axis=0))
     lines = np.zeros_like(ink)
@@ -119,7 +119,7 @@ def thinned(ink: Mask) -> Mask:
     return lines
 
 
-def graph_of(lines: Mask, half_widths: NDArray[np.float32]) -> Graph:
+def build_graph(lines: Mask, half_widths: NDArray[np.float32]) -> Graph:
     """Build the graph of lines (h, w) one pixel wide; half widths (h, w), px, are those of the ink."""
     pixels = np.argwhere(lines)
     around = _neighbours(pixels, lines.shape)
@@ -128,7 +128,7 @@ def graph_of(lines: Mask, half_widths: NDArray[np.float32]) -> Graph:
     return Graph([Arc((c[0], c[-1]), points[c], radii[c]) for c in _chains(around, pixels)])
 
 
-def without_spurs(graph: Graph) -> Graph:
+def drop_spurs(graph: Graph) -> Graph:
     """Drop the arcs that thinning makes of the uneven edge or the blunt end of a brush stroke."""
     while True:
         spurs = [number for number, arc in graph.arcs.items() if _is_spur(graph, arc)]
@@ -145,7 +145,7 @@ def without_spurs(graph: Graph) -> Graph:
     return graph
 
 
-def with_crossings_joined(graph: Graph) -> Graph:
+def merge_crossings(graph: Graph) -> Graph:
     """Merge two forks where thinning split a crossing, or that are next to each other."""
     for number in sorted(graph.arcs, key=lambda number: (graph.arcs[number].length, number)):
         if number not in graph.arcs:

@@ -56,7 +56,10 @@ def _on_circle(angle: Floats, radius_px: float) -> Floats:
 
 
 def trace_forks(builder: SkeletonBuilder, circle: Circle, seeds: list[int]) -> None:
-    """Move the circle along the seeds (joint indices) and on along every branch that it finds, breadth first."""
+    """Move the circle along the seeds (joint indices) and on along every branch that it finds, breadth first.
+
+    Source: Tan et al. 2008, section 2, "Visible branch tracing".
+    """
     queue = deque(seeds)
     for _ in range(MAX_STEPS):
         if not queue:

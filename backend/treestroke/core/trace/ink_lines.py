@@ -13,7 +13,7 @@ from treestroke.core.geometry.polyline import arc_lengths, place_at, places_alon
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.branch_lines import BranchLine, check_length, tree_height
-from treestroke.core.trace.centre_lines import Graph, graph_of, thinned, with_crossings_joined, without_spurs
+from treestroke.core.trace.centre_lines import Graph, build_graph, drop_spurs, merge_crossings, thin
 from treestroke.core.trace.gaps import bridge_gaps
 from treestroke.core.trace.ink_branches import BranchPath, split_into_branches
 from treestroke.core.trace.trunk_base import centre_trunk_base
@@ -60,13 +60,13 @@ def follow_ink(ink: Mask) -> tuple[list[BranchLine], float, tuple[StrokeWarning,
         Nothing is drawn, or what is drawn does not consist of strokes or does not form a tree.
     """
     small, half_widths, scale = _reduced(ink)
-    lines = thinned(small)
+    lines = thin(small)
     _check_amount(int(lines.sum()), MAX_PIXELS)
     lines, in_trunk, joined = bridge_gaps(lines, small, half_widths)
     # A thinned line may lie a pixel beside its stroke's middle, where the half width is greatest.
-    graph = graph_of(lines, np.asarray(cv2.dilate(half_widths, np.ones((3, 3), np.uint8)), dtype=np.float32))
+    graph = build_graph(lines, np.asarray(cv2.dilate(half_widths, np.ones((3, 3), np.uint8)), dtype=np.float32))
     _check_amount(len(graph.arcs), MAX_ARCS)
-    graph = with_crossings_joined(without_spurs(graph))
+    graph = merge_crossings(drop_spurs(graph))
     if not graph.arcs:
         what = "the picture has dots but no strokes; draw the trunk and the main branches as lines"
         raise StrokesError(what, code="sketch_empty")

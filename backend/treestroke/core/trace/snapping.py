@@ -18,7 +18,7 @@ def snap(line_px: Floats, odds: NDArray[np.float32], reach_px: float, step_px: f
 
     The stroke is first smoothed; then the cheapest sequence of sideways offsets is found exactly, by dynamic
     programming: branch odds (h, w), smoothed over a branch's width, attract the line, distance from the stroke and
-    bending hold it back. The ends stay near the stroke's own.
+    bending hold it back. The ends stay near the stroke's own. Source: Amini, Weymouth and Jain 1990.
     """
     smooth = _smooth(line_px, step_px, 2.5 * reach_px)
     offsets = np.linspace(-reach_px, reach_px, OFFSETS)
@@ -27,7 +27,7 @@ def snap(line_px: Floats, odds: NDArray[np.float32], reach_px: float, step_px: f
     cost = -EVIDENCE * sample_nearest(odds, places, -6.0) + DISTANCE * (offsets / reach_px) ** 2
     bending = BEND * (step_px / reach_px) * np.subtract.outer(offsets, offsets) ** 2 / reach_px**2
     chosen = offsets[_cheapest(cost, bending)]
-    return _smooth(smooth + blurred(chosen, 2.0)[:, None] * side, step_px, step_px)
+    return _smooth(smooth + blur(chosen, 2.0)[:, None] * side, step_px, step_px)
 
 
 def _smooth(line_px: Floats, step_px: float, span_px: float) -> Floats:
@@ -35,10 +35,10 @@ def _smooth(line_px: Floats, step_px: float, span_px: float) -> Floats:
     even = resample(line_px, step_px)
     if len(even) < 3:
         return even
-    return resample(blurred(even, span_px / step_px), step_px)
+    return resample(blur(even, span_px / step_px), step_px)
 
 
-def blurred(values: Floats, sigma: float) -> Floats:
+def blur(values: Floats, sigma: float) -> Floats:
     """Blur values (n, ...), any unit, along the first axis by ``sigma`` samples; ends and their directions stay."""
     count = len(values)
     flat = values.reshape(count, -1)

@@ -38,6 +38,8 @@ def link_strokes(
 ) -> tuple[list[BranchLine], float, tuple[StrokeWarning, ...]]:
     """Link branch strokes, the trunk's first, to lines; return them, the tree's height, px, and warnings of repairs.
 
+    Source: two-sketches paper, section 4.2.3.
+
     Raises
     ------
     StrokesError

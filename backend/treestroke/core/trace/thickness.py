@@ -15,6 +15,8 @@ def half_widths(line_px: Floats, wood: NDArray[np.bool_], most_px: float) -> tup
     Across the line, the run of wood pixels that contains the line is followed to both sides (gaps of one pixel are
     ignored); a run longer than ``most_px`` on either side is not a branch but dark leaves beside it.
 
+    Source: Tan et al. 2008, section 2, which takes the largest circle of branch pixels at the root only.
+
     Returns
     -------
     Half-widths (n,), px, and signed offsets (n,), px, from the line to the run's middle along the line's normals;

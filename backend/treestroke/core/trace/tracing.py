@@ -17,7 +17,7 @@ from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Surroundings, branch_odds
 from treestroke.core.trace.circle import Circle, trace_forks
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_short_branches, drop_subtrees, simplify
-from treestroke.core.trace.snapping import blurred, snap
+from treestroke.core.trace.snapping import blur, snap
 from treestroke.core.trace.thickness import half_widths, non_increasing
 from treestroke.core.types import Floats, Indices, Mask, Picture
 
@@ -167,7 +167,7 @@ def _follow_strokes(
 def _centre(line: Floats, wood: Mask, most_px: float, root: Floats | None) -> Floats:
     """Move a line (n, 2) to the middle of the wood where that is seen; it begins at its root, if there is one."""
     _, middles = half_widths(line, wood, most_px)
-    moved = line + blurred(np.nan_to_num(middles), STEADY)[:, None] * normals(line)
+    moved = line + blur(np.nan_to_num(middles), STEADY)[:, None] * normals(line)
     if root is None:
         return moved
     hold = np.maximum(1 - arc_lengths(line) / (3 * most_px), 0.0)[:, None]
