@@ -3,9 +3,9 @@ import sys
 import numpy as np
 import pytest
 from tests.core.grow.crowns import trunk_case
+from treestroke.core.grow.crown import Crown, crown_of
 
 from treestroke.core.grow.compiled import CompiledEvaluator
-from treestroke.core.grow.crown import Crown, crown_of
 from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.growing import rules_for
 from treestroke.core.grow.library import TYPE_1

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 from tests.core.grow.crowns import trunk_case
+from treestroke.core.grow.crown import Crown, crown_of
 
 from treestroke.core.geometry.vectors import UP
 from treestroke.core.grow.branches import Chain
-from treestroke.core.grow.crown import Crown, crown_of
 from treestroke.core.grow.form import UP_IN_PICTURE, BranchTable, Form, VisibleTree, curve_shoots
 from treestroke.core.skeleton.skeleton import Skeleton
 
