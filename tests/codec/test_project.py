@@ -15,6 +15,7 @@ from tests.api.corpora import saved
 import treestroke
 from treestroke.cli import main
 from treestroke.codec.image import MAX_PIXELS, MAX_STORED_BYTES, decode_photo, encode_stored
+from treestroke.codec.inputs import PARTS, SOURCES, Part, Source
 from treestroke.codec.project import Project, read_project, stored_inputs, write_project
 from treestroke.core.errors import TreestrokeError
 from treestroke.limits import MAX_PHOTO_BYTES
@@ -181,6 +182,17 @@ def test_either_command_opens_a_project_of_sketches(tmp_path: Path) -> None:
         assert main([command, str(project), "--out", str(tmp_path / f"{command}.glb")]) == 0
     by_library = treestroke.sketch(front, side, settings, 4).glb
     assert (tmp_path / "model.glb").read_bytes() == (tmp_path / "sketch.glb").read_bytes() == by_library
+
+
+def test_a_source_of_many_files_needs_no_more_than_its_description(monkeypatch: pytest.MonkeyPatch) -> None:
+    photos = Part("photos", "photos", "photo", PARTS["photo"].formats, TreestrokeError, "", many=True)
+    monkeypatch.setitem(PARTS, "photos", photos)
+    monkeypatch.setitem(SOURCES, "photos", Source("photos", "photos", "photos", ("photos",), ("leaf",), "photos"))
+    project = project_of({}, **{"photos/2": b"B", "leaf": b"\x89PNG", "photos/1": b"\xff\xd8A"})
+    assert opened(written(project)) == project
+    assert (project.inputs.source, set(project.inputs.parts)) == ("photos", {"photos/1", "photos/2", "leaf"})
+    with pytest.raises(ValueError, match="no part"):
+        project_of({}, photos=b"A")
 
 
 def test_equal_projects_give_equal_bytes_whenever_they_are_written() -> None:

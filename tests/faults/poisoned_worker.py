@@ -13,11 +13,12 @@ from typing import Any, NoReturn
 import numpy as np
 
 from treestroke import queue, worker
+from treestroke.codec.inputs import Inputs
 from treestroke.service import jobs
-from treestroke.service.jobs import Pulse
+from treestroke.service.jobs import Heartbeat
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import ModelRow
+from treestroke.store.tables import ModelPart, ModelRow
 
 CHUNK = 64 * 2**20
 GRACE_SECONDS = 2
@@ -25,38 +26,38 @@ GRACE_SECONDS = 2
 _make, _publish = jobs._make, jobs._publish
 
 
-def _segfault(_: Pulse) -> NoReturn:
+def _segfault(_: Heartbeat) -> NoReturn:
     ctypes.string_at(0)
     raise AssertionError
 
 
-def _memory(_: Pulse) -> NoReturn:
+def _memory(_: Heartbeat) -> NoReturn:
     """Take addresses and write nothing there: they are what is limited, and writing 2 GB takes seconds."""
     taken = []
     while True:
         taken.append(np.empty(CHUNK, np.uint8))
 
 
-def _loop(pulse: Pulse) -> NoReturn:
+def _loop(heartbeat: Heartbeat) -> NoReturn:
     while True:
-        pulse.report("foliage", 0.5)
+        heartbeat.report("foliage", 0.5)
         time.sleep(0.01)
 
 
-def _hang(_: Pulse) -> NoReturn:
+def _hang(_: Heartbeat) -> NoReturn:
     while True:
         time.sleep(1)
 
 
-def _deaf(_: Pulse) -> NoReturn:
+def _deaf(_: Heartbeat) -> NoReturn:
     """Hold Python's lock, so that nothing else in the process runs, as a library may that never comes back."""
     ctypes.PyDLL(None).sleep(10_000)
     raise AssertionError
 
 
-def _slow(pulse: Pulse) -> None:
+def _slow(heartbeat: Heartbeat) -> None:
     for step in range(15):
-        pulse.report("foliage", step / 15)
+        heartbeat.report("foliage", step / 15)
         time.sleep(0.2)
 
 
@@ -71,15 +72,15 @@ _POISONS: dict[str, Any] = {
 
 
 def _make_or_break(
-    database: Database, blobs: Blobs, job: ModelRow, pulse: Pulse
+    database: Database, blobs: Blobs, job: ModelRow, inputs: Inputs[ModelPart], heartbeat: Heartbeat
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     kind = job.name.partition(" ")[0]
     if kind == "instant":
-        pulse.report("preview", 1.0)
+        heartbeat.report("preview", 1.0)
         return _instant(blobs, job)
     if kind in _POISONS and not (job.attempt > 1 and "at first" in job.name):
-        _POISONS[kind](pulse)
-    return _make(database, blobs, job, pulse)
+        _POISONS[kind](heartbeat)
+    return _make(database, blobs, job, inputs, heartbeat)
 
 
 def _instant(blobs: Blobs, job: ModelRow) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:

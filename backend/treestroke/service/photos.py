@@ -78,7 +78,7 @@ def get_photo(shelf: Shelf, id: str) -> PhotoRow:
     Raises
     ------
     NotFound
-        There is none.
+        There is no such photo.
     """
     with shelf.database.reading() as session:
         found = find_photo(session, id)
@@ -99,7 +99,7 @@ def delete_photo(shelf: Shelf, id: str) -> None:
     Raises
     ------
     NotFound
-        There is none.
+        There is no such photo.
     """
     with shelf.database.writing() as session:
         there = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))

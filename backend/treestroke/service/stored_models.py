@@ -106,7 +106,7 @@ def find_model(database: Database, id: str, deleted: bool = False) -> StoredMode
     Raises
     ------
     NotFound
-        There is none.
+        There is no such model.
     """
     with database.reading() as session:
         (found,) = _stored(session, [_row(session, id, deleted)])
@@ -155,7 +155,7 @@ def cancel(database: Database, id: str) -> StoredModel:
     Raises
     ------
     NotFound
-        There is none.
+        There is no such model.
     """
     with database.writing() as session:
         _row(session, id)
@@ -169,7 +169,7 @@ def delete(database: Database, id: str) -> None:
     Raises
     ------
     NotFound
-        There is none.
+        There is no such model.
     """
     with database.writing() as session:
         _row(session, id)
@@ -183,7 +183,7 @@ def restore(database: Database, id: str) -> StoredModel:
     Raises
     ------
     NotFound
-        There is none, or it was removed for good.
+        There is no such model, or it was removed for good.
     """
     with database.writing() as session:
         row = _row(session, id, deleted=True)
