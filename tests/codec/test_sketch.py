@@ -70,6 +70,10 @@ def test_a_crown_and_a_canvas_may_be_absent() -> None:
         ({"branches": [{"points": [[1, 2], [3e9, 4]]}]}, "canvas_invalid", "/branches"),
         ({"picture": 5}, "wrong_type", "/picture"),
         ({"picture": "§"}, "sketch_unreadable", "/picture"),
+        ({"picture": "\ud800"}, "wrong_type", "/picture"),
+        ({**GOOD, "canvas": None}, "canvas_invalid", "/canvas"),
+        ({"branches": [{"points": [[5, 5]]}]}, "stroke_too_short", "/branches/0"),
+        ({"branches": [{"points": [[5, 5], [6, 6]], "width": 0}]}, "width_invalid", "/branches/0/width"),
         ({"picture": "AAAA"}, "sketch_unreadable", "/picture"),
     ],
 )

@@ -79,9 +79,10 @@ _BY_TYPE = {
     "no_object": Rule("wrong_type", "it must be an object with {allowed}, not {kind}; send one"),
     "null": Rule("wrong_type", "it must not be null; leave it out or give a value"),
     "list_type": Rule("wrong_type", "it must be a list, not {kind}; give one"),
-    "float_type": Rule("wrong_type", "a number is needed, not {kind}; give pixels of the photo"),
-    "finite_number": Rule("non_finite_number", "{value} is not finite; give pixels of the photo"),
+    "float_type": Rule("wrong_type", "a number is needed, not {kind}; give one"),
+    "finite_number": Rule("non_finite_number", "{value} is not finite; give a number that is"),
 }
+_OTHER = Rule("wrong_type", "{problem}; correct it")
 
 
 def checked(model: type[M], value: object, kind: type[TreestrokeError]) -> M:
@@ -116,10 +117,15 @@ def _refusal(error: ValidationError, value: object, kind: type[TreestrokeError])
     if place[:1] == ("settings",) and len(place) > 1:
         return _setting_refusal(str(place[1]), value)
     key, place = _key_at(place)
-    rule = _BY_KEY_AND_TYPE.get((key, fault["type"])) or _BY_KEY.get(key) or _BY_TYPE[fault["type"]]
+    rule = _BY_KEY_AND_TYPE.get((key, fault["type"])) or _BY_KEY.get(key) or _BY_TYPE.get(fault["type"], _OTHER)
     place = place[: len(place) - rule.up]
-    count = {"count": facts["actual_length"]} if "actual_length" in facts else {}
-    return kind.at(place, rule.text.format_map({**facts, **count, "key": key, **_described(found)}), rule.code)
+    told = {
+        "count": facts.get("actual_length"),
+        "value": shown(found),
+        "kind": _kind_of(found),
+        "problem": fault["msg"],
+    }
+    return kind.at(place, rule.text.format_map({**facts, **told, "key": key}), rule.code)
 
 
 def _setting_refusal(name: str, request: Any) -> TreestrokeError:
@@ -158,10 +164,6 @@ def _key_at(place: Place) -> tuple[str, Place]:
             return "point", place[: at + 2]
         return ("scale/points" if place[:at] == ("scale",) else "points"), place
     return (place[-1] if place and isinstance(place[-1], str) else ""), place
-
-
-def _described(value: object) -> dict[str, str]:
-    return {"value": shown(value), "kind": _kind_of(value)}
 
 
 def _kind_of(value: object) -> str:

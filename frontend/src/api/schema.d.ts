@@ -37,7 +37,7 @@ export interface paths {
         };
         /**
          * Get Photo
-         * @description Look a photo up.
+         * @description Return a photo.
          */
         get: operations["get_photo"];
         put?: never;
@@ -61,7 +61,7 @@ export interface paths {
         };
         /**
          * Get Image
-         * @description Give the stored picture: PNG, upright, sRGB, without metadata.
+         * @description Return the stored picture: PNG, upright, sRGB, without metadata.
          */
         get: operations["get_image"];
         put?: never;
@@ -356,7 +356,7 @@ export interface paths {
         };
         /**
          * Live
-         * @description Tell that this process answers.
+         * @description Tell that this process responds.
          */
         get: operations["live"];
         put?: never;
@@ -396,7 +396,7 @@ export interface paths {
         };
         /**
          * Limits
-         * @description Name everything that is bounded.
+         * @description Return every limit of the service, and the settings of a model.
          */
         get: operations["limits"];
         put?: never;
@@ -416,7 +416,7 @@ export interface paths {
         };
         /**
          * Version
-         * @description Say which treestroke this is.
+         * @description Return the version of treestroke.
          */
         get: operations["version"];
         put?: never;
