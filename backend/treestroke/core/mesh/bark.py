@@ -1,4 +1,4 @@
-"""Bark texture from the trunk's own pixels."""
+"""Bark texture from the trunk's pixels in a picture."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ _CONTRAST = (0.16, 0.42)  # least and greatest deviation of log light in the tex
 
 @dataclass(frozen=True)
 class BarkParams:
-    """How bark is read from the photo.
+    """How bark is read from a picture.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class BarkParams:
     hidden_colour
         sRGB colour of bark where no trunk can be seen.
     form
-        Its pattern; None is furrows, and only where the photo shows too little.
+        Its pattern; None adds furrows, and only where the picture shows too little.
     """
 
     smallest_radius_px: float = 2.5
@@ -59,12 +59,14 @@ def bark_texture(
     rng: np.random.Generator,
     grain: Floats | None = None,
 ) -> NDArray[np.uint8]:
-    """Make a bark texture (512, 256, 3) uint8 sRGB that repeats in both directions and holds no light of the photo.
+    """Make a bark texture (512, 256, 3) uint8 sRGB that repeats in both directions, without the picture's shading.
 
     The trunk's front is unrolled, cleaned of pixels that are not bark, freed of slow changes of light (its
-    mean colour stays), and quilted. The fewer pixels the trunk has, the more fissures of our own are added
-    to its colours; where none is to be seen they stand alone, in ``hidden_colour``. A known form
+    mean colour stays), and quilted. The fewer pixels the trunk has, the more generated fissures are added
+    to its colours; a hidden trunk has them alone, in ``hidden_colour``. A known form
     is always added a little.
+
+    Source: quilting after Efros and Freeman 2001 (`imaging.quilting`).
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def bark_texture(
     stem
         The trunk's visible axis and radius in it, px.
     grain
-        (512, 256) the pattern of our own, as `bark_grain` draws it; None draws one of ``params.form``.
+        (512, 256) generated pattern (`bark_grain`); None draws one of ``params.form``.
     """
     own = bark_grain(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
     grain = _STRENGTH.get(params.form, 1.0) * own[..., None]
