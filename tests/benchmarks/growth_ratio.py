@@ -10,14 +10,16 @@ import time
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import envelope_of_mask
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.compiled import CompiledEvaluator
-from treestroke.core.grow.crown import crown_of, pixels_of
 from treestroke.core.grow.growing import Growing, rules_for
+from treestroke.core.grow.growth_space import growth_space, pixel_frame
 from treestroke.core.grow.library import TYPE_1, TYPE_2, Subtree, visible_subtrees
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.reference import PlainEvaluator
+from treestroke.core.grow.replacement import CrownToFill
 from treestroke.core.grow.stem import foot_of
 from treestroke.core.progress import silent
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -35,9 +37,9 @@ def _limb(points: list[list[float]], parents: list[int], bearer: int, lean: floa
         points.append(list(np.array(points[bearer]) + step * k) if k == 1 else list(np.array(points[-1]) + step))
 
 
-def benchmark_tree() -> tuple[Skeleton, Camera, np.ndarray]:
-    """Build the visible tree (metres), its camera and the crown's mask."""
-    camera = Camera(1100, 1500, 0.01, (550.0, 1450.0))
+def benchmark_tree() -> tuple[Skeleton, CrownToFill]:
+    """Build the visible tree (metres) and its crown."""
+    camera = OrthographicCamera(1100, 1500, 0.01, (550.0, 1450.0))
     points, parents = [[550.0, 1450.0, 0.0]], [-1]
     for k in range(1, 7):
         parents.append(k - 1)
@@ -50,9 +52,10 @@ def benchmark_tree() -> tuple[Skeleton, Camera, np.ndarray]:
     px = np.array(points)
     rows, columns = np.mgrid[0:1500, 0:1100] + 0.5
     mask = ((columns - 550) / 450) ** 2 + ((rows - 800) / 400) ** 2 <= 1
-    world = camera.world_from_pixels(px[:, :2], px[:, 2] * camera.metres_per_pixel)
+    world = camera.world_from_pixels(px[:, :2], -camera.metres_from_pixels(px[:, 2]))
     radii = 0.2 * 0.93 ** np.arange(len(px))
-    return Skeleton(world, radii, np.array(parents)), camera, mask
+    front = Silhouette(mask, camera)
+    return Skeleton(world, radii, np.array(parents)), CrownToFill(turned_outline(front), front)
 
 
 def benchmark_library(skeleton: Skeleton) -> tuple[Subtree, ...]:
@@ -62,10 +65,10 @@ def benchmark_library(skeleton: Skeleton) -> tuple[Subtree, ...]:
 
 def benchmark_growth(params: GrowthParams, make: type[CompiledEvaluator] | type[PlainEvaluator]) -> Growing:
     """Make the growth of the benchmark's tree, ready to run."""
-    skeleton, camera, mask = benchmark_tree()
-    envelope = envelope_of_mask(mask, camera)
-    visible = Skeleton(pixels_of(skeleton.points, camera), skeleton.radii / 0.01, skeleton.parents)
-    crown = crown_of(mask, envelope, foot_of(visible, mask))
+    skeleton, to_fill = benchmark_tree()
+    frame = pixel_frame(to_fill.volume, to_fill.front.camera)
+    visible = Skeleton(frame.pixels_of(skeleton.points), skeleton.radii / 0.01, skeleton.parents)
+    crown = growth_space(to_fill.front, frame.sections, foot_of(visible, to_fill.front.mask))
     library = benchmark_library(skeleton)
     return Growing(visible, crown, library, params, make(crown, library, rules_for(params, crown.unit)))
 

@@ -3,19 +3,18 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 from tests.benchmarks.growth_ratio import benchmark_growth, benchmark_library, benchmark_tree, timed
 
-from treestroke.core.geometry.envelope import envelope_of_mask
 from treestroke.core.grow.compiled import CompiledEvaluator
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.reference import PlainEvaluator
-from treestroke.core.grow.replacement import grow
+from treestroke.core.grow.replacement import Replacement, grow
 
 
 def test_growth_of_300_iterations_takes_at_most_a_second(benchmark: BenchmarkFixture) -> None:
-    skeleton, camera, mask = benchmark_tree()
-    envelope, library = envelope_of_mask(mask, camera), benchmark_library(skeleton)
+    skeleton, crown = benchmark_tree()
+    method = Replacement(benchmark_library(skeleton), GrowthParams())
 
     def run() -> int:
-        return len(grow(skeleton, mask, envelope, library, GrowthParams(), np.random.default_rng(0)).choices)
+        return len(grow(skeleton, crown, method, np.random.default_rng(0)).choices)
 
     assert benchmark.pedantic(run, rounds=5, warmup_rounds=1) == 300
     assert benchmark.stats.stats.median <= 1.0

@@ -13,14 +13,17 @@ from tests.conftest import EXAMPLES
 import treestroke
 from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.codec.image import decode_photo
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
+from treestroke.core.appearance import StemPixels, View
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.mesh import Surface
+from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
-from treestroke.core.grow.replacement import grow
+from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.leaf.cards import cards
+from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.placement import LeafParams, place_leaves
-from treestroke.core.lift.spread import lift
+from treestroke.core.lift.spread import SeenCrown, lift
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.paint.atlas import leaf_atlas
@@ -46,7 +49,7 @@ class Subject:
     trace: Trace
     skeleton: Skeleton
     model: Model
-    envelope: Envelope
+    crown: CrownToFill
 
     @property
     def photo(self) -> NDArray[np.uint8]:
@@ -62,8 +65,9 @@ def _subject(name: str) -> Subject:
     encoded, strokes = (EXAMPLES / f"{name}.jpg").read_bytes(), load_strokes(EXAMPLES / f"{name}.strokes.json")
     trace, model = treestroke.trace(encoded, strokes), treestroke.model(encoded, strokes)
     assert trace.skeleton is not None
-    envelope = envelope_of_mask(trace.foliage, model.tree.camera)
-    return Subject(encoded, strokes, trace, trace.skeleton, model, envelope)
+    front = Silhouette(trace.foliage, model.tree.camera)
+    crown = CrownToFill(turned_outline(front), front)
+    return Subject(encoded, strokes, trace, trace.skeleton, model, crown)
 
 
 @pytest.fixture
@@ -72,7 +76,8 @@ def subject(request: pytest.FixtureRequest) -> Subject:
 
 
 def _lifted(subject: Subject) -> Skeleton:
-    return lift(subject.skeleton, subject.trace.stroke, subject.envelope, np.random.default_rng(0))
+    crown = SeenCrown(subject.crown.volume, subject.crown.front.camera)
+    return lift(subject.skeleton, subject.trace.stroke, crown, np.random.default_rng(0))
 
 
 def test_decoding(benchmark: BenchmarkFixture, subject: Subject) -> None:
@@ -99,24 +104,26 @@ def test_lifting(benchmark: BenchmarkFixture, subject: Subject) -> None:
 
 def test_growing(benchmark: BenchmarkFixture, subject: Subject) -> None:
     lifted, kind = _lifted(subject), subject.tree.foliage_kind
-    mask, library = subject.trace.foliage, choose_library("auto", kind, lifted)
+    method = Replacement(choose_library("auto", kind, lifted), growth_for(kind))
 
     def run() -> int:
-        rng = np.random.default_rng(0)
-        return len(grow(lifted, mask, subject.envelope, library, growth_for(kind), rng).choices)
+        return len(grow(lifted, subject.crown, method, np.random.default_rng(0)).choices)
 
     assert benchmark.pedantic(run, rounds=5) > 200
 
 
 def test_drawing_the_leaf_atlas_and_hanging_the_leaves(benchmark: BenchmarkFixture, subject: Subject) -> None:
     photo, mask, kind = subject.photo, subject.trace.foliage, subject.tree.foliage_kind
-    front = np.where(mask, np.inf, -np.inf).astype(np.float32)
+    leaves_from = np.where(mask, -np.inf, np.inf).astype(np.float32)
+    stem = StemPixels(np.zeros((2, 2)), np.zeros(2))
+    view = View(subject.crown.front.camera, photo, leaves_from, mask, mask, stem)
 
     def run() -> int:
         rng = np.random.default_rng(0)
         atlas = leaf_atlas(photo, mask, kind, rng)
         skeleton = subject.tree.grown.skeleton
-        leaves = place_leaves(skeleton, front, subject.envelope, photo, atlas, LeafParams(kind=kind), rng)
+        crown = leaf_crown([view], subject.crown.volume, atlas, 1.0, rng)
+        leaves = place_leaves(skeleton, crown, LeafParams(kind=kind), rng)
         return len(Surface(cards(leaves, atlas), atlas.image).mesh.triangles)
 
     assert benchmark.pedantic(run, rounds=3) > 10_000
@@ -130,7 +137,7 @@ def test_wrapping_the_branches_in_tubes(benchmark: BenchmarkFixture, subject: Su
 def test_making_the_bark_texture(benchmark: BenchmarkFixture, subject: Subject) -> None:
     trunk = subject.trace.stroke == 0
     axis, radii = subject.skeleton.points[trunk], subject.skeleton.radii[trunk]
-    arguments = subject.photo, axis, radii, BarkParams(), np.random.default_rng(0)
+    arguments = subject.photo, StemPixels(axis, radii), BarkParams(), np.random.default_rng(0)
     assert benchmark.pedantic(bark_texture, arguments, rounds=5).shape == (512, 256, 3)
 
 

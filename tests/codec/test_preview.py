@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from treestroke.codec.preview import draw_preview
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 
-CAMERA = Camera(200, 300, 0.04, (100.0, 290.0))
+CAMERA = OrthographicCamera(200, 300, 0.04, (100.0, 290.0))
 GREEN = np.full((8, 8, 4), (20, 220, 30, 255), dtype=np.uint8)
 BROWN = np.full((8, 8, 3), (120, 60, 30), dtype=np.uint8)
 
@@ -70,7 +70,7 @@ def test_the_same_tree_gives_the_same_picture() -> None:
 
 @pytest.mark.parametrize(("width", "height"), [(4000, 64), (64, 4000)])
 def test_a_very_wide_or_tall_photo_keeps_its_root_in_the_picture(width: int, height: int) -> None:
-    camera = Camera(width, height, 12.0 / height, (width / 2, height - 1.0))
+    camera = OrthographicCamera(width, height, 12.0 / height, (width / 2, height - 1.0))
     picture = draw_preview(TRUNK, CROWN, camera)
     assert picture.shape[1] < 2000
     assert is_green(picture[:, :300]).any() or is_green(picture[:, :930]).any()

@@ -5,11 +5,11 @@ import pytest
 from tests.builders import oak, stick
 
 from treestroke.codec.skeleton import plain_grown
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
-CAMERA = Camera(1200, 1500, 10 / 1500, (600.0, 1450.5))
+CAMERA = OrthographicCamera(1200, 1500, 10 / 1500, (600.0, 1450.5))
 
 
 def test_a_live_tree_is_columns_of_one_length_and_its_camera() -> None:
@@ -24,7 +24,9 @@ def test_a_live_tree_is_columns_of_one_length_and_its_camera() -> None:
 def test_rounding_loses_a_hundred_thousandth_of_the_height_at_most(height_m: float) -> None:
     base = oak()
     skeleton = Skeleton(base.points * height_m / 10, base.radii * height_m / 10, base.parents)
-    plain = plain_grown(LiveTree(skeleton, np.zeros(121, np.int64), Camera(9, 1500, height_m / 1500, (0.0, 0.0))))
+    plain = plain_grown(
+        LiveTree(skeleton, np.zeros(121, np.int64), OrthographicCamera(9, 1500, height_m / 1500, (0.0, 0.0)))
+    )
     assert np.array(plain["points"]) == pytest.approx(skeleton.points, abs=0.5e-5 * height_m)
     assert np.array(plain["radii"]) == pytest.approx(skeleton.radii, abs=0.5e-5 * height_m)
 

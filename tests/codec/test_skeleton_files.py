@@ -6,10 +6,10 @@ import numpy as np
 from tests.builders import fork, oak
 
 from treestroke.codec.skeleton_files import encode_csv, encode_skeleton_json, encode_swc
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.skeleton.skeleton import Skeleton
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 
 
 def test_json_holds_the_skeleton_to_a_hundredth_of_a_millimetre() -> None:

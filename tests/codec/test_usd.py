@@ -8,11 +8,11 @@ from tests.builders import stick
 
 from treestroke.codec.usd import encode_usdz, package
 from treestroke.core.errors import SettingsError
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.tubes import tubes
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 FILES = {"tree.usdc": b"scene", "textures/bark.jpg": b"x" * 100, "textures/leaf.png": b"y" * 7}
 
 

@@ -56,7 +56,7 @@ def test_the_live_tree_is_the_same_whether_its_foliage_is_known(live: Trace, map
     crown = json.loads(maple_strokes.read_text())["crown"]
     before = treestroke.trace(live.photo, {"crown": crown})
     after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
-    assert after.found.seen.foliage is before.found.seen.foliage
+    assert after.found.evidence.foliage is before.found.evidence.foliage
     assert same(after.grown, live.grown)
 
 

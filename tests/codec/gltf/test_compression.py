@@ -10,11 +10,11 @@ from tests.codec.gltf.unfolding import unfold
 from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import Document, Material
 from treestroke.codec.gltf.tree import Part, encode_glb
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.mesh.tubes import tubes
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 MESHOPT = "EXT_meshopt_compression"
 TYPES = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT4": 16}

@@ -5,14 +5,14 @@ from tests.builders import stick
 
 from treestroke.codec.gltf.instances import encode_instanced, quaternions
 from treestroke.codec.gltf.tree import Part
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.paint.atlas import Atlas
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 TYPES = {5121: "<u1", 5122: "<i2", 5123: "<u2", 5126: "<f4"}
 FULL = {5121: 255, 5122: 32767, 5123: 65535}
 WIDTHS = {"VEC2": 2, "VEC3": 3, "VEC4": 4}

@@ -9,11 +9,11 @@ from tests.builders import stick
 
 from treestroke.codec.gltf.loose import encode_gltf
 from treestroke.codec.gltf.tree import Part, encode_glb
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.tubes import tubes
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 
 
 def parts() -> list[Part]:

@@ -7,14 +7,14 @@ import pytest
 from tests.builders import oak
 
 from treestroke.codec.gltf.tree import Part, encode_glb
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
 from treestroke.core.sway.wind import Wind
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,11 @@ from PIL import Image
 from tests.builders import fork, oak, stick
 
 from treestroke.codec.gltf.tree import Part, encode_glb
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.mesh.tubes import TubeParams, tubes
 
-CAMERA = Camera(640, 480, 0.01, (320.5, 450.25))
+CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 
 
 def bark(texture_height: int = 8) -> Surface:

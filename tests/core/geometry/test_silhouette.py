@@ -3,7 +3,7 @@ import pytest
 from tests.builders import oak, stick
 from tests.levels import silhouette_ious
 
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.silhouette import (
     AZIMUTHS_RAD,
@@ -36,7 +36,7 @@ def columns(mask: np.ndarray) -> list[int]:
 
 
 def test_the_front_is_what_the_photo_framed() -> None:
-    seen = silhouette(wooden(stick()), None, Camera(100, 100, 0.05, (50.0, 95.0)), 50)
+    seen = silhouette(wooden(stick()), None, OrthographicCamera(100, 100, 0.05, (50.0, 95.0)), 50)
     assert seen.shape == (50, 50)
     assert columns(seen)[0] == 50 - columns(seen)[1]
     assert np.flatnonzero(seen.any(axis=1))[[0, -1]] == pytest.approx([7, 47], abs=1)

@@ -5,27 +5,47 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.geometry.outline_volume import TurnedOutline, turned_outline
+from treestroke.core.grow.growth_space import GrowthSpace, PixelFrame, growth_space, pixel_frame
+from treestroke.core.grow.replacement import CrownToFill
 from treestroke.core.skeleton.skeleton import Skeleton
 
 
 class Case(NamedTuple):
     skeleton: Skeleton
     mask: NDArray[np.bool_]
-    envelope: Envelope
-    camera: Camera
+    volume: TurnedOutline
+    camera: OrthographicCamera
+
+    @property
+    def crown(self) -> CrownToFill:
+        return CrownToFill(self.volume, Silhouette(self.mask, self.camera))
+
+    @property
+    def frame(self) -> PixelFrame:
+        return pixel_frame(self.volume, self.camera)
+
+    @property
+    def visible(self) -> Skeleton:
+        """The skeleton in growth's frame, px."""
+        radii = self.camera.pixels_from_metres(self.skeleton.radii)
+        return Skeleton(self.frame.pixels_of(self.skeleton.points), radii, self.skeleton.parents)
+
+    def space(self, foot: tuple[float, float, float] = (160.0, 275.0, 0.0)) -> GrowthSpace:
+        return growth_space(self.crown.front, self.frame.sections, np.array(foot))
 
 
 def trunk_case(top: float = 120.0) -> Case:
     """An elliptic crown of 280 by 240 px over a trunk of 0.2 m radius that ends at row ``top``; 0.02 m a pixel."""
-    camera = Camera(320, 480, 0.02, (160.0, 460.0))
+    camera = OrthographicCamera(320, 480, 0.02, (160.0, 460.0))
     rows, columns = np.mgrid[0:480, 0:320] + 0.5
     mask = ((columns - 160) / 140) ** 2 + ((rows - 160) / 120) ** 2 <= 1
     y = np.arange(460.0, top - 1, -5)
     points = camera.world_from_pixels(np.column_stack([np.full(len(y), 160.0), y]))
     skeleton = Skeleton(points, np.linspace(0.2, 0.08, len(y)), np.arange(len(y)) - 1)
-    return Case(skeleton, mask, envelope_of_mask(mask, camera), camera)
+    return Case(skeleton, mask, turned_outline(Silhouette(mask, camera)), camera)
 
 
 def limbed_case(depth_deg: float = 35.0) -> Case:

@@ -2,13 +2,14 @@
 
 import numpy as np
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.geometry.views import CrownViews, View
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.geometry.outline_volume import TurnedOutline, TwoOutlines, turned_outline
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 
-CAMERA = Camera(320, 480, 0.02, (160.0, 460.0))
+CAMERA = OrthographicCamera(320, 480, 0.02, (160.0, 460.0))
+FROM_LEFT = OrthographicCamera(320, 480, 0.02, (160.0, 460.0), from_left=True)
 
 
 def oval(across: float, up: float, middle_x: float = 160.0) -> np.ndarray:
@@ -17,18 +18,16 @@ def oval(across: float, up: float, middle_x: float = 160.0) -> np.ndarray:
     return ((columns - middle_x) / across) ** 2 + ((rows - 180) / up) ** 2 <= 1
 
 
-def crown(side: float = 75.0, off: float = 0.0) -> tuple[CrownViews, Envelope]:
+def crown(side: float = 75.0, off: float = 0.0) -> TwoOutlines:
     """A crown 3.6 m wide, 4.6 m high and 3 m deep about a middle that lies ``off`` px before the root."""
     front, left = oval(90, 115), oval(side, 115, 160 + off)
-    envelope = envelope_of_mask(front, CAMERA).with_side(left, CAMERA)
-    return CrownViews(View(front, CAMERA), View(left, CAMERA)), envelope
+    return turned_outline(Silhouette(front, CAMERA)).with_side(Silhouette(left, FROM_LEFT))
 
 
-def everywhere() -> tuple[CrownViews, Envelope]:
+def everywhere() -> TurnedOutline:
     """A crown that cuts nothing of the tree below: a box of 32 m by 40 m."""
-    wide = Camera(800, 1000, 0.04, (400.0, 800.0))
-    view = View(np.ones((1000, 800), dtype=bool), wide)
-    return CrownViews(view, view), envelope_of_mask(view.mask, wide)
+    wide = OrthographicCamera(800, 1000, 0.04, (400.0, 800.0))
+    return turned_outline(Silhouette(np.ones((1000, 800), dtype=bool), wide))
 
 
 def tree(radius: float = 0.0, limbs: int = 8) -> Branched:

@@ -3,23 +3,22 @@ import pytest
 from tests.core.grow.crowns import limbed_case
 
 from treestroke.core.grow.compiled import CompiledEvaluator
-from treestroke.core.grow.crown import Crown, crown_of, pixels_of
 from treestroke.core.grow.growing import Growing, rules_for
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import TYPE_1, TYPE_2, visible_subtrees
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.placements import Evaluator
 from treestroke.core.grow.reference import PlainEvaluator
 from treestroke.core.grow.stem import foot_of
 from treestroke.core.progress import silent
-from treestroke.core.skeleton.skeleton import Skeleton
 
 EVALUATORS = (CompiledEvaluator, PlainEvaluator)
 
 
 def growing(params: GrowthParams, make: type[CompiledEvaluator] | type[PlainEvaluator]) -> Growing:
     case = limbed_case()
-    px = Skeleton(pixels_of(case.skeleton.points, case.camera), case.skeleton.radii / 0.02, case.skeleton.parents)
-    crown = crown_of(case.mask, case.envelope, foot_of(px, case.mask))
+    px = case.visible
+    crown = case.space(foot_of(px, case.mask))
     library = (*visible_subtrees(case.skeleton)[:1], *TYPE_1[:2], *TYPE_2[:2])
     return Growing(px, crown, library, params, make(crown, library, rules_for(params, crown.unit)))
 
@@ -47,7 +46,7 @@ def test_both_measure_the_same_gains_and_distances() -> None:
     np.testing.assert_allclose(order[0], order[1], rtol=1e-12, atol=1e-9)
 
 
-def tied(crown: Crown, make: type[CompiledEvaluator] | type[PlainEvaluator]) -> Evaluator:
+def tied(crown: GrowthSpace, make: type[CompiledEvaluator] | type[PlainEvaluator]) -> Evaluator:
     params = GrowthParams()
     evaluator = make(crown, TYPE_2[:1] * 3, rules_for(params, crown.unit))
     base = np.array([[160.0, 260.0, 0.0], [160.0, 260.0, 0.0]])
@@ -61,7 +60,7 @@ def test_of_equal_gains_the_smallest_branch_subtree_and_angle_wins(
     make: type[CompiledEvaluator] | type[PlainEvaluator],
 ) -> None:
     case = limbed_case()
-    crown = crown_of(case.mask, case.envelope, np.array([160.0, 280.0, 0.0]))
+    crown = case.space((160.0, 280.0, 0.0))
     choice = tied(crown, make).best(np.array([0, 1]), in_space=False)
     assert (choice.branch, choice.subtree) == (0, 1)
 

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -7,16 +8,18 @@ from tests.core.grow.crowns import Case, limbed_case, trunk_case
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import TYPE_1, TYPE_2, choose_library, visible_subtrees
 from treestroke.core.grow.params import GrowthParams, growth_for
-from treestroke.core.grow.replacement import grow
+from treestroke.core.grow.replacement import Replacement, grow
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.traverse import child_counts
 from treestroke.core.types import Floats, FoliageKind
+
+USUAL = Replacement(TYPE_1, GrowthParams())
 
 
 def grown(case: Case, params: GrowthParams | None = None, kind: FoliageKind = "leaves", seed: int = 0) -> Grown:
     library = choose_library("auto", kind, case.skeleton)
     params = params or growth_for(kind, 60)
-    return grow(case.skeleton, case.mask, case.envelope, library, params, np.random.default_rng(seed))
+    return grow(case.skeleton, case.crown, Replacement(library, params), np.random.default_rng(seed))
 
 
 def new_points(case: Case, tree: Grown) -> Floats:
@@ -25,12 +28,12 @@ def new_points(case: Case, tree: Grown) -> Floats:
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("case", [trunk_case(), limbed_case()], ids=["trunk", "limbs"])
-def test_every_new_joint_projects_into_the_foliage_and_lies_in_the_envelope(case: Case, seed: int) -> None:
+def test_every_new_joint_projects_into_the_foliage_and_lies_in_the_volume(case: Case, seed: int) -> None:
     points = new_points(case, grown(case, seed=seed))
     cells = np.floor(case.camera.pixels_from_world(points)).astype(int)
     assert case.mask[cells[:, 1], cells[:, 0]].all()
-    assert np.quantile(case.envelope.reach(points), 0.999) <= 1.0
-    assert case.envelope.reach(points).max() <= 1.05
+    assert np.quantile(case.volume.reach(points), 0.999) <= 1.0
+    assert case.volume.reach(points).max() <= 1.05
 
 
 def test_the_same_seed_grows_the_same_bytes() -> None:
@@ -80,7 +83,7 @@ def depth_over_width(case: Case, mode: Literal["image", "alternating"]) -> float
     library, found = visible_subtrees(case.skeleton), []
     for seed in range(4):
         rng = np.random.default_rng(seed)
-        tree = grow(case.skeleton, case.mask, case.envelope, library, GrowthParams(60, mode=mode), rng)
+        tree = grow(case.skeleton, case.crown, Replacement(library, GrowthParams(60, mode=mode)), rng)
         found.append(new_points(case, tree)[:, 2].std() / new_points(case, tree)[:, 0].std())
     return float(np.mean(found))
 
@@ -126,7 +129,7 @@ def test_the_tree_is_one_piece_without_edges_of_no_length() -> None:
 def test_progress_ends_at_one() -> None:
     case, told = trunk_case(), []
     grow(
-        case.skeleton, case.mask, case.envelope, TYPE_1 + TYPE_2, GrowthParams(5), np.random.default_rng(0),
+        case.skeleton, case.crown, Replacement(TYPE_1 + TYPE_2, GrowthParams(5)), np.random.default_rng(0),
         lambda stage, fraction: told.append((stage, fraction)),
     )  # fmt: skip
     assert told == [("grow", k / 5) for k in range(1, 6)]
@@ -140,7 +143,7 @@ def test_a_second_stem_grows_too() -> None:
         np.tile(single.radii, 2),
         np.concatenate([single.parents, np.where(single.parents < 0, -1, single.parents + len(single))]),
     )
-    tree = grow(twin, case.mask, case.envelope, TYPE_2, GrowthParams(40), np.random.default_rng(0)).skeleton
+    tree = grow(twin, case.crown, Replacement(TYPE_2, GrowthParams(40)), np.random.default_rng(0)).skeleton
     root = np.arange(len(tree))
     for joint, parent in enumerate(tree.parents.tolist()):
         root[joint] = root[parent] if parent >= 0 else joint
@@ -149,16 +152,18 @@ def test_a_second_stem_grows_too() -> None:
 
 def test_growth_refuses_a_mask_of_another_size() -> None:
     case = trunk_case()
+    cut = replace(case.crown, front=replace(case.crown.front, mask=case.mask[1:]))
     with pytest.raises(ValueError, match="does not fit the camera"):
-        grow(case.skeleton, case.mask[1:], case.envelope, TYPE_1, GrowthParams(), np.random.default_rng(0))
+        grow(case.skeleton, cut, USUAL, np.random.default_rng(0))
 
 
 def test_growth_refuses_an_empty_crown_or_library() -> None:
     case = trunk_case()
-    with pytest.raises(ValueError, match=r"at least one subtree, got \d+ px and 0$"):
-        grow(case.skeleton, case.mask, case.envelope, (), GrowthParams(), np.random.default_rng(0))
+    with pytest.raises(ValueError, match=r"a subtree, got \d+ px and 0$"):
+        grow(case.skeleton, case.crown, Replacement((), GrowthParams()), np.random.default_rng(0))
+    empty = replace(case.crown, front=replace(case.crown.front, mask=case.mask & False))
     with pytest.raises(ValueError, match="needs foliage .* got 0 px"):
-        grow(case.skeleton, case.mask & False, case.envelope, TYPE_1, GrowthParams(), np.random.default_rng(0))
+        grow(case.skeleton, empty, USUAL, np.random.default_rng(0))
 
 
 @pytest.mark.parametrize(

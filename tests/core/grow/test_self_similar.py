@@ -17,7 +17,7 @@ PLAIN = SelfSimilarParams(rise=0.0, levels=1, most=60, spacing=0.001, crowded=10
 
 
 def grown(params: SelfSimilarParams = USUAL, main: Branched | None = None, seed: int = 0) -> Grown:
-    return grow_small(tree() if main is None else main, *crown(), params, np.random.default_rng(seed))
+    return grow_small(tree() if main is None else main, crown(), params, np.random.default_rng(seed))
 
 
 def shoots_of(one: Grown) -> list[np.ndarray]:
@@ -37,7 +37,7 @@ def directions(one: Grown) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def test_angles_with_the_bearer_are_within_the_range() -> None:
     main = tree()
-    chords, along, _ = directions(grow_small(main, *everywhere(), PLAIN, np.random.default_rng(0)))
+    chords, along, _ = directions(grow_small(main, everywhere(), PLAIN, np.random.default_rng(0)))
     cosines = (chords * along).sum(axis=1)
     assert len(cosines) > 40
     assert cosines.min() >= 0.5 - 1e-9
@@ -46,7 +46,7 @@ def test_angles_with_the_bearer_are_within_the_range() -> None:
 
 def test_angles_between_siblings_are_within_the_range() -> None:
     main = tree()
-    chords, along, buds = directions(grow_small(main, *everywhere(), PLAIN, np.random.default_rng(0)))
+    chords, along, buds = directions(grow_small(main, everywhere(), PLAIN, np.random.default_rng(0)))
     square = unit(chords - (chords * along).sum(axis=1, keepdims=True) * along)
     order = np.argsort(buds)
     siblings = np.diff(main.branch[buds[order]]) == 0
@@ -72,9 +72,9 @@ def test_small_branches_are_connected_and_of_levels_one_and_two() -> None:
 
 @pytest.mark.parametrize("off", [0.0, 15.0])
 def test_what_grew_lies_inside_both_silhouettes(off: float) -> None:
-    views, envelope = crown(off=off)
-    one = grow_small(tree(), views, envelope, USUAL, np.random.default_rng(0))
-    assert views.inside(one.skeleton.points[one.born > 0]).all()
+    volume = crown(off=off)
+    one = grow_small(tree(), volume, USUAL, np.random.default_rng(0))
+    assert volume.shown(one.skeleton.points[one.born > 0]).all()
 
 
 @pytest.mark.parametrize("most", [0, 1, 50, 2000])
@@ -90,7 +90,7 @@ def test_small_branches_fill_the_crown_more_evenly_than_drawn_ones_do() -> None:
     one, lengths = grown(), edge_lengths(grown().skeleton)
 
     def unevenness(shown: np.ndarray) -> float:
-        cells = crown_cells(*crown())
+        cells = crown_cells(crown())
         cells.lay(one.skeleton.points[shown], lengths[shown])
         middles = cells.corner + cells.side * (np.indices(cells.shape).reshape(3, -1).T + 0.5)
         wood = cells.around()[cells.inside(middles)]
@@ -109,7 +109,7 @@ def test_eighths_of_the_crown_hold_about_as_much_wood() -> None:
 
 
 def test_the_foot_of_the_trunk_is_bare() -> None:
-    one = grow_small(tree(), *everywhere(), USUAL, np.random.default_rng(0))
+    one = grow_small(tree(), everywhere(), USUAL, np.random.default_rng(0))
     buds = one.skeleton.parents[(one.born == 1) & (one.born[one.skeleton.parents] == 0)]
     assert buds.min() >= 35
 
@@ -165,9 +165,10 @@ def test_a_lone_trunk_bears_too() -> None:
 
 
 def test_nothing_grows_where_the_views_share_no_crown() -> None:
-    views, envelope = crown()
-    nowhere = replace(views, front=replace(views.front, mask=np.zeros_like(views.front.mask)))
-    one = grow_small(tree(), nowhere, envelope, USUAL, np.random.default_rng(0))
+    volume = crown()
+    front, side = volume.silhouettes
+    nowhere = replace(volume, silhouettes=(replace(front, mask=np.zeros_like(front.mask)), side))
+    one = grow_small(tree(), nowhere, USUAL, np.random.default_rng(0))
     assert len(one.skeleton) == len(tree())
 
 

@@ -1,19 +1,20 @@
 import numpy as np
 from tests.builders import fork
 
-from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.skeleton.skeleton import Skeleton
 
-CAMERA = Camera(300, 400, 0.01, (150.0, 390.0))
+CAMERA = OrthographicCamera(300, 400, 0.01, (150.0, 390.0))
 
 
 def cut(tree: Skeleton, born: list[int], left: int, right: int) -> Grown:
     """Trim a tree by foliage between two columns, px."""
     foliage = np.zeros((400, 300), dtype=bool)
     foliage[:, left:right] = True
-    return trimmed(Grown(tree, np.array(born), np.zeros((0, 3), np.int64)), foliage, CAMERA)
+    return trimmed(Grown(tree, np.array(born), np.zeros((0, 3), np.int64)), Silhouette(foliage, CAMERA))
 
 
 def test_ends_that_grew_out_of_the_foliage_go() -> None:

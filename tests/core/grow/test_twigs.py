@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 from tests.core.grow.crowns import trunk_case
 
-from treestroke.core.grow.crown import Crown, crown_of
 from treestroke.core.grow.form import Form
+from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.twigs import with_twigs
 
 
 @pytest.fixture
-def crown() -> Crown:
+def crown() -> GrowthSpace:
     case = trunk_case()
-    return crown_of(case.mask, case.envelope, np.array([160.0, 275.0, 0.0]))
+    return case.space()
 
 
 def branch() -> Form:
@@ -19,16 +19,16 @@ def branch() -> Form:
     return Form(np.array(points), np.arange(21) - 1, np.r_[0, 0, np.full(19, 3)], np.r_[8.0, 4.0, np.zeros(19)])
 
 
-def grown(crown: Crown, most: int = 100, seed: int = 0) -> Form:
+def grown(crown: GrowthSpace, most: int = 100, seed: int = 0) -> Form:
     return with_twigs(branch(), crown, most, np.random.default_rng(seed))
 
 
-def test_what_is_there_stays(crown: Crown) -> None:
+def test_what_is_there_stays(crown: GrowthSpace) -> None:
     for before, after in zip(branch(), grown(crown), strict=True):
         np.testing.assert_array_equal(before, after[:21])
 
 
-def test_twigs_stand_on_thin_wood_within_the_crown(crown: Crown) -> None:
+def test_twigs_stand_on_thin_wood_within_the_crown(crown: GrowthSpace) -> None:
     form = grown(crown)
     seats = form.parents[21::2]
     assert len(seats) >= 15
@@ -37,12 +37,12 @@ def test_twigs_stand_on_thin_wood_within_the_crown(crown: Crown) -> None:
     assert (form.parents[22::2] == np.arange(21, len(form.points), 2)).all()
 
 
-def test_no_more_twigs_than_asked(crown: Crown) -> None:
+def test_no_more_twigs_than_asked(crown: GrowthSpace) -> None:
     assert len(grown(crown, 5).points) <= 21 + 2 * 5
     assert len(grown(crown, 0).points) == 21
 
 
-def test_twigs_lean_forward_and_turn_around_their_branch(crown: Crown) -> None:
+def test_twigs_lean_forward_and_turn_around_their_branch(crown: GrowthSpace) -> None:
     form = grown(crown)
     way = form.points[21::2] - form.points[form.parents[21::2]]
     assert (way[:, 0] > 0.5 * np.linalg.norm(way, axis=1)).all()
@@ -50,5 +50,5 @@ def test_twigs_lean_forward_and_turn_around_their_branch(crown: Crown) -> None:
     assert way[:, 2].min() < 0 < way[:, 2].max()
 
 
-def test_the_same_lot_gives_the_same_twigs(crown: Crown) -> None:
+def test_the_same_lot_gives_the_same_twigs(crown: GrowthSpace) -> None:
     np.testing.assert_array_equal(grown(crown, seed=4).points, grown(crown, seed=4).points)

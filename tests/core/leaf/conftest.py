@@ -3,19 +3,29 @@
 import numpy as np
 import pytest
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
+from treestroke.core.appearance import StemPixels, View
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.geometry.outline_volume import TurnedOutline, turned_outline
 from treestroke.core.skeleton.skeleton import Skeleton
 
 
-@pytest.fixture(scope="session")
-def camera() -> Camera:
-    return Camera(300, 400, 10 / 360, (150.0, 390.0))
+def view_of(
+    photo: np.ndarray, mask: np.ndarray, camera: OrthographicCamera, leaves_from: np.ndarray | None = None
+) -> View:
+    """The view that shows foliage in a mask, and wood where ``leaves_from`` has a depth."""
+    depth = np.where(mask, -np.inf, np.inf) if leaves_from is None else leaves_from
+    return View(camera, photo, depth.astype(np.float32), mask, mask, StemPixels(np.zeros((2, 2)), np.zeros(2)))
 
 
 @pytest.fixture(scope="session")
-def envelope(mask: np.ndarray, camera: Camera) -> Envelope:
-    return envelope_of_mask(mask, camera)
+def camera() -> OrthographicCamera:
+    return OrthographicCamera(300, 400, 10 / 360, (150.0, 390.0))
+
+
+@pytest.fixture(scope="session")
+def volume(mask: np.ndarray, camera: OrthographicCamera) -> TurnedOutline:
+    return turned_outline(Silhouette(mask, camera))
 
 
 @pytest.fixture(scope="session")

@@ -3,14 +3,17 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+from tests.core.leaf.conftest import view_of
+from treestroke.core.leaf.area import leaf_area
 
-from treestroke.core.geometry.envelope import Envelope
+from treestroke.core.geometry.crown_volume import Silhouette, shown_by_all
 from treestroke.core.geometry.mesh import Surface
+from treestroke.core.geometry.outline_volume import TurnedOutline
 from treestroke.core.geometry.silhouette import framing, silhouettes
-from treestroke.core.geometry.views import CrownViews, View
 from treestroke.core.leaf.cards import cards
-from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
-from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area, no_leaves
+from treestroke.core.leaf.fruit import FruitParams, fruit_among, hang_fruit, with_fruit
+from treestroke.core.leaf.leaf_crown import leaf_crown
+from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.leaf.thinning import Coverage, thin_leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas
@@ -28,30 +31,31 @@ def fruit_picture(width: int = 90, height: int = 100) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def views(envelope: Envelope, mask: np.ndarray) -> CrownViews:
-    return CrownViews(View(mask, envelope.camera))
+def views(volume: TurnedOutline, mask: np.ndarray) -> list[Silhouette]:
+    return [Silhouette(mask, volume.camera)]
 
 
 @pytest.fixture(scope="module")
-def fruit(tree: Skeleton, envelope: Envelope, views: CrownViews) -> Leaves:
-    return hang_fruit(tree, envelope, views, fruit_picture(), FruitParams(), np.random.default_rng(0))
+def fruit(tree: Skeleton, volume: TurnedOutline, views: list[Silhouette]) -> Leaves:
+    return hang_fruit(tree, volume, views, FruitParams(aspect=100 / 90), np.random.default_rng(0))
 
 
 @pytest.fixture(scope="module")
-def leaves(tree, mask, envelope, photo, atlas) -> Leaves:
-    front = np.where(mask, np.inf, -np.inf).astype(np.float32)
-    return place_leaves(tree, front, envelope, photo, atlas, LeafParams(density=0.3), np.random.default_rng(0))
+def leaves(tree, mask, volume, photo, atlas) -> Leaves:
+    rng = np.random.default_rng(0)
+    crown = leaf_crown([view_of(photo, mask, volume.camera)], volume, atlas, 1.0, rng)
+    return place_leaves(tree, crown, LeafParams(density=0.3), rng)
 
 
 def one_of_each(fruit: Leaves) -> Leaves:
     return fruit.select(np.arange(len(fruit)) < len(fruit) // 2)
 
 
-def test_fruit_hangs_inside_the_crown(fruit, envelope, views):
+def test_fruit_hangs_inside_the_crown(fruit, volume, views):
     lowest = fruit.centres - fruit.ups * 0.9
-    assert views.inside(fruit.centres).all()
-    assert views.inside(lowest).all()
-    assert envelope.reach(fruit.centres).max() <= 1
+    assert shown_by_all(views, fruit.centres).all()
+    assert shown_by_all(views, lowest).all()
+    assert volume.reach(fruit.centres).max() <= 1
 
 
 def test_a_tree_bears_sixty_to_two_hundred(fruit):
@@ -76,21 +80,21 @@ def test_fruit_hangs_below_its_twig_and_near_it(fruit, tree):
     assert np.median(gap[:, 1]) < 0
 
 
-def test_fruits_are_a_hundredth_to_a_fiftieth_of_the_crown_wide(fruit, envelope):
-    width = 2 * np.linalg.norm(fruit.rights, axis=1) * 0.9 / (2 * envelope.radius_px.max() * 10 / 360)
+def test_fruits_are_a_hundredth_to_a_fiftieth_of_the_crown_wide(fruit, volume):
+    width = 2 * np.linalg.norm(fruit.rights, axis=1) * 0.9 / (2 * volume.radius_px.max() * 10 / 360)
     assert 0.01 < width.min() < width.max() < 0.022
 
 
-def test_clusters_are_larger(tree, envelope, views, fruit):
-    tall = hang_fruit(tree, envelope, views, fruit_picture(60, 110), FruitParams(), np.random.default_rng(0))
+def test_clusters_are_larger(tree, volume, views, fruit):
+    tall = hang_fruit(tree, volume, views, FruitParams(aspect=110 / 60), np.random.default_rng(0))
     assert tall.ups[:, 1].mean() > 1.5 * fruit.ups[:, 1].mean()
 
 
-def test_fruits_stand_apart_and_more_outside_than_within(fruit, envelope):
+def test_fruits_stand_apart_and_more_outside_than_within(fruit, volume):
     centres = one_of_each(fruit).centres
     gaps = np.linalg.norm(centres[:, None] - centres[None], axis=2) + 9 * np.eye(len(centres))
     assert gaps.min() > 2 * fruit.ups[:, 1].min()
-    assert (envelope.reach(centres) > 0.6).mean() > 0.6
+    assert (volume.reach(centres) > 0.6).mean() > 0.6
 
 
 def test_leaves_show_no_fruit_and_keep_their_colours(leaves, atlas, fruit):
@@ -140,15 +144,15 @@ def test_a_thinned_tree_keeps_its_fruit(leaves, atlas, fruit):
     assert kept_of(*with_fruit(no_leaves(), None, fruit, fruit_picture()), 40).sum() == 40
 
 
-def test_the_same_numbers_hang_the_same_fruit(tree, envelope, views, fruit):
-    again = hang_fruit(tree, envelope, views, fruit_picture(), FruitParams(), np.random.default_rng(0))
+def test_the_same_numbers_hang_the_same_fruit(tree, volume, views, fruit):
+    again = hang_fruit(tree, volume, views, FruitParams(aspect=100 / 90), np.random.default_rng(0))
     assert np.array_equal(again.centres, fruit.centres)
     assert np.array_equal(again.rights, fruit.rights)
 
 
-def test_no_fruit_hangs_where_there_is_no_room(tree, envelope, views):
-    nowhere = replace(views, front=replace(views.front, mask=np.zeros_like(views.front.mask)))
-    assert len(hang_fruit(tree, envelope, nowhere, fruit_picture(), FruitParams(), np.random.default_rng(0))) == 0
+def test_no_fruit_hangs_where_there_is_no_room(tree, volume, views):
+    nowhere = [replace(views[0], mask=np.zeros_like(views[0].mask))]
+    assert len(hang_fruit(tree, volume, nowhere, FruitParams(), np.random.default_rng(0))) == 0
 
 
 @pytest.mark.parametrize("wrong", [{"width": (0.02, 0.01)}, {"fewest": 300}, {"apart": -1.0}])

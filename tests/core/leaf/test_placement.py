@@ -1,10 +1,13 @@
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import cv2
 import numpy as np
 import pytest
 from scipy.spatial import cKDTree
+from tests.core.leaf.conftest import view_of
 
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.paint.atlas import tile_alphas
@@ -13,19 +16,15 @@ from treestroke.core.skeleton.traverse import child_counts
 HEIGHT = 10.0
 
 
-def front_of(mask: np.ndarray) -> np.ndarray:
-    return np.where(mask, np.inf, -np.inf).astype(np.float32)
-
-
-def place(scene, params=None, seed=0, front=None):
-    tree, mask, envelope, photo, atlas = scene
-    front, rng = front_of(mask) if front is None else front, np.random.default_rng(seed)
-    return place_leaves(tree, front, envelope, photo, atlas, params or LeafParams(), rng)
+def place(scene, params=None, seed=0, leaves_from=None, size=1.0):
+    tree, mask, volume, photo, atlas = scene
+    view, rng = view_of(photo, mask, volume.camera, leaves_from), np.random.default_rng(seed)
+    return place_leaves(tree, leaf_crown([view], volume, atlas, size, rng), params or LeafParams(), rng)
 
 
 @pytest.fixture(scope="module")
-def scene(tree, mask, envelope, photo, atlas):
-    return tree, mask, envelope, photo, atlas
+def scene(tree, mask, volume, photo, atlas):
+    return tree, mask, volume, photo, atlas
 
 
 @pytest.fixture(scope="module")
@@ -68,18 +67,18 @@ def test_the_foliage_is_covered_and_little_else(leaves, mask, atlas, camera):
 
 
 def test_wood_that_is_seen_has_leaves_behind_it_and_none_before(scene, camera):
-    front = front_of(scene[1])
-    front[:, 145:155][scene[1][:, 145:155]] = 0.0
-    placed = without_buds(place(scene, front=front), scene[1], camera)
+    leaves_from = np.where(scene[1], -np.inf, np.inf)
+    leaves_from[:, 145:155][scene[1][:, 145:155]] = 0.0
+    placed = without_buds(place(scene, leaves_from=leaves_from), scene[1], camera)
     column = camera.pixels_from_world(placed.centres)[:, 0]
     beside = (column > 146) & (column < 154)
     assert beside.sum() > 50
     assert (placed.centres[beside, 2] < 0).all()
 
 
-def test_a_big_gap_stays_open(tree, mask, envelope, photo, atlas, camera):
+def test_a_big_gap_stays_open(tree, mask, volume, photo, atlas, camera):
     gap = cv2.circle(np.zeros(mask.shape, np.uint8), (190, 130), 35, 1, -1) > 0
-    drawn = shown(place((tree, mask & ~gap, envelope, photo, atlas)), atlas, camera)
+    drawn = shown(place((tree, mask & ~gap, volume, photo, atlas)), atlas, camera)
     assert (drawn & gap).sum() <= 0.06 * gap.sum()
 
 
@@ -112,22 +111,22 @@ def test_cards_face_out_of_the_crown(leaves):
     assert ((facing * outward).sum(axis=1) > 0).mean() > 0.8
 
 
-def test_the_inside_is_darker_than_the_outside(leaves, envelope):
-    reach = envelope.reach(leaves.centres)
+def test_the_inside_is_darker_than_the_outside(leaves, volume):
+    reach = volume.reach(leaves.centres)
     assert leaves.shades[reach < 0.3].mean() < leaves.shades[reach > 0.8].mean() - 0.15
     assert leaves.shades.min() >= 0.55
     assert leaves.shades.max() <= 1
 
 
-def test_the_front_takes_the_photos_colour_and_the_back_is_no_mirror(tree, mask, envelope, atlas, photo):
+def test_the_front_takes_the_photos_colour_and_the_back_is_no_mirror(tree, mask, volume, atlas, photo):
     stripes = photo.copy()
     stripes[mask & ((np.arange(300) // 40 % 2) == 0)] = (200, 60, 30)
     two = np.where(np.arange(16)[:, None] % 2, (200.0, 60.0, 30.0), (70.0, 110.0, 40.0))
     coloured = type(atlas)(atlas.image, atlas.boxes, two)
-    leaves = place((tree, mask, envelope, stripes, coloured))
-    pixels = envelope.camera.pixels_from_world(leaves.centres).astype(int)
+    leaves = place((tree, mask, volume, stripes, coloured))
+    pixels = volume.camera.pixels_from_world(leaves.centres).astype(int)
     agrees = (stripes[pixels[:, 1], pixels[:, 0], 0] > 140) == (leaves.tiles % 2 == 1)
-    depth = leaves.centres[:, 2] / np.maximum(envelope.half_depth(leaves.centres), 1e-9)
+    depth = leaves.centres[:, 2] / np.maximum(volume.half_depth(leaves.centres), 1e-9)
     assert agrees[depth > 0.5].mean() > 0.9
     assert agrees[depth < -0.3].mean() < 0.75
 
@@ -137,14 +136,15 @@ def test_some_trees_bear_nothing(scene, params):
     assert len(place(scene, params)) == 0
 
 
-def test_an_empty_mask_bears_nothing(tree, mask, envelope, photo, atlas):
-    assert len(place((tree, np.zeros_like(mask), envelope, photo, atlas))) == 0
+def test_a_view_without_foliage_is_refused(tree, mask, volume, photo, atlas):
+    with pytest.raises(ValueError, match="shows foliage"):
+        place((tree, np.zeros_like(mask), volume, photo, atlas))
 
 
 @pytest.mark.parametrize("size", [0.3, 3.0])
 @pytest.mark.parametrize("density", [0.3, 3.0])
 def test_cards_stay_within_the_budget(scene, size, density):
-    leaves = place(scene, LeafParams(size=size, density=density, max_cards=3000))
+    leaves = place(scene, LeafParams(density=density, max_cards=3000), size=size)
     assert 0 < len(leaves) <= 3000 + (child_counts(scene[0]) == 0).sum()
 
 
@@ -175,7 +175,13 @@ def test_the_same_seed_places_the_same_leaves(scene, leaves):
     assert all(np.array_equal(getattr(again, f.name), getattr(leaves, f.name)) for f in fields(Leaves))
 
 
-@pytest.mark.parametrize("wrong", [{"size": 0.2}, {"density": 3.1}, {"max_cards": -1}, {"kind": "fruit"}])
+@pytest.mark.parametrize("size", [0.2, 3.1])
+def test_sizes_out_of_range_are_refused(scene, size):
+    with pytest.raises(ValueError, match="size must be 0.3 to 3"):
+        place(scene, size=size)
+
+
+@pytest.mark.parametrize("wrong", [{"density": 3.1}, {"max_cards": -1}, {"kind": "fruit"}])
 def test_params_out_of_range_are_refused(wrong):
     with pytest.raises(ValueError, match="must"):
         LeafParams(**wrong)
@@ -183,9 +189,9 @@ def test_params_out_of_range_are_refused(wrong):
 
 @pytest.mark.parametrize("off", [0, 40])
 def test_no_card_s_centre_lies_outside_a_side_that_was_drawn(scene, camera, off):
-    tree, mask, envelope, photo, atlas = scene
+    tree, mask, volume, photo, atlas = scene
     side = np.roll(cv2.ellipse(np.zeros((400, 300), np.uint8), (150, 150), (60, 120), 0, 0, 360, 1, -1) > 0, off, 1)
-    slim = envelope.with_side(side, camera)
+    slim = volume.with_side(Silhouette(side, replace(camera, from_left=True)))
     centres = without_buds(place((tree, mask, slim, photo, atlas)), mask, camera).centres
-    assert slim.shown_from_side(centres).all()
+    assert slim.admits(centres, 0.0).all()
     assert np.percentile(centres[:, 2], [1, 99]) == pytest.approx([(off - 60) / 36, min(off + 60, 117) / 36], abs=0.35)

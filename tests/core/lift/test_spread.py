@@ -5,21 +5,22 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Envelope, envelope_of_mask
-from treestroke.core.lift.spread import LiftParams, lift
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.geometry.outline_volume import turned_outline
+from treestroke.core.lift.spread import LiftParams, SeenCrown, lift
 from treestroke.core.skeleton.skeleton import Skeleton
 
 DEFAULT = LiftParams()
-CAMERA = Camera(400, 400, 0.025, (200.0, 390.0))
+CAMERA = OrthographicCamera(400, 400, 0.025, (200.0, 390.0))
 
 
-def envelope() -> Envelope:
+def crown() -> SeenCrown:
     y, x = np.mgrid[:400, :400] + 0.5
-    return envelope_of_mask(np.hypot(x - 200, y - 180) < 160, CAMERA)
+    return SeenCrown(turned_outline(Silhouette(np.hypot(x - 200, y - 180) < 160, CAMERA)), CAMERA)
 
 
-ENVELOPE = envelope()
+CROWN = crown()
 
 
 def tree_of(limbs: list[list[tuple[float, float]]]) -> Skeleton:
@@ -43,7 +44,7 @@ SPRAY = tree_of(
 def lifted(tree: Skeleton, seed: int = 0, params: LiftParams = DEFAULT) -> Skeleton:
     """Lift a tree whose stem alone was stroked."""
     stroke = np.where(np.arange(len(tree)) < 5, 0, -1)
-    return lift(tree, stroke, ENVELOPE, np.random.default_rng(seed), params)
+    return lift(tree, stroke, CROWN, np.random.default_rng(seed), params)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 12))
@@ -59,12 +60,12 @@ def test_every_joint_still_stands_on_its_pixel(seed: int, count: int) -> None:
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=30, deadline=None)
-def test_depth_stays_inside_the_envelope_where_there_is_crown(seed: int) -> None:
+def test_depth_stays_inside_the_volume_where_there_is_crown(seed: int) -> None:
     ends = np.random.default_rng(seed).uniform(20, 340, (6, 2, 2))
     ends[..., 1] = np.clip(ends[..., 1], 22, 338)
     found = lifted(tree_of([[tuple(p) for p in limb] for limb in ends]), seed)
     stems = tree_of([]).points[:, 0].size
-    room = LiftParams().inside * ENVELOPE.half_depth(found.points)
+    room = LiftParams().inside * CROWN.volume.half_depth(found.points)
     start = np.maximum(np.abs(found.points[2, 2]), 0.0)
     assert (np.abs(found.points[stems:, 2]) <= np.maximum(room[stems:], start) + 1e-9).all()
 

@@ -2,6 +2,7 @@ import cv2
 import numpy as np
 import pytest
 
+from treestroke.core.appearance import StemPixels
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
 from treestroke.core.mesh.bark_pattern import BarkForm, bark_pattern
 
@@ -22,7 +23,7 @@ def photo_of_a_trunk(radius: float, shaded: bool = False, seed: int = 0) -> np.n
 
 def texture_of(photo: np.ndarray, radius: float) -> np.ndarray:
     trunk = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]])
-    return bark_texture(photo, trunk, np.full(3, radius), BarkParams(), np.random.default_rng(0))
+    return bark_texture(photo, StemPixels(trunk, np.full(3, radius)), BarkParams(), np.random.default_rng(0))
 
 
 @pytest.mark.parametrize("radius", [5.0, 20.0, 60.0])
@@ -62,9 +63,8 @@ def test_a_thin_trunk_gets_fissures_finer_than_a_photo_pixel() -> None:
 
 def test_a_hidden_trunk_is_procedural_in_the_given_colour() -> None:
     photo = photo_of_a_trunk(30.0)
-    hidden = bark_texture(
-        photo, np.array([[150.0, 390.0], [150.0, 20.0]]), np.zeros(2), BarkParams(), np.random.default_rng(0)
-    )
+    stem = StemPixels(np.array([[150.0, 390.0], [150.0, 20.0]]), np.zeros(2))
+    hidden = bark_texture(photo, stem, BarkParams(), np.random.default_rng(0))
     assert hidden.reshape(-1, 3).mean(axis=0) == pytest.approx(BarkParams().hidden_colour, rel=0.06)
     assert hidden.std() > 5
 
@@ -82,12 +82,16 @@ def test_equal_seeds_give_equal_bark() -> None:
 def test_a_trunk_at_the_photo_s_edge_is_read_without_a_stop() -> None:
     photo = photo_of_a_trunk(30.0)
     edge = np.array([[1.0, 405.0], [-3.0, 200.0]])
-    assert bark_texture(photo, edge, np.full(2, 30.0), BarkParams(), np.random.default_rng(0)).shape == (512, 256, 3)
+    assert bark_texture(photo, StemPixels(edge, np.full(2, 30.0)), BarkParams(), np.random.default_rng(0)).shape == (
+        512,
+        256,
+        3,
+    )
 
 
 def test_a_long_trunk_that_is_seen_at_its_tip_alone_gets_the_hidden_colour() -> None:
     trunk, radii = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]]), np.array([0.0, 0.0, 2.5])
-    texture = bark_texture(photo_of_a_trunk(2.5), trunk, radii, BarkParams(), np.random.default_rng(0))
+    texture = bark_texture(photo_of_a_trunk(2.5), StemPixels(trunk, radii), BarkParams(), np.random.default_rng(0))
     assert texture.reshape(-1, 3).mean(axis=0) == pytest.approx(np.array(BarkParams().hidden_colour), rel=0.1)
 
 
@@ -97,7 +101,7 @@ def test_a_known_form_shapes_the_bark_of_a_hidden_trunk_and_mildly_that_of_a_see
 
     def likeness(radius: float) -> float:
         params, rng = BarkParams(form="plated"), np.random.default_rng(0)
-        texture = bark_texture(photo_of_a_trunk(30.0), trunk, np.full(3, radius), params, rng, plates)
+        texture = bark_texture(photo_of_a_trunk(30.0), StemPixels(trunk, np.full(3, radius)), params, rng, plates)
         return float(np.corrcoef(texture.mean(axis=2).ravel(), plates.ravel())[0, 1])
 
     assert likeness(0.0) > 0.9
@@ -107,7 +111,7 @@ def test_a_known_form_shapes_the_bark_of_a_hidden_trunk_and_mildly_that_of_a_see
 def test_smooth_bark_has_less_contrast_than_furrowed() -> None:
     def contrast(form: BarkForm) -> float:
         trunk, params = np.array([[150.0, 390.0], [150.0, 20.0]]), BarkParams(form=form)
-        texture = bark_texture(photo_of_a_trunk(30.0), trunk, np.zeros(2), params, np.random.default_rng(0))
+        texture = bark_texture(photo_of_a_trunk(30.0), StemPixels(trunk, np.zeros(2)), params, np.random.default_rng(0))
         return float(texture.mean(axis=2).std())
 
     assert contrast("smooth") < 0.5 * contrast("furrowed")

@@ -11,7 +11,7 @@ import treestroke
 from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
-from treestroke.core.pipeline.growing import see
+from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.service.inputs import load_photo, load_strokes
@@ -120,7 +120,7 @@ def test_a_leaf_s_picture_colours_the_tree() -> None:
     cv2.ellipse(picture, (45, 50), (30, 45), 0, 0, 360, (60, 90, 200, 255), -1)
     given = load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json"))
     tree = model_photo(
-        see(*given), ModelSettings(iterations=30), np.random.default_rng(0), pictures=OwnPictures(picture)
+        read_photo(*given), ModelSettings(iterations=30), np.random.default_rng(0), pictures=OwnPictures(picture)
     )
     assert tree.atlas is not None
     assert (tile_labs(tree.atlas)[:, 2] < -30).all()
@@ -137,7 +137,7 @@ def test_a_season_gives_the_same_bytes_again(season: str) -> None:
 def test_fruit_hangs_on_the_same_tree_with_or_without_leaves(settings: dict[str, Any]) -> None:
     picture = np.zeros((120, 110, 4), np.uint8)
     cv2.circle(picture, (55, 60), 50, (230, 130, 20, 255), -1)
-    seen = see(load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json")))
+    seen = read_photo(load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json")))
     what = seen, ModelSettings(iterations=30, **settings)
     plain = model_photo(*what, np.random.default_rng(0))
     borne = model_photo(*what, np.random.default_rng(0), pictures=OwnPictures(fruit=picture))

@@ -6,8 +6,7 @@ from tests.conftest import EXAMPLES
 
 from treestroke.codec.image import decode_photo
 from treestroke.codec.strokes import parse_strokes
-from treestroke.core.geometry.views import from_left
-from treestroke.core.pipeline.growing import Seen, grow_tree, see
+from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
 from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Sketch, Stroke
@@ -34,13 +33,13 @@ SIDE = Sketch(
 
 
 @pytest.fixture(scope="module")
-def seen() -> Seen:
+def seen() -> PhotoEvidence:
     photo = decode_photo((EXAMPLES / "burr_oak_dusk.jpg").read_bytes(), "oak")
     strokes = parse_strokes((EXAMPLES / "burr_oak_dusk.strokes.json").read_bytes(), "oak")
-    return see(photo, strokes, side=SIDE)
+    return read_photo(photo, strokes, side=SIDE)
 
 
-def test_branches_stay_where_the_photo_shows_them_and_take_the_sides_depth(seen: Seen) -> None:
+def test_branches_stay_where_the_photo_shows_them_and_take_the_sides_depth(seen: PhotoEvidence) -> None:
     tree = grow_tree(seen, FEW, np.random.default_rng(0))
     assert tree.score["front_covered"] >= 0.9
     assert tree.score["side_covered"] >= 0.98
@@ -48,10 +47,10 @@ def test_branches_stay_where_the_photo_shows_them_and_take_the_sides_depth(seen:
     assert tree.score["paired"] >= 0.6
 
 
-def test_the_crown_is_as_deep_as_the_side_shows(seen: Seen) -> None:
+def test_the_crown_is_as_deep_as_the_side_shows(seen: PhotoEvidence) -> None:
     model = model_photo(seen, FEW, np.random.default_rng(0))
     assert model.cards is not None
-    z, y = from_left(model.cards.centres)[:, :2].T
+    z, y = model.cards.centres[:, [2, 1]].T
     drawn = (SIDE.crown.points - SIDE.branches[0].points[0]) * [1, -1] / 360 * 10 if SIDE.crown else np.empty((0, 2))
     assert z.min() >= drawn[:, 0].min() - 0.4
     assert z.max() <= drawn[:, 0].max() + 0.4
@@ -59,9 +58,9 @@ def test_the_crown_is_as_deep_as_the_side_shows(seen: Seen) -> None:
     assert y.max() == pytest.approx(10.0, abs=0.5)
 
 
-def test_without_a_side_nothing_changes(seen: Seen) -> None:
+def test_without_a_side_nothing_changes(seen: PhotoEvidence) -> None:
     photo = decode_photo((EXAMPLES / "burr_oak_dusk.jpg").read_bytes(), "oak")
     strokes = parse_strokes((EXAMPLES / "burr_oak_dusk.strokes.json").read_bytes(), "oak")
-    plain = grow_tree(see(photo, strokes, seen.foliage), FEW, np.random.default_rng(0))
+    plain = grow_tree(read_photo(photo, strokes, seen.foliage), FEW, np.random.default_rng(0))
     assert set(plain.score) == {"attractors_reached"}
-    assert plain.envelope.depth is None
+    assert not plain.volume.depth_seen

@@ -9,7 +9,7 @@ from tests.conftest import DATA
 from tests.pieces import touching_pieces
 
 from treestroke.core.mesh.tubes import tubes
-from treestroke.core.pipeline.growing import grow_tree, see
+from treestroke.core.pipeline.growing import grow_tree, read_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -51,7 +51,7 @@ def hasty(crown: np.ndarray, trunk: np.ndarray, rng: np.random.Generator) -> tup
 
 def grown(beech, more: tuple[Stroke, ...], seed: int = 0, width: float | None = None) -> Skeleton:
     photo, crown, trunk, foliage = beech
-    seen = see(photo, Strokes(Stroke(crown), (Stroke(trunk, width), *more)), foliage)
+    seen = read_photo(photo, Strokes(Stroke(crown), (Stroke(trunk, width), *more)), foliage)
     return grow_tree(seen, ModelSettings(iterations=15), np.random.default_rng(seed)).grown.skeleton
 
 

@@ -6,7 +6,7 @@ import pytest
 from tests.conftest import DATA, EXAMPLES
 
 from treestroke.core.pipeline.finishing import TreeModel
-from treestroke.core.pipeline.growing import see
+from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.photo import model_photo, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes
@@ -21,7 +21,7 @@ def given(tree: Path) -> tuple[np.ndarray, Strokes]:
 
 
 def modelled(tree: Path, settings: ModelSettings = QUICK, seed: int = 0) -> TreeModel:
-    return model_photo(see(*given(tree)), settings, np.random.default_rng(seed))
+    return model_photo(read_photo(*given(tree)), settings, np.random.default_rng(seed))
 
 
 def enlarged(strokes: Strokes, factor: float) -> Strokes:
@@ -72,7 +72,7 @@ def huge() -> TreeModel:
     factor = 6000 / max(photo.shape[:2])
     size = (6000, round(photo.shape[0] * factor))
     large = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_CUBIC), dtype=np.uint8)
-    return model_photo(see(large, enlarged(strokes, factor)), QUICK, np.random.default_rng(0))
+    return model_photo(read_photo(large, enlarged(strokes, factor)), QUICK, np.random.default_rng(0))
 
 
 def test_a_large_photo_gives_its_camera_in_its_own_pixels(maple: TreeModel, huge: TreeModel) -> None:
@@ -130,7 +130,7 @@ def test_progress_names_the_stages_in_order() -> None:
     def report(stage: str, _: float) -> None:
         seen.append(stage)
 
-    found = see(*given(MAPLE), None, report)
+    found = read_photo(*given(MAPLE), None, report)
     model_photo(found, ModelSettings(iterations=5), np.random.default_rng(0), report)
     assert list(dict.fromkeys(seen)) == STAGES
 

@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 from tests.builders import fork, oak, stick
 
-from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.envelope import Depth, Envelope
+from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.outline_volume import TurnedOutline, TwoOutlines
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.survey.measures import Measures, Scale, measure_tree
+from treestroke.core.survey.measures import Measures, Scale, Stature, measure_tree
 
-CAMERA = Camera(400, 500, 0.01, (200.0, 450.0))
+CAMERA = OrthographicCamera(400, 500, 0.01, (200.0, 450.0))
 ROWS = np.arange(500)
-DISC = Envelope(CAMERA, np.full(500, 200.0), np.where((ROWS >= 100) & (ROWS < 300), 100.0, 0.0))
+DISC = TurnedOutline(CAMERA, np.full(500, 200.0), np.where((ROWS >= 100) & (ROWS < 300), 100.0, 0.0), ())
 GIVEN, KNOWN = Scale(0.01, False, 0.0), Scale(0.01, True, 0.05)
 
 
 def measured(skeleton: Skeleton, scale: Scale = GIVEN, seen: bool = True, foliage: object = None) -> Measures:
     places = None if foliage is None else np.asarray(foliage, dtype=np.float64)
-    return measure_tree(skeleton, 4.0, seen, places, 12.0, DISC, scale)
+    return measure_tree(skeleton, Stature(4.0, scale, seen, DISC), places, 12.0)
 
 
 def test_a_trunk_is_measured_at_breast_height() -> None:
@@ -85,8 +85,8 @@ def test_branches_are_counted_by_order() -> None:
 
 
 def test_a_drawn_side_makes_the_depth_as_sure_as_the_width_and_the_volume_that_of_ellipses() -> None:
-    slim = replace(DISC, depth=Depth(np.zeros(500), 0.5 * DISC.radius_px))
-    figures = measure_tree(oak(), 4.0, True, None, 12.0, slim, GIVEN).figures
+    slim = TwoOutlines(CAMERA, DISC.middle_px, DISC.radius_px, (), np.zeros(500), 0.5 * DISC.radius_px)
+    figures = measure_tree(oak(), Stature(4.0, GIVEN, True, slim), None, 12.0).figures
     width, depth = figures["crown_width"], figures["crown_depth"]
     assert (depth.basis, figures["crown_volume"].basis) == ("measured", "derived")
     assert depth.high / depth.value == pytest.approx(width.high / width.value)

@@ -130,19 +130,19 @@ class OrthographicCamera:
         return self.heights_from_rows(np.arange(self.height, dtype=np.float64) + 0.5)
 
     def heights_from_rows(self, rows_px: Floats) -> Floats:
-        """Convert picture rows (...), px, to heights (...), metres above the root."""
+        """Convert picture rows (n,), px, to heights (n,), metres above the root."""
         return np.asarray((self.root_px[1] - rows_px) * self.metres_per_pixel)
 
     def rows_from_heights(self, heights_m: Floats) -> Floats:
-        """Convert heights (...), metres above the root, to picture rows (...), px."""
+        """Convert heights (n,), metres above the root, to picture rows (n,), px."""
         return np.asarray(self.root_px[1] - heights_m / self.metres_per_pixel)
 
     def metres_from_pixels(self, lengths_px: Floats | float) -> Floats:
-        """Convert lengths (...) in the picture, px, to metres."""
+        """Convert lengths in the picture, px, one or (n,), to metres."""
         return np.asarray(lengths_px * self.metres_per_pixel)
 
     def pixels_from_metres(self, lengths_m: Floats | float) -> Floats:
-        """Convert lengths (...), metres, to lengths in the picture, px."""
+        """Convert lengths, metres, one or (n,), to lengths in the picture, px."""
         return np.asarray(lengths_m / self.metres_per_pixel)
 
 

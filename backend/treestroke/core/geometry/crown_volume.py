@@ -36,7 +36,10 @@ class Silhouette(Generic[CameraT]):
 
 
 def shown_by_all(silhouettes: Iterable[Silhouette[Camera]], points_world: Floats) -> Mask:
-    """Tell which world points (n, 3), metres, project onto every silhouette; all where there is none: flags (n,)."""
+    """Tell which world points (n, 3), metres, project onto every silhouette: flags (n,); all without silhouettes.
+
+    Source: the visual hull (Laurentini 1994).
+    """
     shown = np.ones(len(points_world), dtype=np.bool_)
     for silhouette in silhouettes:
         shown &= silhouette.shows(points_world)

@@ -8,9 +8,9 @@ from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.types import Floats, Indices, Mask
 
 CELLS = 1500
-"""About so many cells lie in the crown: each is as wide as a small branch is long."""
+"""Number of cells that lie in the crown, about: each is then as wide as a small branch is long."""
 _COARSE = 24
-"""Cells along the longest side of the crown's box, to take its volume by."""
+"""Cells along the longest side of the crown's box, for a first estimate of its volume."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +30,7 @@ class CrownCells:
     count
         Cells whose middle is inside.
     wood
-        Metres of branches in each cell, flat; changed by `lay`.
+        (cells,) length of the branches in each cell, metres, flat; changed by `lay`.
     """
 
     volume: CrownVolume
@@ -47,7 +47,7 @@ class CrownCells:
 
     @property
     def size(self) -> float:
-        """Side, metres, of a cube as large as the crown."""
+        """Side, metres, of a cube of the crown's volume."""
         return float(self.cubic_metres ** (1 / 3))
 
     def inside(self, points: Floats, reach: Floats | float = 1.0) -> Mask:
@@ -55,15 +55,15 @@ class CrownCells:
         return np.asarray(self.volume.shown(points) & (self.volume.reach(points) <= np.maximum(reach, 1.0)))
 
     def lay(self, points: Floats, lengths: Floats) -> None:
-        """Add branches: pieces of so many metres (n,) about points (n, 3)."""
+        """Add pieces of branches: their lengths (n,), metres, at points (n, 3), metres."""
         self.wood[:] += np.bincount(self._cells(points), lengths, minlength=len(self.wood))
 
     def around(self) -> Floats:
-        """Mean wood of each cell and its 26 neighbours, flat, metres."""
+        """Return the mean wood, metres, of each cell and its 26 neighbours: (cells,), flat."""
         return _blurred(self.wood.reshape(self.shape)).ravel()
 
     def at(self, points: Floats, values: Floats) -> Floats:
-        """Look up flat values in the cells of points (n, 3); points outside the box take its border's."""
+        """Look up values (cells,), flat, at points (n, 3), metres: (n,); beyond the box those of its border."""
         return np.asarray(values[self._cells(points)])
 
     def _cells(self, points: Floats) -> Indices:
@@ -90,7 +90,7 @@ def _laid(volume: CrownVolume, side: float) -> CrownCells:
 
 
 def _blurred(values: Floats) -> Floats:
-    """Average cubes of 3 x 3 x 3 cells; outside the box nothing is."""
+    """Average cubes of 3 x 3 x 3 cells; beyond the box values are 0."""
     for axis in range(3):
         wide = np.moveaxis(np.pad(values, [(int(axis == one),) * 2 for one in range(3)]), axis, 0)
         values = np.moveaxis(wide[:-2] + wide[1:-1] + wide[2:], 0, axis)

@@ -15,12 +15,13 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
 MOST_STRETCH = 6.0
+"""Greatest factor by which subtrees on a stem are stretched."""
 THINNING = 0.75
-"""A shoot's radius over its bearer's, for the order of candidates (the paper's rule)."""
+"""A shoot's radius over its parent branch's, for the order of candidates (Tan et al. 2008, section 3.2)."""
 NARROW = 0.15
-"""Of the crown's greatest radius: a lower section narrower than this is a stem that the foliage mask took in."""
+"""Low sections narrower than this share of the crown's greatest radius are a stem that the foliage mask includes."""
 PATIENCE = 10.0
-"""Times a branch may stand as a candidate in vain before it stands as if it were one generation later."""
+"""Times that a branch is a candidate without being chosen before it counts as one generation later."""
 
 
 class Growing:
@@ -41,7 +42,7 @@ class Growing:
         room = self.count + params.iterations * max(len(subtree.parents) for subtree in library)
         self.bases, self.tips = np.zeros((2, room, 3))
         self.radius, self.fraction, self.stood = np.zeros((3, room))
-        self.generation, self.bearer, self.born = np.full((3, room), -1)
+        self.generation, self.parent, self.born = np.full((3, room), -1)
         self.open = np.zeros(room, dtype=bool)
         self._add_chains(visible)
         self._tell_evaluator(0)
@@ -49,7 +50,7 @@ class Growing:
         self._turn_tips(0)
 
     def run(self, rng: np.random.Generator, report: Report) -> list[tuple[int, int, int]]:
-        """Replace branch after branch; list what was chosen."""
+        """Replace branch after branch; list the (branch, subtree, angle) chosen."""
         choices = []
         for iteration in range(1, self.params.iterations + 1):
             choice = self._choose(iteration, rng)
@@ -60,10 +61,10 @@ class Growing:
         return choices
 
     def table(self) -> BranchTable:
-        """Give the branches as arrays."""
+        """Return the branches as arrays."""
         own = slice(0, self.count)
         # Rounded, so that shoots that stand together share a joint.
-        return BranchTable(self.bearer[own], np.round(self.fraction[own], 6), self.tips[own], self.born[own])
+        return BranchTable(self.parent[own], np.round(self.fraction[own], 6), self.tips[own], self.born[own])
 
     def _add_chains(self, visible: Skeleton) -> None:
         """Fill the columns with the visible branches; a stem counts as thick up to its top, so that it comes first."""
@@ -112,7 +113,7 @@ class Growing:
         return chosen
 
     def _replace(self, choice: Choice, iteration: int) -> None:
-        """Let a branch bear the shoots of a placement."""
+        """Add the shoots of a placement to a branch."""
         first = self.count
         self.open[choice.branch] = False
         for shoot in self.evaluator.place(choice):
@@ -121,18 +122,18 @@ class Growing:
             self._tell_evaluator(first)
             self._turn_tips(first)
 
-    def _add(self, shoot: Shoot, bearer: int, iteration: int) -> None:
+    def _add(self, shoot: Shoot, parent: int, iteration: int) -> None:
         """Fill the next row with a shoot."""
         i = self.count
         self.bases[i], self.tips[i] = shoot.base, shoot.tip
-        self.bearer[i], self.fraction[i], self.born[i] = bearer, min(shoot.fraction, 1.0), iteration
-        self.generation[i] = self.generation[bearer] + 1
-        self.radius[i] = self.radius[bearer] * THINNING
+        self.parent[i], self.fraction[i], self.born[i] = parent, min(shoot.fraction, 1.0), iteration
+        self.generation[i] = self.generation[parent] + 1
+        self.radius[i] = self.radius[parent] * THINNING
         self.open[i] = self._is_long(i)
         self.count += 1
 
     def _tell_evaluator(self, first: int) -> None:
-        """Hand the branches from ``first`` on to the evaluator."""
+        """Pass the branches from ``first`` on to the evaluator."""
         own = slice(first, self.count)
         scales = np.array([[tree.replaces != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
         for stem in np.flatnonzero(self.generation[own] == 1).tolist():
@@ -153,7 +154,7 @@ class Growing:
 
 
 def rules_for(params: GrowthParams, unit: float) -> Rules:
-    """Scale the figures of a placement to the photo."""
+    """Scale the figures of a placement to the crown's pixels."""
     return Rules(
         params.spacing_px * unit, params.closeness_px * unit, params.keep_share, params.inward_cosine, params.angles
     )
@@ -168,7 +169,7 @@ def _chains(visible: Skeleton, crown: GrowthSpace, params: GrowthParams) -> list
 
 
 def _known_radii(visible: Skeleton) -> Floats:
-    """Give joints (n,) of unknown radius their parent's."""
+    """Return the radii (n,), px, where joints of unknown radius have their parent's."""
     radii = visible.radii.copy()
     for joint, parent in enumerate(visible.parents.tolist()):
         if radii[joint] == 0 and parent >= 0:

@@ -1,4 +1,4 @@
-"""What growth gives, by whatever method."""
+"""The result of growth, by any method."""
 
 from dataclasses import dataclass
 
@@ -15,11 +15,11 @@ class Grown:
     skeleton
         The whole tree, 3D, metres, world frame, with radii by the pipe model.
     born
-        (n,) iteration (or level) at which each joint appeared, from 1; 0 for those of the visible tree.
+        (n,) iteration (or level) at which each joint appeared, from 1; 0 for joints of the visible tree.
     choices
-        (k, 3) the branch, subtree and angle of each replacement; none where growth does not replace.
+        (k, 3) the branch, subtree and angle of each replacement; empty where growth does not replace.
     attractors_reached
-        Share of the image attractors within 10 px (of a crown 1,000 px wide) of a branch; 0 where there are none.
+        Share of the image attractors within 10 px (of a crown 1,000 px wide) of a branch; 0 without attractors.
     """
 
     skeleton: Skeleton

@@ -1,8 +1,8 @@
-"""Limbs whose stroke ends before their crown does: how they go on.
+"""Extends limbs whose stroke ends before the crown does.
 
-A person draws the first stretch of a limb, or the tracer loses it among leaves. Left alone it would stand as a stub.
-Each is carried on along a curve into the room that is left, thick limbs first, as far as wood of its thickness
-reaches; of the curves tried the one with most free room around it wins, as in lifting (Okabe et al. 2005).
+A person draws only the first stretch of a limb, or the tracer loses it among leaves; as it is it would stand as a stub.
+Each is extended along a curve into free space, thick limbs first, as far as wood of its thickness reaches; of the
+curves tried, the one with most free space around it is taken, as in lifting (Okabe et al. 2005).
 """
 
 from typing import NamedTuple
@@ -20,31 +20,31 @@ from treestroke.core.skeleton.traverse import limbs
 from treestroke.core.types import Floats, Indices
 
 JOINT_SHARE = 0.02
-"""Of the crown's height: between the joints of what is carried on."""
+"""Distance between new joints, as a share of the crown's height."""
 LEAST_LIMB = 0.05
-"""Of the crown's height: a shorter limb is a spur and stays."""
+"""Limbs shorter than this share of the crown's height are spurs and stay as they are."""
 AIM_SHARE = 0.08
-"""Of the crown's height: the last stretch of a limb, which tells where it was going and how thick it was."""
+"""Length of a limb's last stretch, which gives its direction and thickness, as a share of the crown's height."""
 SLENDER = 55.0
-"""Length of what is carried on over the radius it begins with, at most."""
+"""Greatest length of an extension over the radius that it begins with."""
 LEAST_REACH, MOST_REACH = 0.1, 0.5
-"""Bounds of that length, of the crown's height."""
+"""Bounds of that length, as shares of the crown's height."""
 MOST_GAP = 0.2
-"""Of the crown's height: how far below the foliage a limb may end and still be carried on into it."""
+"""How far below the foliage a limb may end and still be extended into it, as a share of the crown's height."""
 ROOM = 0.12
-"""Of the crown's height: free room beyond this counts no more."""
+"""Free space beyond this share of the crown's height counts no further."""
 LEAST_ROOM = 0.03
-"""Of the crown's height: mean free room without which a limb stays as it is."""
+"""Least mean free space along an extension, as a share of the crown's height; with less, a limb stays as it is."""
 SWERVES = (0.0, 0.5, 1.0, 1.7)
-"""How far sideways a curve's end is tried, over its length ahead."""
+"""Sideways offsets of the curves' ends that are tried, over their length ahead."""
 TURNS = 6
 LENGTHS = (1.0, 0.75, 0.5, 0.3)
 RISE = 0.35
 """Weight of the vertical in the direction of a curve's end (phototropism)."""
 WITHIN = 0.92
-"""Share of the envelope's radius that curves may use."""
+"""Share of the crown's radius that curves may use."""
 THINNED = 0.35
-"""Radius at the end of what is carried on over that at its start; the pipe model has the last word (`radii`)."""
+"""Radius at an extension's end over that at its start, before the pipe model sets the final radii (`radii`)."""
 
 
 class _End(NamedTuple):
@@ -56,11 +56,13 @@ class _End(NamedTuple):
     reach: float
 
 
-def with_limbs_carried_on(skeleton: Skeleton, crown: GrowthSpace) -> Skeleton:
-    """Carry on the limbs of a visible tree (px) that end under the crown or in it with free room ahead.
+def with_limbs_extended(skeleton: Skeleton, crown: GrowthSpace) -> Skeleton:
+    """Extend the limbs of a visible tree (px) that end under the crown, or in it with free space ahead.
 
-    What is carried on ends inside the crown and below the tree's highest joint. It may cross a gap between a limb's
-    end and the foliage. Its radii fall from the limb's own.
+    An extension ends inside the crown and below the tree's highest joint. It may cross a gap between the limb's end
+    and the foliage. Its radii fall from the limb's own.
+
+    Source: our own; the choice by free space follows Okabe et al. 2005.
     """
     rows = np.flatnonzero(crown.mask.any(axis=1))
     height = float(rows[-1] - rows[0] + 1)
@@ -72,7 +74,7 @@ def with_limbs_carried_on(skeleton: Skeleton, crown: GrowthSpace) -> Skeleton:
 
 
 def _ends(skeleton: Skeleton, height: float) -> list[_End]:
-    """List the ends of limbs, thick ones first; the highest joint ends the leader and is none."""
+    """List the ends of limbs, thick ones first, without the highest joint, which ends the leader."""
     highest = int(np.argmin(skeleton.points[:, 1]))
     arc = path_lengths(skeleton)
     found = []
@@ -94,7 +96,7 @@ def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
 
 
 def _best_path(skeleton: Skeleton, end: _End, crown: GrowthSpace, height: float) -> Floats:
-    """Choose the curve (k, 3) with most free room along it, without its start; (0, 3) where there is none."""
+    """Choose the curve (k, 3), px, with most free space along it, without its start; (0, 3) where none fits."""
     start = skeleton.points[end.joint]
     others = skeleton.points[_away(skeleton, end.joint, AIM_SHARE * height)]
     top = float(skeleton.points[:, 1].min()) + JOINT_SHARE * height
@@ -135,7 +137,7 @@ def _curve(start: Floats, way: Floats, chord: Floats, step: float) -> Floats:
 
 
 def _inside(path: Floats, crown: GrowthSpace) -> NDArray[np.bool_]:
-    """Tell which points (k, 3) lie in the crown, clear of the envelope's surface."""
+    """Tell which points (k, 3) lie in the crown, clear of its surface."""
     row = np.clip(np.floor(path[:, 1]).astype(np.int64), 0, len(crown.middle) - 1)
     inner = np.hypot(path[:, 0] - crown.middle[row], path[:, 2]) <= WITHIN * crown.radius[row]
     return np.asarray(crown.inside(path) & inner)

@@ -1,7 +1,7 @@
 """Growth by replacement: branch after branch takes the subtree that best fills the crown.
 
 Tan, Fang, Xiao, Zhao and Quan 2008, sections 3.1 and 3.2, with these changes, each measured: a branch is replaced
-once, so that limbs do not become bottle brushes; pruning is part of the evaluation, else the same pruned winner wins
+once, so that limbs do not look like bottle brushes; pruning is part of the evaluation, else the same pruned winner wins
 again and again; a shoot that leaves the crown is clipped, and the crown bounds depth too; shoots that grow inward
 go; subtrees on a stem are stretched toward the crown's edge.
 """
@@ -18,7 +18,7 @@ from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.growth_space import growth_space, pixel_frame
 from treestroke.core.grow.library import Subtree
-from treestroke.core.grow.limb_ends import with_limbs_carried_on
+from treestroke.core.grow.limb_ends import with_limbs_extended
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.radii import pipe_radii
 from treestroke.core.grow.stem import foot_of, with_leader
@@ -55,9 +55,11 @@ def grow(
 ) -> Grown:
     """Fill the crown of a lifted tree (3D, metres, measured radii) with branches.
 
-    New joints project into the front silhouette and lie within the volume, save where a stem or limb is carried on from
-    below the foliage into it; visible joints stay where they are. Without iterations no limb is carried on and no twig
+    New joints project into the front silhouette and lie within the volume, except where a stem or limb is extended from
+    below the foliage into it; visible joints stay where they are. Without iterations no limb is extended and no twig
     grows. ``report("grow", fraction)`` is called with each iteration.
+
+    Source: Tan et al. 2008, sections 3.1 and 3.2; the module's head says where we differ.
 
     Raises
     ------
@@ -71,7 +73,7 @@ def grow(
     visible = Skeleton(frame.pixels_of(skeleton.points), camera.pixels_from_metres(skeleton.radii), skeleton.parents)
     visible = with_leader(visible, mask, frame.sections, params.leader)
     space = growth_space(crown.front, frame.sections, foot_of(visible, mask))
-    visible = with_limbs_carried_on(visible, space) if params.iterations else visible
+    visible = with_limbs_extended(visible, space) if params.iterations else visible
     evaluator = evaluator_for(space, method.library, rules_for(params, space.unit))
     growth = Growing(visible, space, method.library, params, evaluator)
     choices = growth.run(rng, report)

@@ -1,13 +1,13 @@
-"""Growth by self-similarity: small branches are copies of the first part of those that bear them.
+"""Growth by self-similarity: small branches are copies of the first part of their parent branches.
 
 Depth retrieval from two sketches, section 6 (equation 8, table 1): a branch's first part is copied to one of
-its nodes at an angle t with it, and at an angle f with the sibling before. The paper names as its limits that small
-branches spread unevenly and that nothing rules their number; so, with these changes:
+its nodes at an angle t with it, and at an angle f with the sibling before. The paper's stated limits are that small
+branches spread unevenly and that their number is not controlled; hence these changes:
 
-- Copies are scaled: 0.3 of a stem would be a giant, so that a copy is never longer than a share of the crown, and
-  shorter toward its bearer's tip. They bow and rise a little, as twigs do.
-- Buds stand the closer, the emptier the crown is around them, and of several copies within the ranges each takes the
-  one that reaches the emptiest part of the crown. Buds whose every copy is crowded or cut to a stub are removed.
+- Copies are scaled: 0.3 of a stem would be too long, so a copy's length is bounded by a share of the crown's size and
+  falls toward the parent branch's tip. Copies bow and rise a little, as twigs do.
+- Buds stand closer where the crown is emptier, and of several copies within the ranges the one that reaches the
+  emptiest part of the crown is taken. Buds whose copies are all crowded or cut to a stub are removed.
 """
 
 from dataclasses import dataclass
@@ -27,32 +27,32 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
 FAN = 5.0
-"""Small branches of a level for each of the level before, where all find room."""
+"""Small branches of a level per branch of the level before, where there is room."""
 SPARE = 1.3
-"""Buds tried for each small branch that is wanted."""
+"""Buds tried per small branch."""
 TRIED = 8
-"""Copies tried for each bud."""
+"""Copies tried per bud."""
 LIGHT = 0.03
-"""Worth of growing straight up, where growing into empty crown is worth 1."""
+"""Score of growing straight up, where growing into empty crown scores 1."""
 TAPER = (1.4, 0.6)
-"""Length at the bearer's bud and at its tip, over that of the copied part."""
+"""Length of a copy at the parent branch's bud and at its tip, over that of the copied part."""
 SCATTER = (0.8, 1.6)
-"""Random factor on it."""
+"""Bounds of a random factor on that length."""
 BOW = 0.05
 """Standard deviation of a branch's bow, over its length."""
 SHORTEST = 0.06
-"""Least length of a small branch of the first level, over the crown's size, unless that is half its bearer's."""
+"""Least length of a small branch of the first level, over the crown's size; at most half its parent branch's."""
 FILLED, STRETCHED = 1.2, 2.0
-"""How far about a branch its small ones fill the crown, over their length, and how far they are stretched to do so."""
+"""Distance around a branch that its small branches fill, over their length, and most that they are stretched for it."""
 PIECES, MOST_PIECES, LEAST_PIECES = 8, 20, 4
-"""Pieces of a small branch of the first level, halved with each further one; most; and those of the last level."""
+"""Pieces of a small branch at the first level, halved with each level; most pieces; pieces at the last level."""
 SLACK = 0.03
-"""How much further out than its bud a small branch may reach where a limb was drawn beyond the crown's solid."""
+"""How much further out than its bud (`CrownVolume.reach`) a small branch may grow on a limb outside the volume."""
 GIRTH, TWIG = 0.0175, 0.00028
 """Radius of a stem whose sketch has no width, and of the thinnest twigs, as shares of the tree's height."""
 
 SLENDER = 20.0
-"""Radii of a brush over which its stroke's end gets thin: a brush as broad at its end as before would leave a club."""
+"""Length over which a drawn stem tapers at its end, in radii of the brush; otherwise it would end as a club."""
 
 
 @dataclass(frozen=True)
@@ -62,25 +62,25 @@ class SelfSimilarParams:
     Attributes
     ----------
     share
-        Part of the bearer's points that is copied (the paper's s).
+        Share of the parent branch's points that is copied (the paper's s).
     cos_angle
-        Least and greatest cosine of the angle between bearer and small branch (cos t1, cos t2).
+        Least and greatest cosine of the angle between parent and small branch (cos t1, cos t2).
     cos_turn
-        Least and greatest cosine of the angle, about the bearer, between a small branch and the next (cos f1, cos f2).
+        Least and greatest cosine of the angle, about the parent, between a small branch and the next (cos f1, cos f2).
     levels
         Levels of small branches (l).
     most
-        Small branches in all, where there is room.
+        Most small branches of all levels.
     longest
         Greatest length of a small branch, over the crown's size (the side of a cube as large).
     spacing
         Least distance of buds on a drawn branch, over the crown's size; halved with each level.
     crowded
-        Wood around a small branch, over its fair share, from which on its bud is removed.
+        Wood around a small branch, over its even share, above which its bud is removed.
     stub
-        Share of a small branch that must lie in the crown, else it is none.
+        Least share of a small branch that must lie in the crown; with less it is removed.
     rise
-        How far a tip rises, over its branch's length.
+        How far a tip is raised, over its branch's length.
     """
 
     share: float = 0.3
@@ -105,7 +105,7 @@ class SelfSimilarParams:
 
 @dataclass(frozen=True, eq=False)
 class _Shoots:
-    """Small branches: the bearers' node (n,) of each, points (n, m + 1, 3) from there on, and joints kept (n,)."""
+    """Small branches: the node (n,) that each leaves, points (n, m + 1, 3) from there on, and joints kept (n,)."""
 
     nodes: Indices
     points: Floats
@@ -149,22 +149,23 @@ def grow_small(
     """Fill the crown of a 3D tree (metres; radius 0 where unknown) with small branches.
 
     The joints of ``main`` come first, in their order and where they were, born 0; those of small branches, born at
-    their level, lie in both views. ``report("grow", fraction)`` is called level by level. Deterministic.
+    their level, lie where the crown is shown (`CrownVolume.shown`). ``report("grow", fraction)`` is called level by
+    level. Deterministic.
     """
     skeleton, cells = main.skeleton, crown_cells(volume)
     cells.lay(skeleton.points, edge_lengths(skeleton) * volume.shown(skeleton.points))
     points, parents, born = [skeleton.points], [skeleton.parents], [np.zeros(len(main), dtype=np.int64)]
-    left, count, bearers = params.most, len(main), parents_from_main(main, params.share, _pieces(1, len(main), params))
+    left, count, branches = params.most, len(main), parents_from_main(main, params.share, _pieces(1, len(main), params))
     for number in range(1, params.levels + 1 if cells.count else 1):
         quota = int(np.ceil(left / (FAN ** np.arange(params.levels - number + 1)).sum()))
-        shoots = _sprouted(bearers, cells, _Plan(number, quota, params), rng)
-        joints = _numbered(shoots, bearers, count)
+        shoots = _sprouted(branches, cells, _Plan(number, quota, params), rng)
+        joints = _numbered(shoots, branches, count)
         own = joints[:, 1:] >= 0
         points.append(shoots.points[:, 1:][own])
         parents.append(joints[:, :-1][own])
         born.append(np.full(len(points[-1]), number))
         left, count = left - len(shoots.nodes), count + len(points[-1])
-        bearers = parents_from_small(shoots.points, joints, params.share, _pieces(number + 1, len(points[-1]), params))
+        branches = parents_from_small(shoots.points, joints, params.share, _pieces(number + 1, len(points[-1]), params))
         report("grow", number / params.levels)
     return _finished(np.concatenate(points), np.concatenate(parents), np.concatenate(born), skeleton)
 
@@ -177,17 +178,17 @@ def _pieces(level: int, bearing: int, params: SelfSimilarParams) -> int:
     return int(np.clip(SPARE * params.most / max(usual, 1), PIECES >> (level - 1), MOST_PIECES))
 
 
-def _numbered(shoots: _Shoots, bearers: ParentBranches, first: int) -> Indices:
-    """Give numbers to joints (n, m + 1) of small branches, from ``first`` on, behind their node's; -1 where cut."""
+def _numbered(shoots: _Shoots, branches: ParentBranches, first: int) -> Indices:
+    """Assign numbers to joints (n, m + 1) of small branches, from ``first`` on, behind their node's; -1 where cut."""
     joints = np.full((len(shoots.nodes), shoots.points.shape[1]), -1, dtype=np.int64)
-    joints[:, 0] = bearers.joints[shoots.nodes]
+    joints[:, 0] = branches.joints[shoots.nodes]
     own = np.arange(1, joints.shape[1]) <= shoots.kept[:, None]
     joints[:, 1:][own] = first + np.arange(np.count_nonzero(own))
     return joints
 
 
 def _finished(points: Floats, parents: Indices, born: Indices, main: Skeleton) -> Grown:
-    """Give the tree its radii: drawn ones stay where they are known, the rest carries its twigs (da Vinci)."""
+    """Set the tree's radii: drawn ones stay where they are known, the others follow the pipe model."""
     height = float(np.ptp(points[:, 1]))
     known = np.concatenate([main.radii, np.zeros(len(points) - len(main))])
     known[0] = known[0] if known[0] > 0 else max(GIRTH * height, float(known.max()))
@@ -195,30 +196,30 @@ def _finished(points: Floats, parents: Indices, born: Indices, main: Skeleton) -
     return Grown(Skeleton(points, radii, parents), born, np.zeros((0, 3), dtype=np.int64))
 
 
-def _sprouted(bearers: ParentBranches, cells: CrownCells, plan: _Plan, rng: np.random.Generator) -> _Shoots:
+def _sprouted(branches: ParentBranches, cells: CrownCells, plan: _Plan, rng: np.random.Generator) -> _Shoots:
     """Let the small branches of a level grow, on all parent branches at a time, each from its tip down."""
     spacing = plan.params.spacing * cells.size * 0.5 ** (plan.number - 1)
-    buds = _buds(bearers, cells, round(SPARE * plan.most), spacing)
-    level = _ruled(bearers, bearers.branch[buds], cells, plan)
-    rank, before = _ranks(bearers.branch[buds]), np.zeros((len(bearers.lengths), 3))
-    grown, left = [_best(buds[:0], bearers, before, level, rng)], plan.most
+    buds = _buds(branches, cells, round(SPARE * plan.most), spacing)
+    level = _ruled(branches, branches.branch[buds], cells, plan)
+    rank, before = _ranks(branches.branch[buds]), np.zeros((len(branches.lengths), 3))
+    grown, left = [_best(buds[:0], branches, before, level, rng)], plan.most
     for turn in range(int(rank.max(initial=-1)) + 1):
-        shoots = _best(buds[rank == turn], bearers, before, level, rng).at(slice(left))
+        shoots = _best(buds[rank == turn], branches, before, level, rng).at(slice(left))
         own = np.arange(1, shoots.points.shape[1]) <= shoots.kept[:, None]
         cells.lay(shoots.points[:, 1:][own], np.sqrt((np.diff(shoots.points, axis=1) ** 2).sum(axis=2))[own])
-        before[bearers.branch[shoots.nodes]] = shoots.points[:, -1] - shoots.points[:, 0]
+        before[branches.branch[shoots.nodes]] = shoots.points[:, -1] - shoots.points[:, 0]
         grown, left = [*grown, shoots], left - len(shoots.nodes)
     return _Shoots(*(np.concatenate([getattr(one, name) for one in grown]) for name in ("nodes", "points", "kept")))
 
 
-def _ruled(bearers: ParentBranches, branch: Indices, cells: CrownCells, plan: _Plan) -> _Level:
-    """Set the lengths of a level, longer where branches stand far apart, and what wood is fair in the cells they reach.
+def _ruled(branches: ParentBranches, branch: Indices, cells: CrownCells, plan: _Plan) -> _Level:
+    """Set a level's lengths, longer where branches stand far apart, and the even share of wood in the cells they reach.
 
     ``branch`` (b,) is that of each bud.
     """
     params = plan.params
-    size, copied = cells.size * 0.5 ** (plan.number - 1), params.share * bearers.lengths
-    apart = np.sqrt(cells.cubic_metres / (np.pi * max(float(bearers.weight.sum()), 1e-12)))
+    size, copied = cells.size * 0.5 ** (plan.number - 1), params.share * branches.lengths
+    apart = np.sqrt(cells.cubic_metres / (np.pi * max(float(branches.weight.sum()), 1e-12)))
     stretch = np.clip(apart / max(FILLED * float(copied[branch].mean()), 1e-12), 1, STRETCHED) if len(branch) else 1.0
     lengths = np.maximum(stretch * copied, np.minimum(SHORTEST * size, copied / params.share / 2))
     longest = params.longest * size
@@ -227,11 +228,11 @@ def _ruled(bearers: ParentBranches, branch: Indices, cells: CrownCells, plan: _P
     return _Level(lengths, longest, float(cells.wood.sum() + likely) / min(reached, cells.count), cells, params)
 
 
-def _buds(bearers: ParentBranches, cells: CrownCells, count: int, spacing: float) -> Indices:
-    """Choose up to so many nodes, the closer to each other the emptier the crown is around them."""
-    inside = cells.inside(bearers.points, np.inf)
-    around = cells.at(bearers.points, cells.around())
-    weight = bearers.weight * inside
+def _buds(branches: ParentBranches, cells: CrownCells, count: int, spacing: float) -> Indices:
+    """Choose up to ``count`` nodes, closer to each other where the crown is emptier."""
+    inside = cells.inside(branches.points, np.inf)
+    around = cells.at(branches.points, cells.around())
+    weight = branches.weight * inside
     total = float(weight.sum())
     if total <= 0 or count <= 0:
         return np.zeros(0, dtype=np.int64)
@@ -247,13 +248,13 @@ def _ranks(branch: Indices) -> Indices:
     return np.asarray(last[np.searchsorted(last, np.arange(len(branch)))] - np.arange(len(branch)))
 
 
-def _best(nodes: Indices, bearers: ParentBranches, before: Floats, level: _Level, rng: np.random.Generator) -> _Shoots:
+def _best(nodes: Indices, branches: ParentBranches, before: Floats, level: _Level, rng: np.random.Generator) -> _Shoots:
     """Try copies at each node (b,), take the one that reaches the emptiest part of the crown, and drop poor ones."""
     params, cells, wood = level.params, level.cells, level.cells.around()
-    directions = _directions(bearers.along[nodes], before[bearers.branch[nodes]], params, rng)
-    points = _copies(nodes, bearers, directions, level, rng)
+    directions = _directions(branches.along[nodes], before[branches.branch[nodes]], params, rng)
+    points = _copies(nodes, branches, directions, level, rng)
     own, shape = points[:, :, 1:].reshape(-1, 3), (*points.shape[:2], points.shape[2] - 1)
-    reach = np.repeat(cells.volume.reach(bearers.points[nodes]) + SLACK, shape[1] * shape[2])
+    reach = np.repeat(cells.volume.reach(branches.points[nodes]) + SLACK, shape[1] * shape[2])
     inside = np.cumprod(cells.inside(own, reach).reshape(shape), axis=2)
     around = cells.at(own, wood).reshape(shape)
     kept = inside.sum(axis=2)
@@ -266,7 +267,7 @@ def _best(nodes: Indices, bearers: ParentBranches, before: Floats, level: _Level
 
 
 def _directions(along: Floats, before: Floats, params: SelfSimilarParams, rng: np.random.Generator) -> Floats:
-    """Draw directions (b, TRIED, 3) at the angles t to the bearers' (b, 3), and f about them to the sibling before."""
+    """Draw directions (b, TRIED, 3) at angles t to the parents' (b, 3), and f about them to the sibling before."""
     b = len(along)
     cos_t, cos_f = rng.uniform(*params.cos_angle, (b, TRIED)), rng.uniform(*params.cos_turn, (b, TRIED))
     turn = np.where(rng.random((b, TRIED)) < 0.5, 1.0, -1.0) * np.arccos(cos_f)
@@ -280,10 +281,10 @@ def _directions(along: Floats, before: Floats, params: SelfSimilarParams, rng: n
 
 
 def _copies(
-    nodes: Indices, bearers: ParentBranches, directions: Floats, level: _Level, rng: np.random.Generator
+    nodes: Indices, branches: ParentBranches, directions: Floats, level: _Level, rng: np.random.Generator
 ) -> Floats:
-    """Copy the bearers' first parts to nodes (b,) in directions (b, TRIED, 3): points (b, TRIED, m + 1, 3)."""
-    tries, shapes = directions.shape[:2], bearers.shapes[bearers.branch[nodes]]
+    """Copy the parents' first parts to nodes (b,) in directions (b, TRIED, 3): points (b, TRIED, m + 1, 3)."""
+    tries, shapes = directions.shape[:2], branches.shapes[branches.branch[nodes]]
     share = np.linspace(0, 1, shapes.shape[1])
     bow, roll = rng.normal(0, BOW, (*tries, 2)), rng.uniform(0, 2 * np.pi, tries)
     side, other = across(directions)
@@ -291,9 +292,9 @@ def _copies(
     frame = np.stack([directions, sides, np.cross(directions, sides)], axis=2)
     local = np.broadcast_to(shapes[:, None], (*tries, *shapes.shape[1:])).copy()
     local[..., 1:] += bow[:, :, None] * (4 * share * (1 - share))[:, None]
-    taper = TAPER[0] + (TAPER[1] - TAPER[0]) * bearers.place[nodes]
+    taper = TAPER[0] + (TAPER[1] - TAPER[0]) * branches.place[nodes]
     length = (
-        level.params.share * (bearers.lengths[bearers.branch[nodes]] * taper)[:, None] * rng.uniform(*SCATTER, tries)
+        level.params.share * (branches.lengths[branches.branch[nodes]] * taper)[:, None] * rng.uniform(*SCATTER, tries)
     )
     way = local @ frame + level.params.rise * (share**2)[:, None] * UP
-    return np.asarray(bearers.points[nodes][:, None, None] + np.minimum(length, level.longest)[..., None, None] * way)
+    return np.asarray(branches.points[nodes][:, None, None] + np.minimum(length, level.longest)[..., None, None] * way)

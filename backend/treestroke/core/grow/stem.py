@@ -10,12 +10,13 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
 JOINT_SHARE = 0.02
-"""Of the crown's height: between the joints of a stem that is carried on."""
+"""Distance between the joints of an extended stem, as a share of the crown's height."""
 SLACK = 0.03
+"""Share of the crown's height above the highest joint at which extending still is tried."""
 
 
 def stem_of(skeleton: Skeleton) -> Indices:
-    """List the joints of the first stem from its root to its tip, the way to its highest joint."""
+    """List the joints (k,), indices, of the first stem from its root to its tip, which is its highest joint."""
     successors = successors_by_wood(skeleton)
     joints = [0]
     while successors[joints[-1]] >= 0:
@@ -24,17 +25,17 @@ def stem_of(skeleton: Skeleton) -> Indices:
 
 
 def foot_of(skeleton: Skeleton, mask: NDArray[np.bool_]) -> Floats:
-    """Find where the first stem (px) enters the foliage (height, width); its tip where it never does."""
+    """Find where the first stem (px) enters the foliage (h, w): (3,), px; its tip where it never does."""
     stem = stem_of(skeleton)
     inside = in_mask(skeleton.points[stem], mask)
     return np.array(skeleton.points[stem[int(np.argmax(inside)) if inside.any() else -1]])
 
 
 def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], sections: Sections, share: float) -> Skeleton:
-    """Carry the first stem (px) on to a share of the crown's height, where no joint reaches that height.
+    """Extend the first stem (px) to a share of the height of the foliage (h, w), unless a joint reaches that height.
 
-    It goes straight to the envelope's middle, or as near to the top as it can without leaving the foliage once it
-    is inside. The new joints have radius 0: unknown.
+    It goes straight to the middle of the crown's section there, or of one as near to that height as it can without
+    leaving the foliage once it is inside. The new joints have radius 0: unknown.
     """
     rows = np.flatnonzero(mask.any(axis=1))
     height = float(rows[-1] - rows[0] + 1)
@@ -51,13 +52,13 @@ def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], sections: Sections,
 
 
 def _way(start: Floats, end: Floats, step: float) -> Floats:
-    """Place points (k, 3) at most ``step`` apart on the way to ``end``, without the start."""
+    """Place points (k, 3), px, at most ``step`` apart from ``start`` to ``end``, without the start."""
     count = max(int(np.ceil(np.sqrt(((end - start) ** 2).sum()) / step)), 1)
     return start + (end - start) * (np.arange(1, count + 1) / count)[:, None]
 
 
 def _carried_on(skeleton: Skeleton, tip: int, way: Floats) -> Skeleton:
-    """Append joints of unknown radius behind a tip."""
+    """Append joints (k, 3), px, of unknown radius behind a tip."""
     first = len(skeleton)
     parents = np.concatenate([[tip], np.arange(first, first + len(way) - 1)])
     return Skeleton(

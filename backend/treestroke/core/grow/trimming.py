@@ -1,4 +1,4 @@
-"""Twig ends cut back to the foliage."""
+"""Cuts twig ends back to the foliage."""
 
 from dataclasses import replace
 
@@ -12,9 +12,9 @@ from treestroke.core.skeleton.traverse import accumulate_to_root
 
 
 def trimmed(grown: Grown, foliage: Silhouette[Camera]) -> Grown:
-    """Drop the ends that grew out of the foliage, where no leaf would hide them; what comes back into it stays.
+    """Drop the ends of twigs outside the foliage, where no leaf would hide them; twigs that reenter it stay.
 
-    Growth bridges the bays and gaps of a crown, for branches pass there. Visible joints stay.
+    Growth may cross the gaps of a crown, as branches do. Visible joints stay.
     """
     tree = grown.skeleton
     wanted = (grown.born == 0) | foliage.shows(tree.points)

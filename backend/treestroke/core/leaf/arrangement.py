@@ -48,31 +48,34 @@ class Seats:
         return len(self.points)
 
     def at(self, index: Indices | NDArray[np.bool_]) -> "Seats":
-        """Pick some of the places."""
+        """Select places by index (k,) or by flags (n,)."""
         return Seats(self.points[index], self.directions[index], self.joints[index])
 
 
 def thin_edges(skeleton: Skeleton) -> NDArray[np.bool_]:
-    """Mark the joints (n,) whose edge is thin enough to bear leaves; all, if none is."""
+    """Mark the joints whose edge is thin enough to bear leaves: flags (n,); all if none is thin."""
     thin = skeleton.radii < THIN * skeleton.radii.max()
     return np.asarray(thin if (edge_lengths(skeleton) * thin).any() else np.ones_like(thin))
 
 
-def seats_along(skeleton: Skeleton, bearing: Floats, count: int, rng: np.random.Generator) -> Seats:
-    """Spread places over edges, each having as many as its length times its weight ``bearing`` (n,) asks."""
-    borne = edge_lengths(skeleton) * bearing
-    ends = np.cumsum(borne)
+def seats_along(skeleton: Skeleton, weights: Floats, count: int, rng: np.random.Generator) -> Seats:
+    """Spread ``count`` places over edges, in proportion to each edge's length, metres, times its weight (n,).
+
+    Source: Tan et al. 2008, section 4: leaves in proportion to branches' length.
+    """
+    weighted = edge_lengths(skeleton) * weights
+    ends = np.cumsum(weighted)
     if ends[-1] <= 0 or count <= 0:
         return Seats(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0, dtype=np.int64))
     along = (np.arange(count) + rng.random(count)) * ends[-1] / count
     joints = np.minimum(np.searchsorted(ends, along, side="right"), len(skeleton) - 1)
     end, start = skeleton.points[joints], skeleton.points[skeleton.parents[joints]]
-    share = np.clip((ends[joints] - along) / np.maximum(borne[joints], 1e-12), 0, 1)[:, None]
+    share = np.clip((ends[joints] - along) / np.maximum(weighted[joints], 1e-12), 0, 1)[:, None]
     return Seats(end + share * (start - end), unit(end - start, UP), joints)
 
 
 def bare_tips(skeleton: Skeleton, leaves: Leaves) -> Seats:
-    """Give a place at the end of each twig whose last piece bears no card that reaches its end."""
+    """Return a place at the end of each twig that no card on its last piece reaches."""
     tips = np.flatnonzero((child_counts(skeleton) == 0) & (skeleton.parents >= 0))
     way = skeleton.points[leaves.joints] - leaves.centres
     half = np.linalg.norm(leaves.ups, axis=1, keepdims=True)
@@ -100,7 +103,10 @@ class Poses:
 def pose_on_branches(
     seats: Seats, half_sizes: Floats, height: float, crown_middle: Floats, rng: np.random.Generator
 ) -> Poses:
-    """Set a spray on each seat: foot near the branch, outward along it, drooping a little, facing out and up."""
+    """Set a spray on each of n seats: foot near the branch, outward along it, drooping a little, facing out and up.
+
+    ``half_sizes`` (n,), ``height`` of the tree and ``crown_middle`` (3,) are in metres.
+    """
     around = rng.normal(size=seats.points.shape)
     along = (around * seats.directions).sum(axis=1, keepdims=True)
     around = unit(around - along * seats.directions, UP)
@@ -113,7 +119,10 @@ def pose_on_branches(
 
 
 def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np.random.Generator) -> Poses:
-    """Set a spray on the end of each twig, going on as the twig does, more or less, and facing out and up."""
+    """Set a spray on the end of each of n twigs, about along the twig, facing out and up.
+
+    ``half_sizes`` (n,) and ``crown_middle`` (3,) are in metres.
+    """
     axis = seats.directions + rng.normal(0, TURN, seats.directions.shape)
     axis[:, 1] -= 0.5 * DROOP
     axis = unit(axis, UP)
@@ -122,7 +131,7 @@ def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np
 
 
 def pose_over(seats: Seats, centres: Floats, half_sizes: Floats, outward: Floats, rng: np.random.Generator) -> Poses:
-    """Set a spray at each centre (n, 3), metres, as if it hung from its seat; it faces about ``outward`` (n, 3)."""
+    """Set a spray of half size (n,) at each centre (n, 3), metres, hung from its seat and facing ``outward`` (n, 3)."""
     way = centres - seats.points
     axis = unit(0.6 * seats.directions + unit(way) + rng.normal(0, 0.5, way.shape), UP)
     return Poses(centres, *_frames(axis, outward, half_sizes, rng), unit(way, UP)[:, 1])

@@ -1,4 +1,4 @@
-"""Which tile and how much light each card gets: colour from the photo where it shows the place."""
+"""Chooses each card's tile and light: by the picture's colour where a view shows the place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,21 +13,21 @@ from treestroke.core.paint.seasons import Recolour
 from treestroke.core.types import Floats, Indices
 
 SHOWN_DEPTH = 0.35
-"""Places nearer to the viewer than this share of the crown's half depth are taken as seen by the photo."""
+"""Places nearer to the viewer than this share of the crown's half depth count as seen."""
 SIDEWAYS, UPDOWN = 0.9, 0.12
-"""How far the colour of hidden places is fetched from, as shares of the crown's half width and height."""
+"""Distances from which hidden places take their colour, as shares of the crown's half width and height."""
 WAVES = 4
 """Sine waves that make up the smooth displacement."""
 WAVE_LENGTHS = (0.5, 1.3)
 """Their lengths, as shares of the crown's width: clumps of colour stay together, and none repeats."""
 COLOUR_SCATTER = 3.0
-"""Standard deviation, Lab units, of a card's colour about the photo's, so that neighbours mix their tiles."""
+"""Standard deviation, Lab units, of a card's colour about the picture's, so that neighbours mix their tiles."""
 FOREIGN = 20.0
-"""Lab distance from all tiles at which a pixel is no leaf's (sky, wood); the colour around it is taken instead."""
+"""Lab distance from all tiles above which a pixel is sky or wood; the mean colour around it is taken instead."""
 CLUMP = 0.6
-"""Lengths of the waves by which a season's colour changes through the crown, against those of the displacement."""
+"""Lengths of the waves of a season's colours through the crown, over those of the displacement."""
 MOOD_SCATTER = 0.45
-"""Deviation of a card's place in a season's colours about its clump's, whose own is 1."""
+"""Standard deviation of a card's position in a season's colours about its clump's, which itself varies by 1."""
 DARKEST = 0.55
 """Brightness deep inside the crown and at its foot, against 1 at its outside."""
 

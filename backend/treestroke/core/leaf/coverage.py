@@ -1,4 +1,4 @@
-"""What part of the foliage the cards hide, by the tiles' own outlines."""
+"""Measures which part of the foliage cards hide, by the outlines of their tiles."""
 
 from dataclasses import dataclass
 
@@ -11,11 +11,11 @@ from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.types import Floats, Indices
 
 DOTS_ACROSS = 12
-"""A tile is looked at in 12 x 12 dots: about one a grid cell for a card of usual size."""
+"""A tile is sampled in 12 x 12 dots: about one per grid cell for a card of usual size."""
 SURE_ALPHA = 160
-"""Alpha of a dot that is sure to be drawn: a mip level, cut at 0.5, loses some of the others."""
+"""Alpha (0 to 255) above which a dot is drawn in every mip level."""
 PROBES = 24
-"""Opaque dots of a tile that are tried against the foliage's outline."""
+"""Opaque dots of a tile that are tested against the foliage's outline."""
 
 
 @dataclass(frozen=True, eq=False)

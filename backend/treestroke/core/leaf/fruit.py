@@ -80,7 +80,7 @@ def hang_fruit(
     """Hang fruit on the twigs of a grown tree, metres: first one card of each fruit, then the card that crosses it.
 
     Every fruit's middle and lower end lie inside all silhouettes and its middle inside the volume. They come in random
-    order, so that the first few stand all over the crown. Their tile is yet to be named (`with_fruit`).
+    order, so that the first few stand all over the crown. Their tile is set by `with_fruit`.
     """
     count = int(np.clip(round(params.per_metre * float(np.sqrt(volume.front_area))), params.fewest, params.most))
     seats = seats_along(skeleton, thin_edges(skeleton).astype(np.float64), TRIED * count, rng)

@@ -1,4 +1,4 @@
-"""Further cards where the foliage is still seen through."""
+"""Adds cards where cards leave gaps in the foliage."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -90,7 +90,7 @@ def _cover_view(patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: 
 
 
 def _count(cells: float, scale: float, gaps: _Gaps) -> int:
-    """How many cards of a size could cover so many cells, half of them in vain."""
+    """Estimate how many cards of a size cover this many cells, if half of them cover nothing new."""
     card_cells = 0.3 * (scale * gaps.crown.side * sum(SIDES) / 2 / gaps.grid.cell_m) ** 2
     return int(np.ceil(1.5 * cells / max(card_cells, 1.0)))
 
@@ -109,7 +109,7 @@ def _nearest_seats(seats: Seats, grid: FoliageGrid) -> Indices:
 
 
 def _patch(cells: Indices, seats: Seats, scale: float, gaps: _Gaps, rng: np.random.Generator) -> Leaves:
-    """Set cards of one size over cells (m,), each borne by its seat; those that do not fit are left out."""
+    """Set cards of one size over cells (m,), each hung from its seat; those that do not fit are left out."""
     crown = gaps.crown
     centres, kept = _centres(cells, seats, gaps, rng)
     seats, half_sizes = seats.at(kept), scale * crown.half_sizes(len(centres), rng)

@@ -15,7 +15,7 @@ from treestroke.core.types import Floats, Indices, Mask
 CELLS_ACROSS = 500
 """Cells over the foliage's width: a spray is about 10 cells wide, a leaf 2 to 3."""
 MIN_STEP_PX = 0.25
-"""A tiny tree is laid out finer than its pixels, but not without end."""
+"""Least side of a cell: a tiny tree's cells are finer than its pixels."""
 PADDING = 3
 """Empty cells around the foliage, so that points outside read as outside."""
 LOCAL_CELLS, BROAD_CELLS = 0.6, 5.0
@@ -71,7 +71,7 @@ class FoliageGrid:
         return np.array(self.corner_px) + (np.stack([column, row], axis=1) + within) * self.step_px
 
     def deeper(self, cells: Indices, depth_m: Floats) -> Mask:
-        """Tell whether leaves may lie at depths (...), metres, in cells of flat index (...): flags (...)."""
+        """Tell whether leaves may lie at depths (n, p), metres, in cells of flat index (n, p): flags (n, p)."""
         return np.asarray(self.leaves_from.ravel()[cells] < depth_m)
 
 

@@ -1,4 +1,4 @@
-"""How many leaves each branch bears, so that foliage is dense where the photo shows it dense."""
+"""Weighs branches by the leaves they bear, so that foliage is dense where the views show it dense."""
 
 from collections.abc import Sequence
 
@@ -16,12 +16,12 @@ from treestroke.core.types import Floats
 BREADTH = 0.02
 """Standard deviation, as a share of the tree's height, over which foliage and branches are averaged."""
 OPAQUE = 0.97
-"""Share of the light that the densest foliage stops; what is behind a closed crown no photo tells."""
+"""Share of the light that the densest foliage stops; a picture cannot tell more behind a closed crown."""
 MOST = 4.0
-"""Most leaves a branch bears for its length, against the mean; more would be clumps on lonely twigs."""
+"""Greatest weight over the mean; more would crowd clumps on lonely twigs."""
 SHELL = 0.45
-"""Share of its leaves that a branch at the solid's surface gives up: growth's twigs crowd there, a crown's leaves do
-not (4 trees with known leaves)."""
+"""Share of its leaves that a branch at the volume's surface loses: growth crowds twigs there, while leaves do not crowd
+there (4 trees with known leaves)."""
 
 
 def leaf_weights(
@@ -69,7 +69,7 @@ def _half_widths(grid: FoliageGrid, volume: CrownVolume) -> Floats:
 
 
 def _blurred(image: Floats, sigma: float) -> Floats:
-    """Average over a Gaussian, reckoned on fewer cells; what is beyond the border counts as empty."""
+    """Average over a Gaussian, computed on fewer cells; cells beyond the border count as empty."""
     rows, columns = image.shape
     step = max(1.0, sigma / 3)
     size = (max(1, round(columns / step)), max(1, round(rows / step)))

@@ -1,4 +1,4 @@
-"""Leaves on the branches, inside the foliage that the photo shows, until it is covered.
+"""Places leaves on branches, inside the foliage that the views show, until it is covered.
 
 Source: Tan et al. 2008, section 4: cards around the branches in proportion to their length, only those that
 project inside the foliage stay. Ours are sprays of several leaves, so that 25,000 of them fill a crown, turned and
@@ -27,25 +27,25 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, FoliageKind, Indices
 
 LAYERS = 10.0
-"""Cards' opaque area over the foliage's area in the photo, at density 1 (a leaf area index)."""
+"""Cards' opaque area over the foliage's area in the picture, at density 1 (a leaf area index)."""
 RESERVE = 0.25
-"""Share of the cards that is kept for what the first ones leave uncovered."""
+"""Share of the cards reserved for what the first ones leave uncovered."""
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
-"""Sizes at which a card that would leave the foliage is tried again, each time turned anew."""
+"""Sizes at which a card that does not fit the foliage is tried again, each time with another pose."""
 BUD = 0.1
 """Size of a bud, against a card's."""
 
 
 @dataclass(frozen=True)
 class LeafParams:
-    """How many cards a tree bears, and how large.
+    """How many cards a tree bears.
 
     Attributes
     ----------
     density
         Factor on the number of cards, 0 to 3; 0 bears none, under 1 leaves part of the foliage uncovered.
     max_cards
-        Most cards, whatever size and density, besides those that twigs' ends bear.
+        Most cards besides those at twigs' ends.
     kind
         What the twigs bear; ``bare`` bears nothing.
     """
@@ -74,6 +74,8 @@ def place_leaves(
     leaves at most by a few per cent outside; nearly all cards stand nearer to a branch than 4.5 % of the tree's height.
     Each twig's end bears a card, or a bud (a tiny card) where that would lie outside, or density under 1 leaves none. A
     bare tree or density 0 bears nothing. ``report("leaf", fraction)`` is called.
+
+    Source: Tan et al. 2008, section 4; the module's head says where we differ.
     """
     if params.kind == "bare" or params.density == 0 or params.max_cards == 0:
         return no_leaves()
@@ -90,7 +92,7 @@ def place_leaves(
 
 
 def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
-    """End each twig in a card, in a share of them by the density; where it would leave the foliage, in a bud."""
+    """Set a card at each twig's end, or at a share of them by the density; a bud where the card does not fit."""
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
         return pose_at_tips(seats, half_sizes, crown.middle, rng)
@@ -104,7 +106,7 @@ def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Gene
 
 
 def _on_branches(seats: Seats, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
-    """Hang a card on each seat, unless it would leave the foliage."""
+    """Hang a card on each seat where it fits the foliage."""
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
         return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
@@ -115,7 +117,7 @@ def _on_branches(seats: Seats, crown: LeafCrown, rng: np.random.Generator) -> Le
 def _fitted(
     seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: LeafCrown, rng: np.random.Generator
 ) -> tuple[Leaves, Indices]:
-    """Set a card on each seat; those that would leave the foliage are turned and shrunk a few times, then left."""
+    """Set a card on each seat; those that do not fit are posed anew and shrunk a few times, then left out."""
     found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
     for scale in SHRINKING:
         if len(order) == 0:

@@ -1,4 +1,4 @@
-"""Give a traced tree depth: turn each limb out of the picture, away from the others.
+"""Lifts a traced tree to 3D: turns each limb out of the picture, away from the others.
 
 Source: Tan et al. 2008, section 3.1, after Okabe, Owada and Igarashi 2005: from root to tips, greedily, each branch is
 turned so that the distances among branches are as large as possible. Unbounded, this throws limbs far in front of
@@ -17,7 +17,7 @@ from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_child
 from treestroke.core.types import Floats, Indices
 
 UPRIGHT = 0.4
-"""Share of the steepest slope that an upright limb may take: the law of gravity holds in depth too."""
+"""Share of the steepest slope that an upright limb may take: upright limbs lean little in depth too."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class LiftParams:
     slopes
         Slopes tried, evenly spaced from -steepest to steepest.
     inside
-        Share of the envelope's half depth that a limb may use.
+        Share of the crown's half depth that a limb may use.
     """
 
     steepest: float = 1.0
@@ -64,6 +64,8 @@ def lift(
     projects onto its pixel. The first stem stays in the picture's plane; every other limb takes the slope that keeps
     its joints furthest from all limbs before it, heaviest limbs first among siblings; ``rng`` decides to which side
     when both are equal.
+
+    Source: Tan et al. 2008, section 3.1; bounds by slope and by the crown are ours.
     """
     points, radii = crown.camera.world_from_pixels(skeleton.points), crown.camera.metres_from_pixels(skeleton.radii)
     flat = Skeleton(points, radii, skeleton.parents)
@@ -82,18 +84,18 @@ def lift(
 
 
 def _by_order(chains: list[Indices], weights: Floats) -> list[Indices]:
-    """Sort limbs so that each comes after its bearer, the heaviest first where that leaves a choice."""
+    """Sort limbs so that each comes after its parent limb, otherwise the heaviest first."""
     owner = {int(joint): number for number, chain in enumerate(chains) for joint in chain[1:]}
     level = np.zeros(len(chains), dtype=np.int64)
     for number, chain in enumerate(chains):
-        bearer = owner.get(int(chain[0]), -1)
-        level[number] = 0 if bearer < 0 else level[bearer] + 1
+        parent = owner.get(int(chain[0]), -1)
+        level[number] = 0 if parent < 0 else level[parent] + 1
     order = sorted(range(len(chains)), key=lambda n: (level[n], -weights[chains[n][min(1, len(chains[n]) - 1)]], n))
     return [chains[n] for n in order]
 
 
 def _options(points: Floats, start: float, volume: CrownVolume, params: LiftParams) -> Floats:
-    """Give the limb's joints (slopes, n, 3) at each slope, bounded by the envelope."""
+    """Return the limb's joints (slopes, n, 3), metres, at each slope, bounded by the crown."""
     steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     slopes = np.linspace(-params.steepest, params.steepest, params.slopes) * _leaning(points)
@@ -106,9 +108,9 @@ def _options(points: Floats, start: float, volume: CrownVolume, params: LiftPara
 
 
 def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, params: LiftParams) -> Floats:
-    """Bound the depth of a limb's joints (n,), metres, by the envelope, under the crown by its slope alone.
+    """Bound the depth of a limb's joints (n,), metres, by the crown, and under the crown by its slope alone.
 
-    The bound itself is no steeper than a limb may be: else a limb that enters the crown would jump aside.
+    The bound itself is no steeper than a limb may be: otherwise a limb that enters the crown would jump aside.
     """
     open_air = volume.half_width(points[:, 1]) <= 0
     most = np.where(open_air, np.inf, np.maximum(params.inside * volume.half_depth(points), start))
@@ -121,13 +123,13 @@ def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, pa
 
 
 def _leaning(points: Floats) -> float:
-    """Give the share of the steepest slope that suits a limb: upright leaders lean little, level limbs reach far."""
+    """Return the share of the steepest slope for a limb: small for upright leaders, 1 for level limbs."""
     way = points[-1, :2] - points[0, :2]
     return float(UPRIGHT + (1 - UPRIGHT) * abs(way[0]) / max(float(np.hypot(*way)), 1e-9))
 
 
 def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -> int:
-    """Choose the option (k, n, 3) whose outer joints keep most distance from all that is placed; ties by lot."""
+    """Choose the option (k, n, 3) whose outer joints keep most distance from all that is placed; ties at random."""
     others = np.concatenate(placed)
     outer = options[:, options.shape[1] // 2 :]
     gaps = np.linalg.norm(outer[:, :, None] - others, axis=-1).min(axis=-1).mean(axis=-1)

@@ -66,6 +66,8 @@ def bark_texture(
     to its colours; where no trunk is visible, the pattern stands alone, in ``hidden_colour``. A known form
     is always added a little.
 
+    Source: quilting after Efros and Freeman 2001 (`imaging.quilting`).
+
     Parameters
     ----------
     picture

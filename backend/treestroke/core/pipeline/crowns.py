@@ -1,4 +1,4 @@
-"""Crowns and wood as masks: closed, frayed, drawn."""
+"""Crown and wood as masks: drawn, closed, frayed."""
 
 import cv2
 import numpy as np
@@ -9,13 +9,13 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Mask
 
 CLOSED_SHARE = {"leaves": 0.015, "needles": 0.035, "bare": 0.05}
-"""Of the crown's size: holes and bays of the foliage this wide are no gaps in the crown for a branch."""
+"""Gaps narrower than this share of the crown's size are closed, by what the picture shows."""
 LEAFED_SHARE = 0.14
-"""The same for a bare tree that is to have leaves: between its twigs."""
+"""The same for a bare tree that is given leaves: the gaps between its twigs."""
 CLUMP, FRAY = 0.045, 0.05
-"""Size of its clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
+"""Size of generated clumps of leaves, and depth of the bays between them, as shares of the crown's size."""
 GAP = 1.9
-"""Deviations of clumps' density below their mean at which sky is seen through."""
+"""Sky shows where the clumps' density is this many standard deviations below its mean."""
 
 
 def seen_from_front(tree: Skeleton, camera: OrthographicCamera) -> Skeleton:
@@ -24,16 +24,16 @@ def seen_from_front(tree: Skeleton, camera: OrthographicCamera) -> Skeleton:
 
 
 def drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
-    """Draw a traced skeleton as wide as its wood."""
+    """Draw a 2D skeleton, px, as wide as its wood: flags (h, w) of a picture of this shape."""
     return ~np.isnan(drawn_depth(tree, np.ones(len(tree), dtype=bool), np.zeros(len(tree)), shape, 1.0))
 
 
 def drawn_depth(
     tree: Skeleton, shown: Mask, depth_m: Floats, shape: tuple[int, ...], breadth: float
 ) -> NDArray[np.float32]:
-    """Draw the depth of a skeleton's edges whose both joints are ``shown`` (n,), ``breadth`` times as wide as the wood.
+    """Draw the depth (n,), metres, of a 2D skeleton's (px) edges as (h, w), ``breadth`` times as wide as the wood.
 
-    NaN where nothing is drawn.
+    Only edges whose both joints are ``shown`` (n,) are drawn; elsewhere it is NaN.
     """
     drawn = np.full(shape, np.nan, np.float32)
     for joint, parent in enumerate(tree.parents.tolist()):
@@ -45,7 +45,7 @@ def drawn_depth(
 
 
 def closed(mask: Mask, share: float) -> Mask:
-    """Close small holes and bays of a foliage mask."""
+    """Close gaps of a foliage mask (h, w) that are narrower than a share of its size."""
     size = max(3, int(2 * share * np.sqrt(mask.sum())) | 1)
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size))
     edge = cv2.copyMakeBorder(mask.astype(np.uint8), size, size, size, size, cv2.BORDER_CONSTANT, value=0)
@@ -53,7 +53,7 @@ def closed(mask: Mask, share: float) -> Mask:
 
 
 def frayed(crown: Mask, rng: np.random.Generator, gap: float = GAP) -> Mask:
-    """Fray the outline of a crown whose leaves nobody has seen into clumps, and open gaps where ``gap`` says so."""
+    """Fray the outline of a crown (h, w, flags) into clumps of leaves, and open gaps by ``gap``, as `GAP` is meant."""
     size = float(np.sqrt(crown.sum()))
     height, width = crown.shape
     coarse = (max(2, round(width / (CLUMP * size))), max(2, round(height / (CLUMP * size))))

@@ -1,4 +1,4 @@
-"""What a grown tree wears: leaves, fruit and bark, from its picture and from what is known of species and season."""
+"""Leaves, fruit and bark of a grown tree, from its appearance and from its species and season."""
 
 from dataclasses import dataclass
 
@@ -30,7 +30,7 @@ from treestroke.core.types import Mask, Picture
 
 @dataclass(frozen=True, eq=False)
 class OwnPictures:
-    """Pictures, (h, w, 4), sRGB with straight alpha, that somebody gives of what the tree bears; None: no own one.
+    """Pictures (h, w, 4), sRGB with straight alpha, that a person provides for leaf and fruit; None where not.
 
     Attributes
     ----------
@@ -56,12 +56,14 @@ def leaf_surface(
     rng: np.random.Generator,
     report: Report = silent,
 ) -> tuple[Surface, Leaves, Atlas] | tuple[None, None, None]:
-    """Hang leaves and fruit on the grown tree: their surface, and what it is made from; None where it bears none.
+    """Hang leaves and fruit on the grown tree: return their surface, cards and atlas; None where it bears none.
+
+    ``pictures`` (h, w, 4), RGBA, replace the species' leaf and add fruit.
 
     Raises
     ------
     ValueError
-        A picture is none, or transparent.
+        A picture has no pixels, or only transparent ones.
     """
     leaves, atlas = _leaves(tree, settings, pictures.leaf, rng, report)
     if pictures.fruit is not None:
@@ -78,7 +80,7 @@ def _leaves(
     rng: np.random.Generator,
     report: Report,
 ) -> tuple[Leaves, Atlas | None]:
-    """Hang leaves; a tree that bears none has no atlas of them."""
+    """Hang leaves; without leaves there is no atlas."""
     leafy = tuple(view for view in tree.appearance.views if view.foliage.any())
     if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None

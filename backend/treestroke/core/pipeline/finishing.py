@@ -1,4 +1,4 @@
-"""The recipe's second half, which all sources share: from a grown tree to a finished one."""
+"""The second half of all recipes: from a grown tree to a finished one."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -59,7 +59,7 @@ OnGrown = Callable[[LiveTree], None]
 
 
 def unseen(tree: LiveTree) -> None:
-    """Show a grown tree to nobody."""
+    """Ignore the grown tree."""
 
 
 def finish(
@@ -69,14 +69,14 @@ def finish(
     report: Report = silent,
     pictures: OwnPictures = NO_PICTURES,
 ) -> TreeModel:
-    """Dress a grown tree in leaves, fruit and bark, and measure it.
+    """Add leaves, fruit and bark to a grown tree, and measure it.
 
     ``report(stage, fraction)`` is called with the stages leaf and mesh.
 
     Raises
     ------
     ValueError
-        A picture of a leaf or fruit is none or transparent.
+        A picture of a leaf or fruit has no pixels, or only transparent ones.
     """
     report("leaf", 0.0)
     leaf, sprays, atlas = leaf_surface(tree, settings, pictures, rng, report)
@@ -102,7 +102,7 @@ def finish(
 
 
 def _measures(tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Measures:
-    """Measure the tree as it was grown; fruit alone makes no crown."""
+    """Measure the tree as it was grown; fruit does not count as foliage."""
     if leaves is not None and atlas is not None:
         leaves = leaves.select(~fruit_among(leaves, atlas))
     crown = leaves.centres if leaves is not None and len(leaves) else None

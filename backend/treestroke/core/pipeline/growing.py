@@ -1,4 +1,4 @@
-"""The photo's first half of the recipe, which the live tree and the model share: to a grown tree."""
+"""The first half of a photo's recipe, for live trees and models: from photo and strokes to a grown tree."""
 
 from dataclasses import dataclass
 
@@ -45,12 +45,12 @@ from treestroke.core.trace.tracing import Traced, trace_branches
 from treestroke.core.types import FoliageKind, Indices, Mask, Picture
 
 JOINT_SHARE = 0.015
-"""Of the tree's height: joints this near let growth cut a straight trunk where it likes."""
+"""Distance between joints, as a share of the tree's height, so that growth can split a straight trunk anywhere."""
 BULGE = 1.08
-"""Radius of the crown's sections over half their width in the photo. A crown is no turned solid: away from the outline
-that the photo shows some limbs reach further (4 trees known in 3D; 1.15 is too deep again for a slim one)."""
+"""Radius of the crown's sections over half their width in the photo: in other directions some limbs reach further
+(4 trees known in 3D; 1.15 is too deep for a slim one)."""
 BARE_BREADTH = 0.5
-"""Of a visible branch's width: no leaf hangs before it there. More would show sky where the grown wood is thinner."""
+"""Share of a visible branch's width in front of which no leaf hangs; more would show sky beside thinner wood."""
 READ = "the foliage and branches as they were read in the photo"
 UNCLEAR = StrokeWarning(
     "crown_unclear",
@@ -58,7 +58,7 @@ UNCLEAR = StrokeWarning(
     "what is inside it hardly differs from what is around it; draw it around the tree's foliage, or take another photo",
 )
 DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
-"""Codes of warnings of strokes that may mean no tree."""
+"""Codes of warnings after which the strokes may not describe a tree."""
 _KINDS: dict[str, FoliageKind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
 
 
@@ -133,7 +133,7 @@ class _Lifted:
     owner
         (n,) traced joint at whose edge each lies.
     score
-        How true it is to what was drawn of its other side.
+        How well it matches the sketch of its left side, by name.
     """
 
     tree: Skeleton
@@ -298,14 +298,14 @@ def _reading(evidence: PhotoEvidence, settings: ModelSettings) -> Reading:
 
 
 def _shown_kind(working: WorkingCopy, foliage: Foliage, settings: ModelSettings) -> FoliageKind:
-    """Take the kind that was asked for, or judge by the picture; a season may ask for leaves that it does not show."""
+    """Return the kind that the settings name, or else the one that the picture shows."""
     if settings.foliage == "auto" or settings.season in LEAFY:
         return foliage_kind(foliage.look, foliage.mask, working.strokes.branches[0].points)
     return _KINDS[settings.foliage]
 
 
 def borne_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
-    """Tell what the twigs bear: what was asked for, else what season, species and photo say, in this order."""
+    """Return what the twigs bear: by the settings, else by season, species and photo, in this order."""
     species = SPECIES.get(settings.species, AUTO)
     if settings.season == "bare" or settings.foliage == "bare":
         return "bare"

@@ -1,4 +1,4 @@
-"""A tree that has grown and is not dressed yet: what every recipe's first half ends in."""
+"""A grown tree without leaves and bark: the result of every recipe's first half."""
 
 from dataclasses import dataclass
 
@@ -33,14 +33,14 @@ class LiveTree:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a tree's likeness is measured against, and how far that is to be trusted.
+    """What a tree's front view is compared with, and how sure that is.
 
     Attributes
     ----------
     against
-        What was read, in words.
+        What was read, in words for the report.
     kind_sureness
-        How sure it is that the tree bears leaves, or none, 0 to 1; 1 where it was said.
+        Probability, 0 to 1, that the foliage's kind is right; 1 where it was given.
     doubts
         Codes of what makes the reading doubtful.
     """
@@ -69,7 +69,7 @@ class GrownTree:
     likeness
         (h, w) what the front view should cover, at any size: foliage and branches that were seen.
     stature
-        What it is measured by.
+        Its size, and how that is known.
     score
         How well it does what it was grown for, by name.
     reading
@@ -91,5 +91,5 @@ class GrownTree:
 
     @property
     def live(self) -> LiveTree:
-        """The tree as it may be shown before it is finished."""
+        """The tree as it is shown before it is finished."""
         return LiveTree(self.grown.skeleton, self.grown.born, self.camera)

@@ -19,16 +19,16 @@ HEIGHTS_PX = (400, 150, 64)
 _SHARES = (0.30, 0.08)
 """Of the whole tree's triangles, in the first and second level."""
 _BARE_MORE = 1.04
-"""A leafless tree's bark may have so much more, for no leaves fill the rest."""
+"""Factor on the triangles of a leafless tree's bark, as it has no leaves."""
 _LEAST_WOOD, _MOST_WOOD = 0.12, 0.9
 """Share of a level's triangles that is bark: where foliage hides all wood, and where wood stands alone (5 photos)."""
 _HIDDEN_BY_WOOD = 0.1
-"""Worth of covering by leaves what wood covers already."""
+"""Value of covering by leaves what wood covers already."""
 
 
 @dataclass(frozen=True, eq=False)
 class Level:
-    """A tree of fewer triangles; it wears the whole tree's textures, the same arrays."""
+    """A tree of fewer triangles, with the whole tree's textures (the same arrays)."""
 
     bark: Surface
     leaf: Surface | None
@@ -57,7 +57,7 @@ class Levels:
 
 
 def levels(tree: TreeModel, report: Report = silent) -> Levels:
-    """Make the levels of detail of a finished tree; there are some of every tree.
+    """Make the levels of detail of a finished tree.
 
     Deterministic. ``report("levels", fraction)`` is called as they are done.
     """
@@ -95,7 +95,7 @@ def _level(tree: TreeModel, number: int, wood: float, view: Framing, wanted: Mas
 
 
 def _thinned(tree: TreeModel, count: int, view: Framing, worth: Floats) -> Surface | None:
-    """Keep as many cards, one at least where there are any."""
+    """Keep ``count`` cards; one at least where there are any."""
     if tree.leaf is None or tree.cards is None or tree.atlas is None:
         return None
     kept = thin_leaves(tree.cards, tree.atlas, max(1, count), Coverage(view, worth))

@@ -20,7 +20,7 @@ from treestroke.core.types import Indices, Mask, Picture
 
 @dataclass(frozen=True, eq=False)
 class PhotoTrace:
-    """What strokes and photo tell together, in photo px.
+    """What strokes and photo show together, in photo px.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class PhotoTrace:
     stroke
         (n,) index of the stroke that each joint follows, -1 where it was found.
     warnings
-        What was mended, and what makes the reading doubtful.
+        What was mended, and what makes the result doubtful.
     """
 
     foliage: Mask
@@ -58,7 +58,7 @@ def trace_photo(photo: Picture, strokes: Strokes, known: Foliage | None = None) 
 
 
 def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
-    """Lay a sketch of the tree's left side beside what was traced in place of the one before: it gives depth.
+    """Return the trace with another sketch of the tree's left side, which gives depth, or without one.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
 
 
 def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:
-    """Let what was traced grow as `model_photo` does; nothing grows without a branch stroke."""
+    """Grow what was traced as `model_photo` does; None without a branch stroke."""
     return None if traced.evidence.traced is None else grow_tree(traced.evidence, settings, rng).live
 
 
@@ -92,7 +92,7 @@ def model_photo(
     Raises
     ------
     ValueError
-        Nothing was traced, or a picture of a leaf or fruit is none or transparent.
+        Nothing was traced, or a picture of a leaf or fruit has no opaque pixel.
     """
     tree = grow_tree(evidence, settings, rng, report)
     on_grown(tree.live)

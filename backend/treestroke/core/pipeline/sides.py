@@ -1,4 +1,4 @@
-"""The left side of a tree beside its front: heights made to agree, depth taken from it."""
+"""The left side of a tree, scaled to its front, from which depth is taken."""
 
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
@@ -40,12 +40,12 @@ class Side:
 
 
 def draw_side(sketch: Sketch, place: str) -> Drawing:
-    """Draw up one of several sketches; errors and warnings name its ``place``.
+    """Read one of several sketches; errors and warnings name its ``place``.
 
     Raises
     ------
     StrokesError
-        It does not describe a tree.
+        The sketch does not describe a tree.
     """
     try:
         drawing = trace_sketch(sketch)
@@ -90,7 +90,7 @@ def side_of(
 
 
 @dataclass(frozen=True, eq=False)
-class Deep:
+class Lifted:
     """A front turned into a 3D tree by its left side.
 
     Attributes
@@ -100,7 +100,7 @@ class Deep:
     front
         (n,) the front's joint that each stands for.
     score
-        How true it is to both, by name.
+        How well it matches both sketches, by name.
     """
 
     tree: Branched
@@ -108,11 +108,11 @@ class Deep:
     score: dict[str, float]
 
 
-def with_depth(front: Branched, side: Side, height_px: float, camera: OrthographicCamera) -> Deep:
+def with_depth(front: Branched, side: Side, height_px: float, camera: OrthographicCamera) -> Lifted:
     """Turn a front (px of a camera) into a 3D tree by the depth of its left side."""
     flat = in_units(front, height_px)
     retrieved = retrieve_depth(flat, side.tree)
     skeleton, metres = retrieved.tree.skeleton, float(camera.metres_from_pixels(height_px / UNITS))
     tree = Skeleton(skeleton.points * metres, skeleton.radii * metres, skeleton.parents)
     score = asdict(fidelity(flat, side.tree, retrieved.tree, retrieved.origin == PAIRED))
-    return Deep(Branched(tree, retrieved.tree.branch), retrieved.front, score)
+    return Lifted(Branched(tree, retrieved.tree.branch), retrieved.front, score)

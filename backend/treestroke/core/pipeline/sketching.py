@@ -44,7 +44,7 @@ WORKING_HEIGHT = 1000.0
 SMALL_BRANCHES = 8
 """Small branches for each round of growth that the settings allow."""
 LEAFED_SHARE = 0.035
-"""Of the tree's height: as far from its branches a sketched crown is leafy."""
+"""Leaves of a sketched crown lie within this share of the tree's height from its branches."""
 AS_DRAWN = Reading("the strokes as they were drawn", 1.0, ())
 ONE_SIDE = StrokeWarning(
     "side_assumed",
@@ -155,19 +155,19 @@ def model_sketches(
     on_grown: OnGrown = unseen,
     pictures: OwnPictures = NO_PICTURES,
 ) -> TreeModel:
-    """Turn sketches into a tree, as `treestroke.core.pipeline.photo.model_photo` does a photo."""
+    """Turn sketches into a tree (metres) as `treestroke.core.pipeline.photo.model_photo` does a photo."""
     tree = grow_sketches(evidence, settings, rng, report)
     on_grown(tree.live)
     return finish(tree, settings, rng, report, pictures)
 
 
 def _over(front: Sketch, photo: Picture) -> Sketch:
-    """Let a sketch lie on its photo.
+    """Return the sketch with its photo's size as canvas.
 
     Raises
     ------
     StrokesError
-        It is larger, or a picture of another size.
+        The sketch is larger than its photo, or a picture of another size.
     """
     size = photo.shape[1], photo.shape[0]
     fits = front.canvas[0] <= size[0] and front.canvas[1] <= size[1]
@@ -207,7 +207,7 @@ def _lifted(frame: _Frame, rng: np.random.Generator) -> _Lifted:
 def _grown_tree(
     frame: _Frame, settings: ModelSettings, lifted: _Lifted, grown: Grown, rng: np.random.Generator
 ) -> GrownTree:
-    """Gather what the tree is dressed and measured by."""
+    """Gather what finishing the tree needs."""
     main, camera = lifted.tree, frame.camera
     radii = grown.skeleton.radii[: len(main)]
     wood = seen_from_front(Skeleton(main.skeleton.points, radii, main.skeleton.parents), camera)

@@ -1,4 +1,4 @@
-"""The working copy of a photo and its strokes, and the camera that took it."""
+"""The working copy of a photo and its strokes, and its camera."""
 
 from dataclasses import dataclass
 
@@ -50,7 +50,7 @@ class WorkingCopy:
 
 
 def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
-    """Mend the strokes and reduce a large photo (h, w, 3), strokes and all.
+    """Mend the strokes (px) and reduce a large photo (h, w, 3), sRGB, to `WORKING_SIDE` px, with its strokes.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
     def reduced(strokes: tuple[Stroke, ...]) -> tuple[Stroke, ...]:
         return tuple(Stroke(s.points * scale, None if s.width is None else s.width * scale) for s in strokes)
 
-    given = mended.strokes
-    known = None if given.scale is None else Length(given.scale.points * scale, given.scale.metres)
-    fitted = Strokes(reduced((given.crown,))[0], reduced(given.branches), reduced(given.erase), known)
+    full = mended.strokes
+    known = None if full.scale is None else Length(full.scale.points * scale, full.scale.metres)
+    fitted = Strokes(reduced((full.crown,))[0], reduced(full.branches), reduced(full.erase), known)
     return WorkingCopy(small, fitted, scale, (width, height), mended.warnings)

@@ -1,4 +1,4 @@
-"""How well a tree retrieved from two sketches looks like them, and how full it is in depth."""
+"""How well a tree from two sketches matches them, and how far it leaves their planes."""
 
 from dataclasses import dataclass
 
@@ -12,15 +12,15 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Mask
 
 COVERED, TRUE = 2.0, 4.0
-"""Units in which a stroke counts as covered, and a projected limb as true to a stroke."""
+"""Distance, units, within which a stroke counts as covered, and a projected limb as true to a stroke."""
 PLANE = 20.0
-"""Units on either side of the stem's planes in which a limb counts as lying in them."""
+"""Distance, units, from the stem's planes within which a limb counts as lying in them."""
 _MARGIN = 16
 """Pixels left free around all that is drawn, for the width of brushes."""
 _SHIFT = 4
 """Bits of a unit that lines are placed to."""
 _SAMPLE = 1.0
-"""Units between places at which lengths are looked at."""
+"""Units between places at which lengths are sampled."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ def fidelity(front: Branched, side: Branched, tree: Branched, paired: Mask) -> F
 
 
 def _agreement(sketch: Skeleton, tree: Skeleton, axis: int) -> tuple[float, float]:
-    """Tell what share of a sketch the tree, seen along the other axis, covers, and what share of the tree is true."""
+    """Return the share of a sketch that the projected tree covers, and the share of the tree that is true to it."""
     seen = Skeleton(tree.points[:, [axis, 1]], tree.radii, tree.parents)
     frame = _frame(sketch.points, seen.points)
     strokes, limbs = _drawn(sketch, frame), _drawn(seen, frame)
@@ -71,7 +71,7 @@ def _agreement(sketch: Skeleton, tree: Skeleton, axis: int) -> tuple[float, floa
 
 
 def _paired(front: Branched, tree: Branched, paired: Mask) -> float:
-    """Give the share of the front's branches without the stem that paired pieces of the tree cover."""
+    """Return the share of the front's branches, without the stem, that paired pieces of the tree cover."""
     seen = Skeleton(tree.skeleton.points[:, :2], tree.skeleton.radii, tree.skeleton.parents)
     frame = _frame(front.skeleton.points, seen.points)
     drawn = _drawn(Skeleton(seen.points, np.zeros(len(seen)), seen.parents), frame, paired)
@@ -81,7 +81,7 @@ def _paired(front: Branched, tree: Branched, paired: Mask) -> float:
 
 
 def _in_planes(tree: Branched) -> float:
-    """Give the share of the branches' length in the two planes through the stem."""
+    """Return the share of the branches' length in the two planes through the stem."""
     places, lengths, joints = _samples(tree.skeleton)
     stem = tree.skeleton.points[tree.branch == 0]
     heights, first = np.unique(np.maximum.accumulate(stem[:, 1]), return_index=True)
@@ -93,14 +93,14 @@ def _in_planes(tree: Branched) -> float:
 
 
 def _share(held: Mask, weights: Floats | None) -> float:
-    """Give the share of the weight that is held; of nothing, all."""
+    """Return the share of the weights (n,) where ``held`` (n,) is true; 1 without weight."""
     weights = np.ones(len(held)) if weights is None else weights
     total = float(weights.sum())
     return float(weights[held].sum()) / total if total > 0 else 1.0
 
 
 def _samples(skeleton: Skeleton) -> tuple[Floats, Floats, Indices]:
-    """Give places (m, d) along all edges, the length (m,) that each stands for, and the joint (m,) of its edge."""
+    """Return places (m, d) along all edges, the length (m,) that each stands for, and the joint (m,) of its edge."""
     lengths = edge_lengths(skeleton)
     counts = np.ceil(lengths / _SAMPLE).astype(np.int64)
     joints = np.repeat(np.arange(len(skeleton)), counts)
@@ -111,7 +111,7 @@ def _samples(skeleton: Skeleton) -> tuple[Floats, Floats, Indices]:
 
 
 def _frame(*points: Floats) -> tuple[Floats, tuple[int, int]]:
-    """Give the least corner and the size (rows, columns) of a picture that holds all points, one pixel a unit."""
+    """Return the least corner and the size (rows, columns) of a picture of all points, one pixel a unit."""
     low = np.floor(np.min([each.min(axis=0) for each in points], axis=0)) - _MARGIN
     high = np.ceil(np.max([each.max(axis=0) for each in points], axis=0)) + _MARGIN
     columns, rows = (high - low).astype(int).tolist()
@@ -119,7 +119,7 @@ def _frame(*points: Floats) -> tuple[Floats, tuple[int, int]]:
 
 
 def _drawn(skeleton: Skeleton, frame: tuple[Floats, tuple[int, int]], chosen: Mask | None = None) -> NDArray[np.uint8]:
-    """Draw the edges, those to the chosen joints (n,) if told, as wide as they are."""
+    """Draw the edges, or only those to the chosen joints (n,), as wide as they are."""
     picture = np.zeros(frame[1], dtype=np.uint8)
     places = np.round((skeleton.points - frame[0]) * (1 << _SHIFT)).astype(int).tolist()
     widths = np.maximum(np.round(2 * skeleton.radii), 1).astype(int).tolist()

@@ -1,4 +1,4 @@
-"""Measures of a tree as foresters take them, each with its range and what it rests on."""
+"""Measures of a tree as foresters take them, each with its range and its basis."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ from treestroke.core.types import Floats
 BREAST_HEIGHT = 1.3
 """Metres above the root at which a trunk's diameter is taken."""
 SPREAD_SHARE = 0.01
-"""Share of a crown's foliage that may reach beyond its width or depth to either side: single leaves make no width."""
+"""Share of the foliage left out on either side of a width or depth, so that single leaves do not set it."""
 ENDS_PX = 3.0
-"""How far off the ends of a line of known length may be drawn together, px at a long side of 1500."""
+"""Error of a line of known length, both ends together, px at a long side of 1500."""
 RANGES = {
     "height": (0.03, 0.02),
     "crown_width": (0.12, 0.05),
@@ -27,16 +27,16 @@ RANGES = {
     "crown_volume": (0.35, 0.25),
     "leaf_area": (0.5, 0.5),
 }
-"""Shares by which a measure may be too large, and too small, with the scale taken as exact. They hold all figures of 4
-trees that are known in 3D; for trees unlike those they are a guess."""
+"""Shares by which a measure may be too large, and too small, if the scale is exact. They hold for 4 trees known in 3D;
+for other kinds of trees they are a guess."""
 
 Basis = Literal["given", "measured", "derived"]
-"""Taken from what the person says; seen in the photo; following from what was grown where the photo shows nothing."""
+"""Given by the person; seen in a picture; or following from what was grown where no picture shows it."""
 
 
 @dataclass(frozen=True)
 class Measure:
-    """One figure, e.g. metres; ``low`` and ``high`` bound what it may be in truth. None where there is none to take."""
+    """One figure; ``low`` and ``high`` bound its true value. None where it cannot be measured."""
 
     value: float | None
     unit: str
@@ -48,7 +48,7 @@ class Measure:
 
 @dataclass(frozen=True)
 class Scale:
-    """Metres a pixel of the photo, whether a line of known length says so, and the share by which that may be off."""
+    """Metres per pixel of the picture, whether a line of known length sets it, and its relative error."""
 
     metres_per_pixel: float
     known: bool
@@ -64,7 +64,7 @@ class Stature:
     height
         From its root to the top of its foliage, metres.
     scale
-        What metres rest on.
+        How metres follow from pixels.
     trunk_seen
         Whether it is seen how thick the trunk is at breast height.
     crown
@@ -165,7 +165,7 @@ def _figure(value: float | None, quantity: _Quantity, scale: Scale) -> Measure:
 
 
 def _spread(places: Floats) -> float:
-    """Measure from side to side without the outermost few."""
+    """Measure the span of places (n,), metres, without the outermost few."""
     low, high = np.quantile(places, (SPREAD_SHARE, 1 - SPREAD_SHARE))
     return float(high - low)
 
