@@ -4,15 +4,15 @@ from pathlib import Path
 
 import pytest
 
-from treestroke.codec.gltf.tree import IMPOSTOR_MATERIAL, LEAF_MATERIAL
+from treestroke.codec.gltf.tree import MATERIALS, MaterialName
 from treestroke.core.geometry.mesh import ALPHA_CUT
 
 FORMATS = Path(__file__).parents[2] / "docs" / "formats.md"
 
 
-@pytest.mark.parametrize("material", [LEAF_MATERIAL, IMPOSTOR_MATERIAL], ids=["leaf", "impostor"])
-def test_the_glb_s_materials_are_cut_at_the_constant(material: dict[str, object]) -> None:
-    assert material["alphaCutoff"] == ALPHA_CUT
+@pytest.mark.parametrize("name", ["leaf", "impostor"])
+def test_the_glb_s_materials_are_cut_at_the_constant(name: MaterialName) -> None:
+    assert MATERIALS[name].values["alphaCutoff"] == ALPHA_CUT
 
 
 @pytest.mark.parametrize("place", ["`MASK`, cutoff {}", "`opacityThreshold` {} for leaves"])

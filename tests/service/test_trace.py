@@ -3,6 +3,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.api import sketched
 
 import treestroke
 from treestroke.core.pipeline.grown_tree import LiveTree
@@ -99,3 +100,13 @@ def test_without_branches_nothing_grows(maple_photo: Path, maple_strokes: Path) 
     found = treestroke.trace(maple_photo, {"crown": crown}, grow=True)
     assert found.grown is None
     assert (found.answer()["grown"], found.answer()["photo"]) == (None, None)
+
+
+def test_a_trace_of_sketches_shows_what_was_drawn() -> None:
+    found = trace_sketches(sketched.FRONT, sketched.SIDE)
+    assert found.grown is None
+    answer = found.answer()
+    for view, given in (("front", sketched.FRONT), ("side", sketched.SIDE)):
+        points = answer[view]["skeleton"]["points"]
+        for branch in given["branches"]:
+            assert min(abs(x - branch["points"][-1][0]) + abs(y - branch["points"][-1][1]) for x, y in points) < 1.0

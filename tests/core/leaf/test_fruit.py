@@ -4,16 +4,15 @@ import cv2
 import numpy as np
 import pytest
 from tests.core.leaf.conftest import view_of
-from treestroke.core.leaf.area import leaf_area
 
 from treestroke.core.geometry.crown_volume import Silhouette, shown_by_all
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.outline_volume import TurnedOutline
 from treestroke.core.geometry.silhouette import framing, silhouettes
 from treestroke.core.leaf.cards import cards
-from treestroke.core.leaf.fruit import FruitParams, fruit_among, hang_fruit, with_fruit
+from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
 from treestroke.core.leaf.leaf_crown import leaf_crown
-from treestroke.core.leaf.leaves import Leaves, no_leaves
+from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.leaf.thinning import Coverage, thin_leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas

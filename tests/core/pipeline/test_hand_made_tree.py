@@ -16,7 +16,7 @@ from treestroke.core.grow.library import TYPE_1, TYPE_2
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
-from treestroke.core.leaf.fruit import fruit_among
+from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import TreeModel, finish
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
