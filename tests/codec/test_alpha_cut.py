@@ -12,7 +12,7 @@ FORMATS = Path(__file__).parents[2] / "docs" / "formats.md"
 
 @pytest.mark.parametrize("name", ["leaf", "impostor"])
 def test_the_glb_s_materials_are_cut_at_the_constant(name: MaterialName) -> None:
-    assert MATERIALS[name].values["alphaCutoff"] == ALPHA_CUT
+    assert MATERIALS[name].properties["alphaCutoff"] == ALPHA_CUT
 
 
 @pytest.mark.parametrize("place", ["`MASK`, cutoff {}", "`opacityThreshold` {} for leaves"])

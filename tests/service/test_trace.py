@@ -7,7 +7,7 @@ from tests.api import sketched
 
 import treestroke
 from treestroke.core.pipeline.grown_tree import LiveTree
-from treestroke.service.trace import Trace
+from treestroke.service.trace import Trace, trace_sketches
 
 
 def test_foliage_and_branches_lie_in_the_photo(maple_photo: Path, maple_strokes: Path) -> None:
