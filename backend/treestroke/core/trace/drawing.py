@@ -70,7 +70,7 @@ def draw_up(sketch: Sketch) -> Drawing:
 def _drawn_crown(crown: Stroke, tree: Branched, canvas: tuple[int, int]) -> tuple[Floats, tuple[StrokeWarning, ...]]:
     """Check the crown that was drawn, and that there is something of the tree in it."""
     width, height = canvas
-    outline = clamped(crown, ("crown",), width, height, 3, "canvas").points
+    outline = clamped(crown, ("crown",), (width, height), 3, "canvas").points
     coarse = min(1.0, CHECKED_SIDE / max(canvas))
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
     filled, crossing = filled_and_crossing(outline * coarse, *size)

@@ -47,7 +47,7 @@ def link_strokes(
     if not branches:
         what = "there is none; draw one stroke from the tree's root up its trunk"
         raise StrokesError.at(("branches",), what, "trunk_missing")
-    strokes = [clamped(one, ("branches", i), *canvas, 2, "canvas") for i, one in enumerate(branches)]
+    strokes = [clamped(one, ("branches", i), canvas, 2, "canvas") for i, one in enumerate(branches)]
     strokes[0], warnings = _upright(strokes[0])
     height = tree_height(strokes[0].points[0], np.concatenate([one.points for one in strokes]), canvas)
     check_length(sum(float(arc_lengths(one.points)[-1]) for one in strokes), height)
