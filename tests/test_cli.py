@@ -225,7 +225,7 @@ LINE = [[340, 580], [345, 300]]
         ({"branches": [{"points": [[340, 580], [340, 580]]}]}, "branches/0"),
         ({"branches": [{"points": [[340, 580], ["a", 0]]}]}, "branches/0"),
         ({"branches": [{"points": [[2, 580], [1, 599]]}]}, "branches/0"),
-        ({"branches": [{"points": LINE}] * 200}, "at most 200"),
+        ({"branches": [{"points": LINE}] * 200}, "at most 199"),
         ({"branches": [{"points": LINE * 5_001}]}, "branches/0"),
         ({"branches": [{"points": LINE, "colour": "red"}]}, "colour"),
     ],

@@ -1,5 +1,6 @@
 """Refusals of requests and files: what pydantic found, as code, JSON pointer, what is wrong and how to mend it."""
 
+import json
 from collections.abc import Mapping
 from numbers import Real
 from typing import Any, NamedTuple, TypeVar
@@ -121,7 +122,7 @@ def _refusal(error: ValidationError, value: object, kind: type[TreestrokeError])
     place = place[: len(place) - rule.up]
     told = {
         "count": facts.get("actual_length"),
-        "value": shown(found),
+        "value": json.dumps(found) if isinstance(found, float) else shown(found),  # NaN, not nan
         "kind": _kind_of(found),
         "problem": fault["msg"],
     }

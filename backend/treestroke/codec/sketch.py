@@ -17,7 +17,8 @@ from treestroke.core.strokes import Sketch, Stroke
 from treestroke.limits import MAX_CANVAS, MIN_CANVAS
 
 if TYPE_CHECKING:
-    from treestroke import wire_strokes as wire
+    from treestroke.wire_strokes import PictureSketch
+    from treestroke.wire_strokes import Sketch as DescribedSketch
 
 MARGIN = 0.05
 """Room around the strokes where no canvas is given, as a share of their box."""
@@ -50,12 +51,12 @@ def sketch_from(value: object) -> Sketch:
         As `parse_sketch`.
     """
     from treestroke.codec.refusals import checked
-    from treestroke.wire_strokes import Sketch as Described
+    from treestroke.wire_strokes import Sketch as DescribedSketch
 
-    return sketch_of(checked(Described, value, StrokesError))
+    return sketch_of(checked(DescribedSketch, value, StrokesError))
 
 
-def sketch_of(described: "wire.Sketch") -> Sketch:
+def sketch_of(described: "DescribedSketch") -> Sketch:
     """Return the value of a sketch that was checked by its description; without a canvas it fits what was drawn.
 
     Raises
@@ -75,7 +76,7 @@ def sketch_of(described: "wire.Sketch") -> Sketch:
     return Sketch(canvas, crown, strokes)
 
 
-def picture_of(described: "wire.PictureSketch") -> tuple[bytes, Sketch]:
+def picture_of(described: "PictureSketch") -> tuple[bytes, Sketch]:
     """Return a sketch's PNG, decoded from base64, and its value.
 
     Raises

@@ -11,7 +11,8 @@ from treestroke.core.stroke_rules import check_count
 from treestroke.core.strokes import Length, Stroke, Strokes
 
 if TYPE_CHECKING:
-    from treestroke import wire_strokes as wire
+    from treestroke.wire_strokes import BranchStroke, CrownStroke, EraseStroke
+    from treestroke.wire_strokes import Strokes as DescribedStrokes
 
 
 def parse_strokes(text: str | bytes, name: str) -> Strokes:
@@ -40,12 +41,12 @@ def strokes_from(value: object) -> Strokes:
         As `parse_strokes`.
     """
     from treestroke.codec.refusals import checked
-    from treestroke.wire_strokes import Strokes as Described
+    from treestroke.wire_strokes import Strokes as DescribedStrokes
 
-    return strokes_of(checked(Described, value, StrokesError))
+    return strokes_of(checked(DescribedStrokes, value, StrokesError))
 
 
-def strokes_of(described: "wire.Strokes") -> Strokes:
+def strokes_of(described: "DescribedStrokes") -> Strokes:
     """Return the values of strokes that were checked by their description.
 
     Raises
@@ -63,7 +64,7 @@ def strokes_of(described: "wire.Strokes") -> Strokes:
     )
 
 
-def stroke_of(described: "wire.CrownStroke | wire.BranchStroke | wire.EraseStroke") -> Stroke:
+def stroke_of(described: "CrownStroke | BranchStroke | EraseStroke") -> Stroke:
     """Return the value of one stroke, its points (n, 2) in px; only a branch's may have a width, px."""
     return Stroke(np.array(described.points, dtype=np.float64), getattr(described, "width", None))
 

@@ -50,9 +50,9 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     check_count(1 + len(strokes.branches) + len(strokes.erase))
     scale = None if strokes.scale is None else _known_length(strokes.scale, width, height)
     inside = Strokes(
-        crown=clamped(strokes.crown, ("crown",), width, height, 3),
-        branches=tuple(clamped(s, ("branches", i), width, height, 2) for i, s in enumerate(strokes.branches)),
-        erase=tuple(clamped(s, ("erase", i), width, height, 2) for i, s in enumerate(strokes.erase)),
+        crown=clamped(strokes.crown, ("crown",), (width, height), 3),
+        branches=tuple(clamped(s, ("branches", i), (width, height), 2) for i, s in enumerate(strokes.branches)),
+        erase=tuple(clamped(s, ("erase", i), (width, height), 2) for i, s in enumerate(strokes.erase)),
         scale=scale,
     )
     coarse = min(1.0, CHECKED_SIDE / max(width, height))
@@ -131,8 +131,10 @@ def check_count(count: int) -> None:
         raise StrokesError.at((), what, "too_many_strokes")
 
 
-def clamped(stroke: Stroke, place: Place, width: int, height: int, least: int, ground: str = "photo") -> Stroke:
+def clamped(stroke: Stroke, place: Place, size: tuple[int, int], least: int, ground: str = "photo") -> Stroke:
     """Return one stroke, checked by itself, with its points (n, 2), px, clamped to the ``ground`` it is drawn on.
+
+    ``size`` is the ground's width and height, px.
 
     Raises
     ------
@@ -152,7 +154,7 @@ def clamped(stroke: Stroke, place: Place, width: int, height: int, least: int, g
     if stroke.width is not None and not (np.isfinite(stroke.width) and stroke.width > 0):
         what = f"width is {stroke.width}; give pixels above 0 or leave it out"
         raise StrokesError.at(place, what, "width_invalid", key="width")
-    points = np.clip(points, 0.0, (float(width), float(height)))
+    points = np.clip(points, 0.0, np.asarray(size, dtype=np.float64))
     distinct = len(set(map(tuple, points.tolist())))  # np.unique by rows costs 30 ms at its first call
     if distinct < least:
         held = f"it has {distinct} distinct point{'s' * (distinct != 1)} inside the {ground}"
@@ -165,7 +167,7 @@ def _known_length(scale: Length, width: int, height: int) -> Length:
     if len(scale.points) != 2:
         what = f"it has {len(scale.points)} points, it needs 2; draw a straight line"
         raise StrokesError.at(("scale",), what, "scale_invalid", key="points")
-    ends = clamped(Stroke(scale.points), ("scale",), width, height, 2).points
+    ends = clamped(Stroke(scale.points), ("scale",), (width, height), 2).points
     if not (np.isfinite(scale.metres) and scale.metres > 0):
         what = f"{scale.metres} metres is no length; give metres above 0"
         raise StrokesError.at(("scale",), what, "scale_invalid", key="metres")

@@ -71,7 +71,7 @@ def trace_sketch(sketch: Sketch) -> Drawing:
 def _drawn_crown(crown: Stroke, tree: Branched, canvas: tuple[int, int]) -> tuple[Floats, tuple[StrokeWarning, ...]]:
     """Clamp the drawn crown to the canvas; refuse one that is too small or that no branch reaches into."""
     width, height = canvas
-    outline = clamped(crown, ("crown",), width, height, 3, "canvas").points
+    outline = clamped(crown, ("crown",), (width, height), 3, "canvas").points
     coarse = min(1.0, CHECKED_SIDE / max(canvas))
     size = max(1, round(height * coarse)), max(1, round(width * coarse))
     filled, crossing = filled_and_crossing(outline * coarse, *size)

@@ -49,7 +49,7 @@ def link_strokes(
     if not branches:
         what = "there is none; draw one stroke from the tree's root up its trunk"
         raise StrokesError.at(("branches",), what, "trunk_missing")
-    strokes = [clamped(stroke, ("branches", i), *canvas, 2, "canvas") for i, stroke in enumerate(branches)]
+    strokes = [clamped(stroke, ("branches", i), canvas, 2, "canvas") for i, stroke in enumerate(branches)]
     strokes[0], warnings = _upright(strokes[0])
     height = tree_height(strokes[0].points[0], np.concatenate([stroke.points for stroke in strokes]), canvas)
     check_length(sum(float(arc_lengths(stroke.points)[-1]) for stroke in strokes), height)
