@@ -66,7 +66,7 @@ def bark_texture(
     to its colours; where no trunk is visible, the pattern stands alone, in ``hidden_colour``. A known form
     is always added a little.
 
-    Source: quilting after Efros and Freeman 2001 (`imaging.quilting`).
+    Source: the patches are joined after Kwatra et al. 2003 (`imaging.quilting`).
 
     Parameters
     ----------

@@ -121,7 +121,7 @@ class _PhotoCrown:
 
 
 @dataclass(frozen=True, eq=False)
-class _Lifted:
+class _LiftedTrace:
     """What was traced, turned into the world.
 
     Attributes
@@ -226,22 +226,22 @@ def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) 
     return _PhotoCrown(kind, shows_leaves, wood, front, as_seen, volume, side)
 
 
-def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator) -> _Lifted:
+def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator) -> _LiftedTrace:
     """Turn what was traced into the world: by the left side, or with a guessed depth."""
     visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
     stroke = traced.stroke[owner]
     if crown.side is None:
-        return _Lifted(lift(visible, stroke, SeenCrown(crown.volume, crown.camera), rng), visible, owner, {})
+        return _LiftedTrace(lift(visible, stroke, SeenCrown(crown.volume, crown.camera), rng), visible, owner, {})
     weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
     deep = with_depth(front, crown.side, evidence.height_px, crown.camera)
     tree = deep.tree.skeleton
-    return _Lifted(tree, seen_from_front(tree, crown.camera), owner[deep.front], deep.score)
+    return _LiftedTrace(tree, seen_from_front(tree, crown.camera), owner[deep.front], deep.score)
 
 
 def _appearance(
-    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, lifted: _Lifted, leafy: Mask
+    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, lifted: _LiftedTrace, leafy: Mask
 ) -> Appearance:
     """Gather what the photo shows; ``leafy`` (h, w) is where the tree is to have leaves."""
     stem = np.flatnonzero(traced.stroke == 0)
@@ -259,7 +259,7 @@ def _appearance(
 
 
 def _leaves_from(
-    foliage: Foliage, traced: Traced, crown: _PhotoCrown, lifted: _Lifted, leafy: Mask
+    foliage: Foliage, traced: Traced, crown: _PhotoCrown, lifted: _LiftedTrace, leafy: Mask
 ) -> NDArray[np.float32]:
     """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 

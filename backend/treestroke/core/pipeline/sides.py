@@ -90,7 +90,7 @@ def side_of(
 
 
 @dataclass(frozen=True, eq=False)
-class Lifted:
+class RetrievedTree:
     """A front turned into a 3D tree by its left side.
 
     Attributes
@@ -108,11 +108,11 @@ class Lifted:
     score: dict[str, float]
 
 
-def with_depth(front: Branched, side: Side, height_px: float, camera: OrthographicCamera) -> Lifted:
+def with_depth(front: Branched, side: Side, height_px: float, camera: OrthographicCamera) -> RetrievedTree:
     """Turn a front (px of a camera) into a 3D tree by the depth of its left side."""
     flat = in_units(front, height_px)
     retrieved = retrieve_depth(flat, side.tree)
     skeleton, metres = retrieved.tree.skeleton, float(camera.metres_from_pixels(height_px / UNITS))
     tree = Skeleton(skeleton.points * metres, skeleton.radii * metres, skeleton.parents)
     score = asdict(fidelity(flat, side.tree, retrieved.tree, retrieved.origin == PAIRED))
-    return Lifted(Branched(tree, retrieved.tree.branch), retrieved.front, score)
+    return RetrievedTree(Branched(tree, retrieved.tree.branch), retrieved.front, score)

@@ -103,7 +103,7 @@ class _Frame:
 
 
 @dataclass(frozen=True, eq=False)
-class _Lifted:
+class _LiftedSketch:
     """The drawn branches in 3D (metres), the crown's volume, and how true the branches are to the sketches."""
 
     tree: Branched
@@ -194,18 +194,18 @@ def _framed(evidence: SketchEvidence, height_m: float) -> _Frame:
     return _Frame(evidence, scale, tree, crown, side)
 
 
-def _lifted(frame: _Frame, rng: np.random.Generator) -> _Lifted:
+def _lifted(frame: _Frame, rng: np.random.Generator) -> _LiftedSketch:
     """Turn the drawn branches into the world: by the left side, or by spreading them in depth."""
     outline = turned_outline(frame.crown)
     if frame.side is None:
         tree = lift(frame.tree.skeleton, frame.tree.branch, SeenCrown(outline, frame.camera), rng)
-        return _Lifted(Branched(tree, frame.tree.branch), outline, {})
+        return _LiftedSketch(Branched(tree, frame.tree.branch), outline, {})
     deep = with_depth(frame.tree, frame.side, frame.height_px, frame.camera)
-    return _Lifted(deep.tree, outline.with_side(frame.side.crown), deep.score)
+    return _LiftedSketch(deep.tree, outline.with_side(frame.side.crown), deep.score)
 
 
 def _grown_tree(
-    frame: _Frame, settings: ModelSettings, lifted: _Lifted, grown: Grown, rng: np.random.Generator
+    frame: _Frame, settings: ModelSettings, lifted: _LiftedSketch, grown: Grown, rng: np.random.Generator
 ) -> GrownTree:
     """Gather what finishing the tree needs."""
     main, camera = lifted.tree, frame.camera
