@@ -77,6 +77,8 @@ def run() -> NoReturn:
     """Run the command line and exit with its code; a programming error is printed as one line, too."""
     if "--debug" not in sys.argv:
         sys.excepthook = _one_line
+    # treestroke has no pydantic plugins; to look for some takes longer than to check strokes.
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     sys.exit(main())
 
 

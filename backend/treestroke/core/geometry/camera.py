@@ -95,7 +95,7 @@ class OrthographicCamera:
     def pixels_from_world(self, points_world: Floats) -> Floats:
         """Project world points (n, 3), metres, to picture points (n, 2), px."""
         x = self.root_px[0] + points_world[:, 2 if self.from_left else 0] / self.metres_per_pixel
-        return np.stack([x, self.rows_from_heights(points_world[:, 1])], axis=1)
+        return np.stack([x, self.rows_from_heights(points_world[:, 1])]).T
 
     def world_from_pixels(self, points_px: Floats, depth_m: Floats | float = 0.0) -> Floats:
         """Place picture points (n, 2), px, in the world (n, 3), metres, at depths (n,) from the root's, metres."""

@@ -73,21 +73,20 @@ def _cut(level: _Level, band: Mask, known: Mask | None, smoothness: float) -> Ma
     count = int(band.sum())
     if count == 0:
         return labels
-    index = np.full(band.shape, -1, np.int64)
+    index = np.zeros(band.shape, np.int64)
     index[band] = np.arange(count)
     to_true = np.maximum(level.odds, 0)[band].astype(np.float64)
     to_false = np.maximum(-level.odds, 0)[band].astype(np.float64)
     graph = maxflow.Graph[float](count, 2 * count)
     nodes = graph.add_nodes(count)
     for ahead, behind in _neighbours():
-        weight = _border_costs(level.pixels[behind], level.pixels[ahead], smoothness)
-        first, second = index[behind], index[ahead]
-        both = (first >= 0) & (second >= 0)
-        graph.add_edges(first[both], second[both], weight[both], weight[both])
+        both = band[behind] & band[ahead]
+        weight = _border_costs(level.pixels[behind][both], level.pixels[ahead][both], smoothness)
+        graph.add_edges(index[behind][both], index[ahead][both], weight, weight)
         for inner, outer in ((behind, ahead), (ahead, behind)):
-            rim = (index[inner] >= 0) & (index[outer] < 0) & level.region[outer]
-            at, cost = index[inner][rim], weight[rim]
-            side = labels[outer][rim]
+            rim = band[inner] & ~band[outer] & level.region[outer]
+            at, side = index[inner][rim], labels[outer][rim]
+            cost = _border_costs(level.pixels[inner][rim], level.pixels[outer][rim], smoothness)
             np.add.at(to_true, at[side], cost[side])
             np.add.at(to_false, at[~side], cost[~side])
     graph.add_grid_tedges(nodes, to_true, to_false)
@@ -103,7 +102,7 @@ def _neighbours() -> tuple[tuple[tuple[slice, slice], tuple[slice, slice]], ...]
 
 
 def _border_costs(this: Picture, following: Picture, smoothness: float) -> Floats:
-    """Cost (h, w) of different labels between neighbouring colours (h, w, 3)."""
-    red, green, blue = (cv2.absdiff(this[..., c], following[..., c]).astype(np.float32) for c in range(3))
-    step = np.sqrt(red * red + green * green + blue * blue)
+    """Return the cost (n,) of different labels between neighbouring colours (n, 3), sRGB."""
+    difference = this.astype(np.float32) - following.astype(np.float32)
+    step = np.sqrt(np.einsum("nc,nc->n", difference, difference))
     return np.asarray(smoothness / np.maximum(step, SOFTEST_STEP), dtype=np.float64)

@@ -60,6 +60,8 @@ def cover(covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: 
 
 def _cells(leaves: Leaves, dots: Floats, grid: FoliageGrid) -> Indices:
     """Grid cells (m, p) of dots (m or 1, p, 2) on cards."""
-    across = dots[..., :1] * np.where(leaves.flips, -1.0, 1.0)[:, None, None]
-    points = leaves.centres[:, None] + across * leaves.rights[:, None] + dots[..., 1:] * leaves.ups[:, None]
-    return grid.cells_of(points.reshape(-1, 3)).reshape(points.shape[:2])
+    across, up = dots[..., 0] * np.where(leaves.flips, -1.0, 1.0)[:, None], dots[..., 1]
+    # One coordinate after the other: numpy is slow where the last axis is short.
+    centres, rights, ups = (vectors.T[..., None] for vectors in (leaves.centres, leaves.rights, leaves.ups))
+    points = centres + across * rights + up * ups
+    return grid.cells_of(points.reshape(3, -1).T).reshape(points.shape[1:])

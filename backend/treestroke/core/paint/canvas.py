@@ -36,8 +36,8 @@ class Canvas:
         self.paints = rgb_from_lab(picked[:, None, :] + SHADES[:, None] * np.array([1.0, 0.0, 0.0]))
         wood = np.array([0.6 * mean[0], 0.5 * mean[1] + 4.0, 0.5 * mean[2] + 6.0])
         ground, self.wood = rgb_from_lab(np.stack([mean, wood]))
-        self.pixels = np.empty((self.side, self.side, 4), dtype=np.uint8)
-        self.pixels[:] = (*ground.tolist(), 0)
+        pixel = np.array([*ground.tolist(), 0], dtype=np.uint8).view(np.uint32)
+        self.pixels = np.full((self.side, self.side), pixel).view(np.uint8).reshape(self.side, self.side, 4)
 
     def _fixed_point(self, points: Floats) -> NDArray[np.int32]:
         """Convert points (..., 2) to cv2's fixed-point pixels."""

@@ -100,8 +100,9 @@ def log_odds_by_place(inside: Mask) -> NDArray[np.float32]:
 
     Strokes are loose: pixels at their rim and beyond it are more likely ground.
     """
-    depth = _depth(inside)
-    return np.where(inside, 0.7 - 1.8 * np.exp(-depth / 0.06), -2.0).astype(np.float32)
+    odds = np.full(inside.shape, -2.0, dtype=np.float32)
+    odds[inside] = 0.7 - 1.8 * np.exp(-_depth(inside)[inside] / 0.06)
+    return odds
 
 
 def weights_by_height(mixture: Mixture, pixels: Picture, where: Mask) -> Floats:
@@ -133,8 +134,12 @@ def _interpolated(tables: Floats, index: NDArray[np.uint16]) -> NDArray[np.float
     place = np.clip((np.arange(height) + 0.5) / height * BANDS - 0.5, 0, BANDS - 1)
     above = np.minimum(place.astype(np.int64), BANDS - 2)
     below = (place - above).astype(np.float32)[:, None]
-    upper, lower = compact[above[:, None], index], compact[above[:, None] + 1, index]
-    return np.asarray(upper + (lower - upper) * below)
+    values = np.empty(index.shape, dtype=np.float32)
+    for band in range(BANDS - 1):
+        rows = slice(*np.searchsorted(above, (band, band + 1)).tolist())
+        upper, lower = compact[band].take(index[rows]), compact[band + 1].take(index[rows])
+        values[rows] = upper + (lower - upper) * below[rows]
+    return values
 
 
 def _reweighted(mixture: Mixture, belief: Floats) -> Mixture:
