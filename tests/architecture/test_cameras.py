@@ -8,7 +8,7 @@ MAY_READ = {
     "core/geometry/camera.py": "is where it stands",
     "codec/skeleton.py": "writes the photo's frame into files, as extras.photo has it",
     "codec/preview.py": "draws its front view at the photo's framing, in a picture of its own size",
-    "service/making.py": "reports the scale",
+    "service/report.py": "reports the scale",
 }
 SECTIONS = {
     "core/geometry/outline_volume.py": "stores outlines as rows of the picture that they were seen in",

@@ -20,6 +20,7 @@ ALLOWED = {
     "<Method>Params": "a pattern of names",
     "UPDATE": "SQL",
     "GaussianMixture": "scikit-learn's class, which 0005 decides against",
+    "vertex_indices": "PLY's property, which trimesh writes",
     "leaf_03": "an example of a glTF node's name",
     "leaf_03_mirrored": "an example of a glTF node's name",
 }

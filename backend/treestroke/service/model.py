@@ -10,11 +10,11 @@ from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.dressing import OwnPictures
-from treestroke.core.pipeline.finishing import OnGrown, TreeModel, unseen
-from treestroke.core.pipeline.growing import read_photo
-from treestroke.core.pipeline.photo import model_photo
+from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
+from treestroke.core.pipeline.growing import grow_tree, read_photo
+from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
-from treestroke.core.pipeline.sketching import model_sketches, read_sketches
+from treestroke.core.pipeline.sketching import grow_sketches, read_sketches
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
@@ -36,8 +36,8 @@ from treestroke.service.report import tree_report, variant_seeds
 GENERATOR = f"treestroke {__version__}"
 """The generator that files name; without the engine's digest, so that the same tree has the same bytes."""
 
-GrowTree = Callable[[np.random.Generator, OnGrown], TreeModel]
-"""Grows one tree by the given random numbers and shows it when growth ends."""
+GrowTree = Callable[[np.random.Generator], GrownTree]
+"""Grows one tree with the given random numbers: the first half of a recipe."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,32 +196,35 @@ def make_tree(inputs: Inputs[PartLike], options: Options, report: Report = silen
                 grow = _photo_recipe(parts, options.settings, watch)
             case "sketches":
                 grow = _sketch_recipe(parts, options.settings, watch)
-        made = _make_variants(grow, options, watch, on_grown)
+        pictures = OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
+        made = _make_variants(grow, pictures, options, watch, on_grown)
     return made.with_warnings(asdict(warning) for warning in mended)
 
 
 def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     require_trunk(parts["strokes"])
-    seen = read_photo(parts["photo"], parts["strokes"], None, report, parts.get("side"))
-    return lambda rng, on_grown: model_photo(seen, settings, rng, report, on_grown, _own_pictures(parts))
+    evidence = read_photo(parts["photo"], parts["strokes"], None, report, parts.get("side"))
+    return lambda rng: grow_tree(evidence, settings, rng, report)
 
 
 def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
-    seen = read_sketches(parts["front"], parts.get("side"), parts.get("photo"), report)
-    return lambda rng, on_grown: model_sketches(seen, settings, rng, report, on_grown, _own_pictures(parts))
+    evidence = read_sketches(parts["front"], parts.get("side"), parts.get("photo"), report)
+    return lambda rng: grow_sketches(evidence, settings, rng, report)
 
 
-def _own_pictures(parts: Mapping[str, Any]) -> OwnPictures:
-    return OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
-
-
-def _make_variants(grow: GrowTree, options: Options, watch: Stopwatch, on_grown: OnGrown) -> Model:
+def _make_variants(
+    grow: GrowTree, pictures: OwnPictures, options: Options, watch: Stopwatch, on_grown: OnGrown
+) -> Model:
     """Grow as many trees as the settings ask for, each by the next seed, and write their files."""
     trees: list[TreeModel] = []
     bundles: dict[str, Bundle] = {}
     settings, seed, name = options.settings, options.seed, options.name
     for index, variant_seed in enumerate(variant_seeds(seed, settings.variants)):
-        trees.append(grow(np.random.default_rng(variant_seed), unseen if trees else on_grown))
+        rng = np.random.default_rng(variant_seed)
+        grown = grow(rng)
+        if index == 0:
+            on_grown(grown.live)
+        trees.append(finish(grown, settings, rng, watch, pictures))
         variant_name = name if index == 0 else f"{name}.v{index + 1}"
         bundles |= tree_files(trees[-1], settings, variant_name, GENERATOR, watch)
     return Model(bundles, tree_report(trees, bundles, settings, seed, watch), trees[0])

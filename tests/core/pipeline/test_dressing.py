@@ -6,13 +6,13 @@ import cv2
 import numpy as np
 import pytest
 from tests.conftest import DATA, EXAMPLES
+from tests.core.pipeline.recipes import model_photo
 
 import treestroke
 from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.growing import read_photo
-from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.service.inputs import load_photo, load_strokes
 from treestroke.service.model import Model

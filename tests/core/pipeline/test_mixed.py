@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from tests.conftest import EXAMPLES
+from tests.core.pipeline.recipes import model_photo
 
 from treestroke.codec.image import decode_photo
 from treestroke.codec.strokes import parse_strokes
 from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
-from treestroke.core.pipeline.photo import model_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Sketch, Stroke
 

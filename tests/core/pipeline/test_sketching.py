@@ -1,13 +1,14 @@
 import numpy as np
 import pytest
 from tests.conftest import EXAMPLES
+from tests.core.pipeline.recipes import model_sketches
 
 from treestroke.codec.sketch import parse_sketch
 from treestroke.core.errors import StrokesError
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.sketching import ONE_SIDE, grow_sketches, model_sketches, read_sketches
+from treestroke.core.pipeline.sketching import ONE_SIDE, grow_sketches, read_sketches
 from treestroke.core.strokes import Sketch, Stroke
 
 FEW = ModelSettings(iterations=60)

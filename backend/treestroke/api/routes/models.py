@@ -157,7 +157,7 @@ async def ask_for_model(
     headers = {"Location": f"/v1/models/{model.row.id}"}
     if wanted:
         headers["Preference-Applied"] = f"wait={wanted[1]}"
-    status = 200 if model.row.status in TERMINAL else 202
+    status = HTTPStatus.OK if model.row.status in TERMINAL else HTTPStatus.ACCEPTED
     return JSONResponse(model_view(model).model_dump(), status, headers)
 
 

@@ -5,13 +5,10 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
-from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
 from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
-from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
@@ -72,31 +69,8 @@ def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
 
 
 def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:
-    """Grow what was traced as `model_photo` does; None without a branch stroke."""
+    """Return the tree that grows from what was traced; None without a branch stroke."""
     return None if traced.evidence.traced is None else grow_tree(traced.evidence, settings, rng).live
-
-
-def model_photo(
-    evidence: PhotoEvidence,
-    settings: ModelSettings,
-    rng: np.random.Generator,
-    report: Report = silent,
-    on_grown: OnGrown = unseen,
-    pictures: OwnPictures = NO_PICTURES,
-) -> TreeModel:
-    """Turn what was seen in a photo into a tree; other seeds give other trees of the same photo.
-
-    ``report(stage, fraction)`` is called with the stages lift, grow, leaf and mesh; ``on_grown`` with the grown tree,
-    before it has leaves and bark.
-
-    Raises
-    ------
-    ValueError
-        Nothing was traced, or a picture of a leaf or fruit has no opaque pixel.
-    """
-    tree = grow_tree(evidence, settings, rng, report)
-    on_grown(tree.live)
-    return finish(tree, settings, rng, report, pictures)
 
 
 def _in_photo(evidence: PhotoEvidence) -> PhotoTrace:

@@ -15,8 +15,6 @@ from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.lift.spread import SeenCrown, lift
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
-from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
-from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
 from treestroke.core.pipeline.growing import borne_kind
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
@@ -145,20 +143,6 @@ def grow_sketches(
     params = SelfSimilarParams(most=SMALL_BRANCHES * settings.iterations)
     grown = grow_small(lifted.tree, lifted.volume, params, rng, report)
     return _grown_tree(frame, settings, lifted, grown, rng)
-
-
-def model_sketches(
-    evidence: SketchEvidence,
-    settings: ModelSettings,
-    rng: np.random.Generator,
-    report: Report = silent,
-    on_grown: OnGrown = unseen,
-    pictures: OwnPictures = NO_PICTURES,
-) -> TreeModel:
-    """Turn sketches into a tree (metres) as `treestroke.core.pipeline.photo.model_photo` does a photo."""
-    tree = grow_sketches(evidence, settings, rng, report)
-    on_grown(tree.live)
-    return finish(tree, settings, rng, report, pictures)
 
 
 def _over(front: Sketch, photo: Picture) -> Sketch:
