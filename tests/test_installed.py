@@ -152,7 +152,7 @@ def test_a_model_grows_through_a_redis_and_the_doctor_finds_all_well(installed: 
         said = installed.run("treestroke", "doctor", **settings, port=port)
     found = dict(re.findall(r"^ok   (\S+(?: \S+)?) +(\S.*)$", said, re.M))
     assert found["web process"] == f"responds at 127.0.0.1:{port}"
-    assert found["queue"] == "Redis takes messages"
+    assert found["queue"] == "Redis accepts messages"
     assert found["workers"] == "1 of 1 are running"
     assert "ILL" not in said
     installed.run("treestroke", "model", "tree.png", "--strokes", "strokes.json", *FLAGS, "--out", "same.glb")

@@ -104,4 +104,4 @@ def test_the_doctor_finds_an_old_version_before_the_upgrade_and_all_files_whole_
     database.migrate()
     database.close()
     after = {finding.part: finding.found for finding in examine_deployment(settings)}
-    assert (after["database"], after["files"]) == ("sound", "all 10 whole")
+    assert (after["database"], after["files"]) == ("sound", "all 10 intact")
