@@ -33,7 +33,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
-from treestroke.service.inputs import load_strokes
+from treestroke.service.loading import load_strokes
 from treestroke.service.model import Model
 from treestroke.service.trace import Trace
 

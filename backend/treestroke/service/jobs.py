@@ -22,7 +22,7 @@ from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
-from treestroke.service.inputs import load_settings
+from treestroke.service.loading import load_settings
 from treestroke.service.model import Options, make_tree
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store import queries

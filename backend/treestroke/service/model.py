@@ -21,7 +21,7 @@ from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
 from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import Bundle, check_files, tree_files
-from treestroke.service.inputs import (
+from treestroke.service.loading import (
     FileLike,
     PartLike,
     PhotoLike,

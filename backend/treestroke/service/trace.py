@@ -17,7 +17,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
 from treestroke.core.trace.drawing import Drawing
 from treestroke.service.execution import one_thread
-from treestroke.service.inputs import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
+from treestroke.service.loading import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class Trace:
     grow: bool = False
     grown: LiveTree | None = None
 
-    def answer(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Return the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``.
 
         Where a grown tree was asked for, also ``grown`` and ``photo``, null without a branch stroke.
@@ -131,7 +131,7 @@ class SketchTrace:
     seen: SketchEvidence
     grown: GrownTree | None
 
-    def answer(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Return the trace as plain values: ``front``, ``side`` and ``warnings``.
 
         With a tree also ``grown``, ``photo`` and ``score``.

@@ -84,7 +84,7 @@ def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] =
     side = None if request.side is None else _within(("side",), sketch_of, request.side)
     known = _recall(photo)
     known.last = trace(known.picture, strokes, known.last, request.grow, side)
-    answer = known.last.answer()
+    answer = known.last.as_dict()
     return _answer(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 
 
@@ -99,7 +99,7 @@ def sketch_answer(body: bytes) -> bytes:
     request = checked(SketchTraceRequest, read_body(body), StrokesError)
     front = _within(("front",), sketch_of, request.front)
     side = None if request.side is None else _within(("side",), sketch_of, request.side)
-    return _answer(request.rev, trace_sketches(front, side, request.grow).answer())
+    return _answer(request.rev, trace_sketches(front, side, request.grow).as_dict())
 
 
 def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> None:

@@ -14,7 +14,7 @@ from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.service.inputs import load_photo, load_strokes
+from treestroke.service.loading import load_photo, load_strokes
 from treestroke.service.model import Model
 
 MAPLE, BARE = EXAMPLES / "sugar_maple_autumn", DATA / "bigleaf_maple_bare"
