@@ -332,7 +332,7 @@ def _value(name: str, text: str | bool) -> object:
     if isinstance(text, bool):
         return text
     if isinstance(allowed, Several):
-        return [one.strip() for one in text.split(",") if one.strip()]
+        return [name.strip() for name in text.split(",") if name.strip()]
     if not isinstance(allowed, Span):
         return text
     try:

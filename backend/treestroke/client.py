@@ -333,8 +333,8 @@ class Client:
                 yield from events_of(answer.iter_bytes())
 
 
-def _id(thing: PhotoInfo | ModelInfo | str) -> str:
-    return quote(thing if isinstance(thing, str) else thing.id, safe="")
+def _id(info: PhotoInfo | ModelInfo | str) -> str:
+    return quote(info if isinstance(info, str) else info.id, safe="")
 
 
 def _left(deadline: float) -> float:

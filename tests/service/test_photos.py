@@ -70,7 +70,7 @@ def test_a_deleted_photo_counts_until_it_is_removed_for_good(resources: Resource
 def test_no_photo_is_taken_beyond_what_all_may_take(resources: Resources) -> None:
     row = photos.add_photo(resources, drawn.encoded())
     tight = replace(resources, photos_bytes=row.bytes + 1000)
-    for take in (photos.add_photo, photos.take_in):
+    for take in (photos.add_photo, photos.store_pixels):
         with pytest.raises(NoRoom):
             take(tight, drawn.encoded(seed=1))
     assert count(resources, PhotoRow) == 1

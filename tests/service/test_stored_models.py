@@ -108,13 +108,13 @@ def test_a_model_with_the_files_of_a_deleted_one_keeps_them(resources: Resources
 
 def test_a_photo_that_came_along_is_kept_with_its_model_alone(resources: Resources) -> None:
     good = order(resources, "")
-    seen = stored_models.accept_model(resources, good, "key", photos.take_in(resources, drawn.encoded()))
+    seen = stored_models.accept_model(resources, good, "key", photos.store_pixels(resources, drawn.encoded()))
     assert photos.get_photo(resources, seen.row.photo)
-    stored_models.accept_model(resources, good, "key", photos.take_in(resources, drawn.encoded()))
+    stored_models.accept_model(resources, good, "key", photos.store_pixels(resources, drawn.encoded()))
     beside = {**drawn.STROKES, "branches": [{"points": [[5, 235], [5, 238]]}]}
     bad = model_request.read_form({"strokes": json.dumps(beside).encode()})
     with pytest.raises(StrokesError):
-        stored_models.accept_model(resources, bad, None, photos.take_in(resources, drawn.encoded()))
+        stored_models.accept_model(resources, bad, None, photos.store_pixels(resources, drawn.encoded()))
     assert (count(resources, PhotoRow), count(resources, ModelRow)) == (1, 1)
 
 

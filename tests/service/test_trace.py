@@ -57,21 +57,21 @@ def test_the_live_tree_is_the_same_whether_its_foliage_is_known(live: Trace, map
     crown = json.loads(maple_strokes.read_text())["crown"]
     before = treestroke.trace(live.photo, {"crown": crown})
     after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
-    assert after.found.evidence.foliage is before.found.evidence.foliage
+    assert after.photo_trace.evidence.foliage is before.photo_trace.evidence.foliage
     assert same(after.grown, live.grown)
 
 
 def test_what_was_traced_of_the_same_strokes_is_not_traced_again(live: Trace, maple_strokes: Path) -> None:
     before = treestroke.trace(live.photo, maple_strokes)
     after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
-    assert after.found is before.found
+    assert after.photo_trace is before.photo_trace
     assert same(after.grown, live.grown)
 
 
 def test_another_erase_stroke_is_traced(live: Trace, maple_strokes: Path) -> None:
     strokes = json.loads(maple_strokes.read_text())
     erase = {"points": [[5.0, 5.0], [15.0, 15.0]]}
-    assert treestroke.trace(live.photo, {**strokes, "erase": [erase]}, after=live).found is not live.found
+    assert treestroke.trace(live.photo, {**strokes, "erase": [erase]}, after=live).photo_trace is not live.photo_trace
 
 
 def test_growing_changes_nothing_of_the_trace(live: Trace, maple_photo: Path, maple_strokes: Path) -> None:

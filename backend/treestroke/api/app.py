@@ -111,7 +111,7 @@ def _drop_standard_problems(document: dict[str, Any]) -> None:
     invalid = str(HTTPStatus.UNPROCESSABLE_ENTITY.value)
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
-    for operation in (one for path in document["paths"].values() for one in path.values()):
+    for operation in (operation for path in document["paths"].values() for operation in path.values()):
         if "HTTPValidationError" in str(operation["responses"].get(invalid)):
             del operation["responses"][invalid]
 

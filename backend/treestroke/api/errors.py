@@ -125,8 +125,8 @@ def _invalid(_: Request, error: RequestValidationError) -> JSONResponse:
         return problem("malformed_json", "the body is no valid JSON; send it anew")
     # What was sent is not repeated in the response: it may be anything.
     faults = [
-        Fault(pointer="".join(f"/{part}" for part in one["loc"][1:]), code=one["type"], detail=one["msg"])
-        for one in error.errors()
+        Fault(pointer="".join(f"/{part}" for part in found["loc"][1:]), code=found["type"], detail=found["msg"])
+        for found in error.errors()
     ]
     said = "; ".join(f"{fault.pointer[1:]}: {fault.detail}" for fault in faults)
     return problem("invalid", f"{said}; change it", faults)

@@ -142,28 +142,29 @@ def decode_cutout(data: bytes, name: str, refusal: type[TreestrokeError]) -> Pic
         Of the type ``refusal``: another format, damaged, too small or too large, or not cut out: no or only opaque
         pixels.
     """
-    thing = refusal.whole
+    subject = refusal.whole
     if len(data) > MAX_LEAF_BYTES:
-        fault = f"the {thing}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
-        raise refusal(f"{name}: {fault}", code=f"{thing}_too_large")
+        fault = f"the {subject}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
+        raise refusal(f"{name}: {fault}", code=f"{subject}_too_large")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             image = Image.open(io.BytesIO(data), formats=("PNG",))
             if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
-                fault = (
-                    f"the {thing}'s picture is {image.width} x {image.height} px, each side must be {MIN_LEAF_SIDE} to"
-                )
-                raise refusal(f"{name}: {fault} {MAX_LEAF_SIDE} px; resize it", code=f"{thing}_size")
+                size = f"the {subject}'s picture is {image.width} x {image.height} px"
+                fault = f"{size}, each side must be {MIN_LEAF_SIDE} to {MAX_LEAF_SIDE} px; resize it"
+                raise refusal(f"{name}: {fault}", code=f"{subject}_size")
             picture = np.asarray(image.convert("RGBA"))
     except _DAMAGED as error:
-        fault = f"this is not a readable PNG ({_shortened(error)}); save the {thing} as PNG"
+        fault = f"this is not a readable PNG ({_shortened(error)}); save the {subject} as PNG"
         raise refusal(f"{name}: {fault}") from error
     opaque = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
     if not 0.01 <= opaque <= 0.99:
-        lacks = f"no {thing}: all of it is transparent" if opaque < 0.01 else f"nothing transparent around the {thing}"
-        fault = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"
-        raise refusal(f"{name}: {fault}", code=f"{thing}_not_cut_out")
+        lacks = (
+            f"no {subject}: all of it is transparent" if opaque < 0.01 else f"nothing transparent around the {subject}"
+        )
+        fault = f"the picture has {lacks}; cut the {subject} out, with an alpha channel"
+        raise refusal(f"{name}: {fault}", code=f"{subject}_not_cut_out")
     return np.ascontiguousarray(picture)
 
 

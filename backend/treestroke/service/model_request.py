@@ -65,7 +65,7 @@ def read_order(body: bytes) -> ModelOrder:
     Raises
     ------
     TreestrokeError
-        It is no such request, or something in it cannot be used; the pointer leads into the request.
+        It is not such a request, or something in it cannot be used; the pointer leads into the request.
     """
     request = checked(ModelRequest, read_body(body), TreestrokeError)
     sketches = request.sketches or Sketches()
@@ -97,7 +97,7 @@ def read_name(body: bytes) -> str:
     Raises
     ------
     TreestrokeError
-        It is no such request, or the name cannot be used.
+        It is not such a request, or the name cannot be used.
     """
     return checked(Rename, read_body(body), TreestrokeError).name
 

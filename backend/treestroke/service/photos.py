@@ -41,15 +41,15 @@ def add_photo(resources: Resources, content: bytes) -> PhotoRow:
     Raises
     ------
     PhotoError, OSError
-        As `take_in`.
+        As `store_pixels`.
     """
-    row = take_in(resources, content)
+    row = store_pixels(resources, content)
     with resources.database.writing() as session:
         session.add(row)
     return row
 
 
-def take_in(resources: Resources, content: bytes) -> PhotoRow:
+def store_pixels(resources: Resources, content: bytes) -> PhotoRow:
     """Decode a photo and store its upright pixels without metadata; return its row, which is not yet in the table.
 
     Raises
@@ -102,8 +102,8 @@ def delete_photo(resources: Resources, id: str) -> None:
         There is no such photo.
     """
     with resources.database.writing() as session:
-        there = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))
-        deleted = there.values(deleted=time.time(), seen=None).returning(PhotoRow.id)
+        present = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))
+        deleted = present.values(deleted=time.time(), seen=None).returning(PhotoRow.id)
         if session.scalars(deleted).first() is None:
             raise NotFound("photo")
 

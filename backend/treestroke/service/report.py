@@ -95,7 +95,7 @@ def _plain_measures(measures: Measures) -> dict[str, Any]:
 
 def _silhouette_iou(tree: TreeModel) -> float:
     """Return the overlap of the front view with the foliage and branches that were found, at a reduced size."""
-    seen = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.likeness)))
+    seen = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.expected_cover)))
     size = (seen.shape[1], seen.shape[0])
-    wanted = cv2.resize(tree.likeness.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
+    wanted = cv2.resize(tree.expected_cover.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
     return likeness(seen, wanted)

@@ -91,7 +91,7 @@ def test_small_branches_fill_the_crown_more_evenly_than_drawn_ones_do() -> None:
 
     def unevenness(shown: np.ndarray) -> float:
         cells = crown_cells(crown())
-        cells.lay(one.skeleton.points[shown], lengths[shown])
+        cells.add_wood(one.skeleton.points[shown], lengths[shown])
         middles = cells.corner + cells.side * (np.indices(cells.shape).reshape(3, -1).T + 0.5)
         wood = cells.around()[cells.inside(middles)]
         return float(wood.std() / wood.mean())

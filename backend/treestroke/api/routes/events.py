@@ -24,21 +24,21 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 _RETRY_MS = 2000
 
 
-def _seen(resources: ResourcesOf, id: ModelId) -> StoredModel:
+def _model(resources: ResourcesOf, id: ModelId) -> StoredModel:
     """Return the model; before the stream begins, while the response can still be a problem."""
     return stored_models.find_model(resources.database, id)
 
 
-async def _follower(watcher: WatcherOf, seen: Annotated[StoredModel, Depends(_seen)]) -> AsyncIterator[Follower]:
+async def _follower(watcher: WatcherOf, model: Annotated[StoredModel, Depends(_model)]) -> AsyncIterator[Follower]:
     """Yield a follower of the model; before the stream begins, while the response can still be a problem."""
-    with watcher.follow(seen) as follower:
+    with watcher.follow(model) as follower:
         yield follower
 
 
-def _growth(resources: Resources, seen: StoredModel) -> str | None:
+def _growth(resources: Resources, model: StoredModel) -> str | None:
     """Return the grown skeleton as JSON; None if its file is damaged, because a stream cannot become a problem."""
     try:
-        return resources.blobs.get(seen.files[GROWTH].blob).decode()
+        return resources.blobs.get(model.files[GROWTH].blob).decode()
     except Damaged as error:
         log.error("file_damaged", file=str(error))
         return None
@@ -47,7 +47,7 @@ def _growth(resources: Resources, seen: StoredModel) -> str | None:
 @router.get("/{id}/events", response_class=EventSourceResponse, responses=documented("not_found", "invalid"))
 async def follow_model(
     resources: ResourcesOf,
-    seen: Annotated[StoredModel, Depends(_seen)],
+    model: Annotated[StoredModel, Depends(_model)],
     follower: Annotated[Follower, Depends(_follower)],
     last_event_id: Annotated[str | None, Header(max_length=40)] = None,
 ) -> AsyncIterator[ServerSentEvent]:
@@ -57,7 +57,7 @@ async def follow_model(
     ``Last-Event-ID`` says that it arrived; the last event is always sent.
     """
     sent = int(last_event_id) if last_event_id and last_event_id.isdecimal() else 0
-    shown, latest = model_view(seen), seen
+    shown, latest = model_view(model), model
     yield ServerSentEvent(event="snapshot", data=shown, retry=_RETRY_MS)
     while True:
         row = latest.row

@@ -55,7 +55,7 @@ _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$
 _PHOTO_FIELD = {"photo": {"type": "string", "format": "binary", "description": ACCEPTED_FORMATS}}
 _FORM = FormRequest.model_json_schema()
 _FIELDS = (*_PHOTO_FIELD, *FormRequest.model_fields)
-_ASK: dict[str, Any] = {
+_REQUEST_BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "content": {
@@ -122,7 +122,7 @@ def _read_form(resources: Resources, photo: bytes | None, fields: dict[str, byte
     if photo is None:
         return _Received(resources.tracers("", read_form, fields, brings_photo=False))
     check_length(photo)
-    return _Received(resources.tracers("", read_form, fields), photos.take_in(resources, photo))
+    return _Received(resources.tracers("", read_form, fields), photos.store_pixels(resources, photo))
 
 
 async def _content(field: UploadFile | str) -> bytes:
@@ -138,7 +138,7 @@ async def _content(field: UploadFile | str) -> bytes:
         HTTPStatus.ACCEPTED: {"model": ModelInfo, "headers": _LOCATION, "links": _LINKS},
         **documented(*BODY, "not_found", "storage_full"),
     },
-    openapi_extra=_ASK,
+    openapi_extra=_REQUEST_BODY,
 )
 async def ask_for_model(
     resources: ResourcesOf,
@@ -164,7 +164,7 @@ async def ask_for_model(
 
 
 async def _finished(watcher: Watcher, model: StoredModel, seconds: float) -> StoredModel:
-    """Wait for a model to finish, at most so many seconds; not at all where too many requests wait."""
+    """Wait up to ``seconds`` for a model to finish; not at all where too many requests wait."""
     with suppress(TooManyFollowers, TimeoutError), watcher.follow(model) as follower:
         async with asyncio.timeout(seconds):
             while model.row.status not in TERMINAL and (news := await follower.next_change()) is not None:

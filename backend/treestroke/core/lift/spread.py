@@ -44,7 +44,7 @@ class LiftParams:
 
 
 @dataclass(frozen=True, eq=False)
-class SeenCrown:
+class FrontCrown:
     """A crown volume and the front camera in whose picture the tree was traced."""
 
     volume: CrownVolume
@@ -54,7 +54,7 @@ class SeenCrown:
 def lift(
     skeleton: Skeleton,
     stroke: Indices,
-    crown: SeenCrown,
+    crown: FrontCrown,
     rng: np.random.Generator,
     params: LiftParams = LiftParams(),
 ) -> Skeleton:

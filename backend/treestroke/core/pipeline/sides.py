@@ -51,7 +51,7 @@ def draw_side(sketch: Sketch, place: str) -> Drawing:
         drawing = trace_sketch(sketch)
     except StrokesError as error:
         raise StrokesError(f"{place}: {error}", code=error.code, pointer=f"/{place}{error.pointer}") from error
-    warnings = tuple(replace(one, stroke=f"{place}/{one.stroke}") for one in drawing.warnings)
+    warnings = tuple(replace(warning, stroke=f"{place}/{warning.stroke}") for warning in drawing.warnings)
     return replace(drawing, warnings=warnings)
 
 
