@@ -79,7 +79,7 @@ def _matches(if_none_match: str, tag: str) -> bool:
 
 
 def _part(request: Request, tag: str, size: int) -> range | None:
-    """Return the requested bytes, empty if the file has none of them; None stands for the whole file."""
+    """Return the range of requested bytes, empty if it is beyond the file; None for the whole file."""
     found = _RANGE.fullmatch(request.headers.get("range", ""))
     if found is None or request.headers.get("if-range", tag) != tag:
         return None

@@ -220,7 +220,7 @@ def part_of(name: str) -> Part:
     described, slash, _ = name.partition("/")
     part = PARTS.get(described)
     if part is None or part.many != bool(slash):
-        raise ValueError(f"{name!r} is no part of a tree's inputs")
+        raise ValueError(f"{name!r} is not a part of a tree's inputs")
     return part
 
 

@@ -77,7 +77,7 @@ class _View:
 
 @dataclass(frozen=True, eq=False)
 class _Sunlight:
-    """What the sun sees.
+    """The scene as the sun sees it.
 
     Attributes
     ----------

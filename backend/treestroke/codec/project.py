@@ -67,7 +67,7 @@ def read_project(file: BinaryIO, name: str) -> Project:
             _check_sizes(archive, members, name)
             contents = {part: _content(archive, info) for part, info in members.items()}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        fault = f"this is no project file that can be read ({error}); export it anew"
+        fault = f"this is not a readable project file ({error}); export it anew"
         raise TreestrokeError(f"{name}: {fault}", code="project_unreadable") from error
     settings = _settings(contents.pop(_SETTINGS, b"{}"), name)
     return Project(stored_inputs(contents), settings)

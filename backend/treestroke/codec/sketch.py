@@ -87,7 +87,7 @@ def picture_of(described: "PictureSketch") -> tuple[bytes, Sketch]:
     try:
         data = base64.b64decode(described.picture, validate=True)
     except ValueError as error:
-        fault = f"it is no base64 ({error}); send a PNG file encoded so"
+        fault = f"it is not base64 ({error}); send a PNG file in base64"
         raise StrokesError.at(("picture",), fault, "sketch_unreadable") from error
     try:
         return data, read_picture(data)

@@ -39,7 +39,7 @@ log = structlog.get_logger()
 
 @dataclass(frozen=True)
 class Assignment:
-    """A job for a worker: the model's id, a token of this try, the worker, and the seconds that it may take."""
+    """A job for a worker: the model's id, a token of this attempt, the worker's id, and the time limit."""
 
     model: str
     token: str
@@ -60,7 +60,7 @@ class TimeLimit(Exception):
 
 
 class Heartbeat:
-    """Renews a job's lease from a thread of its own, writes its progress down, and notices when it is to stop."""
+    """Renews a job's lease from a thread of its own, records its progress, and notices when it is to stop."""
 
     def __init__(self, database: Database, job: ModelRow, source: SourceName, seconds: float) -> None:
         self._database, self._job = database, job
@@ -80,7 +80,7 @@ class Heartbeat:
         self._thread.join()
 
     def report(self, phase: str, fraction: float) -> None:
-        """Note the progress of the work, and interrupt it where it is to stop.
+        """Record the progress of the work, and interrupt it where it is to stop.
 
         Raises
         ------
@@ -108,7 +108,7 @@ class Heartbeat:
                 shown, beaten = state, time.monotonic()
 
     def _is_to_stop(self) -> bool:
-        """Return whether the row says anything else than to go on."""
+        """Return whether the row says that this attempt must stop."""
         with suppress(SQLAlchemyError), self._database.reading() as session:
             row = session.get(ModelRow, self._job.number)
             return row is None or row.cancel or row.attempt != self._job.attempt or row.status != "running"

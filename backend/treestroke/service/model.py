@@ -80,7 +80,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Options:
-    """What a tree is asked for beside its inputs: settings, seed, and the beginning of its files' names."""
+    """Options of a tree beside its inputs: settings, seed, and the beginning of its files' names."""
 
     settings: ModelSettings
     seed: int

@@ -26,7 +26,7 @@ _JSON_FIELDS = ("strokes", "settings", "seed")
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What was drawn, as values: strokes over a photo, and sketches by view."""
+    """The drawn parts of a request as values: strokes over a photo, and sketches by view."""
 
     strokes: Strokes | None
     sketches: Mapping[str, Sketch]
@@ -170,7 +170,7 @@ def _cutout(picture: str | bytes, name: str) -> bytes:
     try:
         content = picture if isinstance(picture, bytes) else base64.b64decode(picture, validate=True)
     except ValueError as error:
-        raise refusal.at((name,), "this is no base64; encode the PNG anew", f"{name}_unreadable") from error
+        raise refusal.at((name,), "this is not base64; encode the PNG again", f"{name}_unreadable") from error
     try:
         decode_cutout(content, name, refusal)
     except refusal as error:

@@ -30,9 +30,9 @@ class Resources:
     blobs: Blobs
     tracers: TracingPool
     photo_bytes: int = PHOTO_MB * 10**6
-    """The most that one photo may take as it is stored."""
+    """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
-    """The most that all photos may take together."""
+    """Most bytes of all photos together."""
 
 
 def add_photo(resources: Resources, content: bytes) -> PhotoRow:

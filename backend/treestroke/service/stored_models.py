@@ -30,7 +30,7 @@ class KeyReused(Exception):
 
 
 class Version(NamedTuple):
-    """What changes whenever a model's viewers are to be shown something new."""
+    """The values that change whenever a model's viewers are to be shown something new."""
 
     seq: int
     queue_position: int | None
@@ -49,7 +49,7 @@ class StoredModel:
 
     @property
     def inputs(self) -> Inputs[ModelPart]:
-        """What it is made of."""
+        """The tree's inputs, as stored files."""
         return Inputs.of(self.parts)
 
     @property
@@ -60,7 +60,7 @@ class StoredModel:
 
     @property
     def version(self) -> Version:
-        """What viewers are shown changes only together with this."""
+        """The version of what viewers are shown."""
         return Version(self.row.seq, self.queue_position, self.eta_s)
 
 
@@ -118,12 +118,12 @@ def find_model(database: Database, id: str, deleted: bool = False) -> StoredMode
 def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[StoredModel], str | None]:
     """Return a page of models, newest first, and the cursor of the next page: decimal digits."""
     with database.reading() as session:
-        rows, following = queries.page(session, ModelRow, cursor, limit)
-        return _stored(session, rows), following
+        rows, next_cursor = queries.page(session, ModelRow, cursor, limit)
+        return _stored(session, rows), next_cursor
 
 
 def find_changed(database: Database, versions: Mapping[str, Version | None]) -> dict[str, StoredModel | None]:
-    """Return those of these models that have another version by now; None for one that was removed for good."""
+    """Return the models whose version has changed; None for one that was removed for good."""
     with database.reading() as session:
         rows = session.execute(
             select(ModelRow.id, ModelRow.number, ModelRow.seq, ModelRow.status, ModelRow.progress).where(
@@ -240,7 +240,7 @@ def _new_row(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart
 
 
 def _fingerprint(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> str:
-    """Digest all that decides how the tree and its report come out, but the engine."""
+    """Return a digest of all that decides over the tree and its report, except the engine."""
     blobs = {name: part.blob for name, part in inputs.parts.items()}
     mended = [] if photo is None else photo.warnings
     return _digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *mended])
@@ -263,7 +263,7 @@ def _answered_before(session: Session, key: str | None, request: str) -> ModelRo
 
 
 def _finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
-    """Find a model that this engine has made from equal inputs; None too where a file of it is damaged."""
+    """Find a model that this engine has made from equal inputs; None also where one of its files is damaged."""
     with resources.database.reading() as session:
         equal = queries.finished_model(session, row.fingerprint, row.engine)
         files = {} if equal is None else queries.files(session, [equal.id])[equal.id]
@@ -277,7 +277,7 @@ def _finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
 
 
 def _copy_files(session: Session, equal: ModelRow, row: ModelRow) -> None:
-    """Finish a model with the files of an equal one, unless that was removed meanwhile: they would be the same."""
+    """Finish a model with the files of an equal one, which would be the same, unless these were just removed."""
     files = queries.files(session, [equal.id])[equal.id]
     if files:
         row.status, row.progress, row.finished = "succeeded", 1.0, time.time()

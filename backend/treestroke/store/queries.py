@@ -67,7 +67,7 @@ def referenced(session: Session, beginning: str = "") -> set[str]:
 
 
 def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int]:
-    """Return the places in the queue of those of these jobs that are queued, by number: 1 is the next."""
+    """Return each queued job's place in the queue, by job number: 1 is the next; other jobs are left out."""
     if not numbers:
         return {}
     places = (

@@ -175,8 +175,8 @@ async def _finished(watcher: Watcher, model: StoredModel, seconds: float) -> Sto
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
 def list_models(resources: ResourcesOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
     """List models, newest first."""
-    page, following = stored_models.list_models(resources.database, cursor, limit)
-    return ModelPage(models=[model_view(model) for model in page], next=following)
+    page, next_cursor = stored_models.list_models(resources.database, cursor, limit)
+    return ModelPage(models=[model_view(model) for model in page], next=next_cursor)
 
 
 @router.get("/{id}", responses=documented("not_found"))

@@ -103,8 +103,8 @@ def add_photo(
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
 def list_photos(resources: ResourcesOf, cursor: Cursor = None, limit: Limit = 20) -> PhotoPage:
     """List photos, newest first."""
-    page, following = photos.list_photos(resources, cursor, limit)
-    return PhotoPage(photos=[photo_view(row) for row in page], next=following)
+    page, next_cursor = photos.list_photos(resources, cursor, limit)
+    return PhotoPage(photos=[photo_view(row) for row in page], next=next_cursor)
 
 
 @router.get("/{id}", responses=documented("not_found"))

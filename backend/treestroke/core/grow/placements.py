@@ -71,7 +71,7 @@ class Evaluator(Protocol):
         """
 
     def place(self, choice: Choice) -> list[Shoot]:
-        """List the shoots of a placement that pruning leaves; its branch is no candidate any more."""
+        """List the shoots of a placement that pruning leaves; its branch is not a candidate any more."""
 
     def image_distances(self) -> Floats:
         """Return each image attractor's distance (m,), px, to the nearest sample's projection."""

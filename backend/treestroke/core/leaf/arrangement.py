@@ -19,7 +19,7 @@ SCATTER = 0.016
 DROOP = 0.25
 """Weight of gravity in a spray's direction."""
 AT_END = 0.25
-"""Of half a card's side: a card this near to a twig's end hides it."""
+"""Distance from a twig's end, in halves of a card's side, within which a card hides it."""
 ON_END = (-0.3, 0.9)
 """How far beyond a twig's end the middle of a spray on it lies, in halves of the spray's side."""
 TURN = 0.25
@@ -138,7 +138,7 @@ def pose_over(seats: Seats, centres: Floats, half_sizes: Floats, outward: Floats
 
 
 def _frames(axis: Floats, outward: Floats, half_sizes: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Turn cards about their axis to face outward and up, each a bit otherwise: rights and ups."""
+    """Turn cards about their axis to face outward and up, with some scatter: rights and ups."""
     facing = 0.75 * outward + rng.normal(0, 0.45, axis.shape)
     facing[:, 1] += 0.35
     right = unit(np.cross(axis, facing), UP)

@@ -124,8 +124,8 @@ def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, pa
 
 def _leaning(points: Floats) -> float:
     """Return the share of the steepest slope for a limb: small for upright leaders, 1 for level limbs."""
-    way = points[-1, :2] - points[0, :2]
-    return float(UPRIGHT + (1 - UPRIGHT) * abs(way[0]) / max(float(np.hypot(*way)), 1e-9))
+    chord = points[-1, :2] - points[0, :2]
+    return float(UPRIGHT + (1 - UPRIGHT) * abs(chord[0]) / max(float(np.hypot(*chord)), 1e-9))
 
 
 def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -> int:

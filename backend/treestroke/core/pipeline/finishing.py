@@ -55,7 +55,7 @@ class TreeModel:
 
 
 OnGrown = Callable[[LiveTree], None]
-"""Called once, with the tree as it stands when growth ends."""
+"""Called once, with the tree when growth ends."""
 
 
 def ignore_grown(tree: LiveTree) -> None:

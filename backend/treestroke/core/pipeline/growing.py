@@ -122,7 +122,7 @@ class _PhotoCrown:
 
 @dataclass(frozen=True, eq=False)
 class _LiftedTrace:
-    """What was traced, turned into the world.
+    """The traced branches, lifted into the world.
 
     Attributes
     ----------
@@ -173,7 +173,7 @@ def read_photo(
 def grow_tree(
     evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> GrownTree:
-    """Lift what was traced into the world and let it fill the crown.
+    """Lift the traced branches into the world and let them fill the crown.
 
     Raises
     ------
@@ -227,7 +227,7 @@ def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) 
 
 
 def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator) -> _LiftedTrace:
-    """Turn what was traced into the world: by the left side, or with a guessed depth."""
+    """Lift the traced branches into the world: by the left side, or with a guessed depth."""
     visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
     stroke = traced.stroke[owner]
     if crown.side is None:
@@ -243,7 +243,7 @@ def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np
 def _appearance(
     evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, lifted: _LiftedTrace, leafy: Mask
 ) -> Appearance:
-    """Gather what the photo shows; ``leafy`` (h, w) is where the tree is to have leaves."""
+    """Return the tree's appearance in the photo; ``leafy`` (h, w) is where the tree is to have leaves."""
     stem = np.flatnonzero(traced.stroke == 0)
     view = View(
         camera=crown.camera,
@@ -263,7 +263,7 @@ def _leaves_from(
 ) -> NDArray[np.float32]:
     """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 
-    What is a leaf by its colour hangs before the wood.
+    Pixels that are leaves by their colour hang before the wood.
     """
     depth, seen = crown.camera.depth(lifted.tree.points), traced.measured[lifted.owner]
     wood, middle = (

@@ -33,12 +33,12 @@ class LiveTree:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a tree's front view is compared with, and how sure that is.
+    """The target of a tree's front view, and how reliable it is.
 
     Attributes
     ----------
     against
-        What was read, in words for the report.
+        The target in words, for the report.
     kind_sureness
         Probability, 0 to 1, that the foliage's kind is right; 1 where the settings name it.
     doubts

@@ -17,7 +17,7 @@ from treestroke.core.types import Floats, Mask
 HEIGHTS_PX = (400, 150, 64)
 """Heights of the tree on the screen, px, for which the first level, the second level and the impostor are made."""
 _SHARES = (0.30, 0.08)
-"""Of the whole tree's triangles, in the first and second level."""
+"""Shares of the whole tree's triangles in the first and second level."""
 _BARE_MORE = 1.04
 """Factor on the triangles of a leafless tree's bark, as it has no leaves."""
 _LEAST_WOOD, _MOST_WOOD = 0.12, 0.9

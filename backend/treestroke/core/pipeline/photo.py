@@ -17,7 +17,7 @@ from treestroke.core.types import Indices, Mask, Picture
 
 @dataclass(frozen=True, eq=False)
 class PhotoTrace:
-    """What strokes and photo show together, in photo px.
+    """The foliage and branches of a photo, in photo px.
 
     Attributes
     ----------

@@ -162,7 +162,7 @@ def _over(front: Sketch, photo: Picture) -> Sketch:
 
 
 def _framed(evidence: SketchEvidence, height_m: float) -> _Frame:
-    """Bring the front to the working size and set its scale: the height is that of the crown's top."""
+    """Scale the front to the working size; ``height_m`` is the height of the crown's top, metres."""
     front, (width, height) = evidence.front, evidence.front.size
     scale = min(WORKING_HEIGHT / crown_height(front), WORKING_SIDE / max(width, height))
     scale = scale if evidence.photo is None else min(scale, 1.0)
@@ -191,7 +191,7 @@ def _lifted(frame: _Frame, rng: np.random.Generator) -> _LiftedSketch:
 def _grown_tree(
     frame: _Frame, settings: ModelSettings, lifted: _LiftedSketch, grown: Grown, rng: np.random.Generator
 ) -> GrownTree:
-    """Gather what finishing the tree needs."""
+    """Return the grown tree that the second half of the recipe finishes."""
     main, camera = lifted.tree, frame.camera
     radii = grown.skeleton.radii[: len(main)]
     wood = seen_from_front(Skeleton(main.skeleton.points, radii, main.skeleton.parents), camera)
