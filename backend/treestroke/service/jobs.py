@@ -94,10 +94,10 @@ class Heartbeat:
         self._state = phase, fraction, self._estimate.progress(phase, fraction)
 
     def _run(self) -> None:
-        shown, beaten, pause = self._state, 0.0, 0.0
+        shown, last_beat, pause = self._state, 0.0, 0.0
         while not self._over.wait(pause):
             pause = _LOOK_SECONDS
-            if self._state == shown and time.monotonic() - beaten < _BEAT_SECONDS and not self._is_to_stop():
+            if self._state == shown and time.monotonic() - last_beat < _BEAT_SECONDS and not self._is_to_stop():
                 continue
             state = self._state
             # A database that is busy or full for a moment costs one beat; the lease outlasts several.
@@ -105,7 +105,7 @@ class Heartbeat:
                 with self._database.autocommitting() as session:
                     stop = heartbeat(session, self._job, *state)
                 self._stop_by = {None: Superseded, True: Canceled, False: None}[stop]
-                shown, beaten = state, time.monotonic()
+                shown, last_beat = state, time.monotonic()
 
     def _is_to_stop(self) -> bool:
         """Return whether the row says that this attempt must stop."""

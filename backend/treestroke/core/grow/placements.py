@@ -25,7 +25,7 @@ class Rules:
     keep
         A shoot is clipped where it leaves the crown; with less than this share left it is dropped.
     inward_cosine
-        A shoot is dropped where the cosine between it and the way from the crown's foot to its middle is smaller.
+        A shoot is dropped where the cosine between it and the line from the crown's foot to its middle is smaller.
     angles
         Number of turns of each subtree about its branch.
     """

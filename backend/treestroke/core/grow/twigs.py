@@ -32,10 +32,10 @@ def with_twigs(form: Form, space: GrowthSpace, most: int, rng: np.random.Generat
         return form
     along = unit(form.points[seats] - form.points[form.parents[seats]])
     turn = GOLDEN_RAD * np.arange(len(seats)) + rng.uniform(-0.5, 0.5, len(seats))
-    way = unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
+    direction = unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
     length = space.unit * rng.uniform(*LENGTH_PX, len(seats))[:, None]
-    middle = form.points[seats] + 0.5 * length * way
-    rising = unit(way + RISE * UP_IN_PICTURE + rng.normal(0, 0.15, way.shape))
+    middle = form.points[seats] + 0.5 * length * direction
+    rising = unit(direction + RISE * UP_IN_PICTURE + rng.normal(0, 0.15, direction.shape))
     end = middle + 0.5 * length * rising
     kept = space.inside(middle) & space.inside(end)
     return _appended(form, seats[kept], middle[kept], end[kept])
