@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.geometry.silhouette import framing, likeness, silhouettes
+from treestroke.core.geometry.silhouette import framing, overlap, silhouettes
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import HEIGHTS_PX, Level, Levels
 
@@ -17,7 +17,7 @@ def silhouette_ious(fine: Sequence[Surface], coarse: Sequence[Surface], height_p
     """
     view = framing(fine, height_px)
     pairs = zip(silhouettes(coarse, view), silhouettes(fine, view), strict=True)
-    found = [likeness(seen, wanted) for seen, wanted in pairs]
+    found = [overlap(seen, wanted) for seen, wanted in pairs]
     return np.array(found + found)
 
 

@@ -22,7 +22,7 @@ from treestroke.core.progress import silent
 from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
-    from treestroke.service.inputs import PartLike
+    from treestroke.service.loading import PartLike
 
     Commands = argparse._SubParsersAction["Parser"]
 
@@ -244,7 +244,7 @@ def _trace(options: argparse.Namespace) -> None:
     from treestroke.store.atomic_write import write_atomically
 
     result = trace(options.photo, options.strokes)
-    found = result.answer()
+    found = result.as_dict()
     answer = json.dumps(found)
     makers: dict[str, Callable[[], bytes]] = {
         "out": lambda: answer.encode() + b"\n",
@@ -298,7 +298,7 @@ def _inputs(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str, 
         if options.first == "photo" and "strokes" not in parts:
             raise UsageError("--strokes is missing; name the strokes' JSON file")
         return Inputs.of(parts), {}
-    from treestroke.service.inputs import load_project
+    from treestroke.service.loading import load_project
 
     path = parts.pop(options.first)
     for name in parts:
@@ -332,7 +332,7 @@ def _value(name: str, text: str | bool) -> object:
     if isinstance(text, bool):
         return text
     if isinstance(allowed, Several):
-        return [one.strip() for one in text.split(",") if one.strip()]
+        return [name.strip() for name in text.split(",") if name.strip()]
     if not isinstance(allowed, Span):
         return text
     try:

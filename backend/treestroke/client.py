@@ -27,7 +27,7 @@ from treestroke.request_bodies import (
     plain_sketches,
     plain_strokes,
 )
-from treestroke.responses import Again, Event, ServiceError, checked, events_of, read, unreachable
+from treestroke.responses import Event, RetryableError, ServiceError, checked, events_of, read, unreachable
 from treestroke.schemas import GrownSkeleton, ModelInfo, ModelPage, PhotoInfo, PhotoPage, SketchTraceAnswer, TraceAnswer
 
 __all__ = [
@@ -203,7 +203,7 @@ class Client:
     ) -> ModelInfo:
         """Follow a model until it has succeeded, failed or been canceled, and return it.
 
-        A stream of events that breaks is resumed; where none comes through, the model is requested now and then.
+        A stream of events that breaks is resumed; where none arrives, the model is polled.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class Client:
         on_progress
             Called with the model, at once and after every change.
         on_preview
-            Called with the grown skeleton when growth ends, if the stream of events comes through.
+            Called with the grown skeleton when growth ends, if the stream of events arrives.
 
         Raises
         ------
@@ -250,12 +250,12 @@ class Client:
             It cannot be written.
         """
         place = Path(path)
-        beside = place.with_name(f".treestroke-{secrets.token_hex(8)}")
+        temporary = place.with_name(f".treestroke-{secrets.token_hex(8)}")
         try:
-            self._repeat(lambda: self._fetch(f"/v1/models/{_id(model)}/{quote(file, safe='')}", beside))
-            beside.replace(place)
+            self._repeat(lambda: self._fetch(f"/v1/models/{_id(model)}/{quote(file, safe='')}", temporary))
+            temporary.replace(place)
         finally:
-            beside.unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
         return place
 
     def rename(self, model: ModelInfo | str, name: str) -> ModelInfo:
@@ -295,14 +295,14 @@ class Client:
         return self._repeat(lambda: checked(self._http.request(method, path, **request)), harmless=method != "DELETE")
 
     def _repeat(self, attempt: Callable[[], Done], harmless: bool = True) -> Done:
-        """Make an attempt; after a pause another one, if the service was busy or a ``harmless`` attempt was cut off."""
+        """Make an attempt; repeat it after a pause if the service was busy or a ``harmless`` attempt was cut off."""
         for pause in (*_PAUSES_S, None):
             try:
                 return attempt()
-            except Again as again:
+            except RetryableError as error:
                 if pause is None:
                     raise
-                pause = max(pause, again.pause_s)
+                pause = max(pause, error.pause_s)
             except httpx.TransportError as error:
                 cut_off = harmless and isinstance(error, httpx.NetworkError | httpx.RemoteProtocolError)
                 if pause is None or not (cut_off or isinstance(error, httpx.ConnectError)):
@@ -321,7 +321,7 @@ class Client:
             file.flush()
             os.fsync(file.fileno())
         if response.headers.get("ETag") != f'"{digest.hexdigest()}"':
-            raise Again(response.status_code, "damaged", "the file arrived damaged; download it again")
+            raise RetryableError(response.status_code, "damaged", "the file arrived damaged; download it again")
 
     def _events(self, id: str, last: str, seconds: float) -> Generator[Event]:
         """Yield a model's events until the stream ends, however it ends; silence for ``seconds`` ends it too."""
@@ -333,8 +333,8 @@ class Client:
                 yield from events_of(answer.iter_bytes())
 
 
-def _id(thing: PhotoInfo | ModelInfo | str) -> str:
-    return quote(thing if isinstance(thing, str) else thing.id, safe="")
+def _id(info: PhotoInfo | ModelInfo | str) -> str:
+    return quote(info if isinstance(info, str) else info.id, safe="")
 
 
 def _left(deadline: float) -> float:

@@ -31,7 +31,7 @@ class ServiceError(Exception):
         self.status, self.code, self.detail, self.errors = status, code, detail, errors
 
 
-class Again(ServiceError):
+class RetryableError(ServiceError):
     """A failure that may pass: the request can be sent again."""
 
     def __init__(
@@ -55,7 +55,7 @@ def checked(response: httpx.Response) -> httpx.Response:
 
     Raises
     ------
-    Again
+    RetryableError
         The service is busy (503).
     ServiceError
         It refused the request for another reason.
@@ -66,11 +66,12 @@ def checked(response: httpx.Response) -> httpx.Response:
         problem = Problem.model_validate_json(response.content, extra="ignore")
     except ValidationError:
         raise ServiceError(response.status_code, "unknown_answer", response.reason_phrase) from None
-    said = (response.status_code, problem.code, problem.detail, tuple(problem.errors))
-    if response.status_code != 503:
-        raise ServiceError(*said)
-    pause = response.headers.get("Retry-After", "")
-    raise Again(*said, pause_s=min(float(pause), _LONGEST_PAUSE_S) if pause.isdecimal() else 0.0)
+    status, errors = response.status_code, tuple(problem.errors)
+    if status != 503:
+        raise ServiceError(status, problem.code, problem.detail, errors)
+    header = response.headers.get("Retry-After", "")
+    pause_s = min(float(header), _LONGEST_PAUSE_S) if header.isdecimal() else 0.0
+    raise RetryableError(status, problem.code, problem.detail, errors, pause_s)
 
 
 def read(kind: type[Answer], content: bytes | str) -> Answer:
@@ -85,12 +86,12 @@ def read(kind: type[Answer], content: bytes | str) -> Answer:
         return kind.model_validate_json(content, extra="ignore")
     except ValidationError as error:
         raise ServiceError(
-            200, "unknown_answer", f"this is no {kind.__name__} of treestroke's; is it there?"
+            200, "unknown_answer", f"the response is not a {kind.__name__}; is the address that of treestroke?"
         ) from error
 
 
 def unreachable(address: object, error: httpx.TransportError) -> ServiceError:
-    """Return the error that says that no response came."""
+    """Return the error for a request that got no response."""
     why = str(error) or type(error).__name__
     return ServiceError(0, "unreachable", f"{address} does not answer ({why}); start it by `treestroke serve`")
 

@@ -63,9 +63,9 @@ class Service:
         assert answer.status_code == 201, answer.text
         return str(answer.json()["id"])
 
-    def make(self, **wish: Any) -> dict[str, Any]:
+    def make(self, **request: Any) -> dict[str, Any]:
         """Ask for a model and wait for it."""
-        answer = self.client.post("/v1/models", json=wish, headers={"Prefer": "wait=60"})
+        answer = self.client.post("/v1/models", json=request, headers={"Prefer": "wait=60"})
         assert answer.status_code == 200, answer.text
         return dict(answer.json())
 
@@ -94,6 +94,6 @@ def photo(service: Service) -> str:
 @pytest.fixture(scope="session")
 def made(service: Service, photo: str) -> dict[str, Any]:
     """A finished model that no test changes."""
-    model = service.make(**drawn.wish(photo, name="The old oak"))
+    model = service.make(**drawn.request(photo, name="The old oak"))
     assert model["status"] == "succeeded"
     return model

@@ -32,7 +32,7 @@ def encoded(kind: str = "PNG", seed: int = 0, **options: Any) -> bytes:
     return out.getvalue()
 
 
-def wish(photo: str, **others: Any) -> dict[str, Any]:
+def request(photo: str, **others: Any) -> dict[str, Any]:
     """Ask for a model of it that is made at once."""
     return {"photo": photo, "strokes": STROKES, "settings": QUICK, **others}
 

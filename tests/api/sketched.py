@@ -44,7 +44,7 @@ def pictured(sketch: dict[str, Any], note: str = "") -> dict[str, Any]:
     return {"picture": base64.b64encode(png(sketch, note)).decode()}
 
 
-def wish(**others: Any) -> dict[str, Any]:
+def request(**others: Any) -> dict[str, Any]:
     """Ask for a model of both that is made at once."""
     return {"sketches": {"front": FRONT, "side": SIDE}, "settings": QUICK, **others}
 

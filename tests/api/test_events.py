@@ -41,8 +41,8 @@ def events(client: httpx.Client, place: str, last: str | None = None) -> Iterato
 @pytest.fixture(scope="module")
 def followed(service: Service, photo: str) -> list[Event]:
     """All events of a model that was followed from its beginning on."""
-    wish = drawn.wish(photo, seed=31, settings={"iterations": 300})
-    answer = service.client.post("/v1/models", json=wish)
+    request = drawn.request(photo, seed=31, settings={"iterations": 300})
+    answer = service.client.post("/v1/models", json=request)
     return list(events(service.client, answer.headers["location"]))
 
 
@@ -104,13 +104,13 @@ def test_a_finished_model_may_be_followed_still(client: httpx.Client, made: dict
 
 
 def test_a_model_that_was_made_before_has_a_preview_too(service: Service, made: dict[str, Any]) -> None:
-    twin = service.make(**drawn.wish(made["photo"], name="Twin"))
+    twin = service.make(**drawn.request(made["photo"], name="Twin"))
     told = {id: list(events(service.client, f"/v1/models/{id}")) for id in (made["id"], twin["id"])}
     assert told[twin["id"]][1].data == told[made["id"]][1].data
 
 
 def test_a_preview_whose_file_is_damaged_is_left_out(service: Service, photo: str) -> None:
-    model = service.make(**drawn.wish(photo, seed=33))["id"]
+    model = service.make(**drawn.request(photo, seed=33))["id"]
     with closing(sqlite3.connect(service.data / "treestroke.sqlite3")) as database:
         growth = "SELECT blob FROM files WHERE model = ? AND name = 'growth.json'"
         blob = database.execute(growth, (model,)).fetchone()[0]
@@ -120,8 +120,8 @@ def test_a_preview_whose_file_is_damaged_is_left_out(service: Service, photo: st
 
 
 def test_a_canceled_model_ends_its_stream(client: httpx.Client, photo: str) -> None:
-    wish = drawn.wish(photo, seed=32, settings={"iterations": 2000, "leaf_density": 3})
-    place = client.post("/v1/models", json=wish).headers["location"]
+    request = drawn.request(photo, seed=32, settings={"iterations": 2000, "leaf_density": 3})
+    place = client.post("/v1/models", json=request).headers["location"]
     names = []
     for event in events(client, place):
         if not names:
@@ -132,8 +132,8 @@ def test_a_canceled_model_ends_its_stream(client: httpx.Client, photo: str) -> N
 
 def test_a_queued_model_tells_its_place(service: Service, photo: str) -> None:
     client, long = service.client, {"iterations": 2000, "leaf_density": 3}
-    asked = [drawn.wish(photo, seed=seed, settings=long) for seed in range(33, 37)]
-    places = [client.post("/v1/models", json=wish).headers["location"] for wish in asked]
+    asked = [drawn.request(photo, seed=seed, settings=long) for seed in range(33, 37)]
+    places = [client.post("/v1/models", json=request).headers["location"] for request in asked]
     listed = client.get("/v1/models").json()["models"]  # of one moment: asked one by one, some might go on meanwhile
     queued = [model for model in reversed(listed) if model["status"] == "queued"]
     assert len(queued) >= 2
@@ -145,8 +145,8 @@ def test_a_queued_model_tells_its_place(service: Service, photo: str) -> None:
 
 
 def test_whoever_follows_a_model_that_is_deleted_is_told_its_end(client: httpx.Client, photo: str) -> None:
-    wish = drawn.wish(photo, seed=38, settings={"iterations": 2000, "leaf_density": 3})
-    place = client.post("/v1/models", json=wish).headers["location"]
+    request = drawn.request(photo, seed=38, settings={"iterations": 2000, "leaf_density": 3})
+    place = client.post("/v1/models", json=request).headers["location"]
     kinds = []
     for event in events(client, place):
         client.delete(place)

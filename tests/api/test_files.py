@@ -124,7 +124,7 @@ def test_a_file_that_is_known_is_not_sent_again(
     ],
 )
 def test_a_download_is_named_after_the_model(service: Service, photo: str, name: str, wanted: str) -> None:
-    model = service.make(**drawn.wish(photo, name=name))
+    model = service.make(**drawn.request(photo, name=name))
     for file, ending in (("tree.glb", "glb"), ("project", "treestroke")):
         told = service.client.get(model["files"][file]).headers["content-disposition"]
         plain = re.sub(r"[^ -~]", "_", wanted)
@@ -135,7 +135,7 @@ def test_a_download_is_named_after_the_model(service: Service, photo: str, name:
 
 
 def test_a_download_without_a_name_is_named_after_the_id(service: Service, photo: str) -> None:
-    model = service.make(**drawn.wish(photo))
+    model = service.make(**drawn.request(photo))
     told = service.client.get(model["files"]["tree.glb"]).headers["content-disposition"]
     assert told == f'attachment; filename="{model["id"]}.glb"'
 
@@ -177,7 +177,7 @@ def test_the_tree_is_the_command_lines_byte_by_byte(
     (tmp_path / "photo.jpg").write_bytes(content)
     (tmp_path / "strokes.json").write_text(json.dumps(drawn.STROKES))
     settings = {"iterations": 40, "height": 12.5, "leaf_density": 0.3}
-    model = service.make(**drawn.wish(service.add_photo(content), settings=settings, seed=5))
+    model = service.make(**drawn.request(service.add_photo(content), settings=settings, seed=5))
     flags = [f"--{key}={value}".replace("_", "-") for key, value in {**settings, "seed": 5}.items()]
     wanted = ran(tmp_path / "photo.jpg", "--strokes", tmp_path / "strokes.json", *flags)
     assert service.client.get(model["files"]["tree.glb"]).content == wanted
@@ -186,7 +186,7 @@ def test_the_tree_is_the_command_lines_byte_by_byte(
 def test_the_project_opens_on_the_command_line_and_gives_the_same_tree(
     service: Service, photo: str, tmp_path: Path, ran: Callable[..., bytes]
 ) -> None:
-    model = service.make(**drawn.wish(photo, name="A project", seed=2**63 - 1))
+    model = service.make(**drawn.request(photo, name="A project", seed=2**63 - 1))
     project = service.client.get(model["files"]["project"]).content
     with zipfile.ZipFile(io.BytesIO(project)) as archive:
         assert archive.namelist() == ["photo.png", "strokes.json", "settings.json"]

@@ -135,7 +135,7 @@ def test_a_name_that_is_no_text_is_refused(client: httpx.Client, made: dict[str,
     place = f"/v1/models/{made['id']}"
     problem = told(sent(client, "PATCH", place, f'{{"name": "{name}"}}'))
     assert (problem["code"], problem["errors"][0]["pointer"]) == ("name_invalid", "/name")
-    request = json.dumps(drawn.wish(made["photo"], name="NAME")).replace("NAME", name)
+    request = json.dumps(drawn.request(made["photo"], name="NAME")).replace("NAME", name)
     assert told(sent(client, "POST", "/v1/models", request))["code"] == "name_invalid"
     assert client.get(place).json()["name"] == made["name"]
 
@@ -162,14 +162,14 @@ def test_a_request_for_another_name_is_strict_too(client: httpx.Client, made: di
 @pytest.mark.parametrize("value", ["NaN", "1e999", "true", '"10"', "null", "9" * 5000, "[]", "-0.0"])
 @pytest.mark.parametrize("name", ["height", "iterations", "leaf_size", "foliage"])
 def test_a_setting_of_another_type_is_refused(client: httpx.Client, photo: str, name: str, value: str) -> None:
-    request = json.dumps(drawn.wish(photo, settings={name: PLACE})).replace(f'"{PLACE}"', value)
+    request = json.dumps(drawn.request(photo, settings={name: PLACE})).replace(f'"{PLACE}"', value)
     problem = told(sent(client, "POST", "/v1/models", request))
     assert problem["errors"][0]["pointer"] == f"/settings/{name}"
 
 
 @pytest.mark.parametrize("value", ["NaN", "1e999", "-1", "1.5", "true", '"1"', "null", "9" * 5000, str(2**63)])
 def test_a_seed_of_another_type_is_refused(client: httpx.Client, photo: str, value: str) -> None:
-    request = json.dumps(drawn.wish(photo, seed=PLACE)).replace(f'"{PLACE}"', value)
+    request = json.dumps(drawn.request(photo, seed=PLACE)).replace(f'"{PLACE}"', value)
     assert told(sent(client, "POST", "/v1/models", request))["errors"][0]["pointer"] == "/seed"
 
 

@@ -20,8 +20,8 @@ def hasty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
 
 
 def test_tracing_goes_on_while_models_grow(service: Service, photo: str) -> None:
-    growing = [drawn.wish(photo, seed=seed, settings=LONG) for seed in (51, 52)]
-    places = [service.client.post("/v1/models", json=wish).headers["location"] for wish in growing]
+    growing = [drawn.request(photo, seed=seed, settings=LONG) for seed in (51, 52)]
+    places = [service.client.post("/v1/models", json=request).headers["location"] for request in growing]
     photos = [service.add_photo(drawn.encoded(seed=seed)) for seed in range(60, 64)]
 
     def draw(hand: int) -> list[int]:

@@ -17,7 +17,7 @@ def asked(client: httpx.Client, key: str | None = None, **request: Any) -> httpx
 
 
 def test_a_model_is_accepted_and_made(client: httpx.Client, photo: str) -> None:
-    answer = asked(client, json=drawn.wish(photo, name="First", seed=11))
+    answer = asked(client, json=drawn.request(photo, name="First", seed=11))
     told = answer.json()
     assert answer.status_code == 202
     assert answer.headers["location"] == f"/v1/models/{told['id']}"
@@ -35,13 +35,13 @@ def test_a_model_is_accepted_and_made(client: httpx.Client, photo: str) -> None:
 
 
 def test_a_client_that_prefers_to_wait_gets_the_finished_model(client: httpx.Client, photo: str) -> None:
-    answer = client.post("/v1/models", json=drawn.wish(photo, seed=12), headers=WAIT)
+    answer = client.post("/v1/models", json=drawn.request(photo, seed=12), headers=WAIT)
     assert (answer.status_code, answer.json()["status"]) == (200, "succeeded")
     assert answer.headers["preference-applied"] == "wait=60"
 
 
 def test_a_wait_that_is_too_short_ends_with_an_unfinished_model(client: httpx.Client, photo: str) -> None:
-    answer = client.post("/v1/models", json=drawn.wish(photo, seed=13, settings=LONG), headers={"Prefer": "wait=0"})
+    answer = client.post("/v1/models", json=drawn.request(photo, seed=13, settings=LONG), headers={"Prefer": "wait=0"})
     assert answer.status_code == 202
     client.post(f"{answer.headers['location']}/cancel")
 
@@ -63,7 +63,7 @@ def test_a_form_may_hold_all_its_parts_as_files(client: httpx.Client) -> None:
 def test_the_same_request_again_is_another_model_that_is_finished_at_once(
     client: httpx.Client, photo: str, made: dict[str, Any]
 ) -> None:
-    answer = asked(client, json=drawn.wish(photo, name="Twin"))
+    answer = asked(client, json=drawn.request(photo, name="Twin"))
     told = answer.json()
     assert answer.status_code == 200
     assert told["id"] != made["id"]
@@ -73,7 +73,7 @@ def test_the_same_request_again_is_another_model_that_is_finished_at_once(
 
 
 def test_a_repeated_request_gives_the_first_answers_model(client: httpx.Client, photo: str) -> None:
-    first, second = (asked(client, "again-1", json=drawn.wish(photo, seed=14)).json() for _ in range(2))
+    first, second = (asked(client, "again-1", json=drawn.request(photo, seed=14)).json() for _ in range(2))
     assert first["id"] == second["id"]
 
 
@@ -87,40 +87,40 @@ def test_a_repeated_form_keeps_one_photo(service: Service) -> None:
 
 def test_a_repeated_request_is_answered_though_its_photo_is_deleted(service: Service) -> None:
     id = service.add_photo(drawn.encoded(seed=16))
-    first = asked(service.client, "gone-1", json=drawn.wish(id)).json()
+    first = asked(service.client, "gone-1", json=drawn.request(id)).json()
     service.client.delete(f"/v1/photos/{id}")
-    assert asked(service.client, "gone-1", json=drawn.wish(id)).json()["id"] == first["id"]
-    assert asked(service.client, "gone-2", json=drawn.wish(id)).status_code == 404
+    assert asked(service.client, "gone-1", json=drawn.request(id)).json()["id"] == first["id"]
+    assert asked(service.client, "gone-2", json=drawn.request(id)).status_code == 404
 
 
 @pytest.mark.parametrize("change", [{"seed": 1}, {"name": "Other"}, {"settings": {}}])
 def test_a_key_with_another_request_is_refused(client: httpx.Client, photo: str, change: dict[str, Any]) -> None:
     key = f"other-{json.dumps(change).replace(' ', '')}"
-    assert asked(client, key, json=drawn.wish(photo)).status_code in (200, 202)
-    answer = asked(client, key, json=drawn.wish(photo, **change))
+    assert asked(client, key, json=drawn.request(photo)).status_code in (200, 202)
+    answer = asked(client, key, json=drawn.request(photo, **change))
     assert (answer.status_code, answer.json()["code"]) == (422, "idempotency_key_reused")
 
 
 def test_twenty_requests_at_once_with_one_key_make_one_model(service: Service, photo: str) -> None:
     before = service.rows("models")
     with ThreadPoolExecutor(20) as many, httpx.Client(base_url=service.url, timeout=70) as client:
-        wish = drawn.wish(photo, seed=17)
-        answers = list(many.map(lambda _: _patient(client, "twenty", wish), range(20)))
+        request = drawn.request(photo, seed=17)
+        answers = list(many.map(lambda _: _patient(client, "twenty", request), range(20)))
     assert {answer.status_code for answer in answers} <= {200, 202}
     assert len({answer.json()["id"] for answer in answers}) == 1
     assert service.rows("models") == before + 1
 
 
-def _patient(client: httpx.Client, key: str, wish: dict[str, Any]) -> httpx.Response:
+def _patient(client: httpx.Client, key: str, request: dict[str, Any]) -> httpx.Response:
     """Ask again where the service says that it is busy: no more than 16 requests wait."""
-    while (answer := asked(client, key, json=wish)).status_code == 503:
+    while (answer := asked(client, key, json=request)).status_code == 503:
         time.sleep(float(answer.headers["retry-after"]) / 4)
     return answer
 
 
 @pytest.mark.parametrize("key", ["", "a b", "ü".encode(), "k" * 256])
 def test_a_key_of_another_form_is_refused(client: httpx.Client, photo: str, key: Any) -> None:
-    answer = asked(client, key, json=drawn.wish(photo))
+    answer = asked(client, key, json=drawn.request(photo))
     assert answer.status_code == 422
     assert "dempotency" in answer.text
 
@@ -128,14 +128,14 @@ def test_a_key_of_another_form_is_refused(client: httpx.Client, photo: str, key:
 def test_the_list_has_no_gap_and_no_double_while_models_are_added(service: Service, photo: str) -> None:
     client = service.client
     for number in range(7):
-        service.make(**drawn.wish(photo, name=f"Listed {number}"))
+        service.make(**drawn.request(photo, name=f"Listed {number}"))
     known = [one["id"] for one in client.get("/v1/models", params={"limit": 100}).json()["models"]]
     found: list[str] = []
     cursor = None
     while True:
         page = client.get("/v1/models", params={"limit": 2, **({"cursor": cursor} if cursor else {})}).json()
         found += [one["id"] for one in page["models"]]
-        service.make(**drawn.wish(photo, name="Added meanwhile"))
+        service.make(**drawn.request(photo, name="Added meanwhile"))
         if (cursor := page["next"]) is None:
             break
     assert found == known
@@ -162,23 +162,23 @@ def test_a_wrong_page_is_refused(client: httpx.Client, query: dict[str, str], po
     "name", ['Müller\'s "oak" 🌳', "", "n" * 200, "👨‍👩‍👧", "می‌خواهم", "樫の　木", "a/b\\c:*?<>|", "..", "<script>"]
 )
 def test_a_model_is_named(service: Service, photo: str, name: str) -> None:
-    id = service.make(**drawn.wish(photo, name="Before"))["id"]
+    id = service.make(**drawn.request(photo, name="Before"))["id"]
     answer = service.client.patch(f"/v1/models/{id}", json={"name": name})
     assert (answer.status_code, answer.json()["name"]) == (200, name)
     assert service.client.get(f"/v1/models/{id}").json()["name"] == name
-    assert service.make(**drawn.wish(photo, name=name))["name"] == name
+    assert service.make(**drawn.request(photo, name=name))["name"] == name
 
 
 @pytest.mark.parametrize("name", ["n" * 201, "a\nb", "a\0b", "a\x7fb", "a\u2028b", "\u202egpj.exe", 7, None, ["a"]])
 def test_a_name_that_is_no_line_of_text_is_refused(client: httpx.Client, made: dict[str, Any], name: Any) -> None:
-    wish = drawn.wish(made["photo"], name=name)
-    for answer in (client.patch(f"/v1/models/{made['id']}", json={"name": name}), asked(client, json=wish)):
+    request = drawn.request(made["photo"], name=name)
+    for answer in (client.patch(f"/v1/models/{made['id']}", json={"name": name}), asked(client, json=request)):
         assert (answer.status_code, answer.json()["code"]) == (422, "name_invalid")
         assert answer.json()["errors"][0]["pointer"] == "/name"
 
 
 def test_a_deleted_model_is_gone_until_it_is_restored(service: Service, photo: str) -> None:
-    client, model = service.client, service.make(**drawn.wish(photo, name="Deleted"))
+    client, model = service.client, service.make(**drawn.request(photo, name="Deleted"))
     place = f"/v1/models/{model['id']}"
     assert client.delete(place).status_code == 204
     for path in ("", "/events", "/tree.glb", "/preview.png", "/project", "/strokes.json"):
@@ -193,7 +193,7 @@ def test_a_deleted_model_is_gone_until_it_is_restored(service: Service, photo: s
 
 
 def test_a_running_model_is_canceled(client: httpx.Client, photo: str) -> None:
-    place = asked(client, json=drawn.wish(photo, seed=18, settings=LONG)).headers["location"]
+    place = asked(client, json=drawn.request(photo, seed=18, settings=LONG)).headers["location"]
     began = time.monotonic()
     assert client.post(f"{place}/cancel").status_code == 200
     while (told := client.get(place).json())["status"] not in ("canceled", "succeeded"):
@@ -259,7 +259,7 @@ def test_what_is_wrong_in_a_request_is_pointed_at_and_nothing_is_kept(
     service: Service, photo: str, change: dict[str, Any], pointer: str, code: str
 ) -> None:
     before = service.stored()
-    answer = asked(service.client, json={**drawn.wish(photo), **change})
+    answer = asked(service.client, json={**drawn.request(photo), **change})
     told = answer.json()
     assert (answer.status_code, told["code"]) == (422, code), told
     assert [fault["pointer"] for fault in told["errors"]] == [pointer]
@@ -269,7 +269,7 @@ def test_what_is_wrong_in_a_request_is_pointed_at_and_nothing_is_kept(
 
 @pytest.mark.parametrize("missing", ["photo", "strokes"])
 def test_a_request_without_photo_or_strokes_is_refused(client: httpx.Client, photo: str, missing: str) -> None:
-    request = {key: value for key, value in drawn.wish(photo).items() if key != missing}
+    request = {key: value for key, value in drawn.request(photo).items() if key != missing}
     answer = asked(client, json=request)
     assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, f"/{missing}")
 

@@ -66,12 +66,12 @@ def test_the_stored_picture_has_a_tag_and_is_not_sent_again(client: httpx.Client
 
 def test_a_deleted_photo_is_gone_and_its_models_keep_their_copy(service: Service) -> None:
     client, id = service.client, service.add_photo(drawn.encoded(seed=5))
-    model = service.make(**drawn.wish(id))
+    model = service.make(**drawn.request(id))
     assert client.delete(f"/v1/photos/{id}").status_code == 204
     for path in ("", "/image"):
         assert client.get(f"/v1/photos/{id}{path}").json()["code"] == "photo_not_found"
     assert client.post(f"/v1/photos/{id}/trace", json=drawn.STROKES).status_code == 404
-    assert client.post("/v1/models", json=drawn.wish(id)).status_code == 404
+    assert client.post("/v1/models", json=drawn.request(id)).status_code == 404
     assert client.delete(f"/v1/photos/{id}").status_code == 404
     assert client.get(f"/v1/models/{model['id']}/project").status_code == 200
 
@@ -99,10 +99,10 @@ def test_a_picture_of_another_kind_is_refused_by_name_however_it_is_sent(
     content = saved(picture(), kind)
     raw = client.post("/v1/photos", content=content, headers={"Content-Type": media_type})
     form = client.post("/v1/photos", files={"file": ("tree", content, media_type)})
-    wish = client.post("/v1/models", **drawn.form(content))
+    asked = client.post("/v1/models", **drawn.form(content))
     assert (raw.status_code, raw.json()["code"]) == (422, "format_not_allowed")
     assert what in raw.json()["detail"]
-    assert raw.json() == form.json() == wish.json()
+    assert raw.json() == form.json() == asked.json()
 
 
 def test_what_was_mended_in_a_photo_is_told_wherever_it_is_used(client: httpx.Client) -> None:
@@ -113,7 +113,7 @@ def test_what_was_mended_in_a_photo_is_told_wherever_it_is_used(client: httpx.Cl
     assert client.get(f"/v1/photos/{photo['id']}").json()["warnings"] == warnings
     assert client.post(f"/v1/photos/{photo['id']}/trace", json=drawn.STROKES).json()["warnings"] == warnings
     wait = {"Prefer": "wait=60"}
-    made = client.post("/v1/models", json=drawn.wish(photo["id"]), headers=wait).json()
+    made = client.post("/v1/models", json=drawn.request(photo["id"]), headers=wait).json()
     brought = client.post("/v1/models", **drawn.form(whole[:-2]), headers=wait).json()
     of_whole = client.post("/v1/models", **drawn.form(whole), headers=wait).json()
     assert made["report"]["warnings"] == warnings

@@ -32,7 +32,7 @@ KINDS = {
 @pytest.fixture(scope="module")
 def rich(service: Service, photo: str) -> dict[str, Any]:
     """A finished model with most of what can be asked for."""
-    model = service.make(**drawn.wish(photo, name="Grove", settings=RICH))
+    model = service.make(**drawn.request(photo, name="Grove", settings=RICH))
     assert model["status"] == "succeeded"
     return model
 
@@ -83,7 +83,7 @@ def test_a_file_that_there_is_not_is_not_found(client: httpx.Client, rich: dict[
 
 
 def test_a_leaf_of_one_s_own_is_borne(service: Service, client: httpx.Client, photo: str) -> None:
-    plain, own = (service.make(**drawn.wish(photo, **leaf)) for leaf in ({}, {"leaf": text_of(leaf_png())}))
+    plain, own = (service.make(**drawn.request(photo, **leaf)) for leaf in ({}, {"leaf": text_of(leaf_png())}))
     shares = [magenta(client.get(one["files"]["tree.glb"]).content) for one in (plain, own)]
     assert shares[0] < 0.05
     assert shares[1] > 0.5
@@ -113,7 +113,7 @@ def text_of(png: bytes) -> str:
     ],
 )
 def test_what_is_no_leaf_is_refused(client: httpx.Client, photo: str, leaf: object, code: str) -> None:
-    answer = client.post("/v1/models", json=drawn.wish(photo, leaf=leaf))
+    answer = client.post("/v1/models", json=drawn.request(photo, leaf=leaf))
     assert (answer.status_code, answer.json()["code"]) == (422, code)
     assert answer.json()["errors"][0]["pointer"] == "/leaf"
 
@@ -121,6 +121,6 @@ def test_what_is_no_leaf_is_refused(client: httpx.Client, photo: str, leaf: obje
 def test_a_known_length_is_taken_and_kept(service: Service, client: httpx.Client, photo: str) -> None:
     (x, y), scale = drawn.ROOT, {"metres": 2.0}
     strokes = {**drawn.STROKES, "scale": {"points": [[x, y], [x, y - 100]], **scale}}
-    model = service.make(**drawn.wish(photo, strokes=strokes))
+    model = service.make(**drawn.request(photo, strokes=strokes))
     assert model["report"]["measures"]["scale"]["value"] == pytest.approx(0.02)
     assert json.loads(client.get(model["files"]["strokes.json"]).content)["scale"] == strokes["scale"]

@@ -32,7 +32,7 @@ def form(**sketches: bytes) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def tree(service: Service) -> dict[str, Any]:
     """A finished model of both sketches that no test changes."""
-    model = service.make(**sketched.wish(name="Drawn"))
+    model = service.make(**sketched.request(name="Drawn"))
     assert model["status"] == "succeeded", model
     return model
 
@@ -148,7 +148,7 @@ def test_the_service_and_the_library_make_the_same_tree(client: httpx.Client, tr
 
 def test_the_same_sketches_are_answered_at_once_in_either_form(client: httpx.Client, tree: dict[str, Any]) -> None:
     files = {view: json.dumps(sketch).encode() for view, sketch in BOTH.items()}
-    for answer in (asked(client, json=sketched.wish()), asked(client, **form(**files))):
+    for answer in (asked(client, json=sketched.request()), asked(client, **form(**files))):
         told = answer.json()
         assert (answer.status_code, told["status"]) == (200, "succeeded")
         tags = [client.get(one["files"]["tree.glb"]).headers["etag"] for one in (told, tree)]
@@ -157,15 +157,15 @@ def test_the_same_sketches_are_answered_at_once_in_either_form(client: httpx.Cli
 
 def test_front_and_side_exchanged_are_another_tree(client: httpx.Client) -> None:
     exchanged = {"front": sketched.SIDE, "side": sketched.FRONT}
-    answer = asked(client, json=sketched.wish(sketches=exchanged))
+    answer = asked(client, json=sketched.request(sketches=exchanged))
     assert answer.status_code == 202
     client.post(f"{answer.headers['location']}/cancel")
 
 
 def test_a_key_gives_the_first_model_and_no_other_request(client: httpx.Client) -> None:
-    first, again = (asked(client, "sketched", json=sketched.wish()) for _ in range(2))
+    first, again = (asked(client, "sketched", json=sketched.request()) for _ in range(2))
     assert first.json()["id"] == again.json()["id"]
-    other = asked(client, "sketched", json=sketched.wish(sketches={"front": sketched.FRONT}))
+    other = asked(client, "sketched", json=sketched.request(sketches={"front": sketched.FRONT}))
     assert (other.status_code, other.json()["code"]) == (422, "idempotency_key_reused")
 
 
@@ -182,7 +182,7 @@ def test_one_picture_alone_makes_a_tree_that_says_what_was_assumed(service: Serv
 
 def test_sketches_over_a_stored_photo_outlive_it(service: Service) -> None:
     photo = service.add_photo(drawn.encoded(seed=31))
-    told = service.make(**sketched.wish(photo=photo, fruit=base64.b64encode(sketched.berry()).decode()))
+    told = service.make(**sketched.request(photo=photo, fruit=base64.b64encode(sketched.berry()).decode()))
     assert (told["status"], told["photo"]) == ("succeeded", photo)
     service.client.delete(f"/v1/photos/{photo}")
     with zipfile.ZipFile(io.BytesIO(service.client.get(told["files"]["project"]).content)) as archive:
@@ -201,7 +201,7 @@ def test_a_photo_that_came_along_lends_its_colours_to_sketches(service: Service)
 
 
 def test_a_side_gives_a_photo_its_depth(service: Service, photo: str, made: dict[str, Any]) -> None:
-    told = service.make(**drawn.wish(photo, sketches={"side": sketched.SIDE}))
+    told = service.make(**drawn.request(photo, sketches={"side": sketched.SIDE}))
     assert told["status"] == "succeeded", told
     assert set(told["files"]) == {"tree.glb", "preview.png", "strokes.json", "side.json", "project"}
     trees = [hashlib.sha256(service.client.get(one["files"]["tree.glb"]).content).digest() for one in (told, made)]
@@ -209,7 +209,7 @@ def test_a_side_gives_a_photo_its_depth(service: Service, photo: str, made: dict
 
 
 def test_a_deleted_model_of_sketches_is_restored_with_them(service: Service) -> None:
-    client, told = service.client, service.make(**sketched.wish(seed=5))
+    client, told = service.client, service.make(**sketched.request(seed=5))
     place = f"/v1/models/{told['id']}"
     assert client.delete(place).status_code == 204
     assert client.get(told["files"]["front.json"]).status_code == 404
@@ -246,12 +246,12 @@ def test_any_other_combination_is_one_problem_and_nothing_is_kept(
 
 def test_a_sketch_that_does_not_fit_its_photo_is_refused(client: httpx.Client, photo: str) -> None:
     wide = {**sketched.FRONT, "canvas": [400, 240]}
-    told = asked(client, json=sketched.wish(photo=photo, sketches={"front": wide})).json()
+    told = asked(client, json=sketched.request(photo=photo, sketches={"front": wide})).json()
     assert (told["code"], told["errors"][0]["pointer"]) == ("canvas_mismatch", "/sketches/front")
 
 
 def test_a_photo_that_there_is_not_is_not_found(client: httpx.Client) -> None:
-    answer = asked(client, json=sketched.wish(photo="pho_0a1b2c3d4e5f60718293a4b5"))
+    answer = asked(client, json=sketched.request(photo="pho_0a1b2c3d4e5f60718293a4b5"))
     assert (answer.status_code, answer.json()["code"]) == (404, "photo_not_found")
 
 

@@ -16,7 +16,7 @@ def traced(client: httpx.Client, photo: str, **request: Any) -> dict[str, Any]:
 
 
 def test_a_trace_is_that_of_the_library(client: httpx.Client, photo: str) -> None:
-    wanted = trace(drawn.pixels(), drawn.STROKES, grow=True).answer()
+    wanted = trace(drawn.pixels(), drawn.STROKES, grow=True).as_dict()
     assert traced(client, photo, rev=3, grow=True) == {"rev": 3, **json.loads(json.dumps(wanted))}
 
 

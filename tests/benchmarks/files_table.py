@@ -14,7 +14,7 @@ from treestroke.core.progress import silent
 from treestroke.service.files import files_on_offer, tree_files
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-WISHES = {
+SETTINGS = {
     "plain": ModelSettings(),
     "wind": ModelSettings(wind="all"),
     "compressed": ModelSettings(compress=True),
@@ -27,7 +27,7 @@ def rows(name: str) -> list[tuple[str, int, float, str]]:
     """Write a tree in every way: what, bytes, seconds, and the least IoU with the whole tree from 8 sides."""
     model = treestroke.model(EXAMPLES / f"{name}.jpg", EXAMPLES / f"{name}.strokes.json")
     ious = level_ious(model.tree, levels(model.tree))
-    found = [_row(what, model, wish) for what, wish in WISHES.items()]
+    found = [_row(what, model, settings) for what, settings in SETTINGS.items()]
     found += [_row(file, model, ModelSettings(files=(file,)), of=file) for file in files_on_offer()]
     coarse = tree_files(model.tree, ModelSettings(lod="files"), "tree", "treestroke", silent)
     for level, iou in ious.items():
@@ -35,9 +35,9 @@ def rows(name: str) -> list[tuple[str, int, float, str]]:
     return found
 
 
-def _row(what: str, model: treestroke.Model, wish: ModelSettings, of: str = "") -> tuple[str, int, float, str]:
+def _row(what: str, model: treestroke.Model, settings: ModelSettings, of: str = "") -> tuple[str, int, float, str]:
     start = time.perf_counter()
-    bundles = list(tree_files(model.tree, wish, "tree", "treestroke", silent).values())
+    bundles = list(tree_files(model.tree, settings, "tree", "treestroke", silent).values())
     taken = time.perf_counter() - start
     plain = 0.0
     if of:

@@ -28,13 +28,13 @@ LIMBS = ((2, -55, 30), (2, 50, -35), (3, -40, -20), (3, 62, 30), (4, -65, 40), (
 """Trunk joint, degrees from upright in the photo, and out of it."""
 
 
-def _limb(points: list[list[float]], parents: list[int], bearer: int, lean: float, out: float) -> None:
+def _limb(points: list[list[float]], parents: list[int], start: int, lean: float, out: float) -> None:
     """Append a limb of 260 px in five joints."""
     lean, out = np.radians(lean), np.radians(out)
     step = 52 * np.array([np.sin(lean) * np.cos(out), -np.cos(lean), np.sin(out)])
     for k in range(1, 6):
-        parents.append(bearer if k == 1 else len(points) - 1)
-        points.append(list(np.array(points[bearer]) + step * k) if k == 1 else list(np.array(points[-1]) + step))
+        parents.append(start if k == 1 else len(points) - 1)
+        points.append(list(np.array(points[start]) + step * k) if k == 1 else list(np.array(points[-1]) + step))
 
 
 def benchmark_tree() -> tuple[Skeleton, CrownToFill]:

@@ -22,7 +22,7 @@ from tests.api import drawn
 
 from treestroke.service import model_request, photos, stored_models
 from treestroke.service.engine_version import engine_version
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.retention import Sweeper
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.store import queries
@@ -114,21 +114,21 @@ def answer(database: Database, count: int) -> None:
     say("a page of 20 models", times(lambda: stored_models.list_models(database, None, 20)))
 
 
-def ask(shelf: Shelf) -> bool:
+def ask(resources: Resources) -> bool:
     """Time how long requests for models, each a new one, hold the lock of writers; tell whether that is short."""
-    photo = photos.add_photo(shelf, drawn.encoded()).id
+    photo = photos.add_photo(resources, drawn.encoded()).id
     with held() as took:
         for seed in range(ASKED):
-            wish = model_request.read_order(json.dumps(drawn.wish(photo, seed=seed)).encode())
-            assert stored_models.accept_model(shelf, wish, f"key-{seed}").row.status == "queued"
+            order = model_request.read_order(json.dumps(drawn.request(photo, seed=seed)).encode())
+            assert stored_models.accept_model(resources, order, f"key-{seed}").row.status == "queued"
     say(f"the lock, held by POST /v1/models (< {PROMISED_MS})", took)
     return bool(np.median(took) * 1000 < PROMISED_MS)
 
 
-def sweep(shelf: Shelf, path: Path) -> None:
+def sweep(resources: Resources, path: Path) -> None:
     """Time how long a sweep holds the lock: one that marks every row, and one that removes a thousand models."""
     clock = [0.0]
-    sweeper = Sweeper(shelf.database, shelf.blobs, 0, threading.Event(), lambda: clock[0])
+    sweeper = Sweeper(resources.database, resources.blobs, 0, threading.Event(), lambda: clock[0])
     began = time.perf_counter()
     with held() as took:
         sweeper.sweep()
@@ -153,11 +153,11 @@ def main() -> int:
             database = Database(Path(folder))
             database.migrate()
             fill(database.path, count)
-            shelf = Shelf(database, Blobs(Path(folder)), tracers)
+            resources = Resources(database, Blobs(Path(folder)), tracers)
             sys.stdout.write(f"{count} models, {database.path.stat().st_size / 1e6:.0f} MB\n")
             answer(database, count)
-            short &= ask(shelf)
-            sweep(shelf, database.path)
+            short &= ask(resources)
+            sweep(resources, database.path)
             database.close()
     tracers.close()
     return 0 if short else 1

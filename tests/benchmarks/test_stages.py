@@ -23,7 +23,7 @@ from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.placement import LeafParams, place_leaves
-from treestroke.core.lift.spread import SeenCrown, lift
+from treestroke.core.lift.spread import FrontCrown, lift
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.paint.atlas import leaf_atlas
@@ -33,7 +33,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes
 from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
-from treestroke.service.inputs import load_strokes
+from treestroke.service.loading import load_strokes
 from treestroke.service.model import Model
 from treestroke.service.trace import Trace
 
@@ -76,7 +76,7 @@ def subject(request: pytest.FixtureRequest) -> Subject:
 
 
 def _lifted(subject: Subject) -> Skeleton:
-    crown = SeenCrown(subject.crown.volume, subject.crown.front.camera)
+    crown = FrontCrown(subject.crown.volume, subject.crown.front.camera)
     return lift(subject.skeleton, subject.trace.stroke, crown, np.random.default_rng(0))
 
 

@@ -12,8 +12,7 @@ from tests.api.corpora import saved, wide_profile
 import treestroke.codec.image
 from treestroke.codec.image import (
     check_size,
-    decode_fruit,
-    decode_leaf,
+    decode_cutout,
     decode_photo,
     decode_stored,
     encode_png,
@@ -488,7 +487,7 @@ def disc_alpha(side: int = 64) -> np.ndarray:
 
 
 def test_a_leaf_keeps_its_colour_and_its_alpha() -> None:
-    leaf = decode_leaf(leaf_png(disc_alpha()), "leaf.png")
+    leaf = decode_cutout(leaf_png(disc_alpha()), "leaf.png", LeafError)
     assert leaf.shape == (64, 64, 4)
     assert leaf[32, 32].tolist() == [60, 120, 40, 255]
     assert leaf[0, 0, 3] == 0
@@ -509,12 +508,12 @@ def test_a_leaf_keeps_its_colour_and_its_alpha() -> None:
 )
 def test_what_is_no_leaf_cut_out_is_refused(data: bytes, code: str) -> None:
     with pytest.raises(LeafError, match=r"^leaf\.png: ") as refused:
-        decode_leaf(data, "leaf.png")
+        decode_cutout(data, "leaf.png", LeafError)
     assert refused.value.code == code
 
 
 def test_a_fruit_is_read_as_a_leaf_and_refused_by_its_own_name() -> None:
-    assert decode_fruit(leaf_png(disc_alpha()), "fruit").shape == (64, 64, 4)
+    assert decode_cutout(leaf_png(disc_alpha()), "fruit", FruitError).shape == (64, 64, 4)
     with pytest.raises(FruitError, match="no fruit: all of it is transparent; cut the fruit out") as refused:
-        decode_fruit(leaf_png(np.zeros((64, 64))), "fruit")
+        decode_cutout(leaf_png(np.zeros((64, 64))), "fruit", FruitError)
     assert refused.value.code == "fruit_not_cut_out"

@@ -58,7 +58,7 @@ def test_parts_that_are_none_are_absent_and_the_others_are_in_the_order_of_the_d
 
 @pytest.mark.parametrize("name", ["", "bark", "photo/1", "strokes.json"])
 def test_a_name_that_is_not_described_is_no_part(name: str) -> None:
-    with pytest.raises(ValueError, match="no part"):
+    with pytest.raises(ValueError, match="not a part"):
         part_of(name)
 
 

@@ -125,7 +125,7 @@ def test_what_would_unpack_to_more_than_a_project_needs_is_not_unpacked(padded: 
 def test_more_than_a_part_s_size_says_is_not_unpacked() -> None:
     data = bytearray(packed(zipfile.ZIP_DEFLATED, photo_png=png_of(64, 64, 50_000), strokes_json=b"S"))
     struct.pack_into("<I", data, data.index(b"PK\x01\x02") + 24, 10)
-    with pytest.raises(TreestrokeError, match="no project file that can be read") as refused:
+    with pytest.raises(TreestrokeError, match="not a readable project file") as refused:
         opened(bytes(data))
     assert refused.value.code == "project_unreadable"
 
@@ -191,7 +191,7 @@ def test_a_source_of_many_files_needs_no_more_than_its_description(monkeypatch: 
     project = project_of({}, **{"photos/2": b"B", "leaf": b"\x89PNG", "photos/1": b"\xff\xd8A"})
     assert opened(written(project)) == project
     assert (project.inputs.source, set(project.inputs.parts)) == ("photos", {"photos/1", "photos/2", "leaf"})
-    with pytest.raises(ValueError, match="no part"):
+    with pytest.raises(ValueError, match="not a part"):
         project_of({}, photos=b"A")
 
 

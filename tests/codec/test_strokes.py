@@ -140,7 +140,7 @@ def test_any_key_makes_a_message_that_can_be_written(key: str) -> None:
 
 @pytest.mark.parametrize("text", ["", "{", b"\xff\xfe\x00", "[" * 100_000, '{"crown": 1,}'])
 def test_what_is_no_json_is_refused_in_one_line(text: str | bytes) -> None:
-    with pytest.raises(StrokesError, match="no valid JSON") as refused:
+    with pytest.raises(StrokesError, match="not valid JSON") as refused:
         parse_strokes(text, "strokes")
     assert "\n" not in str(refused.value)
 

@@ -9,7 +9,7 @@ from tests.conftest import DATA
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import mend_strokes, require_trunk
 from treestroke.core.strokes import Length, MendedStrokes, Stroke, Strokes
-from treestroke.service.inputs import load_photo, load_strokes
+from treestroke.service.loading import load_photo, load_strokes
 
 WIDTH, HEIGHT = 400, 300
 CROWN = [[100, 40], [300, 40], [300, 160], [100, 160]]

@@ -56,7 +56,7 @@ def test_silent_connections_leave_everybody_else_answered(crowded: TooManyFollow
 def test_streams_beyond_the_bound_are_told_to_come_again(crowded: TooManyFollowers) -> None:
     with httpx.Client(base_url=crowded.url, timeout=30) as client:
         photo = client.post("/v1/photos", content=drawn.encoded()).json()["id"]
-        place = client.post("/v1/models", json=drawn.wish(photo)).headers["location"]
+        place = client.post("/v1/models", json=drawn.request(photo)).headers["location"]
         followers = client.get("/v1/limits").json()["followers"]
         for _ in range(followers + 1):  # HEAD is answered at once, and takes no place
             head = client.head(f"{place}/events")
@@ -65,7 +65,7 @@ def test_streams_beyond_the_bound_are_told_to_come_again(crowded: TooManyFollowe
         assert {stream.recv(12) for stream in streams} == {b"HTTP/1.1 200"}
         refused = client.get(f"{place}/events")
         assert (refused.status_code, refused.json()["code"], refused.headers["retry-after"]) == (503, "overloaded", "1")
-        waited = client.post("/v1/models", json=drawn.wish(photo, seed=2), headers={"Prefer": "wait=20"})
+        waited = client.post("/v1/models", json=drawn.request(photo, seed=2), headers={"Prefer": "wait=20"})
         assert waited.status_code == 202
         assert client.get(place).status_code == 200
         streams[0].close()

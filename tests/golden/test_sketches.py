@@ -13,7 +13,7 @@ from treestroke.core.pipeline.crowns import drawn
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import UNITS, draw_side, in_units, stroke_height
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.service.inputs import load_sketch
+from treestroke.service.loading import load_sketch
 from treestroke.service.model import Model, sketch
 
 SKETCHES = EXAMPLES / "sketches"

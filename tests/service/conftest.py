@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -17,8 +17,8 @@ def tracers() -> Iterator[TracingPool]:
 
 
 @pytest.fixture
-def shelf(tmp_path: Path, tracers: TracingPool) -> Iterator[Shelf]:
+def resources(tmp_path: Path, tracers: TracingPool) -> Iterator[Resources]:
     database = Database(tmp_path)
     database.migrate()
-    yield Shelf(database, Blobs(tmp_path), tracers)
+    yield Resources(database, Blobs(tmp_path), tracers)
     database.close()

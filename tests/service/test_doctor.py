@@ -18,7 +18,7 @@ import pytest
 from treestroke.cli import main
 from treestroke.service.dispatch import Dispatcher, record_heartbeat
 from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation, readiness
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -143,11 +143,11 @@ def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> N
     assert list(tmp_path.iterdir()) == []
 
 
-def test_nothing_is_ready_once_the_database_is_gone_from_its_place(shelf: Shelf) -> None:
-    dispatcher = Dispatcher(shelf.database, shelf.blobs, lambda id: None, 0)
-    assert readiness(shelf, dispatcher).checks["database"] == "ok"
-    shelf.database.path.rename(shelf.database.path.with_name("away"))
-    health = readiness(shelf, dispatcher)
+def test_nothing_is_ready_once_the_database_is_gone_from_its_place(resources: Resources) -> None:
+    dispatcher = Dispatcher(resources.database, resources.blobs, lambda id: None, 0)
+    assert readiness(resources, dispatcher).checks["database"] == "ok"
+    resources.database.path.rename(resources.database.path.with_name("away"))
+    health = readiness(resources, dispatcher)
     assert (health.status, health.checks["database"]) == ("down", "unavailable")
 
 

@@ -34,10 +34,10 @@ def test_a_wish_comes_out_the_same_from_json_and_from_a_form() -> None:
 
 
 def test_empty_fields_of_a_form_are_absent_ones() -> None:
-    wish = model_request.read_form(
+    order = model_request.read_form(
         {"strokes": json.dumps(drawn.STROKES).encode(), "settings": b" ", "seed": b"", "name": b""}
     )
-    assert (wish.seed, wish.name, wish.settings["iterations"]) == (0, "", 300)
+    assert (order.seed, order.name, order.settings["iterations"]) == (0, "", 300)
 
 
 @pytest.mark.parametrize(
@@ -95,12 +95,12 @@ BOTH = {"front": sketched.FRONT, "side": sketched.SIDE}
     ],
 )
 def test_a_wish_holds_what_makes_a_tree_together(request_: dict[str, Any]) -> None:
-    wish = model_request.read_order(body(**request_))
+    order = model_request.read_order(body(**request_))
     sketches = request_["sketches"]
-    assert wish.photo == request_.get("photo")
-    assert wish.parts.keys() == sketches.keys() | request_.keys() & {"strokes"}
+    assert order.photo == request_.get("photo")
+    assert order.parts.keys() == sketches.keys() | request_.keys() & {"strokes"}
     for view, sketch in sketches.items():
-        assert json.loads(wish.parts[view]) == sketch
+        assert json.loads(order.parts[view]) == sketch
 
 
 @pytest.mark.parametrize(

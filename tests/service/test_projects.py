@@ -13,7 +13,7 @@ from tests.rows import add_model
 
 from treestroke.codec.project import Project, read_project
 from treestroke.service import model_request, photos, stored_models
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.projects import AT_ONCE, WAITING, Packed, Projects
 from treestroke.service.stored_models import StoredModel
 from treestroke.service.tracing_pool import Overloaded
@@ -23,8 +23,8 @@ SECONDS = 30
 
 
 @pytest.fixture
-def projects(shelf: Shelf) -> Iterator[Projects]:
-    made = Projects(shelf.blobs.folder.parent, shelf.blobs)
+def projects(resources: Resources) -> Iterator[Projects]:
+    made = Projects(resources.blobs.folder.parent, resources.blobs)
     yield made
     made.close()
 
@@ -38,28 +38,28 @@ def project_of(projects: Projects, model: StoredModel) -> Project:
         return read_project(file, "x")
 
 
-def model_of(shelf: Shelf, content: bytes, seed: int = 0) -> StoredModel:
+def model_of(resources: Resources, content: bytes, seed: int = 0) -> StoredModel:
     """Write the rows of a model whose photo has this content, whatever it is."""
-    blobs = {"photo": shelf.blobs.put(content), "strokes": shelf.blobs.put(b"{}")}
-    return stored_models.find_model(shelf.database, add_model(shelf.database, blobs, seed=seed).id)
+    blobs = {"photo": resources.blobs.put(content), "strokes": resources.blobs.put(b"{}")}
+    return stored_models.find_model(resources.database, add_model(resources.database, blobs, seed=seed).id)
 
 
-def test_a_project_is_photo_strokes_and_settings_whole(shelf: Shelf, projects: Projects) -> None:
-    photo = photos.add_photo(shelf, drawn.encoded())
-    asked = model_request.read_order(json.dumps(drawn.wish(photo.id, seed=7)).encode())
-    model = stored_models.accept_model(shelf, asked, None)
+def test_a_project_is_photo_strokes_and_settings_whole(resources: Resources, projects: Projects) -> None:
+    photo = photos.add_photo(resources, drawn.encoded())
+    asked = model_request.read_order(json.dumps(drawn.request(photo.id, seed=7)).encode())
+    model = stored_models.accept_model(resources, asked, None)
     project = project_of(projects, model)
     assert list(project.inputs.parts) == ["photo", "strokes"]
-    assert project.inputs.parts["photo"] == shelf.blobs.get(photo.blob)
+    assert project.inputs.parts["photo"] == resources.blobs.get(photo.blob)
     assert json.loads(project.inputs.parts["strokes"]) == {**drawn.STROKES, "erase": []}
     assert project.settings == {**model.row.settings, "seed": 7}
 
 
-def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projects: Projects) -> None:
+def test_a_project_of_sketches_holds_them_as_they_were_sent(resources: Resources, projects: Projects) -> None:
     sketches = {"front": sketched.FRONT, "side": sketched.pictured(sketched.SIDE)}
     fruit = base64.b64encode(sketched.berry()).decode()
-    asked = model_request.read_order(json.dumps(sketched.wish(sketches=sketches, fruit=fruit)).encode())
-    model = stored_models.accept_model(shelf, asked, None)
+    asked = model_request.read_order(json.dumps(sketched.request(sketches=sketches, fruit=fruit)).encode())
+    model = stored_models.accept_model(resources, asked, None)
     assert list(model.drawings) == ["front.json", "side.png"]
     parts = project_of(projects, model).inputs.parts
     assert list(parts) == ["front", "side", "fruit"]
@@ -69,9 +69,9 @@ def test_a_project_of_sketches_holds_them_as_they_were_sent(shelf: Shelf, projec
 
 
 def test_models_of_the_same_parts_settings_and_seed_share_a_project_that_is_packed_once(
-    shelf: Shelf, projects: Projects
+    resources: Resources, projects: Projects
 ) -> None:
-    first, same, other = (model_of(shelf, b"photo", seed=seed) for seed in (0, 0, 1))
+    first, same, other = (model_of(resources, b"photo", seed=seed) for seed in (0, 0, 1))
     made = packed(projects, first)
     before = made.path.stat()
     assert made.sha256 == hashlib.sha256(made.path.read_bytes()).hexdigest()
@@ -80,8 +80,8 @@ def test_models_of_the_same_parts_settings_and_seed_share_a_project_that_is_pack
     assert packed(projects, other).sha256 != made.sha256
 
 
-def test_a_large_project_is_never_in_memory(shelf: Shelf, projects: Projects) -> None:
-    model = model_of(shelf, bytes(60_000_000))
+def test_a_large_project_is_never_in_memory(resources: Resources, projects: Projects) -> None:
+    model = model_of(resources, bytes(60_000_000))
     tracemalloc.start()
     made = packed(projects, model)
     peak = tracemalloc.get_traced_memory()[1]
@@ -91,10 +91,10 @@ def test_a_large_project_is_never_in_memory(shelf: Shelf, projects: Projects) ->
 
 
 def test_what_was_asked_for_longest_ago_goes_first(
-    shelf: Shelf, projects: Projects, monkeypatch: pytest.MonkeyPatch
+    resources: Resources, projects: Projects, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("treestroke.service.projects.MAX_CACHE_BYTES", 250_000)
-    models = [model_of(shelf, bytes([at]) * 100_000) for at in range(3)]
+    models = [model_of(resources, bytes([at]) * 100_000) for at in range(3)]
     first, second = (packed(projects, model) for model in models[:2])
     packed(projects, models[0])
     third = packed(projects, models[2])
@@ -102,13 +102,13 @@ def test_what_was_asked_for_longest_ago_goes_first(
     assert packed(projects, models[1]).sha256 == second.sha256
 
 
-def test_what_is_gone_changed_or_failed_is_packed_anew(shelf: Shelf, projects: Projects) -> None:
-    model = model_of(shelf, b"photo")
-    blob = shelf.blobs.path(model.parts["photo"].blob)
+def test_what_is_gone_changed_or_failed_is_packed_anew(resources: Resources, projects: Projects) -> None:
+    model = model_of(resources, b"photo")
+    blob = resources.blobs.path(model.parts["photo"].blob)
     blob.rename(blob.with_suffix(".away"))
     with pytest.raises(Damaged):
         packed(projects, model)
-    assert list((shelf.blobs.folder.parent / "projects").iterdir()) == []
+    assert list((resources.blobs.folder.parent / "projects").iterdir()) == []
     blob.with_suffix(".away").rename(blob)
     made = packed(projects, model)
     for harm in (made.path.unlink, lambda: made.path.write_bytes(b"")):
@@ -118,21 +118,22 @@ def test_what_is_gone_changed_or_failed_is_packed_anew(shelf: Shelf, projects: P
         assert hashlib.sha256(made.path.read_bytes()).hexdigest() == made.sha256
 
 
-def test_what_is_kept_goes_at_the_next_start(shelf: Shelf, projects: Projects) -> None:
-    made = packed(projects, model_of(shelf, b"photo"))
-    Projects(shelf.blobs.folder.parent, shelf.blobs).close()
+def test_what_is_kept_goes_at_the_next_start(resources: Resources, projects: Projects) -> None:
+    made = packed(projects, model_of(resources, b"photo"))
+    Projects(resources.blobs.folder.parent, resources.blobs).close()
     assert not made.path.exists()
 
 
-def test_few_are_packed_at_once_more_wait_and_still_more_are_refused(shelf: Shelf, projects: Projects) -> None:
-    model = model_of(shelf, b"photo")
-    blob = shelf.blobs.path(model.parts["photo"].blob)
+def test_few_are_packed_at_once_more_wait_and_still_more_are_refused(resources: Resources, projects: Projects) -> None:
+    model = model_of(resources, b"photo")
+    blob = resources.blobs.path(model.parts["photo"].blob)
     blob.unlink()
     os.mkfifo(blob)  # whoever opens it to read waits for somebody who writes
     rows = [
-        add_model(shelf.database, {"photo": blob.name, "strokes": "b" * 64}, seed=seed) for seed in range(WAITING + 1)
+        add_model(resources.database, {"photo": blob.name, "strokes": "b" * 64}, seed=seed)
+        for seed in range(WAITING + 1)
     ]
-    models = [stored_models.find_model(shelf.database, row.id) for row in rows]
+    models = [stored_models.find_model(resources.database, row.id) for row in rows]
     promised = [projects.pack(model) for model in models[:WAITING]]
     try:
         deadline = time.monotonic() + SECONDS

@@ -21,7 +21,7 @@ def test_foliage_and_branches_lie_in_the_photo(maple_photo: Path, maple_strokes:
 
 
 def test_the_answer_is_plain_json(maple_photo: Path, maple_strokes: Path) -> None:
-    answer = treestroke.trace(maple_photo, maple_strokes).answer()
+    answer = treestroke.trace(maple_photo, maple_strokes).as_dict()
     assert json.loads(json.dumps(answer)) == answer
 
 
@@ -57,30 +57,30 @@ def test_the_live_tree_is_the_same_whether_its_foliage_is_known(live: Trace, map
     crown = json.loads(maple_strokes.read_text())["crown"]
     before = treestroke.trace(live.photo, {"crown": crown})
     after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
-    assert after.found.evidence.foliage is before.found.evidence.foliage
+    assert after.photo_trace.evidence.foliage is before.photo_trace.evidence.foliage
     assert same(after.grown, live.grown)
 
 
 def test_what_was_traced_of_the_same_strokes_is_not_traced_again(live: Trace, maple_strokes: Path) -> None:
     before = treestroke.trace(live.photo, maple_strokes)
     after = treestroke.trace(live.photo, maple_strokes, after=before, grow=True)
-    assert after.found is before.found
+    assert after.photo_trace is before.photo_trace
     assert same(after.grown, live.grown)
 
 
 def test_another_erase_stroke_is_traced(live: Trace, maple_strokes: Path) -> None:
     strokes = json.loads(maple_strokes.read_text())
     erase = {"points": [[5.0, 5.0], [15.0, 15.0]]}
-    assert treestroke.trace(live.photo, {**strokes, "erase": [erase]}, after=live).found is not live.found
+    assert treestroke.trace(live.photo, {**strokes, "erase": [erase]}, after=live).photo_trace is not live.photo_trace
 
 
 def test_growing_changes_nothing_of_the_trace(live: Trace, maple_photo: Path, maple_strokes: Path) -> None:
-    plain, grown = treestroke.trace(maple_photo, maple_strokes).answer(), live.answer()
+    plain, grown = treestroke.trace(maple_photo, maple_strokes).as_dict(), live.as_dict()
     assert {name: grown[name] for name in plain} == plain
 
 
 def test_an_answer_with_a_live_tree_is_plain_json(live: Trace) -> None:
-    answer = live.answer()
+    answer = live.as_dict()
     assert json.loads(json.dumps(answer)) == answer
     assert set(answer) == {"foliage", "skeleton", "warnings", "grown", "photo"}
     assert set(answer["grown"]) == {"points", "radii", "parents", "born", "photo"}
@@ -89,7 +89,7 @@ def test_an_answer_with_a_live_tree_is_plain_json(live: Trace) -> None:
 
 
 def test_the_live_tree_s_root_stands_at_the_root_s_pixel(live: Trace, maple_strokes: Path) -> None:
-    photo = live.answer()["photo"]
+    photo = live.as_dict()["photo"]
     x, y, _ = live.grown.skeleton.points[0]
     place = photo["root"][0] + x / photo["metres_per_pixel"], photo["root"][1] - y / photo["metres_per_pixel"]
     assert place == pytest.approx(live.skeleton.points[0], abs=1e-6)
@@ -99,13 +99,13 @@ def test_without_branches_nothing_grows(maple_photo: Path, maple_strokes: Path) 
     crown = json.loads(maple_strokes.read_text())["crown"]
     found = treestroke.trace(maple_photo, {"crown": crown}, grow=True)
     assert found.grown is None
-    assert (found.answer()["grown"], found.answer()["photo"]) == (None, None)
+    assert (found.as_dict()["grown"], found.as_dict()["photo"]) == (None, None)
 
 
 def test_a_trace_of_sketches_shows_what_was_drawn() -> None:
     found = trace_sketches(sketched.FRONT, sketched.SIDE)
     assert found.grown is None
-    answer = found.answer()
+    answer = found.as_dict()
     for view, given in (("front", sketched.FRONT), ("side", sketched.SIDE)):
         points = answer[view]["skeleton"]["points"]
         for branch in given["branches"]:

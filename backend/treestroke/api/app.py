@@ -22,7 +22,7 @@ from treestroke.limits import MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_job_message
 from treestroke.schemas import Problem
 from treestroke.service.dispatch import Dispatcher
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.projects import Projects
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.settings import Settings
@@ -77,7 +77,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
     dispatcher = Dispatcher(database, blobs, partial(send_job_message, make_queue(settings)), settings.keep_days)
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
-    app.state.shelf = Shelf(database, blobs, tracers, *limits)
+    app.state.resources = Resources(database, blobs, tracers, *limits)
     app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
     tracers.start()
@@ -111,7 +111,7 @@ def _drop_standard_problems(document: dict[str, Any]) -> None:
     invalid = str(HTTPStatus.UNPROCESSABLE_ENTITY.value)
     for name in ("HTTPValidationError", "ValidationError"):
         document["components"]["schemas"].pop(name, None)
-    for operation in (one for path in document["paths"].values() for one in path.values()):
+    for operation in (operation for path in document["paths"].values() for operation in path.values()):
         if "HTTPValidationError" in str(operation["responses"].get(invalid)):
             del operation["responses"][invalid]
 

@@ -12,7 +12,7 @@ from treestroke.api.errors import Refusal
 from treestroke.api.following import Watcher
 from treestroke.limits import MAX_PHOTO_BYTES
 from treestroke.service.dispatch import Dispatcher
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 
@@ -24,9 +24,9 @@ def _settings(request: Request) -> Settings:
     return settings
 
 
-def _shelf(request: Request) -> Shelf:
-    shelf: Shelf = request.app.state.shelf
-    return shelf
+def _resources(request: Request) -> Resources:
+    resources: Resources = request.app.state.resources
+    return resources
 
 
 def _dispatcher(request: Request) -> Dispatcher:
@@ -89,7 +89,7 @@ Limit = Annotated[int, Query(ge=1, le=MAX_PAGE)]
 PhotoId = Annotated[str, _id("pho")]
 ModelId = Annotated[str, _id("mdl")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
-ShelfOf = Annotated[Shelf, Depends(_shelf)]
+ResourcesOf = Annotated[Resources, Depends(_resources)]
 ProjectsOf = Annotated[Projects, Depends(_projects)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]
 WatcherOf = Annotated[Watcher, Depends(_watcher)]

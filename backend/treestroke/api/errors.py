@@ -122,11 +122,11 @@ def _input(_: Request, error: TreestrokeError) -> JSONResponse:
 
 def _invalid(_: Request, error: RequestValidationError) -> JSONResponse:
     if error.errors()[0]["type"] == "json_invalid":
-        return problem("malformed_json", "the body is no valid JSON; send it anew")
+        return problem("malformed_json", "the body is not valid JSON; send it again")
     # What was sent is not repeated in the response: it may be anything.
     faults = [
-        Fault(pointer="".join(f"/{part}" for part in one["loc"][1:]), code=one["type"], detail=one["msg"])
-        for one in error.errors()
+        Fault(pointer="".join(f"/{part}" for part in found["loc"][1:]), code=found["type"], detail=found["msg"])
+        for found in error.errors()
     ]
     said = "; ".join(f"{fault.pointer[1:]}: {fault.detail}" for fault in faults)
     return problem("invalid", f"{said}; change it", faults)

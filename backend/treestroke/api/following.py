@@ -22,9 +22,9 @@ class TooManyFollowers(Exception):
 class Follower:
     """A request that waits for changes of a model."""
 
-    def __init__(self, seen: StoredModel) -> None:
-        self.model, self.version = seen.row.id, seen.version
-        self._latest: StoredModel | None = seen
+    def __init__(self, model: StoredModel) -> None:
+        self.model, self.version = model.row.id, model.version
+        self._latest: StoredModel | None = model
         self._changed = asyncio.Event()
 
     async def next_change(self) -> StoredModel | None:
@@ -33,11 +33,11 @@ class Follower:
         self._changed.clear()
         return self._latest
 
-    def update(self, seen: StoredModel | None) -> None:
+    def update(self, model: StoredModel | None) -> None:
         """Wake the request if the model has changed; None ends its wait for good."""
-        if seen is None or seen.version != self.version:
-            self.version = seen.version if seen else self.version
-            self._latest = seen
+        if model is None or model.version != self.version:
+            self.version = model.version if model else self.version
+            self._latest = model
             self._changed.set()
 
 
@@ -51,7 +51,7 @@ class Watcher:
         self._polling: asyncio.Task[None] | None = None
 
     @contextmanager
-    def follow(self, seen: StoredModel) -> Iterator[Follower]:
+    def follow(self, model: StoredModel) -> Iterator[Follower]:
         """Follow a model from a known state on, until the context ends.
 
         Raises
@@ -61,7 +61,7 @@ class Watcher:
         """
         if len(self._followers) >= self.places:
             raise TooManyFollowers
-        follower = Follower(seen)
+        follower = Follower(model)
         self._followers.add(follower)
         if self._polling is None:
             self._polling = asyncio.create_task(self._run())

@@ -18,8 +18,8 @@ class _Queue(Collector):
         self._app = app
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
-        shelf = getattr(self._app.state, "shelf", None)
-        for name, (about, value) in (queue_figures(shelf.database) if shelf else {}).items():
+        resources = getattr(self._app.state, "resources", None)
+        for name, (about, value) in (queue_figures(resources.database) if resources else {}).items():
             yield GaugeMetricFamily(f"treestroke_{name}", about, value)
 
 

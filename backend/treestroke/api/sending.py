@@ -11,7 +11,7 @@ from fastapi.responses import FileResponse
 from starlette.datastructures import MutableHeaders
 
 from treestroke.api.errors import documented, problem
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 
 _TAG_HEADER = {"ETag": {"schema": {"type": "string"}, "description": "SHA-256 of the file, in quotes"}}
 _RANGE = re.compile(r"bytes=(?:(\d{1,18})-(\d{0,18})|-(\d{1,18}))")
@@ -36,7 +36,7 @@ def file_responses(kind: str, schema: str = "") -> dict[int | str, dict[str, Any
     }
 
 
-def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: str | None = None) -> Response:
+def send_blob(request: Request, resources: Resources, blob: str, kind: str, download: str | None = None) -> Response:
     """Return a blob as a response, as `send_file` does; its name is its SHA-256.
 
     Raises
@@ -44,7 +44,7 @@ def send_blob(request: Request, shelf: Shelf, blob: str, kind: str, download: st
     Damaged
         The file is missing or has changed.
     """
-    return send_file(request, shelf.blobs.check(blob), blob, kind, download)
+    return send_file(request, resources.blobs.check(blob), blob, kind, download)
 
 
 def send_file(request: Request, path: Path, sha256: str, kind: str, download: str | None = None) -> Response:
@@ -79,7 +79,7 @@ def _matches(if_none_match: str, tag: str) -> bool:
 
 
 def _part(request: Request, tag: str, size: int) -> range | None:
-    """Return the requested bytes, empty if the file has none of them; None stands for the whole file."""
+    """Return the range of requested bytes, empty if it is beyond the file; None for the whole file."""
     found = _RANGE.fullmatch(request.headers.get("range", ""))
     if found is None or request.headers.get("if-range", tag) != tag:
         return None

@@ -13,7 +13,7 @@ from PIL import Image, ImageCms
 from treestroke.codec.jpeg_ending import Ending, ending_of, ends_flat, missing_part
 from treestroke.codec.photo_kinds import NAMES, is_sequence, kind_of, refusal_of
 from treestroke.codec.watched_bytes import WatchedBytes
-from treestroke.core.errors import FruitError, LeafError, PhotoError
+from treestroke.core.errors import PhotoError, TreestrokeError
 from treestroke.core.geometry.mesh import ALPHA_CUT
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import StrokeWarning
@@ -131,26 +131,41 @@ def most_stored_bytes(head: bytes) -> int:
     return max(MAX_PHOTO_BYTES, min(3 * width * height * 101 // 100, MAX_STORED_BYTES))
 
 
-def decode_leaf(data: bytes, name: str) -> Picture:
-    """Decode the PNG of a cut-out leaf to (h, w, 4) uint8 sRGB, straight alpha; ``name`` appears in messages.
+def decode_cutout(data: bytes, name: str, refusal: type[TreestrokeError]) -> Picture:
+    """Decode the PNG of something cut out, a leaf or a fruit, to (h, w, 4) uint8 sRGB, straight alpha.
+
+    ``name`` appears in messages; what is cut out is named by ``refusal``.
 
     Raises
     ------
-    LeafError
-        Another format, damaged, too small or too large, or not cut out: no or only opaque pixels.
+    TreestrokeError
+        Of the type ``refusal``: another format, damaged, too small or too large, or not cut out: no or only opaque
+        pixels.
     """
-    return _decoded_cut_out(data, name, LeafError)
-
-
-def decode_fruit(data: bytes, name: str) -> Picture:
-    """Decode the PNG of a cut-out fruit, as `decode_leaf` does that of a leaf.
-
-    Raises
-    ------
-    FruitError
-        As `decode_leaf`.
-    """
-    return _decoded_cut_out(data, name, FruitError)
+    subject = refusal.whole
+    if len(data) > MAX_LEAF_BYTES:
+        fault = f"the {subject}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
+        raise refusal(f"{name}: {fault}", code=f"{subject}_too_large")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            image = Image.open(io.BytesIO(data), formats=("PNG",))
+            if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
+                size = f"the {subject}'s picture is {image.width} x {image.height} px"
+                fault = f"{size}, each side must be {MIN_LEAF_SIDE} to {MAX_LEAF_SIDE} px; resize it"
+                raise refusal(f"{name}: {fault}", code=f"{subject}_size")
+            picture = np.asarray(image.convert("RGBA"))
+    except _DAMAGED as error:
+        fault = f"this is not a readable PNG ({_shortened(error)}); save the {subject} as PNG"
+        raise refusal(f"{name}: {fault}") from error
+    opaque = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
+    if not 0.01 <= opaque <= 0.99:
+        lacks = (
+            f"no {subject}: all of it is transparent" if opaque < 0.01 else f"nothing transparent around the {subject}"
+        )
+        fault = f"the picture has {lacks}; cut the {subject} out, with an alpha channel"
+        raise refusal(f"{name}: {fault}", code=f"{subject}_not_cut_out")
+    return np.ascontiguousarray(picture)
 
 
 def check_size(width: int, height: int, name: str) -> None:
@@ -205,33 +220,6 @@ def _png(colours: Picture, options: Sequence[int]) -> bytes:
     """Encode colours (h, w, 3), BGR, as PNG with OpenCV's options."""
     _, encoded = cv2.imencode(".png", colours, options)
     return encoded.tobytes()
-
-
-def _decoded_cut_out(data: bytes, name: str, refusal: type[LeafError] | type[FruitError]) -> Picture:
-    """Decode the PNG of a leaf or a fruit to (h, w, 4); faults are raised as this error."""
-    thing = refusal.whole
-    if len(data) > MAX_LEAF_BYTES:
-        fault = f"the {thing}'s picture has more than {MAX_LEAF_BYTES // 10**6} MB; save it smaller"
-        raise refusal(f"{name}: {fault}", code=f"{thing}_too_large")
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            image = Image.open(io.BytesIO(data), formats=("PNG",))
-            if not MIN_LEAF_SIDE <= min(image.size) <= max(image.size) <= MAX_LEAF_SIDE:
-                fault = (
-                    f"the {thing}'s picture is {image.width} x {image.height} px, each side must be {MIN_LEAF_SIDE} to"
-                )
-                raise refusal(f"{name}: {fault} {MAX_LEAF_SIDE} px; resize it", code=f"{thing}_size")
-            picture = np.asarray(image.convert("RGBA"))
-    except _DAMAGED as error:
-        fault = f"this is not a readable PNG ({_shortened(error)}); save the {thing} as PNG"
-        raise refusal(f"{name}: {fault}") from error
-    opaque = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
-    if not 0.01 <= opaque <= 0.99:
-        lacks = f"no {thing}: all of it is transparent" if opaque < 0.01 else f"nothing transparent around the {thing}"
-        fault = f"the picture has {lacks}; cut the {thing} out, with an alpha channel"
-        raise refusal(f"{name}: {fault}", code=f"{thing}_not_cut_out")
-    return np.ascontiguousarray(picture)
 
 
 def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:

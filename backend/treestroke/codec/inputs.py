@@ -78,7 +78,7 @@ class Part:
     @property
     def max_bytes(self) -> int:
         """Most bytes that a file of any of the formats may have."""
-        return max(form.max_bytes for form in self.formats)
+        return max(file_format.max_bytes for file_format in self.formats)
 
     @property
     def drawn(self) -> bool:
@@ -91,7 +91,7 @@ class Part:
             ending = extension_of(beginning)
         else:
             ending = "png" if beginning.startswith(PNG_BEGINNING) else "json"
-        return next((form for form in self.formats if form.ending == ending), self.formats[0])
+        return next((file_format for file_format in self.formats if file_format.ending == ending), self.formats[0])
 
 
 PARTS: Mapping[str, Part] = {
@@ -203,10 +203,10 @@ class Inputs(Generic[Content]):
         ValueError
             There is no part of such a name.
         """
-        given = {name: content for name, content in parts.items() if content is not None}
+        present = {name: content for name, content in parts.items() if content is not None}
         order = list(PARTS)
-        names = sorted(given, key=lambda name: order.index(part_of(name).name))
-        return cls(check_parts(given), {name: given[name] for name in names})
+        names = sorted(present, key=lambda name: order.index(part_of(name).name))
+        return cls(check_parts(present), {name: present[name] for name in names})
 
 
 def part_of(name: str) -> Part:
@@ -220,7 +220,7 @@ def part_of(name: str) -> Part:
     described, slash, _ = name.partition("/")
     part = PARTS.get(described)
     if part is None or part.many != bool(slash):
-        raise ValueError(f"{name!r} is no part of a tree's inputs")
+        raise ValueError(f"{name!r} is not a part of a tree's inputs")
     return part
 
 
@@ -234,15 +234,17 @@ def check_parts(names: Iterable[str], within: tuple[str | int, ...] = ()) -> Sou
     TreestrokeError
         They make no source, or two.
     """
-    given = {name.partition("/")[0] for name in names}
-    decided = [source for source in SOURCES.values() if source.decided_by in given]
+    present = {name.partition("/")[0] for name in names}
+    decided = [source for source in SOURCES.values() if source.decided_by in present]
     if len(decided) > 1:
         first, second = decided[:2]
         message = f"there is {PARTS[second.decided_by].title} too, and {_SOURCE_NEEDED}; leave one of them out"
         raise TreestrokeError.at(_place(first.decided_by, within), message, "strokes_and_sketch")
-    meant = decided or [source for source in SOURCES.values() if source.suggested_by in given] or list(SOURCES.values())
+    meant = (
+        decided or [source for source in SOURCES.values() if source.suggested_by in present] or list(SOURCES.values())
+    )
     source = meant[0]
-    missing = next((name for name in source.needs if name not in given), None)
+    missing = next((name for name in source.needs if name not in present), None)
     if missing is not None:
         why = (
             f"{source.decided_by} need a {missing}; send it too" if decided else f"{_SOURCE_NEEDED}; send one of these"

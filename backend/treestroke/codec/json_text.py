@@ -33,7 +33,7 @@ def read_json(text: bytes, kind: type[TreestrokeError], said: str, mend: str) ->
     try:
         return json.loads(text.decode("utf-8-sig"), parse_int=_whole, object_pairs_hook=_object)
     except (ValueError, RecursionError) as error:
-        raise kind(f"{said} no valid JSON ({error}); {mend}", code="malformed_json") from error
+        raise kind(f"{said} not valid JSON ({error}); {mend}", code="malformed_json") from error
 
 
 def check_ascii(text: bytes, kind: type[TreestrokeError]) -> None:

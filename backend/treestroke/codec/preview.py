@@ -69,15 +69,15 @@ class _View:
 
     def project(self, points: Floats) -> tuple[Floats, Floats]:
         """Project world points (..., 3), metres, to pixels (..., 2) and nearness to the viewer (...,), metres."""
-        seen = (points.reshape(-1, 3) @ self.turn.T).reshape(points.shape)
-        x = self.origin_px[0] + seen[..., 0] * self.px_per_m
-        y = self.origin_px[1] - seen[..., 1] * self.px_per_m
-        return np.stack([x, y], axis=-1), seen[..., 2]
+        turned = (points.reshape(-1, 3) @ self.turn.T).reshape(points.shape)
+        x = self.origin_px[0] + turned[..., 0] * self.px_per_m
+        y = self.origin_px[1] - turned[..., 1] * self.px_per_m
+        return np.stack([x, y], axis=-1), turned[..., 2]
 
 
 @dataclass(frozen=True, eq=False)
 class _Sunlight:
-    """What the sun sees.
+    """The scene as the sun sees it.
 
     Attributes
     ----------
@@ -185,8 +185,8 @@ def _three_quarter(scene: _Scene) -> _View:
 
 def _fitted(turn: Floats, pitch: float, scene: _Scene, height: int, margin: float) -> _View:
     """Frame the whole scene in a view of the given height, px, no wider than allowed."""
-    seen = scene.corners.reshape(-1, 3) @ turn.T
-    low, high = (np.array([pick(axis) for axis in seen.T]) for pick in (np.min, np.max))
+    turned = scene.corners.reshape(-1, 3) @ turn.T
+    low, high = (np.array([pick(axis) for axis in turned.T]) for pick in (np.min, np.max))
     span = np.maximum(high - low, 1e-6)
     inner = height * (1 - 2 * margin)
     px_per_m = min(inner / span[1], (height * _MAX_ASPECT) * (1 - 2 * margin) / span[0])

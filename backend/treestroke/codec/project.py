@@ -67,8 +67,8 @@ def read_project(file: BinaryIO, name: str) -> Project:
             _check_sizes(archive, members, name)
             contents = {part: _content(archive, info) for part, info in members.items()}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        what = f"this is no project file that can be read ({error}); export it anew"
-        raise TreestrokeError(f"{name}: {what}", code="project_unreadable") from error
+        fault = f"this is not a readable project file ({error}); export it anew"
+        raise TreestrokeError(f"{name}: {fault}", code="project_unreadable") from error
     settings = _settings(contents.pop(_SETTINGS, b"{}"), name)
     return Project(stored_inputs(contents), settings)
 
@@ -117,8 +117,8 @@ def _members(archive: zipfile.ZipFile, name: str) -> dict[str, zipfile.ZipInfo]:
     for info in archive.infolist():
         part = _part_name(info.filename)
         if part in found:
-            what = f"{info.filename} is not its only {part}; export it anew"
-            raise TreestrokeError(f"{name}: {what}", code="project_unreadable")
+            fault = f"{info.filename} is not its only {part}; export it anew"
+            raise TreestrokeError(f"{name}: {fault}", code="project_unreadable")
         if part is not None:
             found[part] = info
     return found
@@ -138,7 +138,7 @@ def _part_name(member: str) -> str | None:
 
 
 def _endings(part: Part) -> set[str]:
-    return {form.ending for form in part.formats}
+    return {file_format.ending for file_format in part.formats}
 
 
 def _check_whole(names: Iterable[str], name: str) -> None:
@@ -157,8 +157,8 @@ def _check_sizes(archive: zipfile.ZipFile, members: Mapping[str, zipfile.ZipInfo
         text = info.filename.endswith(TEXT.ending)
         limit = min(_limit(archive, part, info), text_bytes_left if text else MAX_STORED_BYTES)
         if info.file_size > limit:
-            what = f"{info.filename} has {info.file_size / 1e6:.1f} MB, more than the {limit / 1e6:.1f} MB"
-            raise TreestrokeError(f"{name}: {what} that it may have; make it smaller", code="project_too_large")
+            fault = f"{info.filename} has {info.file_size / 1e6:.1f} MB, more than the {limit / 1e6:.1f} MB"
+            raise TreestrokeError(f"{name}: {fault} that it may have; make it smaller", code="project_too_large")
         text_bytes_left -= info.file_size if text else 0
 
 
@@ -170,7 +170,7 @@ def _limit(archive: zipfile.ZipFile, name: str, info: zipfile.ZipInfo) -> int:
     if part.kind == "photo":
         with archive.open(info) as member:
             return most_stored_bytes(member.read(PHOTO_HEAD))
-    return next(form.max_bytes for form in part.formats if info.filename.endswith(form.ending))
+    return next(file_format.max_bytes for file_format in part.formats if info.filename.endswith(file_format.ending))
 
 
 def _content(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
@@ -183,6 +183,6 @@ def _content(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 def _settings(text: bytes, name: str) -> dict[str, Any]:
     value = read_json(text, SettingsError, f"{name}: settings.json is", "export the project anew")
     if not isinstance(value, dict):
-        what = "settings.json must hold an object; export the project anew"
-        raise SettingsError(f"{name}: {what}", code="wrong_type")
+        fault = "settings.json must hold an object; export the project anew"
+        raise SettingsError(f"{name}: {fault}", code="wrong_type")
     return value

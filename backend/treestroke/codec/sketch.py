@@ -87,8 +87,8 @@ def picture_of(described: "PictureSketch") -> tuple[bytes, Sketch]:
     try:
         data = base64.b64decode(described.picture, validate=True)
     except ValueError as error:
-        what = f"it is no base64 ({error}); send a PNG file encoded so"
-        raise StrokesError.at(("picture",), what, "sketch_unreadable") from error
+        fault = f"it is not base64 ({error}); send a PNG file in base64"
+        raise StrokesError.at(("picture",), fault, "sketch_unreadable") from error
     try:
         return data, read_picture(data)
     except StrokesError as error:
@@ -120,6 +120,6 @@ def _around(strokes: Sequence[Stroke]) -> tuple[int, int]:
 
 def _side(far: float) -> int:
     if far > MAX_CANVAS:
-        what = f"strokes reach to {far:.0f} px, at most {MAX_CANVAS} px are allowed; draw smaller"
-        raise StrokesError.at(("branches",), what, "canvas_invalid")
+        fault = f"strokes reach to {far:.0f} px, at most {MAX_CANVAS} px are allowed; draw smaller"
+        raise StrokesError.at(("branches",), fault, "canvas_invalid")
     return max(MIN_CANVAS, math.ceil(far))

@@ -143,8 +143,8 @@ def _ink(pixels: Picture, red: Mask) -> Mask:
 def _unlike_ground(pixels: Picture) -> Mask:
     """Mark the pixels (h, w) nearer to the strokes' median contrast than to the ground, the colour of most pixels."""
     height, width = pixels.shape[:2]
-    some = pixels[:: max(1, height // 512), :: max(1, width // 512), :3].reshape(-1, 3)
-    ground = np.median(some, axis=0).astype(np.uint8)
+    sample = pixels[:: max(1, height // 512), :: max(1, width // 512), :3].reshape(-1, 3)
+    ground = np.median(sample, axis=0).astype(np.uint8)
     channels = [np.maximum(pixels[..., c], ground[c]) - np.minimum(pixels[..., c], ground[c]) for c in range(3)]
     contrast = np.maximum(np.maximum(channels[0], channels[1]), channels[2])
     found = contrast[contrast >= LEAST_CONTRAST]
@@ -213,6 +213,6 @@ def _with_gaps_bridged(ink: Mask, red: Mask) -> Mask:
 def _needle(angle: float, half: float) -> Binary:
     """Draw a straight line at an angle, rad, through the middle of a square of about twice ``half`` px."""
     size = 2 * int(np.ceil(half)) + 1
-    middle, way = size // 2, half * np.array([np.cos(angle), np.sin(angle)])
-    start, end = (tuple(int(v) for v in np.round(middle + sign * way)) for sign in (-1, 1))
+    middle, offset = size // 2, half * np.array([np.cos(angle), np.sin(angle)])
+    start, end = (tuple(int(v) for v in np.round(middle + sign * offset)) for sign in (-1, 1))
     return np.asarray(cv2.line(np.zeros((size, size), np.uint8), start, end, 1), dtype=np.uint8)

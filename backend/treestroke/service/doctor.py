@@ -19,7 +19,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from treestroke import __version__
 from treestroke.schemas import Health
 from treestroke.service.dispatch import Dispatcher
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.tracing_pool import CannotStart, Crashed, TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs, Damaged
@@ -53,22 +53,22 @@ class Finding:
     mend: str = ""
 
 
-def readiness(shelf: Shelf, dispatcher: Dispatcher) -> Health:
+def readiness(resources: Resources, dispatcher: Dispatcher) -> Health:
     """Return whether the service accepts requests, by checks that are cheap enough for every second."""
-    failure = shelf.tracers.failure
+    failure = resources.tracers.failure
     checks = {
         "broker": "ok" if dispatcher.broker_accepts else "does not accept messages; jobs wait",
         "dispatcher": dispatcher.state,
         "tracers": "ok" if failure is None else f"the last start failed ({failure}); the next request tries again",
     }
     try:
-        with shelf.database.reading() as session:
+        with resources.database.reading() as session:
             workers = session.scalars(select(Worker.id)).all()
         checks["database"] = "ok"
         checks["workers"] = "ok" if workers else "none; jobs wait"
     except SQLAlchemyError:
         checks["database"] = "unavailable"
-    free = shutil.disk_usage(shelf.blobs.folder.parent).free
+    free = shutil.disk_usage(resources.blobs.folder.parent).free
     checks["storage"] = "ok" if free > _MIN_FREE_BYTES else f"only {free // 10**6} MB free"
     down = checks["database"] != "ok"
     ok = all(check == "ok" for check in checks.values())

@@ -13,7 +13,7 @@ import PIL
 from treestroke import __version__
 
 PACKAGES = ("core", "codec")
-MODULES = ("execution", "files", "inputs", "jobs", "model", "report")
+MODULES = ("execution", "files", "jobs", "loading", "model", "report")
 """Modules of ``service`` on the way from the inputs to a tree and its files."""
 _BELOW = ("limits", "wire_strokes")
 """Modules of the whole package that say what inputs may hold."""

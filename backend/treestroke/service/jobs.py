@@ -22,7 +22,7 @@ from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.files import Bundle
-from treestroke.service.inputs import load_settings
+from treestroke.service.loading import load_settings
 from treestroke.service.model import Options, make_tree
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store import queries
@@ -39,7 +39,7 @@ log = structlog.get_logger()
 
 @dataclass(frozen=True)
 class Assignment:
-    """A job for a worker: the model's id, a token of this try, the worker, and the seconds that it may take."""
+    """A job for a worker: the model's id, a token of this attempt, the worker's id, and the time limit."""
 
     model: str
     token: str
@@ -60,7 +60,7 @@ class TimeLimit(Exception):
 
 
 class Heartbeat:
-    """Renews a job's lease from a thread of its own, writes its progress down, and notices when it is to stop."""
+    """Renews a job's lease from a thread of its own, records its progress, and notices when it is to stop."""
 
     def __init__(self, database: Database, job: ModelRow, source: SourceName, seconds: float) -> None:
         self._database, self._job = database, job
@@ -80,7 +80,7 @@ class Heartbeat:
         self._thread.join()
 
     def report(self, phase: str, fraction: float) -> None:
-        """Note the progress of the work, and interrupt it where it is to stop.
+        """Record the progress of the work, and interrupt it where it is to stop.
 
         Raises
         ------
@@ -94,10 +94,10 @@ class Heartbeat:
         self._state = phase, fraction, self._estimate.progress(phase, fraction)
 
     def _run(self) -> None:
-        shown, beaten, pause = self._state, 0.0, 0.0
+        shown, last_beat, pause = self._state, 0.0, 0.0
         while not self._over.wait(pause):
             pause = _LOOK_SECONDS
-            if self._state == shown and time.monotonic() - beaten < _BEAT_SECONDS and not self._is_to_stop():
+            if self._state == shown and time.monotonic() - last_beat < _BEAT_SECONDS and not self._is_to_stop():
                 continue
             state = self._state
             # A database that is busy or full for a moment costs one beat; the lease outlasts several.
@@ -105,10 +105,10 @@ class Heartbeat:
                 with self._database.autocommitting() as session:
                     stop = heartbeat(session, self._job, *state)
                 self._stop_by = {None: Superseded, True: Canceled, False: None}[stop]
-                shown, beaten = state, time.monotonic()
+                shown, last_beat = state, time.monotonic()
 
     def _is_to_stop(self) -> bool:
-        """Return whether the row says anything else than to go on."""
+        """Return whether the row says that this attempt must stop."""
         with suppress(SQLAlchemyError), self._database.reading() as session:
             row = session.get(ModelRow, self._job.number)
             return row is None or row.cancel or row.attempt != self._job.attempt or row.status != "running"

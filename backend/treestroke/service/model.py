@@ -10,7 +10,7 @@ from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.dressing import OwnPictures
-from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, unseen
+from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, ignore_grown
 from treestroke.core.pipeline.growing import grow_tree, read_photo
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
@@ -21,7 +21,7 @@ from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
 from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import Bundle, check_files, tree_files
-from treestroke.service.inputs import (
+from treestroke.service.loading import (
     FileLike,
     PartLike,
     PhotoLike,
@@ -80,7 +80,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Options:
-    """What a tree is asked for beside its inputs: settings, seed, and the beginning of its files' names."""
+    """Options of a tree beside its inputs: settings, seed, and the beginning of its files' names."""
 
     settings: ModelSettings
     seed: int
@@ -104,7 +104,7 @@ def model(
     settings: SettingsLike = None,
     seed: int = 0,
     report: Report = silent,
-    on_grown: OnGrown = unseen,
+    on_grown: OnGrown = ignore_grown,
     *,
     side: SketchLike | None = None,
     leaf: FileLike | None = None,
@@ -150,7 +150,7 @@ def sketch(
     settings: SettingsLike = None,
     seed: int = 0,
     report: Report = silent,
-    on_grown: OnGrown = unseen,
+    on_grown: OnGrown = ignore_grown,
     *,
     photo: PhotoLike | None = None,
     leaf: FileLike | None = None,
@@ -178,7 +178,9 @@ def sketch(
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
-def make_tree(inputs: Inputs[PartLike], options: Options, report: Report = silent, on_grown: OnGrown = unseen) -> Model:
+def make_tree(
+    inputs: Inputs[PartLike], options: Options, report: Report = silent, on_grown: OnGrown = ignore_grown
+) -> Model:
     """Make a tree of any source; ``report`` and ``on_grown`` as for `model`.
 
     Raises

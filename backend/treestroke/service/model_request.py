@@ -1,37 +1,32 @@
 """Requests for a model, read and checked in everything that can be checked without their photo."""
 
 import base64
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from treestroke.codec.image import decode_fruit, decode_leaf
-from treestroke.codec.inputs import VIEWS, check_parts
+from treestroke.codec.image import decode_cutout
+from treestroke.codec.inputs import VIEWS, check_parts, part_of
 from treestroke.codec.json_text import read_json
 from treestroke.codec.refusals import checked, inside
 from treestroke.codec.sketch import encode_sketch, picture_of, sketch_of
 from treestroke.codec.sketch_picture import PNG, read_picture, without_metadata
 from treestroke.codec.strokes import encode_strokes, strokes_of
-from treestroke.core.errors import FruitError, LeafError, StrokesError, TreestrokeError
+from treestroke.core.errors import StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import plain_settings, settings_from
 from treestroke.core.stroke_rules import Place, require_trunk
 from treestroke.core.strokes import Sketch, Strokes
-from treestroke.core.types import Picture
 from treestroke.service.files import check_files
 from treestroke.wire_requests import FormRequest, ModelRequest, Rename, TreeRequest
 from treestroke.wire_strokes import PictureSketch, Sketches
 from treestroke.wire_strokes import Sketch as SketchRequest
 
-_OWN_PICTURES: Mapping[str, tuple[type[LeafError | FruitError], Callable[[bytes, str], Picture]]] = {
-    "leaf": (LeafError, decode_leaf),
-    "fruit": (FruitError, decode_fruit),
-}
 _JSON_FIELDS = ("strokes", "settings", "seed")
 
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What was drawn, as values: strokes over a photo, and sketches by view."""
+    """The drawn parts of a request as values: strokes over a photo, and sketches by view."""
 
     strokes: Strokes | None
     sketches: Mapping[str, Sketch]
@@ -70,7 +65,7 @@ def read_order(body: bytes) -> ModelOrder:
     Raises
     ------
     TreestrokeError
-        It is no such request, or something in it cannot be used; the pointer leads into the request.
+        It is not such a request, or something in it cannot be used; the pointer leads into the request.
     """
     request = checked(ModelRequest, read_body(body), TreestrokeError)
     sketches = request.sketches or Sketches()
@@ -102,7 +97,7 @@ def read_name(body: bytes) -> str:
     Raises
     ------
     TreestrokeError
-        It is no such request, or the name cannot be used.
+        It is not such a request, or the name cannot be used.
     """
     return checked(Rename, read_body(body), TreestrokeError).name
 
@@ -140,7 +135,7 @@ def _order(
             parts[view], drawn[view] = _sketch(sketch, (*within, view))
     for name, picture in (("leaf", request.leaf), ("fruit", request.fruit)):
         if picture is not None:
-            parts[name] = _own_picture(picture, name)
+            parts[name] = _cutout(picture, name)
     return ModelOrder(photo, parts, Drawing(strokes, drawn), _settings(request), request.seed, request.name, within)
 
 
@@ -169,15 +164,15 @@ def _sketch(sketch: SketchRequest | bytes, place: Place) -> tuple[bytes, Sketch]
         raise inside(place, error) from error
 
 
-def _own_picture(given: str | bytes, name: str) -> bytes:
+def _cutout(picture: str | bytes, name: str) -> bytes:
     """Return the PNG of a leaf or fruit, decoded from base64 where it came in JSON."""
-    refusal, decode = _OWN_PICTURES[name]
+    refusal = part_of(name).refusal
     try:
-        content = given if isinstance(given, bytes) else base64.b64decode(given, validate=True)
+        content = picture if isinstance(picture, bytes) else base64.b64decode(picture, validate=True)
     except ValueError as error:
-        raise refusal.at((name,), "this is no base64; encode the PNG anew", f"{name}_unreadable") from error
+        raise refusal.at((name,), "this is not base64; encode the PNG again", f"{name}_unreadable") from error
     try:
-        decode(content, name)
+        decode_cutout(content, name, refusal)
     except refusal as error:
         raise inside((name,), error) from error
     return content

@@ -23,33 +23,33 @@ class NotFound(Exception):
 
 
 @dataclass(frozen=True)
-class Shelf:
+class Resources:
     """The service's storage (rows and blobs), and the processes that decode and trace."""
 
     database: Database
     blobs: Blobs
     tracers: TracingPool
     photo_bytes: int = PHOTO_MB * 10**6
-    """The most that one photo may take as it is stored."""
+    """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
-    """The most that all photos may take together."""
+    """Most bytes of all photos together."""
 
 
-def add_photo(shelf: Shelf, content: bytes) -> PhotoRow:
+def add_photo(resources: Resources, content: bytes) -> PhotoRow:
     """Store an uploaded photo.
 
     Raises
     ------
     PhotoError, OSError
-        As `take_in`.
+        As `store_pixels`.
     """
-    row = take_in(shelf, content)
-    with shelf.database.writing() as session:
+    row = store_pixels(resources, content)
+    with resources.database.writing() as session:
         session.add(row)
     return row
 
 
-def take_in(shelf: Shelf, content: bytes) -> PhotoRow:
+def store_pixels(resources: Resources, content: bytes) -> PhotoRow:
     """Decode a photo and store its upright pixels without metadata; return its row, which is not yet in the table.
 
     Raises
@@ -62,17 +62,17 @@ def take_in(shelf: Shelf, content: bytes) -> PhotoRow:
         The disk is full.
     """
     sha256 = hashlib.sha256(content).hexdigest()
-    with shelf.database.reading() as session:
-        room = shelf.photos_bytes - stored_bytes(session)
-    folder = shelf.blobs.folder.parent
+    with resources.database.reading() as session:
+        room = resources.photos_bytes - stored_bytes(session)
+    folder = resources.blobs.folder.parent
     try:
-        columns = shelf.tracers(sha256, tracer.keep_photo, folder, content, shelf.photo_bytes, room)
+        columns = resources.tracers(sha256, tracer.keep_photo, folder, content, resources.photo_bytes, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
     return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **columns)
 
 
-def get_photo(shelf: Shelf, id: str) -> PhotoRow:
+def get_photo(resources: Resources, id: str) -> PhotoRow:
     """Find a photo.
 
     Raises
@@ -80,20 +80,20 @@ def get_photo(shelf: Shelf, id: str) -> PhotoRow:
     NotFound
         There is no such photo.
     """
-    with shelf.database.reading() as session:
+    with resources.database.reading() as session:
         found = find_photo(session, id)
     if found is None:
         raise NotFound("photo")
     return found
 
 
-def list_photos(shelf: Shelf, cursor: str | None, limit: int) -> tuple[Sequence[PhotoRow], str | None]:
+def list_photos(resources: Resources, cursor: str | None, limit: int) -> tuple[Sequence[PhotoRow], str | None]:
     """Return a page of photos, newest first, and the cursor of the next page: decimal digits."""
-    with shelf.database.reading() as session:
+    with resources.database.reading() as session:
         return page(session, PhotoRow, cursor, limit)
 
 
-def delete_photo(shelf: Shelf, id: str) -> None:
+def delete_photo(resources: Resources, id: str) -> None:
     """Delete a photo; models that were made of it keep their own copy.
 
     Raises
@@ -101,14 +101,14 @@ def delete_photo(shelf: Shelf, id: str) -> None:
     NotFound
         There is no such photo.
     """
-    with shelf.database.writing() as session:
-        there = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))
-        deleted = there.values(deleted=time.time(), seen=None).returning(PhotoRow.id)
+    with resources.database.writing() as session:
+        present = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))
+        deleted = present.values(deleted=time.time(), seen=None).returning(PhotoRow.id)
         if session.scalars(deleted).first() is None:
             raise NotFound("photo")
 
 
-def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
+def trace_photo(resources: Resources, id: str, body: bytes) -> bytes:
     """Trace a photo by the body of a request; return the response's JSON.
 
     Raises
@@ -118,5 +118,5 @@ def trace_photo(shelf: Shelf, id: str, body: bytes) -> bytes:
     Overloaded, Crashed
         The tracing processes are too busy, or one died over this request.
     """
-    row = get_photo(shelf, id)
-    return shelf.tracers(row.blob, tracer.trace_answer, shelf.blobs.path(row.blob), body, row.warnings)
+    row = get_photo(resources, id)
+    return resources.tracers(row.blob, tracer.trace_answer, resources.blobs.path(row.blob), body, row.warnings)

@@ -6,7 +6,7 @@ from itertools import accumulate
 from treestroke.codec.inputs import SourceName
 from treestroke.core.pipeline.settings import ModelSettings
 
-_SEEING: Mapping[SourceName, Mapping[str, float]] = {
+_READING: Mapping[SourceName, Mapping[str, float]] = {
     "photo": {"decode": 0.06, "foliage": 0.45, "trace": 0.14},
     "sketches": {"decode": 0.02, "trace": 0.2},
 }
@@ -23,7 +23,7 @@ class ProgressEstimate:
 
     def __init__(self, settings: ModelSettings, source: SourceName = "photo") -> None:
         each = {**_GROWING, "levels": 0.0 if settings.lod == "none" else _LEVELS, "write": _writing(settings)}
-        phases = [*_SEEING[source].items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
+        phases = [*_READING[source].items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
         self._names = [name for name, _ in phases]
         self._ends = list(accumulate(seconds for _, seconds in phases))
         self._at = 0

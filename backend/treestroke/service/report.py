@@ -7,7 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.silhouette import likeness, silhouette
+from treestroke.core.geometry.silhouette import overlap, silhouette
 from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
@@ -95,7 +95,7 @@ def _plain_measures(measures: Measures) -> dict[str, Any]:
 
 def _silhouette_iou(tree: TreeModel) -> float:
     """Return the overlap of the front view with the foliage and branches that were found, at a reduced size."""
-    seen = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.likeness)))
-    size = (seen.shape[1], seen.shape[0])
-    wanted = cv2.resize(tree.likeness.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
-    return likeness(seen, wanted)
+    shown = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.expected_cover)))
+    size = (shown.shape[1], shown.shape[0])
+    expected = cv2.resize(tree.expected_cover.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
+    return overlap(shown, expected)

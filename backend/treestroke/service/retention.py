@@ -151,7 +151,7 @@ class Sweeper:
 
 
 def _states(paths: Iterable[Path]) -> dict[Path, str]:
-    """Return the states of files; those removed meanwhile are left out."""
+    """Return the states of files; files removed in between are left out."""
     states = {}
     for path in paths:
         with suppress(FileNotFoundError):

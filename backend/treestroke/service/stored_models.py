@@ -15,7 +15,7 @@ from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
 from treestroke.service import tracer
 from treestroke.service.engine_version import engine_version
 from treestroke.service.model_request import ModelOrder
-from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.photos import NotFound, Resources
 from treestroke.store import leases, queries
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
@@ -30,7 +30,7 @@ class KeyReused(Exception):
 
 
 class Version(NamedTuple):
-    """What changes whenever a model's viewers are to be shown something new."""
+    """The values that change whenever a model's viewers are to be shown something new."""
 
     seq: int
     queue_position: int | None
@@ -49,7 +49,7 @@ class StoredModel:
 
     @property
     def inputs(self) -> Inputs[ModelPart]:
-        """What it is made of."""
+        """The tree's inputs, as stored files."""
         return Inputs.of(self.parts)
 
     @property
@@ -60,11 +60,13 @@ class StoredModel:
 
     @property
     def version(self) -> Version:
-        """What viewers are shown changes only together with this."""
+        """The version of what viewers are shown."""
         return Version(self.row.seq, self.queue_position, self.eta_s)
 
 
-def accept_model(shelf: Shelf, order: ModelOrder, key: str | None, sent_photo: PhotoRow | None = None) -> StoredModel:
+def accept_model(
+    resources: Resources, order: ModelOrder, key: str | None, sent_photo: PhotoRow | None = None
+) -> StoredModel:
     """Check, store and queue a model; one whose inputs were made into a tree before gets that tree's files at once.
 
     ``key`` is the Idempotency-Key: sent again with the same request, it returns the model that it returned first.
@@ -79,12 +81,12 @@ def accept_model(shelf: Shelf, order: ModelOrder, key: str | None, sent_photo: P
     OSError
         The disk is full.
     """
-    photo = sent_photo or (None if order.photo is None else _photo_for(shelf, order.photo, key))
-    inputs = _store_inputs(shelf, order, photo)
+    photo = sent_photo or (None if order.photo is None else _photo_for(resources, order.photo, key))
+    inputs = _store_inputs(resources, order, photo)
     row = _new_row(order, photo, inputs)
     request = _digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
-    equal = _finished_model(shelf, row)
-    with shelf.database.writing() as session:
+    equal = _finished_model(resources, row)
+    with resources.database.writing() as session:
         answered = _answered_before(session, key, request)
         if answered is None:
             session.add_all([row, sent_photo] if sent_photo else [row])
@@ -97,7 +99,7 @@ def accept_model(shelf: Shelf, order: ModelOrder, key: str | None, sent_photo: P
             if key:
                 session.merge(Replay(key=key, fingerprint=request, model=row.id, created=time.time(), seen=None))
     # What the queue and the files tell needs no lock.
-    return find_model(shelf.database, (answered or row).id, deleted=True)
+    return find_model(resources.database, (answered or row).id, deleted=True)
 
 
 def find_model(database: Database, id: str, deleted: bool = False) -> StoredModel:
@@ -116,12 +118,12 @@ def find_model(database: Database, id: str, deleted: bool = False) -> StoredMode
 def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[StoredModel], str | None]:
     """Return a page of models, newest first, and the cursor of the next page: decimal digits."""
     with database.reading() as session:
-        rows, following = queries.page(session, ModelRow, cursor, limit)
-        return _stored(session, rows), following
+        rows, next_cursor = queries.page(session, ModelRow, cursor, limit)
+        return _stored(session, rows), next_cursor
 
 
 def find_changed(database: Database, versions: Mapping[str, Version | None]) -> dict[str, StoredModel | None]:
-    """Return those of these models that have another version by now; None for one that was removed for good."""
+    """Return the models whose version has changed; None for one that was removed for good."""
     with database.reading() as session:
         rows = session.execute(
             select(ModelRow.id, ModelRow.number, ModelRow.seq, ModelRow.status, ModelRow.progress).where(
@@ -192,9 +194,9 @@ def restore(database: Database, id: str) -> StoredModel:
     return find_model(database, id)
 
 
-def _photo_for(shelf: Shelf, id: str, key: str | None) -> PhotoRow:
+def _photo_for(resources: Resources, id: str, key: str | None) -> PhotoRow:
     """Find the photo that a request names; a deleted one only where the request may have been sent before."""
-    with shelf.database.reading() as session:
+    with resources.database.reading() as session:
         repeated = key is not None and session.get(Replay, key) is not None
         photo = queries.photo(session, id, deleted=repeated)
     if photo is None:
@@ -202,14 +204,14 @@ def _photo_for(shelf: Shelf, id: str, key: str | None) -> PhotoRow:
     return photo
 
 
-def _store_inputs(shelf: Shelf, order: ModelOrder, photo: PhotoRow | None) -> Inputs[ModelPart]:
+def _store_inputs(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> Inputs[ModelPart]:
     """Check what was drawn, against the photo where there is one, and store the parts' files."""
     blob = None if photo is None else photo.blob
-    path = None if blob is None else shelf.blobs.path(blob)
-    shelf.tracers(blob or "", tracer.check_drawing, path, order.drawing, order.within)
+    path = None if blob is None else resources.blobs.path(blob)
+    resources.tracers(blob or "", tracer.check_drawing, path, order.drawing, order.within)
     sent = {
         name: ModelPart(
-            name=name, blob=shelf.blobs.put(content), media_type=part_of(name).format_of(content).media_type
+            name=name, blob=resources.blobs.put(content), media_type=part_of(name).format_of(content).media_type
         )
         for name, content in order.parts.items()
     }
@@ -238,7 +240,7 @@ def _new_row(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart
 
 
 def _fingerprint(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> str:
-    """Digest all that decides how the tree and its report come out, but the engine."""
+    """Return a digest of all that decides over the tree and its report, except the engine."""
     blobs = {name: part.blob for name, part in inputs.parts.items()}
     mended = [] if photo is None else photo.warnings
     return _digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *mended])
@@ -260,14 +262,14 @@ def _answered_before(session: Session, key: str | None, request: str) -> ModelRo
     return queries.model(session, replay.model, deleted=True)
 
 
-def _finished_model(shelf: Shelf, row: ModelRow) -> ModelRow | None:
-    """Find a model that this engine has made from equal inputs; None too where a file of it is damaged."""
-    with shelf.database.reading() as session:
+def _finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
+    """Find a model that this engine has made from equal inputs; None also where one of its files is damaged."""
+    with resources.database.reading() as session:
         equal = queries.finished_model(session, row.fingerprint, row.engine)
         files = {} if equal is None else queries.files(session, [equal.id])[equal.id]
     try:
         for file in files.values():
-            shelf.blobs.check(file.blob)
+            resources.blobs.check(file.blob)
     except Damaged as error:
         log.error("file_damaged", file=str(error))
         return None
@@ -275,7 +277,7 @@ def _finished_model(shelf: Shelf, row: ModelRow) -> ModelRow | None:
 
 
 def _copy_files(session: Session, equal: ModelRow, row: ModelRow) -> None:
-    """Finish a model with the files of an equal one, unless that was removed meanwhile: they would be the same."""
+    """Finish a model with the files of an equal one, which would be the same, unless these were just removed."""
     files = queries.files(session, [equal.id])[equal.id]
     if files:
         row.status, row.progress, row.finished = "succeeded", 1.0, time.time()

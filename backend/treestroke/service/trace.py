@@ -10,14 +10,14 @@ from treestroke.codec.overlay import draw_overlay
 from treestroke.codec.skeleton import plain_grown, plain_skeleton
 from treestroke.core.imaging.outline import rings_of_mask
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
-from treestroke.core.pipeline.photo import PhotoTrace, beside, grow_photo, trace_photo
+from treestroke.core.pipeline.photo import PhotoTrace, grow_photo, trace_photo, with_side
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sketching import SketchEvidence, grow_sketches, read_sketches
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
 from treestroke.core.trace.drawing import Drawing
 from treestroke.service.execution import one_thread
-from treestroke.service.inputs import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
+from treestroke.service.loading import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,9 +32,9 @@ class Trace:
         (h, w) bool, true on leaves (on a bare tree, on twigs).
     rings
         The foliage as closed outlines, each (n, 2), px, by the even-odd rule.
-    given
-        The strokes as they were given.
-    found
+    strokes
+        The strokes as they were drawn.
+    photo_trace
         The recipe's own result, from which another trace of the same photo goes on.
     skeleton
         The visible branches; None where there was no branch stroke.
@@ -51,28 +51,28 @@ class Trace:
     photo: NDArray[np.uint8]
     foliage: NDArray[np.bool_]
     rings: list[NDArray[np.float64]]
-    given: Strokes
-    found: PhotoTrace
+    strokes: Strokes
+    photo_trace: PhotoTrace
     skeleton: Skeleton | None
     stroke: NDArray[np.int64]
     warnings: tuple[StrokeWarning, ...]
     grow: bool = False
     grown: LiveTree | None = None
 
-    def answer(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Return the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``.
 
         Where a grown tree was asked for, also ``grown`` and ``photo``, null without a branch stroke.
         """
-        found = {
+        values = {
             "foliage": [ring.tolist() for ring in self.rings],
             "skeleton": plain_skeleton(self.skeleton, self.stroke),
             "warnings": [asdict(warning) for warning in self.warnings],
         }
         if not self.grow:
-            return found
+            return values
         grown = None if self.grown is None else plain_grown(self.grown)
-        return {**found, "grown": grown, "photo": None if grown is None else grown["photo"]}
+        return {**values, "grown": grown, "photo": None if grown is None else grown["photo"]}
 
     def overlay(self) -> NDArray[np.uint8]:
         """Return the photo (h, w, 3) uint8 with foliage and skeleton drawn over it."""
@@ -99,26 +99,26 @@ def trace(
     PhotoError, StrokesError
         The photo or the strokes cannot be used; the message says what, where and how to mend it.
     """
-    given, mended = load_strokes(strokes), list[StrokeWarning]()
+    drawn, mended = load_strokes(strokes), list[StrokeWarning]()
     picture = load_photo(photo, warn=mended.append)
-    last = after if after is not None and same_stroke(after.given.crown, given.crown) else None
+    last = after if after is not None and same_stroke(after.strokes.crown, drawn.crown) else None
     with one_thread():
-        if last is not None and same_strokes(last.given, given):
-            found = last.found
+        if last is not None and same_strokes(last.strokes, drawn):
+            traced = last.photo_trace
         else:
-            found = trace_photo(picture, given, None if last is None else last.found.evidence.foliage)
-        found = beside(found, None if side is None else load_sketch(side, "side"))
-        grown = grow_photo(found, ModelSettings(), np.random.default_rng(0)) if grow else None
-    rings = rings_of_mask(found.foliage) if last is None else last.rings
+            traced = trace_photo(picture, drawn, None if last is None else last.photo_trace.evidence.foliage)
+        traced = with_side(traced, None if side is None else load_sketch(side, "side"))
+        grown = grow_photo(traced, ModelSettings(), np.random.default_rng(0)) if grow else None
+    rings = rings_of_mask(traced.foliage) if last is None else last.rings
     return Trace(
         photo=picture,
-        foliage=found.foliage,
+        foliage=traced.foliage,
         rings=rings,
-        given=given,
-        found=found,
-        skeleton=found.skeleton,
-        stroke=found.stroke,
-        warnings=(*mended, *found.warnings),
+        strokes=drawn,
+        photo_trace=traced,
+        skeleton=traced.skeleton,
+        stroke=traced.stroke,
+        warnings=(*mended, *traced.warnings),
         grow=grow,
         grown=grown,
     )
@@ -128,23 +128,23 @@ def trace(
 class SketchTrace:
     """The branches that sketches show and, where asked for, the tree grown of them by default settings and seed 0."""
 
-    seen: SketchEvidence
+    evidence: SketchEvidence
     grown: GrownTree | None
 
-    def answer(self) -> dict[str, Any]:
+    def as_dict(self) -> dict[str, Any]:
         """Return the trace as plain values: ``front``, ``side`` and ``warnings``.
 
         With a tree also ``grown``, ``photo`` and ``score``.
         """
-        found = {
-            "front": _plain(self.seen.front),
-            "side": None if self.seen.side is None else _plain(self.seen.side),
-            "warnings": [asdict(warning) for warning in self.seen.warnings],
+        values = {
+            "front": _plain(self.evidence.front),
+            "side": None if self.evidence.side is None else _plain(self.evidence.side),
+            "warnings": [asdict(warning) for warning in self.evidence.warnings],
         }
         if self.grown is None:
-            return found
+            return values
         grown = plain_grown(self.grown.live)
-        return {**found, "grown": grown, "photo": grown["photo"], "score": self.grown.score}
+        return {**values, "grown": grown, "photo": grown["photo"], "score": self.grown.score}
 
 
 def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool = False) -> SketchTrace:
@@ -158,8 +158,10 @@ def trace_sketches(front: SketchLike, side: SketchLike | None = None, grow: bool
         A sketch cannot be used; the message says what, where and how to mend it.
     """
     with one_thread():
-        seen = read_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
-        return SketchTrace(seen, grow_sketches(seen, ModelSettings(), np.random.default_rng(0)) if grow else None)
+        evidence = read_sketches(load_sketch(front, "front"), None if side is None else load_sketch(side, "side"))
+        return SketchTrace(
+            evidence, grow_sketches(evidence, ModelSettings(), np.random.default_rng(0)) if grow else None
+        )
 
 
 def _plain(drawing: Drawing) -> dict[str, Any]:

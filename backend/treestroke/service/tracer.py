@@ -60,8 +60,8 @@ def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, 
     picture = decode_photo(content, "photo", warn=mended.append)
     stored = encode_stored(picture)
     if len(stored) > most:
-        what = f"kept as PNG it takes {len(stored) / 1e6:.1f} MB, at most {most / 1e6:g} MB are allowed"
-        raise PhotoError(f"photo: {what}; resize it", code="photo_too_large_stored")
+        fault = f"kept as PNG it takes {len(stored) / 1e6:.1f} MB, at most {most / 1e6:g} MB are allowed"
+        raise PhotoError(f"photo: {fault}; resize it", code="photo_too_large_stored")
     if len(stored) > room:
         raise NoRoom
     height, width, _ = picture.shape
@@ -77,14 +77,14 @@ def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] =
     Raises
     ------
     StrokesError
-        The body is no such request, or its strokes cannot be used.
+        The body is not such a request, or its strokes cannot be used.
     """
     request = checked(TraceRequest, read_body(body), StrokesError)
     strokes = strokes_of(request)
     side = None if request.side is None else _within(("side",), sketch_of, request.side)
     known = _recall(photo)
     known.last = trace(known.picture, strokes, known.last, request.grow, side)
-    answer = known.last.answer()
+    answer = known.last.as_dict()
     return _answer(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 
 
@@ -94,12 +94,12 @@ def sketch_answer(body: bytes) -> bytes:
     Raises
     ------
     TreestrokeError
-        The body is no such request, or a sketch cannot be used.
+        The body is not such a request, or a sketch cannot be used.
     """
     request = checked(SketchTraceRequest, read_body(body), StrokesError)
     front = _within(("front",), sketch_of, request.front)
     side = None if request.side is None else _within(("side",), sketch_of, request.side)
-    return _answer(request.rev, trace_sketches(front, side, request.grow).answer())
+    return _answer(request.rev, trace_sketches(front, side, request.grow).as_dict())
 
 
 def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> None:
@@ -114,10 +114,10 @@ def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> N
     if picture is not None and drawing.strokes is not None:
         height, width = picture.shape[:2]
         _within(("strokes",), mend_strokes, drawing.strokes, width, height)
-    _within(within, _draw_up, drawing.sketches, picture)
+    _within(within, _check_sketches, drawing.sketches, picture)
 
 
-def _draw_up(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:
+def _check_sketches(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:
     if "front" in sketches:
         read_sketches(sketches["front"], sketches.get("side"), picture)
     elif "side" in sketches:

@@ -127,7 +127,7 @@ def _migrations() -> Config:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Return what identifies a file, whatever its path; None if there is none."""
+    """Return a file's device and inode, which identify it whatever its path; None without a file."""
     try:
         found = path.stat()
     except FileNotFoundError:

@@ -45,8 +45,8 @@ def parts(session: Session, models: Iterable[str]) -> dict[str, dict[str, ModelP
 
 def page(session: Session, table: type[Listed], cursor: str | None, limit: int) -> tuple[Sequence[Listed], str | None]:
     """Return a page of models or photos, newest first, and the cursor of the next page: decimal digits."""
-    wanted = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
-    rows = session.scalars(wanted if cursor is None else wanted.where(table.number < int(cursor))).all()
+    query = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
+    rows = session.scalars(query if cursor is None else query.where(table.number < int(cursor))).all()
     return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
 
 
@@ -67,7 +67,7 @@ def referenced(session: Session, beginning: str = "") -> set[str]:
 
 
 def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int]:
-    """Return the places in the queue of those of these jobs that are queued, by number: 1 is the next."""
+    """Return each queued job's place in the queue, by job number: 1 is the next; other jobs are left out."""
     if not numbers:
         return {}
     places = (
@@ -75,8 +75,8 @@ def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int
         .where(ModelRow.status == "queued", ModelRow.number <= max(numbers))
         .subquery()
     )
-    wanted = select(places.c.number, places.c.place).where(places.c.number.in_(numbers))
-    return dict(session.execute(wanted).all())
+    query = select(places.c.number, places.c.place).where(places.c.number.in_(numbers))
+    return dict(session.execute(query).all())
 
 
 def usual_seconds(session: Session) -> float:

@@ -43,7 +43,7 @@ class PhotoRow(Aged, Table):
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     sha256: Mapped[str] = mapped_column(String(64))
-    """Of the uploaded bytes."""
+    """SHA-256 of the uploaded bytes."""
     width: Mapped[int]
     height: Mapped[int]
     blob: Mapped[str] = mapped_column(String(64))
@@ -155,7 +155,7 @@ class Stray(Table):
     folder: Mapped[str] = mapped_column(String(2), primary_key=True)
     name: Mapped[str] = mapped_column(String(80), primary_key=True)
     state: Mapped[str] = mapped_column(String(60))
-    """As `store.blobs.state_of`: it changes when the file is written again."""
+    """The file's `store.blobs.state_of`, which changes when it is written again."""
     seen: Mapped[float]
     """When it was first seen in this state, by the store's own clock."""
 

@@ -51,9 +51,9 @@ def test_wood_is_hidden_where_the_impostor_is_shown(gltf: pygltflib.GLTF2) -> No
 def test_levels_share_materials_and_textures(gltf: pygltflib.GLTF2) -> None:
     assert [material.name for material in gltf.materials] == ["bark", "leaf", "leaf_impostor"]
     assert len(gltf.images) == 4
-    worn = {node.name: gltf.meshes[node.mesh].primitives[0].material for node in gltf.nodes}
-    assert worn["bark"] == worn["bark_lod1"] == worn["bark_lod2"] == 0
-    assert worn["leaf"] == worn["leaf_lod1"] == worn["leaf_lod2"] == 1
+    material_of = {node.name: gltf.meshes[node.mesh].primitives[0].material for node in gltf.nodes}
+    assert material_of["bark"] == material_of["bark_lod1"] == material_of["bark_lod2"] == 0
+    assert material_of["leaf"] == material_of["leaf_lod1"] == material_of["leaf_lod2"] == 1
 
 
 def test_an_impostor_is_cut_and_seen_from_its_front_alone(gltf: pygltflib.GLTF2) -> None:

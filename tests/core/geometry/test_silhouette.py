@@ -8,7 +8,7 @@ from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.silhouette import (
     AZIMUTHS_RAD,
     framing,
-    likeness,
+    overlap,
     silhouette,
     silhouette_from,
 )
@@ -57,7 +57,7 @@ def test_from_behind_a_silhouette_is_mirrored() -> None:
     view = framing(surfaces, 60)
     for front, back in zip(AZIMUTHS_RAD[:4], AZIMUTHS_RAD[4:], strict=True):
         ahead, behind = (silhouette_from(surfaces, view, at) for at in (front, back))
-        assert likeness(ahead, behind[:, ::-1]) > 0.99
+        assert overlap(ahead, behind[:, ::-1]) > 0.99
 
 
 def test_a_texture_is_averaged_before_it_is_cut() -> None:

@@ -54,11 +54,11 @@ def limbed_case(depth_deg: float = 35.0) -> Case:
     points, radii, parents = (
         list(column) for column in (case.skeleton.points, case.skeleton.radii, case.skeleton.parents)
     )
-    for i, (bearer, side) in enumerate(((38, 1), (42, -1), (48, 1), (54, -1))):
+    for i, (start, side) in enumerate(((38, 1), (42, -1), (48, 1), (54, -1))):
         out = np.radians(depth_deg) * (1 if i % 2 else -1) * (1 if i < 2 else -0.6)
         step = 0.1 * np.array([side * 0.8 * np.cos(out), 0.6, 0.8 * np.sin(out)])
         for k in range(16):
-            parents.append(bearer if k == 0 else len(points) - 1)
+            parents.append(start if k == 0 else len(points) - 1)
             points.append(points[parents[-1]] + step)
             radii.append(0.07 - 0.003 * k)
     return Case(Skeleton(np.array(points), np.array(radii), np.array(parents)), *case[1:])

@@ -14,9 +14,9 @@ def forked(end_y: float, end_x: float = 200.0) -> tuple[Skeleton, GrowthSpace]:
     """A trunk with one limb of ten joints that leaves it at (160, 330) px and ends at a place."""
     case = trunk_case()
     px = case.visible
-    bearer = int(np.argmin(np.abs(px.points[:, 1] - 330)))
-    way = np.linspace(px.points[bearer], [end_x, end_y, 0.0], 11)[1:]
-    parents = np.r_[px.parents, bearer, len(px) + np.arange(9)]
+    start = int(np.argmin(np.abs(px.points[:, 1] - 330)))
+    way = np.linspace(px.points[start], [end_x, end_y, 0.0], 11)[1:]
+    parents = np.r_[px.parents, start, len(px) + np.arange(9)]
     tree = Skeleton(np.vstack([px.points, way]), np.r_[px.radii, np.full(10, 4.0)], parents)
     return tree, case.space(foot_of(px, case.mask))
 

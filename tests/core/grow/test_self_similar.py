@@ -28,14 +28,14 @@ def shoots_of(one: Grown) -> list[np.ndarray]:
 
 
 def directions(one: Grown) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Chord of each small branch and direction of what bears it, and the bearer's bud."""
+    """Chord of each small branch and direction of its parent branch, and the place of its bud."""
     shoots, points = shoots_of(one), one.skeleton.points
     buds = np.array([shoot[0] for shoot in shoots])
     chords = unit(np.array([points[shoot[-1]] - points[shoot[0]] for shoot in shoots]))
     return chords, unit(points[buds] - points[one.skeleton.parents[buds]]), buds
 
 
-def test_angles_with_the_bearer_are_within_the_range() -> None:
+def test_angles_with_the_parent_are_within_the_range() -> None:
     main = tree()
     chords, along, _ = directions(grow_small(main, everywhere(), PLAIN, np.random.default_rng(0)))
     cosines = (chords * along).sum(axis=1)
@@ -64,10 +64,10 @@ def test_drawn_joints_stay_and_come_first() -> None:
 
 def test_small_branches_are_connected_and_of_levels_one_and_two() -> None:
     one = grown()
-    bearer = one.born[one.skeleton.parents[len(tree()) :]]
+    parent_born = one.born[one.skeleton.parents[len(tree()) :]]
     own = one.born[len(tree()) :]
     assert set(own.tolist()) == {1, 2}
-    assert np.isin(own - bearer, (0, 1)).all()
+    assert np.isin(own - parent_born, (0, 1)).all()
 
 
 @pytest.mark.parametrize("off", [0.0, 15.0])
@@ -91,7 +91,7 @@ def test_small_branches_fill_the_crown_more_evenly_than_drawn_ones_do() -> None:
 
     def unevenness(shown: np.ndarray) -> float:
         cells = crown_cells(crown())
-        cells.lay(one.skeleton.points[shown], lengths[shown])
+        cells.add_wood(one.skeleton.points[shown], lengths[shown])
         middles = cells.corner + cells.side * (np.indices(cells.shape).reshape(3, -1).T + 0.5)
         wood = cells.around()[cells.inside(middles)]
         return float(wood.std() / wood.mean())

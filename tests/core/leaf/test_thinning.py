@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.geometry.mesh import Surface
-from treestroke.core.geometry.silhouette import Framing, framing, likeness, silhouettes
+from treestroke.core.geometry.silhouette import Framing, framing, overlap, silhouettes
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.thinning import Coverage, ThinningParams, thin_leaves
@@ -65,10 +65,10 @@ def test_cards_grow_by_a_factor_and_within_bounds(ball, atlas, view, wanted):
 
 def test_a_quarter_of_the_cards_keeps_the_silhouettes(ball, atlas, view, wanted):
     chosen = seen(thinned(ball, atlas, 750, view, wanted), atlas, view)
-    alike = [likeness(*pair) for pair in zip(chosen, wanted, strict=True)]
+    alike = [overlap(*pair) for pair in zip(chosen, wanted, strict=True)]
     any_750 = seen(ball.select(np.arange(3_000) % 4 == 0), atlas, view)
     assert min(alike) > 0.9
-    assert min(alike) > max(likeness(*pair) for pair in zip(any_750, wanted, strict=True))
+    assert min(alike) > max(overlap(*pair) for pair in zip(any_750, wanted, strict=True))
 
 
 def test_where_nothing_is_wanted_fewest_cards_stay(ball, atlas, view, wanted):

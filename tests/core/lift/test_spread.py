@@ -8,16 +8,16 @@ from hypothesis import strategies as st
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
-from treestroke.core.lift.spread import LiftParams, SeenCrown, lift
+from treestroke.core.lift.spread import FrontCrown, LiftParams, lift
 from treestroke.core.skeleton.skeleton import Skeleton
 
 DEFAULT = LiftParams()
 CAMERA = OrthographicCamera(400, 400, 0.025, (200.0, 390.0))
 
 
-def crown() -> SeenCrown:
+def crown() -> FrontCrown:
     y, x = np.mgrid[:400, :400] + 0.5
-    return SeenCrown(turned_outline(Silhouette(np.hypot(x - 200, y - 180) < 160, CAMERA)), CAMERA)
+    return FrontCrown(turned_outline(Silhouette(np.hypot(x - 200, y - 180) < 160, CAMERA)), CAMERA)
 
 
 CROWN = crown()

@@ -99,13 +99,13 @@ def test_a_known_form_shapes_the_bark_of_a_hidden_trunk_and_mildly_that_of_a_see
     trunk = np.array([[150.0, 390.0], [150.0, 200.0], [150.0, 20.0]])
     plates = bark_pattern(TEXTURE_SIZE, np.random.default_rng(5), "plated")
 
-    def likeness(radius: float) -> float:
+    def similarity(radius: float) -> float:
         params, rng = BarkParams(form="plated"), np.random.default_rng(0)
         texture = bark_texture(photo_of_a_trunk(30.0), StemPixels(trunk, np.full(3, radius)), params, rng, plates)
         return float(np.corrcoef(texture.mean(axis=2).ravel(), plates.ravel())[0, 1])
 
-    assert likeness(0.0) > 0.9
-    assert 0.15 < likeness(30.0) < 0.7
+    assert similarity(0.0) > 0.9
+    assert 0.15 < similarity(30.0) < 0.7
 
 
 def test_smooth_bark_has_less_contrast_than_furrowed() -> None:

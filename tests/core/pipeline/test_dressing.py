@@ -14,7 +14,7 @@ from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.service.inputs import load_photo, load_strokes
+from treestroke.service.loading import load_photo, load_strokes
 from treestroke.service.model import Model
 
 MAPLE, BARE = EXAMPLES / "sugar_maple_autumn", DATA / "bigleaf_maple_bare"
@@ -25,7 +25,7 @@ def modelled(tree: Path, **settings: str) -> Model:
     return treestroke.model(tree.with_suffix(".jpg"), tree.with_suffix(".strokes.json"), {"iterations": 30, **settings})
 
 
-def likeness(model: Model) -> float:
+def overlap(model: Model) -> float:
     return model.report["score"]["silhouette_iou"]
 
 
@@ -38,7 +38,7 @@ def hue(model: Model) -> np.ndarray:
 
 
 def test_summer_keeps_the_silhouette_of_the_photo() -> None:
-    assert likeness(modelled(MAPLE, season="summer")) >= likeness(modelled(MAPLE)) - 0.05
+    assert overlap(modelled(MAPLE, season="summer")) >= overlap(modelled(MAPLE)) - 0.05
 
 
 def test_an_autumn_tree_is_green_in_summer() -> None:
@@ -61,7 +61,7 @@ def test_a_bare_tree_stays_bare_whatever_its_species_unless_a_season_says_otherw
 
 
 def test_the_leaves_of_a_bare_tree_fill_its_crown() -> None:
-    assert likeness(modelled(BARE, season="summer")) > 0.85
+    assert overlap(modelled(BARE, season="summer")) > 0.85
 
 
 def test_spring_has_fewer_leaves_for_their_area_than_summer() -> None:

@@ -148,7 +148,7 @@ def dressed(grown: Grown) -> GrownTree:
         volume=VOLUME,
         appearance=Appearance(views, shows_leaves=True),
         camera=FRONT,
-        likeness=outline_of(FRONT),
+        expected_cover=outline_of(FRONT),
         stature=Stature(8.0, Scale(0.0125, False, 0.0), True, VOLUME),
         score={},
         reading=Reading("a volume made by hand", 1.0, ()),

@@ -13,7 +13,7 @@ from treestroke.core.geometry.polyline import resample
 from treestroke.core.pipeline.photo import PhotoTrace, trace_photo
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
-from treestroke.service.inputs import load_photo, load_strokes
+from treestroke.service.loading import load_photo, load_strokes
 
 TREMOR = 0.007
 JITTERS = 10

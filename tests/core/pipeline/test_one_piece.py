@@ -14,7 +14,7 @@ from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
-from treestroke.service.inputs import load_photo
+from treestroke.service.loading import load_photo
 
 SCALE = 0.3
 

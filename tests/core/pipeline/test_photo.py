@@ -11,7 +11,7 @@ from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.photo import trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes
-from treestroke.service.inputs import load_photo, load_strokes
+from treestroke.service.loading import load_photo, load_strokes
 
 QUICK = ModelSettings(iterations=30)
 STAGES = ["foliage", "trace", "lift", "grow", "leaf", "mesh"]

@@ -7,7 +7,7 @@ from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.segment.contrast import stands_out
 from treestroke.core.strokes import Stroke, Strokes
-from treestroke.service.inputs import load_photo, load_strokes
+from treestroke.service.loading import load_photo, load_strokes
 
 STROKES = sorted(DATA.glob("*.strokes.json"))
 

@@ -10,7 +10,7 @@ from tests.pictures import disc, leaves_on_sky, noisy, overlap, ring
 from treestroke.codec.image import decode_photo
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.segment.foliage import FoliageParams, segment_foliage
-from treestroke.service.inputs import load_strokes
+from treestroke.service.loading import load_strokes
 
 SIZE, MIDDLE = 300, (150.0, 150.0)
 CROWN = ring(115, MIDDLE)

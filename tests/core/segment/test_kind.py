@@ -10,7 +10,7 @@ from treestroke.codec.image import decode_photo
 from treestroke.core.segment.foliage import segment_foliage
 from treestroke.core.segment.kind import UNSURE, foliage_kind, foliage_look
 from treestroke.core.types import FoliageKind
-from treestroke.service.inputs import load_strokes
+from treestroke.service.loading import load_strokes
 
 DULL, VIVID = (50, 62, 40), (90, 150, 40)
 TRUNK = np.array([[150.0, 290.0], [150.0, 200.0], [150.0, 60.0]])

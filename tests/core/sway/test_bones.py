@@ -44,11 +44,11 @@ def test_every_root_stands_on_the_root_bone(tree: Skeleton) -> None:
 def test_flutter_bones_have_length_and_hang_on_branches(tree: Skeleton, leafy: bool) -> None:
     rig = rig_of(tree, tips(tree) if leafy else None)
     flutters = np.array([name.startswith("flutter") for name in rig.names])
-    bearers = rig.parents[flutters]
+    parents = rig.parents[flutters]
     assert leafy or not flutters.any()
-    assert not flutters[bearers].any()
-    assert (np.linalg.norm(rig.heads[flutters] - rig.heads[bearers], axis=1) > 0).all()
-    assert (rig.flutter[bearers] == np.flatnonzero(flutters)).all()
+    assert not flutters[parents].any()
+    assert (np.linalg.norm(rig.heads[flutters] - rig.heads[parents], axis=1) > 0).all()
+    assert (rig.flutter[parents] == np.flatnonzero(flutters)).all()
 
 
 def test_a_photographed_tree_has_all_bones_it_may_have(blown: Wind) -> None:

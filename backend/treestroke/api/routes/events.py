@@ -8,13 +8,13 @@ from fastapi import APIRouter, Depends, Header
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
-from treestroke.api.deps import ModelId, ShelfOf, WatcherOf
+from treestroke.api.deps import ModelId, ResourcesOf, WatcherOf
 from treestroke.api.errors import documented
 from treestroke.api.following import Follower
 from treestroke.api.views import model_view
 from treestroke.service import stored_models
 from treestroke.service.jobs import GROWTH
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.blobs import Damaged
 from treestroke.store.leases import TERMINAL
@@ -24,21 +24,21 @@ router = APIRouter(prefix="/v1/models", tags=["models"])
 _RETRY_MS = 2000
 
 
-def _seen(shelf: ShelfOf, id: ModelId) -> StoredModel:
+def _model(resources: ResourcesOf, id: ModelId) -> StoredModel:
     """Return the model; before the stream begins, while the response can still be a problem."""
-    return stored_models.find_model(shelf.database, id)
+    return stored_models.find_model(resources.database, id)
 
 
-async def _follower(watcher: WatcherOf, seen: Annotated[StoredModel, Depends(_seen)]) -> AsyncIterator[Follower]:
+async def _follower(watcher: WatcherOf, model: Annotated[StoredModel, Depends(_model)]) -> AsyncIterator[Follower]:
     """Yield a follower of the model; before the stream begins, while the response can still be a problem."""
-    with watcher.follow(seen) as follower:
+    with watcher.follow(model) as follower:
         yield follower
 
 
-def _growth(shelf: Shelf, seen: StoredModel) -> str | None:
+def _growth(resources: Resources, model: StoredModel) -> str | None:
     """Return the grown skeleton as JSON; None if its file is damaged, because a stream cannot become a problem."""
     try:
-        return shelf.blobs.get(seen.files[GROWTH].blob).decode()
+        return resources.blobs.get(model.files[GROWTH].blob).decode()
     except Damaged as error:
         log.error("file_damaged", file=str(error))
         return None
@@ -46,8 +46,8 @@ def _growth(shelf: Shelf, seen: StoredModel) -> str | None:
 
 @router.get("/{id}/events", response_class=EventSourceResponse, responses=documented("not_found", "invalid"))
 async def follow_model(
-    shelf: ShelfOf,
-    seen: Annotated[StoredModel, Depends(_seen)],
+    resources: ResourcesOf,
+    model: Annotated[StoredModel, Depends(_model)],
     follower: Annotated[Follower, Depends(_follower)],
     last_event_id: Annotated[str | None, Header(max_length=40)] = None,
 ) -> AsyncIterator[ServerSentEvent]:
@@ -57,13 +57,13 @@ async def follow_model(
     ``Last-Event-ID`` says that it arrived; the last event is always sent.
     """
     sent = int(last_event_id) if last_event_id and last_event_id.isdecimal() else 0
-    shown, latest = model_view(seen), seen
+    shown, latest = model_view(model), model
     yield ServerSentEvent(event="snapshot", data=shown, retry=_RETRY_MS)
     while True:
         row = latest.row
         if row.preview_seq and row.preview_seq > sent and GROWTH in latest.files:
             sent = row.preview_seq
-            if growth := await run_in_threadpool(_growth, shelf, latest):
+            if growth := await run_in_threadpool(_growth, resources, latest):
                 yield ServerSentEvent(event="preview", raw_data=growth, id=str(sent))
         if row.status in TERMINAL:
             yield ServerSentEvent(event=row.status, data=model_view(latest), id=str(row.seq))

@@ -8,13 +8,13 @@ from fastapi import APIRouter, Path, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import FileResponse
 
-from treestroke.api.deps import ModelId, ProjectsOf, ShelfOf
+from treestroke.api.deps import ModelId, ProjectsOf, ResourcesOf
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_responses, send_blob, send_file
 from treestroke.codec.inputs import VIEWS
 from treestroke.service import stored_models
 from treestroke.service.jobs import GLB, PREVIEW
-from treestroke.service.photos import NotFound, Shelf
+from treestroke.service.photos import NotFound, Resources
 from treestroke.service.tracing_pool import Overloaded
 
 router = APIRouter(prefix="/v1/models/{id}", tags=["files"])
@@ -54,21 +54,21 @@ Ending = Annotated[str, Path(json_schema_extra={"pattern": _ENDING, "example": "
 
 
 @router.get("/tree.glb", response_class=FileResponse, responses=file_responses(_GLB))
-def get_tree(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
+def get_tree(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
     """Download the tree."""
-    return _file(request, shelf, id, GLB)
+    return _file(request, resources, id, GLB)
 
 
 @router.get("/preview.png", response_class=FileResponse, responses=file_responses(_PNG))
-def get_preview(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
+def get_preview(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
     """Download a picture of the tree: the front view at the photo's framing beside a 3/4 view."""
-    return _file(request, shelf, id, PREVIEW)
+    return _file(request, resources, id, PREVIEW)
 
 
 @router.get("/strokes.json", response_class=FileResponse, responses=file_responses(_JSON, "Strokes"))
-def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
+def get_strokes(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
     """Download the strokes that the tree was made of."""
-    return _drawing(request, shelf, id, "strokes.json")
+    return _drawing(request, resources, id, "strokes.json")
 
 
 @router.get(
@@ -76,9 +76,9 @@ def get_strokes(request: Request, shelf: ShelfOf, id: ModelId) -> Response:
     response_class=FileResponse,
     responses={**file_responses(_ZIP), **documented("overloaded", "storage_full")},
 )
-async def get_project(request: Request, shelf: ShelfOf, projects: ProjectsOf, id: ModelId) -> Response:
+async def get_project(request: Request, resources: ResourcesOf, projects: ProjectsOf, id: ModelId) -> Response:
     """Download NAME.treestroke: all that the tree is made of, for the command line and the page."""
-    model = await run_in_threadpool(stored_models.find_model, shelf.database, id)
+    model = await run_in_threadpool(stored_models.find_model, resources.database, id)
     packing = asyncio.shield(asyncio.wrap_future(projects.pack(model)))
     try:
         packed = await asyncio.wait_for(packing, _PACKING_SECONDS)
@@ -88,32 +88,32 @@ async def get_project(request: Request, shelf: ShelfOf, projects: ProjectsOf, id
 
 
 @router.get("/tree.{ending}", response_class=FileResponse, responses=_MANY)
-def get_tree_file(request: Request, shelf: ShelfOf, id: ModelId, ending: Ending) -> Response:
+def get_tree_file(request: Request, resources: ResourcesOf, id: ModelId, ending: Ending) -> Response:
     """Download one of the further files that the settings asked for; ``files`` of the model names them."""
-    return _file(request, shelf, id, f"tree.{ending}")
+    return _file(request, resources, id, f"tree.{ending}")
 
 
 @router.get("/{view}.{ending}", response_class=FileResponse, responses=_SKETCH)
-def get_sketch(request: Request, shelf: ShelfOf, id: ModelId, view: View, ending: SketchEnding) -> Response:
+def get_sketch(request: Request, resources: ResourcesOf, id: ModelId, view: View, ending: SketchEnding) -> Response:
     """Download a sketch that the tree was made of: front.json or front.png, side.json or side.png."""
     if view not in VIEWS:
         raise NotFound("file")
-    return _drawing(request, shelf, id, f"{view}.{ending}")
+    return _drawing(request, resources, id, f"{view}.{ending}")
 
 
-def _drawing(request: Request, shelf: Shelf, id: str, name: str) -> Response:
-    part = stored_models.find_model(shelf.database, id).drawings.get(name)
+def _drawing(request: Request, resources: Resources, id: str, name: str) -> Response:
+    part = stored_models.find_model(resources.database, id).drawings.get(name)
     if part is None:
         raise NotFound("file")
-    return send_blob(request, shelf, part.blob, part.media_type)
+    return send_blob(request, resources, part.blob, part.media_type)
 
 
-def _file(request: Request, shelf: Shelf, id: str, name: str) -> Response:
-    model = stored_models.find_model(shelf.database, id)
+def _file(request: Request, resources: Resources, id: str, name: str) -> Response:
+    model = stored_models.find_model(resources.database, id)
     file = model.files.get(name)
     if model.row.status != "succeeded" or file is None:
         raise NotFound("file")
     if name == PREVIEW:
-        return send_blob(request, shelf, file.blob, _PNG)
+        return send_blob(request, resources, file.blob, _PNG)
     media_type = _MEDIA_TYPES.get(name[name.rindex(".") :], _OTHER)
-    return send_blob(request, shelf, file.blob, media_type, f"{model.row.name or id}{name.removeprefix('tree')}")
+    return send_blob(request, resources, file.blob, media_type, f"{model.row.name or id}{name.removeprefix('tree')}")

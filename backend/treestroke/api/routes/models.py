@@ -19,7 +19,7 @@ from treestroke.api.deps import (
     JsonBody,
     Limit,
     ModelId,
-    ShelfOf,
+    ResourcesOf,
     WatcherOf,
     check_length,
     form_of,
@@ -34,7 +34,7 @@ from treestroke.limits import MAX_TEXT_BYTES
 from treestroke.schemas import ModelInfo, ModelPage
 from treestroke.service import photos, stored_models
 from treestroke.service.model_request import ModelOrder, read_form, read_name, read_order
-from treestroke.service.photos import Shelf
+from treestroke.service.photos import Resources
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
 from treestroke.store.tables import PhotoRow
@@ -55,7 +55,7 @@ _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$
 _PHOTO_FIELD = {"photo": {"type": "string", "format": "binary", "description": ACCEPTED_FORMATS}}
 _FORM = FormRequest.model_json_schema()
 _FIELDS = (*_PHOTO_FIELD, *FormRequest.model_fields)
-_ASK: dict[str, Any] = {
+_REQUEST_BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,
         "content": {
@@ -97,11 +97,11 @@ class _Received:
     photo: PhotoRow | None = None
 
 
-async def _receive(request: Request, shelf: ShelfOf) -> _Received:
+async def _receive(request: Request, resources: ResourcesOf) -> _Received:
     """Read a request for a model, in a tracing process: JSON that may name a photo, or a form that may bring one."""
     kind = media_type(request)
     if kind in ("application/json", ""):
-        return _Received(await run_in_threadpool(shelf.tracers, "", read_order, await request.body()))
+        return _Received(await run_in_threadpool(resources.tracers, "", read_order, await request.body()))
     if kind != "multipart/form-data":
         raise Refusal(
             "unsupported_media_type", "send application/json, or a form with photo and strokes, or front and side"
@@ -115,14 +115,14 @@ async def _receive(request: Request, shelf: ShelfOf) -> _Received:
             raise Refusal("bad_request", "the form has no file in the field photo; send the photo there")
         fields = {name: await _content(field) for name, field in form.items() if field is not photo}
         content = None if photo is None else await photo.read()
-    return await run_in_threadpool(_read_form, shelf, content, fields)
+    return await run_in_threadpool(_read_form, resources, content, fields)
 
 
-def _read_form(shelf: Shelf, photo: bytes | None, fields: dict[str, bytes]) -> _Received:
+def _read_form(resources: Resources, photo: bytes | None, fields: dict[str, bytes]) -> _Received:
     if photo is None:
-        return _Received(shelf.tracers("", read_form, fields, brings_photo=False))
+        return _Received(resources.tracers("", read_form, fields, brings_photo=False))
     check_length(photo)
-    return _Received(shelf.tracers("", read_form, fields), photos.take_in(shelf, photo))
+    return _Received(resources.tracers("", read_form, fields), photos.store_pixels(resources, photo))
 
 
 async def _content(field: UploadFile | str) -> bytes:
@@ -138,10 +138,10 @@ async def _content(field: UploadFile | str) -> bytes:
         HTTPStatus.ACCEPTED: {"model": ModelInfo, "headers": _LOCATION, "links": _LINKS},
         **documented(*BODY, "not_found", "storage_full"),
     },
-    openapi_extra=_ASK,
+    openapi_extra=_REQUEST_BODY,
 )
 async def ask_for_model(
-    shelf: ShelfOf,
+    resources: ResourcesOf,
     dispatcher: DispatcherOf,
     watcher: WatcherOf,
     received: Annotated[_Received, Depends(_receive)],
@@ -149,7 +149,9 @@ async def ask_for_model(
     prefer: Annotated[str | None, Header(description="wait=SECONDS answers when the model is finished")] = None,
 ) -> Response:
     """Ask for a tree: always a new model, finished at once where the same was made before."""
-    model = await run_in_threadpool(stored_models.accept_model, shelf, received.order, idempotency_key, received.photo)
+    model = await run_in_threadpool(
+        stored_models.accept_model, resources, received.order, idempotency_key, received.photo
+    )
     dispatcher.notify()
     wanted = _WAIT.search(prefer or "")
     if wanted:
@@ -162,7 +164,7 @@ async def ask_for_model(
 
 
 async def _finished(watcher: Watcher, model: StoredModel, seconds: float) -> StoredModel:
-    """Wait for a model to finish, at most so many seconds; not at all where too many requests wait."""
+    """Wait up to ``seconds`` for a model to finish; not at all where too many requests wait."""
     with suppress(TooManyFollowers, TimeoutError), watcher.follow(model) as follower:
         async with asyncio.timeout(seconds):
             while model.row.status not in TERMINAL and (news := await follower.next_change()) is not None:
@@ -171,37 +173,37 @@ async def _finished(watcher: Watcher, model: StoredModel, seconds: float) -> Sto
 
 
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
-def list_models(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
+def list_models(resources: ResourcesOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
     """List models, newest first."""
-    page, following = stored_models.list_models(shelf.database, cursor, limit)
-    return ModelPage(models=[model_view(model) for model in page], next=following)
+    page, next_cursor = stored_models.list_models(resources.database, cursor, limit)
+    return ModelPage(models=[model_view(model) for model in page], next=next_cursor)
 
 
 @router.get("/{id}", responses=documented("not_found"))
-def get_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
+def get_model(resources: ResourcesOf, id: ModelId) -> ModelInfo:
     """Look a model up."""
-    return model_view(stored_models.find_model(shelf.database, id))
+    return model_view(stored_models.find_model(resources.database, id))
 
 
 @router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=_RENAME)
-def rename_model(shelf: ShelfOf, id: ModelId, body: JsonBody) -> ModelInfo:
+def rename_model(resources: ResourcesOf, id: ModelId, body: JsonBody) -> ModelInfo:
     """Name a model."""
-    return model_view(stored_models.rename(shelf.database, id, read_name(body)))
+    return model_view(stored_models.rename(resources.database, id, read_name(body)))
 
 
 @router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
-def delete_model(shelf: ShelfOf, id: ModelId) -> None:
+def delete_model(resources: ResourcesOf, id: ModelId) -> None:
     """Delete a model; its files go after 24 hours, until then it can be restored."""
-    stored_models.delete(shelf.database, id)
+    stored_models.delete(resources.database, id)
 
 
 @router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
-def restore_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
+def restore_model(resources: ResourcesOf, id: ModelId) -> ModelInfo:
     """Undo a deletion."""
-    return model_view(stored_models.restore(shelf.database, id))
+    return model_view(stored_models.restore(resources.database, id))
 
 
 @router.post("/{id}/cancel", responses=documented("not_found", "storage_full"))
-def cancel_model(shelf: ShelfOf, id: ModelId) -> ModelInfo:
+def cancel_model(resources: ResourcesOf, id: ModelId) -> ModelInfo:
     """Stop a model that is not finished; a finished one stays as it is."""
-    return model_view(stored_models.cancel(shelf.database, id))
+    return model_view(stored_models.cancel(resources.database, id))

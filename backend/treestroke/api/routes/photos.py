@@ -7,7 +7,17 @@ from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse
 from starlette.datastructures import UploadFile
 
-from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ShelfOf, check_length, form_of, leads_to, media_type
+from treestroke.api.deps import (
+    Cursor,
+    JsonBody,
+    Limit,
+    PhotoId,
+    ResourcesOf,
+    check_length,
+    form_of,
+    leads_to,
+    media_type,
+)
 from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.sending import file_responses, send_blob
 from treestroke.api.views import photo_view
@@ -80,37 +90,39 @@ async def _photo_bytes(request: Request) -> bytes:
     },
     openapi_extra=_UPLOAD,
 )
-def add_photo(shelf: ShelfOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response) -> PhotoInfo:
+def add_photo(
+    resources: ResourcesOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response
+) -> PhotoInfo:
     """Upload a photo: JPEG, PNG, WebP, HEIC, AVIF or TIFF, one frame."""
     check_length(content)
-    row = photos.add_photo(shelf, content)
+    row = photos.add_photo(resources, content)
     response.headers["Location"] = f"/v1/photos/{row.id}"
     return photo_view(row)
 
 
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
-def list_photos(shelf: ShelfOf, cursor: Cursor = None, limit: Limit = 20) -> PhotoPage:
+def list_photos(resources: ResourcesOf, cursor: Cursor = None, limit: Limit = 20) -> PhotoPage:
     """List photos, newest first."""
-    page, following = photos.list_photos(shelf, cursor, limit)
-    return PhotoPage(photos=[photo_view(row) for row in page], next=following)
+    page, next_cursor = photos.list_photos(resources, cursor, limit)
+    return PhotoPage(photos=[photo_view(row) for row in page], next=next_cursor)
 
 
 @router.get("/{id}", responses=documented("not_found"))
-def get_photo(shelf: ShelfOf, id: PhotoId) -> PhotoInfo:
+def get_photo(resources: ResourcesOf, id: PhotoId) -> PhotoInfo:
     """Return a photo."""
-    return photo_view(photos.get_photo(shelf, id))
+    return photo_view(photos.get_photo(resources, id))
 
 
 @router.get("/{id}/image", response_class=FileResponse, responses=file_responses("image/png"))
-def get_image(request: Request, shelf: ShelfOf, id: PhotoId) -> Response:
+def get_image(request: Request, resources: ResourcesOf, id: PhotoId) -> Response:
     """Return the stored picture: PNG, upright, sRGB, without metadata."""
-    return send_blob(request, shelf, photos.get_photo(shelf, id).blob, "image/png")
+    return send_blob(request, resources, photos.get_photo(resources, id).blob, "image/png")
 
 
 @router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
-def delete_photo(shelf: ShelfOf, id: PhotoId) -> None:
+def delete_photo(resources: ResourcesOf, id: PhotoId) -> None:
     """Delete a photo; models that were made of it keep their own copy."""
-    photos.delete_photo(shelf, id)
+    photos.delete_photo(resources, id)
 
 
 @router.post(
@@ -119,6 +131,6 @@ def delete_photo(shelf: ShelfOf, id: PhotoId) -> None:
     responses=documented(*BODY, "not_found"),
     openapi_extra=_TRACE,
 )
-def trace_photo(shelf: ShelfOf, id: PhotoId, body: JsonBody) -> Response:
+def trace_photo(resources: ResourcesOf, id: PhotoId, body: JsonBody) -> Response:
     """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too."""
-    return Response(photos.trace_photo(shelf, id, body), media_type="application/json")
+    return Response(photos.trace_photo(resources, id, body), media_type="application/json")

@@ -4,7 +4,7 @@ from typing import Any
 
 from fastapi import APIRouter, Response
 
-from treestroke.api.deps import JsonBody, ShelfOf
+from treestroke.api.deps import JsonBody, ResourcesOf
 from treestroke.api.errors import BODY, documented
 from treestroke.schemas import SketchTraceAnswer
 from treestroke.service.tracer import sketch_answer
@@ -30,6 +30,6 @@ _TRACE: dict[str, Any] = {
     responses=documented(*BODY),
     openapi_extra=_TRACE,
 )
-def trace_sketches(shelf: ShelfOf, body: JsonBody) -> Response:
+def trace_sketches(resources: ResourcesOf, body: JsonBody) -> Response:
     """Find the branches that sketches show; with ``grow`` the whole tree's skeleton too. Nothing is kept."""
-    return Response(shelf.tracers("", sketch_answer, body), media_type="application/json")
+    return Response(resources.tracers("", sketch_answer, body), media_type="application/json")

@@ -97,7 +97,7 @@ def silhouettes(surfaces: Sequence[Surface], view: Framing) -> Mask:
     return np.stack([silhouette_from(surfaces, view, azimuth) for azimuth in HALF_AZIMUTHS_RAD.tolist()])
 
 
-def likeness(seen: Mask, wanted: Mask) -> float:
+def overlap(seen: Mask, wanted: Mask) -> float:
     """Return the intersection over union, 0 to 1, of two masks (h, w) of one shape; 1 if both are empty."""
     union = int((seen | wanted).sum())
     return float((seen & wanted).sum()) / union if union else 1.0

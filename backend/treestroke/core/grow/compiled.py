@@ -29,15 +29,15 @@ def _group(points: Floats) -> tuple[Indices, Indices]:
 class CompiledEvaluator:
     """An `Evaluator` on the extension ``_engine``; the head of ``_engine.c`` says how it saves work."""
 
-    def __init__(self, crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
+    def __init__(self, space: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
         turned = turn_library(library, rules.angles)
         self._order = np.zeros(0, dtype=np.int64)
         self._engine = Engine(
-            crown.mask.shape,
-            np.ascontiguousarray(crown.mask, dtype=np.uint8),
-            _contiguous(crown.middle),
-            _contiguous(crown.radius),
-            tuple(crown.foot.tolist()),
+            space.mask.shape,
+            np.ascontiguousarray(space.mask, dtype=np.uint8),
+            _contiguous(space.middle),
+            _contiguous(space.radius),
+            tuple(space.foot.tolist()),
             rules.spacing,
             rules.closeness,
             rules.keep,

@@ -1,4 +1,4 @@
-"""The crown in cells that know how much wood is in them."""
+"""The crown as a grid of cells, each with the length of wood in it."""
 
 from dataclasses import dataclass
 
@@ -24,13 +24,13 @@ class CrownCells:
     corner
         (3,) the box's least X, Y and Z, metres.
     side
-        Of a cell, metres.
+        Side of a cell, metres.
     shape
         Cells along X, Y and Z.
     count
         Cells whose middle is inside.
     wood
-        (cells,) length of the branches in each cell, metres, flat; changed by `lay`.
+        (cells,) length of the branches in each cell, metres, flat; changed by `add_wood`.
     """
 
     volume: CrownVolume
@@ -51,10 +51,10 @@ class CrownCells:
         return float(self.cubic_metres ** (1 / 3))
 
     def inside(self, points: Floats, reach: Floats | float = 1.0) -> Mask:
-        """Tell which points (n, 3), metres, pictures show in the crown and lie within a ``reach`` (n,) of 1 or more."""
+        """Tell which points (n, 3), metres, are in the crown as the views show it, within a ``reach`` (n,) >= 1."""
         return np.asarray(self.volume.shown(points) & (self.volume.reach(points) <= np.maximum(reach, 1.0)))
 
-    def lay(self, points: Floats, lengths: Floats) -> None:
+    def add_wood(self, points: Floats, lengths: Floats) -> None:
         """Add pieces of branches: their lengths (n,), metres, at points (n, 3), metres."""
         self.wood[:] += np.bincount(self._cells(points), lengths, minlength=len(self.wood))
 
@@ -73,13 +73,13 @@ class CrownCells:
 
 def crown_cells(volume: CrownVolume) -> CrownCells:
     """Lay about `CELLS` cells over a crown; none of them is inside where the crown is empty."""
-    coarse = _laid(volume, max(float(np.ptp(volume.bounds, axis=0).max()) / _COARSE, 1e-6))
+    coarse = _cells_over(volume, max(float(np.ptp(volume.bounds, axis=0).max()) / _COARSE, 1e-6))
     if coarse.count == 0:
         return coarse
-    return _laid(volume, (coarse.cubic_metres / CELLS) ** (1 / 3))
+    return _cells_over(volume, (coarse.cubic_metres / CELLS) ** (1 / 3))
 
 
-def _laid(volume: CrownVolume, side: float) -> CrownCells:
+def _cells_over(volume: CrownVolume, side: float) -> CrownCells:
     """Lay cells of a side, metres, over the volume's box."""
     low, high = volume.bounds
     across, up, deep = (np.maximum(np.ceil((high - low) / side), 1)).astype(int).tolist()
@@ -92,6 +92,6 @@ def _laid(volume: CrownVolume, side: float) -> CrownCells:
 def _blurred(values: Floats) -> Floats:
     """Average cubes of 3 x 3 x 3 cells; beyond the box values are 0."""
     for axis in range(3):
-        wide = np.moveaxis(np.pad(values, [(int(axis == one),) * 2 for one in range(3)]), axis, 0)
+        wide = np.moveaxis(np.pad(values, [(int(axis == padded),) * 2 for padded in range(3)]), axis, 0)
         values = np.moveaxis(wide[:-2] + wide[1:-1] + wide[2:], 0, axis)
     return np.asarray(values / 27)

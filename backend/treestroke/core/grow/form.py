@@ -61,14 +61,14 @@ class VisibleTree:
     ----------
     skeleton
         3D, px of the crown's frame.
-    seen
+    traced_count
         Number of its first joints that come from the photo; the others extend its stem.
     chains
         Its pieces, which are the first branches of growth.
     """
 
     skeleton: Skeleton
-    seen: int
+    traced_count: int
     chains: list[Chain]
 
 
@@ -100,18 +100,18 @@ class _Spots(NamedTuple):
     fork: Indices
 
 
-def curve_shoots(visible: VisibleTree, table: BranchTable, crown: GrowthSpace, rng: np.random.Generator) -> Form:
+def curve_shoots(visible: VisibleTree, table: BranchTable, space: GrowthSpace, rng: np.random.Generator) -> Form:
     """Bend the shoots and join them with the visible tree, whose joints stay where they are.
 
     Joints that extend the visible stem count as grown in the first iteration. Joints of shoots that would leave the
     foliage are left out.
     """
-    curves = _bend(visible, table, crown, rng)
-    spots = _spots(table, len(visible.chains), curves, crown.unit)
-    return _join(visible, table, curves, spots, crown.mask)
+    curves = _bend(visible, table, space, rng)
+    spots = _spots(table, len(visible.chains), curves, space.unit)
+    return _join(visible, table, curves, spots, space.mask)
 
 
-def _bend(visible: VisibleTree, table: BranchTable, crown: GrowthSpace, rng: np.random.Generator) -> _Curves:
+def _bend(visible: VisibleTree, table: BranchTable, space: GrowthSpace, rng: np.random.Generator) -> _Curves:
     """Bend level after level, as a shoot's base lies on its parent's curve."""
     count = len(table.parent)
     curves = _Curves(*np.zeros((6, count, 3)))
@@ -129,7 +129,7 @@ def _bend(visible: VisibleTree, table: BranchTable, crown: GrowthSpace, rng: np.
         )
         curves.base[shoots], curves.chord[shoots] = base, table.tips[shoots] - base
         _bend_level(curves, shoots, unit(after - before), noise[:, shoots])
-        _straighten(curves, shoots, crown)
+        _straighten(curves, shoots, space)
     return curves
 
 
@@ -146,7 +146,7 @@ def _bend_level(curves: _Curves, shoots: Indices, parent_direction: Floats, nois
     curves.wave[shoots], curves.ripple[shoots] = across[0] * length * WAVE, across[1] * length * WAVE / 2
 
 
-def _straighten(curves: _Curves, shoots: Indices, crown: GrowthSpace) -> None:
+def _straighten(curves: _Curves, shoots: Indices, space: GrowthSpace) -> None:
     """Bend shoots (m,) less where they would leave the crown."""
     share = np.zeros(len(shoots))
     left = np.ones(len(shoots), dtype=bool)
@@ -154,7 +154,7 @@ def _straighten(curves: _Curves, shoots: Indices, crown: GrowthSpace) -> None:
     straight = curves.base[shoots, None] + CHECKS[:, None] * curves.chord[shoots, None]
     bent = _on_curves(curves, np.repeat(shoots, len(CHECKS)), at).reshape(straight.shape)
     for part in BEND_SHARES:
-        inside = crown.inside(straight + part * (bent - straight)).all(axis=1)
+        inside = space.inside(straight + part * (bent - straight)).all(axis=1)
         share[left & inside] = part
         left &= ~inside
     for offset in curves[2:]:
@@ -289,4 +289,4 @@ def _insert(tree: VisibleTree, owner: Indices, share: Floats) -> tuple[Form, Ind
     known = (visible.radii[start] > 0) & (visible.radii[end] > 0)
     homes = np.where(share >= 0.5, number[owner], number[np.maximum(visible.parents[owner], 0)])
     homes[new] = number[len(joint) :]
-    return Form(points, parents, (end >= tree.seen).astype(np.int64), np.where(known, radii, 0.0)), homes
+    return Form(points, parents, (end >= tree.traced_count).astype(np.int64), np.where(known, radii, 0.0)), homes

@@ -30,23 +30,23 @@ class Growing:
     def __init__(
         self,
         visible: Skeleton,
-        crown: GrowthSpace,
+        space: GrowthSpace,
         library: tuple[Subtree, ...],
         params: GrowthParams,
         evaluator: Evaluator,
     ) -> None:
-        self.params, self.crown, self.library = params, crown, library
+        self.params, self.space, self.library = params, space, library
         self.evaluator = evaluator
-        self.chains = _chains(visible, crown, params)
+        self.chains = _chains(visible, space, params)
         self.count = len(self.chains)
         room = self.count + params.iterations * max(len(subtree.parents) for subtree in library)
         self.bases, self.tips = np.zeros((2, room, 3))
-        self.radius, self.fraction, self.stood = np.zeros((3, room))
+        self.radius, self.fraction, self.passed_over = np.zeros((3, room))
         self.generation, self.parent, self.born = np.full((3, room), -1)
         self.open = np.zeros(room, dtype=bool)
         self._add_chains(visible)
         self._tell_evaluator(0)
-        self.evaluator.add_attractors(crown.grid(params.attractors))
+        self.evaluator.add_attractors(space.grid(params.attractors))
         self._turn_tips(0)
 
     def run(self, rng: np.random.Generator, report: Report) -> list[tuple[int, int, int]]:
@@ -62,9 +62,11 @@ class Growing:
 
     def table(self) -> BranchTable:
         """Return the branches as arrays."""
-        own = slice(0, self.count)
+        filled = slice(0, self.count)
         # Rounded, so that shoots that stand together share a joint.
-        return BranchTable(self.parent[own], np.round(self.fraction[own], 6), self.tips[own], self.born[own])
+        return BranchTable(
+            self.parent[filled], np.round(self.fraction[filled], 6), self.tips[filled], self.born[filled]
+        )
 
     def _add_chains(self, visible: Skeleton) -> None:
         """Fill the columns with the visible branches; a stem counts as thick up to its top, so that it comes first."""
@@ -74,18 +76,18 @@ class Growing:
             self.radius[i], self.generation[i] = known[chain.joints].mean(), chain.generation
             self.radius[i] = known.max() if chain.generation == 1 else self.radius[i]
             middle = (self.bases[i] + self.tips[i]) / 2
-            grows = in_mask(np.array([self.tips[i], middle]), self.crown.mask).all()
+            grows = in_mask(np.array([self.tips[i], middle]), self.space.mask).all()
             self.open[i] = grows and self._is_long(i) and not self._under_the_crown(float(middle[1]))
         self.born[: self.count] = 0
 
     def _is_long(self, branch: int) -> bool:
-        """Tell whether a branch is some samples long, so that it may be replaced."""
-        way = self.tips[branch] - self.bases[branch]
-        return math.sqrt(float(way @ way)) >= 2 * self.params.spacing_px * self.crown.unit
+        """Tell whether a branch is at least two samples long, so that it may be replaced."""
+        chord = self.tips[branch] - self.bases[branch]
+        return math.sqrt(float(chord @ chord)) >= 2 * self.params.spacing_px * self.space.unit
 
     def _under_the_crown(self, y: float) -> bool:
-        """Tell whether the crown is no wider at a height (y, px) than a stem might be, with its bulk above."""
-        radius = self.crown.radius
+        """Tell whether a height (y, px) is below the crown's bulk, where its section is no wider than a stem."""
+        radius = self.space.radius
         narrow = radius[int(np.clip(y, 0, len(radius) - 1))] < NARROW * float(radius.max())
         return bool(narrow and y > int(np.argmax(radius)))
 
@@ -105,11 +107,11 @@ class Growing:
         left = left[np.argsort(-self.radius[left], kind="stable")]
         chosen = np.zeros(0, dtype=np.int64)
         while len(left) and len(chosen) < self.params.candidates:
-            takes = rng.random(len(left)) * (self.generation[left] + self.stood[left] / PATIENCE) < 1
+            takes = rng.random(len(left)) * (self.generation[left] + self.passed_over[left] / PATIENCE) < 1
             chosen = np.concatenate([chosen, left[takes]])
             left = left[~takes]
         chosen = np.sort(chosen[: self.params.candidates])
-        self.stood[chosen] += 1
+        self.passed_over[chosen] += 1
         return chosen
 
     def _replace(self, choice: Choice, iteration: int) -> None:
@@ -134,23 +136,23 @@ class Growing:
 
     def _tell_evaluator(self, first: int) -> None:
         """Pass the branches from ``first`` on to the evaluator."""
-        own = slice(first, self.count)
+        new = slice(first, self.count)
         scales = np.array([[tree.replaces != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
-        for stem in np.flatnonzero(self.generation[own] == 1).tolist():
+        for stem in np.flatnonzero(self.generation[new] == 1).tolist():
             scales[stem] = self._stem_scales(first + stem)
-        self.evaluator.add_branches(self.bases[own], self.tips[own], scales)
+        self.evaluator.add_branches(self.bases[new], self.tips[new], scales)
 
     def _stem_scales(self, branch: int) -> Floats:
         """Stretch each subtree (s,) on a stem so that its longest shoot would reach the crown's edge; 0 forbids it."""
-        middle, way = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
-        row = int(np.clip(middle[1], 0, len(self.crown.radius) - 1))
-        reach = float(self.crown.radius[row]) / max(math.sqrt(float(way @ way)), 1e-9)
+        middle, chord = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
+        row = int(np.clip(middle[1], 0, len(self.space.radius) - 1))
+        reach = float(self.space.radius[row]) / max(math.sqrt(float(chord @ chord)), 1e-9)
         stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
         return np.where([tree.replaces != "limb" for tree in self.library], stretch, 0.0)
 
     def _turn_tips(self, first: int) -> None:
         """Add the tips from ``first`` on, turned by a quarter, to the attractors in space."""
-        self.evaluator.add_attractors(self.crown.turned(self.tips[first : self.count]))
+        self.evaluator.add_attractors(self.space.turned(self.tips[first : self.count]))
 
 
 def rules_for(params: GrowthParams, unit: float) -> Rules:
@@ -160,12 +162,12 @@ def rules_for(params: GrowthParams, unit: float) -> Rules:
     )
 
 
-def _chains(visible: Skeleton, crown: GrowthSpace, params: GrowthParams) -> list[Chain]:
+def _chains(visible: Skeleton, space: GrowthSpace, params: GrowthParams) -> list[Chain]:
     """Split the visible tree into chains, px."""
-    rows = np.flatnonzero(crown.mask.any(axis=1))
+    rows = np.flatnonzero(space.mask.any(axis=1))
     height = float(rows[-1] - rows[0] + 1)
     longest = params.stem_piece * height, params.limb_piece * height
-    return split_chains(visible, in_mask(visible.points, crown.mask), longest)
+    return split_chains(visible, in_mask(visible.points, space.mask), longest)
 
 
 def _known_radii(visible: Skeleton) -> Floats:

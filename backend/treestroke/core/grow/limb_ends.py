@@ -1,6 +1,6 @@
 """Extends limbs whose stroke ends before the crown does.
 
-A person draws only the first stretch of a limb, or the tracer loses it among leaves; as it is it would stand as a stub.
+A person may draw only the first stretch of a limb, or the tracer lose it among leaves; the limb would remain a stub.
 Each is extended along a curve into free space, thick limbs first, as far as wood of its thickness reaches; of the
 curves tried, the one with most free space around it is taken, as in lifting (Okabe et al. 2005).
 """
@@ -30,9 +30,9 @@ SLENDER = 55.0
 LEAST_REACH, MOST_REACH = 0.1, 0.5
 """Bounds of that length, as shares of the crown's height."""
 MOST_GAP = 0.2
-"""How far below the foliage a limb may end and still be extended into it, as a share of the crown's height."""
+"""Greatest gap between a limb's end and the foliage that an extension crosses, as a share of the crown's height."""
 ROOM = 0.12
-"""Free space beyond this share of the crown's height counts no further."""
+"""Greatest free distance that counts, as a share of the crown's height."""
 LEAST_ROOM = 0.03
 """Least mean free space along an extension, as a share of the crown's height; with less, a limb stays as it is."""
 SWERVES = (0.0, 0.5, 1.0, 1.7)
@@ -48,15 +48,15 @@ THINNED = 0.35
 
 
 class _End(NamedTuple):
-    """A limb's end: its joint, the way it was going (3,), unit, its radius, and how far it may go on, px."""
+    """A limb's end: its joint, its direction there (3,), unit length, its radius, and how far it may go on, px."""
 
     joint: int
-    way: Floats
+    direction: Floats
     radius: float
     reach: float
 
 
-def with_limbs_extended(skeleton: Skeleton, crown: GrowthSpace) -> Skeleton:
+def with_limbs_extended(skeleton: Skeleton, space: GrowthSpace) -> Skeleton:
     """Extend the limbs of a visible tree (px) that end under the crown, or in it with free space ahead.
 
     An extension ends inside the crown and below the tree's highest joint. It may cross a gap between the limb's end
@@ -64,10 +64,10 @@ def with_limbs_extended(skeleton: Skeleton, crown: GrowthSpace) -> Skeleton:
 
     Source: our own; the choice by free space follows Okabe et al. 2005.
     """
-    rows = np.flatnonzero(crown.mask.any(axis=1))
+    rows = np.flatnonzero(space.mask.any(axis=1))
     height = float(rows[-1] - rows[0] + 1)
     for end in _ends(skeleton, height):
-        path = _best_path(skeleton, end, crown, height)
+        path = _best_path(skeleton, end, space, height)
         if len(path):
             skeleton = _appended(skeleton, end, path)
     return skeleton
@@ -87,22 +87,22 @@ def _ends(skeleton: Skeleton, height: float) -> list[_End]:
 
 def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
     """Measure how a limb ends, over its last stretch."""
-    own = limb[1:] if len(limb) > 1 else limb
-    last = own[arc[own] >= arc[own[-1]] - AIM_SHARE * height]
+    joints = limb[1:] if len(limb) > 1 else limb
+    last = joints[arc[joints] >= arc[joints[-1]] - AIM_SHARE * height]
     before = limb[max(len(limb) - len(last) - 1, 0)]
     radius = float(skeleton.radii[last].max())
     reach = float(np.clip(SLENDER * radius, LEAST_REACH * height, MOST_REACH * height))
     return _End(int(limb[-1]), unit(skeleton.points[limb[-1]] - skeleton.points[before], UP_IN_PICTURE), radius, reach)
 
 
-def _best_path(skeleton: Skeleton, end: _End, crown: GrowthSpace, height: float) -> Floats:
+def _best_path(skeleton: Skeleton, end: _End, space: GrowthSpace, height: float) -> Floats:
     """Choose the curve (k, 3), px, with most free space along it, without its start; (0, 3) where none fits."""
     start = skeleton.points[end.joint]
     others = skeleton.points[_away(skeleton, end.joint, AIM_SHARE * height)]
     top = float(skeleton.points[:, 1].min()) + JOINT_SHARE * height
     best, best_room = np.zeros((0, 3)), LEAST_ROOM * height * LEAST_REACH * height
     for path in _paths(start, end, JOINT_SHARE * height):
-        inside = _inside(path, crown)
+        inside = _inside(path, space)
         first = int(np.argmax(inside))
         gap = float(np.sqrt(((path[first] - start) ** 2).sum()))
         if not inside[first:].all() or gap > MOST_GAP * height or path[:, 1].min() < top:
@@ -115,32 +115,36 @@ def _best_path(skeleton: Skeleton, end: _End, crown: GrowthSpace, height: float)
 
 
 def _paths(start: Floats, end: _End, step: float) -> list[Floats]:
-    """Draw curves (k, 3) that begin the way a limb was going, swerve to all sides, and rise to their end."""
-    side = unit(np.cross(end.way, UP_IN_PICTURE if abs(end.way[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
-    other = np.cross(side, end.way)
-    ways = []
+    """Draw curves (k, 3) that begin in a limb's direction, swerve to all sides, and rise to their end."""
+    side = unit(np.cross(end.direction, UP_IN_PICTURE if abs(end.direction[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
+    other = np.cross(side, end.direction)
+    directions = []
     for swerve in SWERVES:
         for turn in range(TURNS if swerve else 1):
             angle = 2 * np.pi * turn / TURNS
-            ways.append(unit(end.way + swerve * (np.cos(angle) * other + np.sin(angle) * side)))
-    return [_curve(start, end.way, way * length * end.reach, step) for length in LENGTHS for way in ways]
+            directions.append(unit(end.direction + swerve * (np.cos(angle) * other + np.sin(angle) * side)))
+    return [
+        _curve(start, end.direction, direction * length * end.reach, step)
+        for length in LENGTHS
+        for direction in directions
+    ]
 
 
-def _curve(start: Floats, way: Floats, chord: Floats, step: float) -> Floats:
+def _curve(start: Floats, direction: Floats, chord: Floats, step: float) -> Floats:
     """Place points (k, 3) about ``step`` apart on a cubic curve that starts in a direction and rises at its end."""
     length = float(np.sqrt((chord**2).sum()))
     count = max(int(np.ceil(length / step)), 2)
     t = (np.arange(1, count + 1) / count)[:, None]
     rising = unit(unit(chord) + RISE * UP_IN_PICTURE)
-    inner = t * (1 - t) ** 2 * way * length - t**2 * (1 - t) * rising * length
+    inner = t * (1 - t) ** 2 * direction * length - t**2 * (1 - t) * rising * length
     return np.asarray(start + t**2 * (3 - 2 * t) * chord + inner)
 
 
-def _inside(path: Floats, crown: GrowthSpace) -> NDArray[np.bool_]:
+def _inside(path: Floats, space: GrowthSpace) -> NDArray[np.bool_]:
     """Tell which points (k, 3) lie in the crown, clear of its surface."""
-    row = np.clip(np.floor(path[:, 1]).astype(np.int64), 0, len(crown.middle) - 1)
-    inner = np.hypot(path[:, 0] - crown.middle[row], path[:, 2]) <= WITHIN * crown.radius[row]
-    return np.asarray(crown.inside(path) & inner)
+    row = np.clip(np.floor(path[:, 1]).astype(np.int64), 0, len(space.middle) - 1)
+    inner = np.hypot(path[:, 0] - space.middle[row], path[:, 2]) <= WITHIN * space.radius[row]
+    return np.asarray(space.inside(path) & inner)
 
 
 def _nearest(points: Floats, others: Floats) -> Floats:
@@ -152,7 +156,7 @@ def _nearest(points: Floats, others: Floats) -> Floats:
 
 
 def _away(skeleton: Skeleton, tip: int, reach: float) -> Indices:
-    """List the joints save those on the last stretch (px) before a tip."""
+    """List the joints (k,) except those on the last stretch (px) before a tip."""
     arc = path_lengths(skeleton)
     others = np.ones(len(skeleton), dtype=bool)
     joint = tip

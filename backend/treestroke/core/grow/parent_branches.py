@@ -51,7 +51,7 @@ class ParentBranches:
 
 
 def parents_from_main(main: Branched, share: float, pieces: int) -> ParentBranches:
-    """Make parents of the drawn branches (n joints, metres); their first ``share`` is copied in so many ``pieces``.
+    """Make parents of the drawn branches (n joints, metres); their first ``share`` is copied in ``pieces``.
 
     Source: two-sketches paper, section 6.
     """

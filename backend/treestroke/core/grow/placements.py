@@ -25,7 +25,7 @@ class Rules:
     keep
         A shoot is clipped where it leaves the crown; with less than this share left it is dropped.
     inward_cosine
-        A shoot is dropped where the cosine between it and the way from the crown's foot to its middle is smaller.
+        A shoot is dropped where the cosine between it and the line from the crown's foot to its middle is smaller.
     angles
         Number of turns of each subtree about its branch.
     """
@@ -71,7 +71,7 @@ class Evaluator(Protocol):
         """
 
     def place(self, choice: Choice) -> list[Shoot]:
-        """List the shoots of a placement that pruning leaves; its branch is no candidate any more."""
+        """List the shoots of a placement that pruning leaves; its branch is not a candidate any more."""
 
     def image_distances(self) -> Floats:
         """Return each image attractor's distance (m,), px, to the nearest sample's projection."""

@@ -51,8 +51,8 @@ def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
 class PlainEvaluator:
     """An `Evaluator` that keeps each attractor's distance and nothing else."""
 
-    def __init__(self, crown: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
-        self._crown, self._rules = crown, rules
+    def __init__(self, space: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
+        self._space, self._rules = space, rules
         self._library = turn_library(library, rules.angles)
         self._bases = self._tips = np.zeros((0, 3))
         self._scales = np.zeros((0, len(library)))
@@ -146,9 +146,9 @@ class PlainEvaluator:
         """Return the number of leading samples of shoots (a,) in the crown; 0 where inward or clipped too short."""
         count = np.arange(1, samples.max() + 1)
         points = base[:, None] + count[:, None] * (along / samples[:, None])[:, None]
-        inside = self._crown.inside(points) & (count <= samples[:, None])
+        inside = self._space.inside(points) & (count <= samples[:, None])
         kept = np.where(inside.all(axis=1), len(count), np.argmin(inside, axis=1))
-        out = (base + along * 0.5) - self._crown.foot
+        out = (base + along * 0.5) - self._space.foot
         limit = self._rules.inward_cosine * (np.sqrt(_dot(along, along)) * np.sqrt(_dot(out, out)))
         return np.asarray(np.where((_dot(along, out) >= limit) & (kept >= self._rules.keep * samples), kept, 0))
 

@@ -126,15 +126,15 @@ class _Plan:
 
 @dataclass(frozen=True, eq=False)
 class _Level:
-    """What small branches of one level follow.
+    """The rules for the small branches of one level.
 
-    ``lengths`` (k,) are those of each parent branch's copies and ``longest`` their upper bound, metres; ``fair`` is the
-    wood, metres, that a cell would hold if all were equal.
+    ``lengths`` (k,) are those of each parent branch's copies and ``longest`` their upper bound, metres; ``even_share``
+    is the wood, metres, that a cell would hold if all were equal.
     """
 
     lengths: Floats
     longest: float
-    fair: float
+    even_share: float
     cells: CrownCells
     params: SelfSimilarParams
 
@@ -153,12 +153,12 @@ def grow_small(
     level. Deterministic.
     """
     skeleton, cells = main.skeleton, crown_cells(volume)
-    cells.lay(skeleton.points, edge_lengths(skeleton) * volume.shown(skeleton.points))
+    cells.add_wood(skeleton.points, edge_lengths(skeleton) * volume.shown(skeleton.points))
     points, parents, born = [skeleton.points], [skeleton.parents], [np.zeros(len(main), dtype=np.int64)]
     left, count, branches = params.most, len(main), parents_from_main(main, params.share, _pieces(1, len(main), params))
     for number in range(1, params.levels + 1 if cells.count else 1):
         quota = int(np.ceil(left / (FAN ** np.arange(params.levels - number + 1)).sum()))
-        shoots = _sprouted(branches, cells, _Plan(number, quota, params), rng)
+        shoots = _grown_level(branches, cells, _Plan(number, quota, params), rng)
         joints = _numbered(shoots, branches, count)
         own = joints[:, 1:] >= 0
         points.append(shoots.points[:, 1:][own])
@@ -170,11 +170,11 @@ def grow_small(
     return _finished(np.concatenate(points), np.concatenate(parents), np.concatenate(born), skeleton)
 
 
-def _pieces(level: int, bearing: int, params: SelfSimilarParams) -> int:
-    """Count the pieces of a level's small branches: fewer where they are small, more where few are to bear many."""
+def _pieces(level: int, parent_count: int, params: SelfSimilarParams) -> int:
+    """Count the pieces of a level's small branches: fewer where they are small, more where few parents bear many."""
     if level >= params.levels:
         return LEAST_PIECES
-    usual = min(bearing, round(params.most / FAN ** (params.levels - level)))
+    usual = min(parent_count, round(params.most / FAN ** (params.levels - level)))
     return int(np.clip(SPARE * params.most / max(usual, 1), PIECES >> (level - 1), MOST_PIECES))
 
 
@@ -196,23 +196,25 @@ def _finished(points: Floats, parents: Indices, born: Indices, main: Skeleton) -
     return Grown(Skeleton(points, radii, parents), born, np.zeros((0, 3), dtype=np.int64))
 
 
-def _sprouted(branches: ParentBranches, cells: CrownCells, plan: _Plan, rng: np.random.Generator) -> _Shoots:
+def _grown_level(branches: ParentBranches, cells: CrownCells, plan: _Plan, rng: np.random.Generator) -> _Shoots:
     """Let the small branches of a level grow, on all parent branches at a time, each from its tip down."""
     spacing = plan.params.spacing * cells.size * 0.5 ** (plan.number - 1)
     buds = _buds(branches, cells, round(SPARE * plan.most), spacing)
-    level = _ruled(branches, branches.branch[buds], cells, plan)
+    level = _level_rules(branches, branches.branch[buds], cells, plan)
     rank, before = _ranks(branches.branch[buds]), np.zeros((len(branches.lengths), 3))
     grown, left = [_best(buds[:0], branches, before, level, rng)], plan.most
     for turn in range(int(rank.max(initial=-1)) + 1):
         shoots = _best(buds[rank == turn], branches, before, level, rng).at(slice(left))
         own = np.arange(1, shoots.points.shape[1]) <= shoots.kept[:, None]
-        cells.lay(shoots.points[:, 1:][own], np.sqrt((np.diff(shoots.points, axis=1) ** 2).sum(axis=2))[own])
+        cells.add_wood(shoots.points[:, 1:][own], np.sqrt((np.diff(shoots.points, axis=1) ** 2).sum(axis=2))[own])
         before[branches.branch[shoots.nodes]] = shoots.points[:, -1] - shoots.points[:, 0]
         grown, left = [*grown, shoots], left - len(shoots.nodes)
-    return _Shoots(*(np.concatenate([getattr(one, name) for one in grown]) for name in ("nodes", "points", "kept")))
+    return _Shoots(
+        *(np.concatenate([getattr(shoots, name) for shoots in grown]) for name in ("nodes", "points", "kept"))
+    )
 
 
-def _ruled(branches: ParentBranches, branch: Indices, cells: CrownCells, plan: _Plan) -> _Level:
+def _level_rules(branches: ParentBranches, branch: Indices, cells: CrownCells, plan: _Plan) -> _Level:
     """Set a level's lengths, longer where branches stand far apart, and the even share of wood in the cells they reach.
 
     ``branch`` (b,) is that of each bud.
@@ -258,10 +260,10 @@ def _best(nodes: Indices, branches: ParentBranches, before: Floats, level: _Leve
     inside = np.cumprod(cells.inside(own, reach).reshape(shape), axis=2)
     around = cells.at(own, wood).reshape(shape)
     kept = inside.sum(axis=2)
-    worth = (inside * level.fair / (level.fair + around)).mean(axis=2) + LIGHT * directions[..., 1]
+    value = (inside * level.even_share / (level.even_share + around)).mean(axis=2) + LIGHT * directions[..., 1]
     crowd = (inside * around).sum(axis=2) / np.maximum(kept, 1)
-    fit = (kept >= params.stub * shape[2]) & (crowd <= params.crowded * level.fair)
-    best = np.argmax(np.where(fit, worth, -np.inf), axis=1)
+    fit = (kept >= params.stub * shape[2]) & (crowd <= params.crowded * level.even_share)
+    best = np.argmax(np.where(fit, value, -np.inf), axis=1)
     grows = np.flatnonzero(fit.any(axis=1))
     return _Shoots(nodes[grows], points[grows, best[grows]], kept[grows, best[grows]])
 

@@ -12,7 +12,7 @@ from treestroke.core.types import Floats, Indices
 JOINT_SHARE = 0.02
 """Distance between the joints of an extended stem, as a share of the crown's height."""
 SLACK = 0.03
-"""Share of the crown's height above the highest joint at which extending still is tried."""
+"""Share of the crown's height above the highest joint up to which extending is tried."""
 
 
 def stem_of(skeleton: Skeleton) -> Indices:
@@ -44,25 +44,25 @@ def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], sections: Sections,
     for aim in np.arange(share, highest + SLACK, -0.05):
         y = rows[-1] + 1 - aim * height
         top = np.array([sections.middle_px[int(np.clip(y, 0, len(mask) - 1))], y, 0.0])
-        way = _way(skeleton.points[stem[-1]], top, JOINT_SHARE * height)
-        inside = in_mask(way, mask)
+        points = _straight_line(skeleton.points[stem[-1]], top, JOINT_SHARE * height)
+        inside = in_mask(points, mask)
         if inside.any() and inside[int(np.argmax(inside)) :].all():
-            return _carried_on(skeleton, int(stem[-1]), way)
+            return _with_joints(skeleton, int(stem[-1]), points)
     return skeleton
 
 
-def _way(start: Floats, end: Floats, step: float) -> Floats:
+def _straight_line(start: Floats, end: Floats, step: float) -> Floats:
     """Place points (k, 3), px, at most ``step`` apart from ``start`` to ``end``, without the start."""
     count = max(int(np.ceil(np.sqrt(((end - start) ** 2).sum()) / step)), 1)
     return start + (end - start) * (np.arange(1, count + 1) / count)[:, None]
 
 
-def _carried_on(skeleton: Skeleton, tip: int, way: Floats) -> Skeleton:
-    """Append joints (k, 3), px, of unknown radius behind a tip."""
+def _with_joints(skeleton: Skeleton, tip: int, points: Floats) -> Skeleton:
+    """Append joints at points (k, 3), px, of unknown radius after a tip."""
     first = len(skeleton)
-    parents = np.concatenate([[tip], np.arange(first, first + len(way) - 1)])
+    parents = np.concatenate([[tip], np.arange(first, first + len(points) - 1)])
     return Skeleton(
-        np.vstack([skeleton.points, way]),
-        np.concatenate([skeleton.radii, np.zeros(len(way))]),
+        np.vstack([skeleton.points, points]),
+        np.concatenate([skeleton.radii, np.zeros(len(points))]),
         np.concatenate([skeleton.parents, parents]),
     )

@@ -25,19 +25,19 @@ FINE_PX = 500.0
 """Greatest total length of wood beyond a joint with a twig, px of a crown 1,000 px wide."""
 
 
-def with_twigs(form: Form, crown: GrowthSpace, most: int, rng: np.random.Generator) -> Form:
+def with_twigs(form: Form, space: GrowthSpace, most: int, rng: np.random.Generator) -> Form:
     """Add up to ``most`` twigs to a tree (px), all within the crown; they count as grown with their parent joint."""
-    seats = _seats(form, crown.unit, most)
+    seats = _seats(form, space.unit, most)
     if len(seats) == 0:
         return form
     along = unit(form.points[seats] - form.points[form.parents[seats]])
     turn = GOLDEN_RAD * np.arange(len(seats)) + rng.uniform(-0.5, 0.5, len(seats))
-    way = unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
-    length = crown.unit * rng.uniform(*LENGTH_PX, len(seats))[:, None]
-    middle = form.points[seats] + 0.5 * length * way
-    rising = unit(way + RISE * UP_IN_PICTURE + rng.normal(0, 0.15, way.shape))
+    direction = unit(along + rng.uniform(*LEAN, len(seats))[:, None] * _across(along, turn))
+    length = space.unit * rng.uniform(*LENGTH_PX, len(seats))[:, None]
+    middle = form.points[seats] + 0.5 * length * direction
+    rising = unit(direction + RISE * UP_IN_PICTURE + rng.normal(0, 0.15, direction.shape))
     end = middle + 0.5 * length * rising
-    kept = crown.inside(middle) & crown.inside(end)
+    kept = space.inside(middle) & space.inside(end)
     return _appended(form, seats[kept], middle[kept], end[kept])
 
 

@@ -19,7 +19,7 @@ SCATTER = 0.016
 DROOP = 0.25
 """Weight of gravity in a spray's direction."""
 AT_END = 0.25
-"""Of half a card's side: a card this near to a twig's end hides it."""
+"""Distance from a twig's end, in halves of a card's side, within which a card hides it."""
 ON_END = (-0.3, 0.9)
 """How far beyond a twig's end the middle of a spray on it lies, in halves of the spray's side."""
 TURN = 0.25
@@ -77,14 +77,14 @@ def seats_along(skeleton: Skeleton, weights: Floats, count: int, rng: np.random.
 def bare_tips(skeleton: Skeleton, leaves: Leaves) -> Seats:
     """Return a place at the end of each twig that no card on its last piece reaches."""
     tips = np.flatnonzero((child_counts(skeleton) == 0) & (skeleton.parents >= 0))
-    way = skeleton.points[leaves.joints] - leaves.centres
+    offsets = skeleton.points[leaves.joints] - leaves.centres
     half = np.linalg.norm(leaves.ups, axis=1, keepdims=True)
     square = np.maximum(half**2, 1e-12)
     across, along = (
-        np.clip((way * side).sum(axis=1, keepdims=True) / square, -1.0, 1.0) * side
+        np.clip((offsets * side).sum(axis=1, keepdims=True) / square, -1.0, 1.0) * side
         for side in (leaves.rights, leaves.ups)
     )
-    reaching = np.linalg.norm(way - across - along, axis=1) <= AT_END * half[:, 0]
+    reaching = np.linalg.norm(offsets - across - along, axis=1) <= AT_END * half[:, 0]
     tips = np.setdiff1d(tips, leaves.joints[reaching])
     end, start = skeleton.points[tips], skeleton.points[skeleton.parents[tips]]
     return Seats(end, unit(end - start, UP), tips)
@@ -132,13 +132,13 @@ def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np
 
 def pose_over(seats: Seats, centres: Floats, half_sizes: Floats, outward: Floats, rng: np.random.Generator) -> Poses:
     """Set a spray of half size (n,) at each centre (n, 3), metres, hung from its seat and facing ``outward`` (n, 3)."""
-    way = centres - seats.points
-    axis = unit(0.6 * seats.directions + unit(way) + rng.normal(0, 0.5, way.shape), UP)
-    return Poses(centres, *_frames(axis, outward, half_sizes, rng), unit(way, UP)[:, 1])
+    offsets = centres - seats.points
+    axis = unit(0.6 * seats.directions + unit(offsets) + rng.normal(0, 0.5, offsets.shape), UP)
+    return Poses(centres, *_frames(axis, outward, half_sizes, rng), unit(offsets, UP)[:, 1])
 
 
 def _frames(axis: Floats, outward: Floats, half_sizes: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
-    """Turn cards about their axis to face outward and up, each a bit otherwise: rights and ups."""
+    """Turn cards about their axis to face outward and up, with some scatter: rights and ups."""
     facing = 0.75 * outward + rng.normal(0, 0.45, axis.shape)
     facing[:, 1] += 0.35
     right = unit(np.cross(axis, facing), UP)

@@ -128,7 +128,7 @@ def _around(seats: Seats, rng: np.random.Generator) -> Floats:
 
 
 def _outward(points: Floats, volume: CrownVolume) -> Floats:
-    """Give level unit vectors (n, 3) away from the middles of the crown's sections."""
+    """Return level unit vectors (n, 3) away from the middles of the crown's sections."""
     return unit((points - volume.axis(points[:, 1])) * np.array([1.0, 0.0, 1.0]), UP)
 
 

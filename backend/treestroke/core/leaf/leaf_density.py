@@ -54,7 +54,7 @@ def _shares(middles: Floats, wood: Floats, grid: FoliageGrid, height: float, eve
 
 
 def _layers(grid: FoliageGrid, sigma: float) -> Floats:
-    """Layers of leaves over each cell (rows, columns), from the share of gaps around it; wood is no gap."""
+    """Layers of leaves over each cell (rows, columns), from the share of gaps around it; wood fills gaps, too."""
     inside = (grid.leaves_from < np.inf).astype(np.float64)
     return np.asarray(-np.log(1 - OPAQUE * np.clip(_blurred(inside, sigma), 0, 1)) * inside)
 

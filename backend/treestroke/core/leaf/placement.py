@@ -33,7 +33,7 @@ RESERVE = 0.25
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
 """Sizes at which a card that does not fit the foliage is tried again, each time with another pose."""
 BUD = 0.1
-"""Size of a bud, against a card's."""
+"""Size of a bud relative to a card."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def _on_branches(seats: Seats, crown: LeafCrown, rng: np.random.Generator) -> Le
 def _fitted(
     seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: LeafCrown, rng: np.random.Generator
 ) -> tuple[Leaves, Indices]:
-    """Set a card on each seat; those that do not fit are posed anew and shrunk a few times, then left out."""
+    """Set a card on each seat; those that do not fit are posed again, smaller each time, a few times, then left out."""
     found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
     for scale in SHRINKING:
         if len(order) == 0:

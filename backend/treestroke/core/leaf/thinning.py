@@ -28,7 +28,7 @@ _MOST_FRUIT = 0.25
 
 @dataclass(frozen=True, eq=False)
 class Coverage:
-    """What the cards that stay should cover.
+    """The silhouettes that the remaining cards should cover.
 
     Attributes
     ----------

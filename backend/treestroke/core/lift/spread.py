@@ -44,7 +44,7 @@ class LiftParams:
 
 
 @dataclass(frozen=True, eq=False)
-class SeenCrown:
+class FrontCrown:
     """A crown volume and the front camera in whose picture the tree was traced."""
 
     volume: CrownVolume
@@ -54,7 +54,7 @@ class SeenCrown:
 def lift(
     skeleton: Skeleton,
     stroke: Indices,
-    crown: SeenCrown,
+    crown: FrontCrown,
     rng: np.random.Generator,
     params: LiftParams = LiftParams(),
 ) -> Skeleton:
@@ -124,8 +124,8 @@ def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, pa
 
 def _leaning(points: Floats) -> float:
     """Return the share of the steepest slope for a limb: small for upright leaders, 1 for level limbs."""
-    way = points[-1, :2] - points[0, :2]
-    return float(UPRIGHT + (1 - UPRIGHT) * abs(way[0]) / max(float(np.hypot(*way)), 1e-9))
+    chord = points[-1, :2] - points[0, :2]
+    return float(UPRIGHT + (1 - UPRIGHT) * abs(chord[0]) / max(float(np.hypot(*chord)), 1e-9))
 
 
 def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -> int:

@@ -33,7 +33,7 @@ def drawn_depth(
 ) -> NDArray[np.float32]:
     """Draw the depth (n,), metres, of a 2D skeleton's (px) edges as (h, w), ``breadth`` times as wide as the wood.
 
-    Only edges whose both joints are ``shown`` (n,) are drawn; elsewhere it is NaN.
+    Only edges with both joints ``shown`` (n,) are drawn; elsewhere the depth is NaN.
     """
     drawn = np.full(shape, np.nan, np.float32)
     for joint, parent in enumerate(tree.parents.tolist()):
@@ -53,7 +53,10 @@ def closed(mask: Mask, share: float) -> Mask:
 
 
 def frayed(crown: Mask, rng: np.random.Generator, gap: float = GAP) -> Mask:
-    """Fray the outline of a crown (h, w, flags) into clumps of leaves, and open gaps by ``gap``, as `GAP` is meant."""
+    """Fray the outline of a crown (h, w, flags) into clumps of leaves, and open gaps between them.
+
+    Sky shows where the clumps' density is ``gap`` standard deviations below its mean.
+    """
     size = float(np.sqrt(crown.sum()))
     height, width = crown.shape
     coarse = (max(2, round(width / (CLUMP * size))), max(2, round(height / (CLUMP * size))))

@@ -46,7 +46,7 @@ class OwnPictures:
 
 NO_PICTURES = OwnPictures()
 OWN_COLOUR_SHARE = 0.1
-"""Of the foliage's pixels: if more are leaves by their own colour, colours are taken from those alone."""
+"""Share of the foliage's pixels above which colours are taken only from those that are leaves by their own colour."""
 
 
 def leaf_surface(
@@ -85,8 +85,8 @@ def _leaves(
     if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None
     species = SPECIES.get(settings.species, AUTO)
-    look = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture)
-    atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, look)
+    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture)
+    atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind == "needles")
     crown = leaf_crown(leafy, tree.volume, atlas, max(LEAST_SIZE, size * settings.leaf_size), rng)
@@ -123,10 +123,10 @@ def bark_surface(
     tree: GrownTree, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> Surface:
     """Wrap the grown tree in bark that is read off the first stem's visible pixels."""
-    wrapping, view = tubes(tree.grown.skeleton), tree.appearance.bark_view
+    surface, view = tubes(tree.grown.skeleton), tree.appearance.bark_view
     report("mesh", 0.6)
     bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
     grain = bark_pattern(TEXTURE_SIZE, rng, bark.form)
     params = BarkParams(hidden_colour=bark.colour, form=bark.form if known else None)
     texture = bark_texture(view.picture, view.stem, params, rng, grain)
-    return Surface(wrapping, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))
+    return Surface(surface, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))

@@ -27,15 +27,15 @@ class TreeModel:
     Attributes
     ----------
     camera
-        That of the picture at its own size.
+        Camera of the picture at its own size.
     grown
         The skeleton, and how it grew.
     bark, leaf
-        What is seen of it; no leaf where it bears none.
+        Its visible surfaces; ``leaf`` is None where it bears none.
     cards, atlas
         What the leaf surface was made from; both None where there is none.
-    likeness
-        (h, w), at the working size, what the front view should cover: foliage and branches that were seen.
+    expected_cover
+        (h, w), at the working size, what the front view should cover: visible foliage and branches.
     """
 
     camera: OrthographicCamera
@@ -44,7 +44,7 @@ class TreeModel:
     leaf: Surface | None
     cards: Leaves | None
     atlas: Atlas | None
-    likeness: Mask
+    expected_cover: Mask
     foliage_kind: FoliageKind
     iterations: int
     branches: int
@@ -55,10 +55,10 @@ class TreeModel:
 
 
 OnGrown = Callable[[LiveTree], None]
-"""Called once, with the tree as it stands when growth ends."""
+"""Called once, with the tree when growth ends."""
 
 
-def unseen(tree: LiveTree) -> None:
+def ignore_grown(tree: LiveTree) -> None:
     """Ignore the grown tree."""
 
 
@@ -79,7 +79,7 @@ def finish(
         A picture of a leaf or fruit has no pixels, or only transparent ones.
     """
     report("leaf", 0.0)
-    leaf, sprays, atlas = leaf_surface(tree, settings, pictures, rng, report)
+    leaf, leaf_cards, atlas = leaf_surface(tree, settings, pictures, rng, report)
     report("mesh", 0.0)
     bark = bark_surface(tree, settings, rng, report)
     report("mesh", 1.0)
@@ -88,13 +88,13 @@ def finish(
         grown=tree.grown,
         bark=bark,
         leaf=leaf,
-        cards=sprays,
+        cards=leaf_cards,
         atlas=atlas,
-        likeness=tree.likeness,
+        expected_cover=tree.expected_cover,
         foliage_kind=tree.kind,
         iterations=settings.iterations,
         branches=_branch_count(tree.grown.skeleton),
-        measures=_measures(tree, sprays, atlas),
+        measures=_measures(tree, leaf_cards, atlas),
         score={**tree.score, "depth_over_width": _depth_over_width(bark, leaf)},
         reading=tree.reading,
         warnings=tree.warnings,
@@ -117,7 +117,7 @@ def _branch_count(tree: Skeleton) -> int:
 
 
 def _depth_over_width(bark: Surface, leaf: Surface | None) -> float:
-    """Compare the tree's depth with its width, 2nd to 98th percentile of its (leaf) vertices."""
+    """Return the tree's depth over its width, each between the 2nd and 98th percentile of its (leaf) vertices."""
     points: Floats = (bark if leaf is None else leaf).mesh.positions.astype(np.float64)
     low, high = np.percentile(points[:, [0, 2]], [2, 98], axis=0)
     return float((high[1] - low[1]) / max(float(high[0] - low[0]), 1e-9))

@@ -13,7 +13,7 @@ from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
-from treestroke.core.lift.spread import SeenCrown, lift
+from treestroke.core.lift.spread import FrontCrown, lift
 from treestroke.core.paint.seasons import LEAFY
 from treestroke.core.paint.species import AUTO, SPECIES
 from treestroke.core.pipeline.crowns import (
@@ -116,20 +116,20 @@ class _PhotoCrown:
 
     @property
     def camera(self) -> OrthographicCamera:
-        """That of the working copy."""
+        """The working copy's camera."""
         return self.front.camera
 
 
 @dataclass(frozen=True, eq=False)
 class _LiftedTrace:
-    """What was traced, turned into the world.
+    """The traced branches, lifted into the world.
 
     Attributes
     ----------
     tree
         (n joints) metres.
     visible
-        The same in the picture, px.
+        The same tree in the picture, px.
     owner
         (n,) traced joint at whose edge each lies.
     score
@@ -156,24 +156,24 @@ def read_photo(
     StrokesError
         The strokes, or the sketch of the left side, do not describe a tree.
     """
-    beside = None if side is None else draw_side(side, "side")
+    side_drawing = None if side is None else draw_side(side, "side")
     report("foliage", 0.0)
     working = working_copy(photo, strokes)
     report("foliage", 0.05)
     foliage = known or segment_foliage(working.photo, working.strokes.crown.points, report=report)
     if not strokes.branches:
-        return PhotoEvidence(working, foliage, None, beside)
+        return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
     height_px = working.height_px(foliage.mask)
     surroundings = Surroundings(foliage.leaf, foliage.ground, foliage.region)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
-    return PhotoEvidence(working, foliage, traced, beside)
+    return PhotoEvidence(working, foliage, traced, side_drawing)
 
 
 def grow_tree(
     evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> GrownTree:
-    """Lift what was traced into the world and let it fill the crown.
+    """Lift the traced branches into the world and let them fill the crown.
 
     Raises
     ------
@@ -199,8 +199,8 @@ def grow_tree(
         grown=grown,
         volume=crown.volume,
         appearance=_appearance(evidence, traced, crown, lifted, leafy),
-        camera=evidence.working.unreduced(crown.camera),
-        likeness=tree,
+        camera=evidence.working.full_size_camera(crown.camera),
+        expected_cover=tree,
         stature=_stature(evidence, traced, crown),
         score={"attractors_reached": grown.attractors_reached, **lifted.score},
         reading=_reading(evidence, settings),
@@ -212,7 +212,7 @@ def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) 
     """Close the foliage to a crown and make a volume of it."""
     foliage = evidence.foliage
     shown = _shown_kind(evidence.working, foliage, settings)
-    kind = borne_kind(shown, settings)
+    kind = grown_kind(shown, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
     shows_leaves = shown != "bare" or kind == "bare"
     mask = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
@@ -227,23 +227,23 @@ def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) 
 
 
 def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator) -> _LiftedTrace:
-    """Turn what was traced into the world: by the left side, or with a guessed depth."""
+    """Lift the traced branches into the world: by the left side, or with a guessed depth."""
     visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
     stroke = traced.stroke[owner]
     if crown.side is None:
-        return _LiftedTrace(lift(visible, stroke, SeenCrown(crown.volume, crown.camera), rng), visible, owner, {})
+        return _LiftedTrace(lift(visible, stroke, FrontCrown(crown.volume, crown.camera), rng), visible, owner, {})
     weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
-    deep = with_depth(front, crown.side, evidence.height_px, crown.camera)
-    tree = deep.tree.skeleton
-    return _LiftedTrace(tree, seen_from_front(tree, crown.camera), owner[deep.front], deep.score)
+    retrieved = with_depth(front, crown.side, evidence.height_px, crown.camera)
+    tree = retrieved.tree.skeleton
+    return _LiftedTrace(tree, seen_from_front(tree, crown.camera), owner[retrieved.front], retrieved.score)
 
 
 def _appearance(
     evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, lifted: _LiftedTrace, leafy: Mask
 ) -> Appearance:
-    """Gather what the photo shows; ``leafy`` (h, w) is where the tree is to have leaves."""
+    """Return the tree's appearance in the photo; ``leafy`` (h, w) is where the tree is to have leaves."""
     stem = np.flatnonzero(traced.stroke == 0)
     view = View(
         camera=crown.camera,
@@ -263,7 +263,7 @@ def _leaves_from(
 ) -> NDArray[np.float32]:
     """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 
-    What is a leaf by its colour hangs before the wood.
+    Pixels that are leaves by their colour hang before the wood.
     """
     depth, seen = crown.camera.depth(lifted.tree.points), traced.measured[lifted.owner]
     wood, middle = (
@@ -276,7 +276,7 @@ def _leaves_from(
 
 
 def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Stature:
-    """Tell the tree's height by the scale that the strokes or the settings set, and whether its trunk is seen."""
+    """Return the tree's height, by the scale of the strokes or the settings, and whether its trunk is visible."""
     working, camera = evidence.working, crown.camera
     known, error, stem = working.strokes.scale, 0.0, np.flatnonzero(traced.stroke == 0)
     if known is not None:
@@ -285,14 +285,14 @@ def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Sta
     rows = traced.skeleton.points[:, 1]
     heights = camera.metres_from_pixels(rows[stem[0]] - rows[stem])
     trunk_seen = bool(traced.measured[stem[np.abs(heights - BREAST_HEIGHT).argmin()]])
-    scale = Scale(float(working.unreduced(camera).metres_from_pixels(1.0)), known is not None, error)
+    scale = Scale(float(working.full_size_camera(camera).metres_from_pixels(1.0)), known is not None, error)
     return Stature(float(camera.metres_from_pixels(evidence.height_px)), scale, trunk_seen, crown.as_seen)
 
 
 def _reading(evidence: PhotoEvidence, settings: ModelSettings) -> Reading:
-    """Tell what was read in the photo, and what makes that doubtful."""
-    told = settings.foliage != "auto" or settings.season in LEAFY
-    sureness = 1.0 if told else evidence.foliage.sureness
+    """Return what was read in the photo, and what makes that doubtful."""
+    chosen = settings.foliage != "auto" or settings.season in LEAFY
+    sureness = 1.0 if chosen else evidence.foliage.sureness
     doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
     return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
 
@@ -304,7 +304,7 @@ def _shown_kind(working: WorkingCopy, foliage: Foliage, settings: ModelSettings)
     return _KINDS[settings.foliage]
 
 
-def borne_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
+def grown_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
     """Return what the twigs bear: by the settings, else by season, species and photo, in this order."""
     species = SPECIES.get(settings.species, AUTO)
     if settings.season == "bare" or settings.foliage == "bare":

@@ -21,9 +21,9 @@ class LiveTree:
     skeleton
         The whole tree, metres, world frame.
     born
-        (n,) iteration at which each joint appeared, from 1; 0 for those of the visible tree.
+        (n,) iteration at which each joint appeared, from 1; 0 in the visible tree.
     camera
-        That of the picture at its own size.
+        Camera of the picture at its own size.
     """
 
     skeleton: Skeleton
@@ -33,14 +33,14 @@ class LiveTree:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a tree's front view is compared with, and how sure that is.
+    """The target of a tree's front view, and how reliable it is.
 
     Attributes
     ----------
     against
-        What was read, in words for the report.
+        The target in words, for the report.
     kind_sureness
-        Probability, 0 to 1, that the foliage's kind is right; 1 where it was given.
+        Probability, 0 to 1, that the foliage's kind is right; 1 where the settings name it.
     doubts
         Codes of what makes the reading doubtful.
     """
@@ -52,7 +52,7 @@ class Reading:
 
 @dataclass(frozen=True, eq=False)
 class GrownTree:
-    """A tree that has grown, whatever it was seen in.
+    """A grown tree, whatever its source.
 
     Attributes
     ----------
@@ -65,15 +65,15 @@ class GrownTree:
     appearance
         What its leaves, fruit and bark are made to look like.
     camera
-        That of the front picture at its own size: the frame that files and previews name.
-    likeness
-        (h, w) what the front view should cover, at any size: foliage and branches that were seen.
+        Camera of the front picture at its own size, which files name and previews use.
+    expected_cover
+        (h, w) what the front view should cover, at any size: visible foliage and branches.
     stature
         Its size, and how that is known.
     score
         How well it does what it was grown for, by name.
     reading
-        What that is measured against.
+        What the score is measured against.
     warnings
         What was mended or assumed.
     """
@@ -83,7 +83,7 @@ class GrownTree:
     volume: CrownVolume
     appearance: Appearance
     camera: OrthographicCamera
-    likeness: Mask
+    expected_cover: Mask
     stature: Stature
     score: dict[str, float]
     reading: Reading

@@ -15,9 +15,9 @@ from treestroke.core.progress import Report, silent
 from treestroke.core.types import Floats, Mask
 
 HEIGHTS_PX = (400, 150, 64)
-"""How tall a tree is seen, px, at which the first and second level and the impostor are judged."""
+"""Heights of the tree on the screen, px, for which the first level, the second level and the impostor are made."""
 _SHARES = (0.30, 0.08)
-"""Of the whole tree's triangles, in the first and second level."""
+"""Shares of the whole tree's triangles in the first and second level."""
 _BARE_MORE = 1.04
 """Factor on the triangles of a leafless tree's bark, as it has no leaves."""
 _LEAST_WOOD, _MOST_WOOD = 0.12, 0.9
@@ -41,12 +41,12 @@ class Level:
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """What a tree shows when it is seen smaller and smaller.
+    """A tree in less and less detail, for greater and greater distances.
 
     Attributes
     ----------
     lod1, lod2
-        Bark and leaves of 30 % and 8 % of the triangles; their vertices hold to the whole tree's skeleton.
+        Bark and leaves of 30 % and 8 % of the triangles; their vertices are attached to the whole tree's skeleton.
     impostor
         Pictures of the tree on crossed planes, to be seen from the front of each triangle only; it stands still.
     """
@@ -63,27 +63,27 @@ def levels(tree: TreeModel, report: Report = silent) -> Levels:
     """
     whole = Level(tree.bark, tree.leaf)
     view = framing(whole.surfaces, HEIGHTS_PX[1])
-    wanted = silhouettes(whole.surfaces, view)
+    expected = silhouettes(whole.surfaces, view)
     report("levels", 0.2)
-    wood = _wood_share(tree, view, wanted)
-    lod1 = _level(tree, 0, wood, view, wanted)
+    wood = _wood_share(tree, view, expected)
+    lod1 = _level(tree, 0, wood, view, expected)
     report("levels", 0.4)
-    lod2 = _level(tree, 1, wood, view, wanted)
+    lod2 = _level(tree, 1, wood, view, expected)
     report("levels", 0.5)
     baked = impostor(lod1.surfaces)
     report("levels", 1.0)
     return Levels(lod1, lod2, baked)
 
 
-def _wood_share(tree: TreeModel, view: Framing, wanted: Mask) -> float:
+def _wood_share(tree: TreeModel, view: Framing, expected: Mask) -> float:
     """Choose the share of triangles that is bark: more where more of the silhouettes is wood alone."""
     if tree.leaf is None:
         return 1.0
-    alone = float((wanted & ~silhouettes((tree.leaf,), view)).sum()) / max(int(wanted.sum()), 1)
+    alone = float((expected & ~silhouettes((tree.leaf,), view)).sum()) / max(int(expected.sum()), 1)
     return float(np.clip(_LEAST_WOOD + alone, _LEAST_WOOD, _MOST_WOOD))
 
 
-def _level(tree: TreeModel, number: int, wood: float, view: Framing, wanted: Mask) -> Level:
+def _level(tree: TreeModel, number: int, wood: float, view: Framing, expected: Mask) -> Level:
     """Make the first (0) or second (1) level."""
     cards_before = 0 if tree.cards is None else len(tree.cards)
     whole = len(tree.bark.mesh.triangles) + 2 * cards_before
@@ -91,12 +91,14 @@ def _level(tree: TreeModel, number: int, wood: float, view: Framing, wanted: Mas
     most = int(max(wood * aim, aim - 2 * cards_before, LEAST_TRIANGLES))
     bark = replace(tree.bark, mesh=lod_tubes(tree.grown.skeleton, LodParams(most, HEIGHTS_PX[number])))
     left = max(0, int(aim - len(bark.mesh.triangles)) // 2)
-    return Level(bark, _thinned(tree, left, view, np.where(silhouettes((bark,), view), _HIDDEN_BY_WOOD, 1.0) * wanted))
+    return Level(
+        bark, _thinned(tree, left, view, np.where(silhouettes((bark,), view), _HIDDEN_BY_WOOD, 1.0) * expected)
+    )
 
 
-def _thinned(tree: TreeModel, count: int, view: Framing, worth: Floats) -> Surface | None:
+def _thinned(tree: TreeModel, count: int, view: Framing, values: Floats) -> Surface | None:
     """Keep ``count`` cards; one at least where there are any."""
     if tree.leaf is None or tree.cards is None or tree.atlas is None:
         return None
-    kept = thin_leaves(tree.cards, tree.atlas, max(1, count), Coverage(view, worth))
+    kept = thin_leaves(tree.cards, tree.atlas, max(1, count), Coverage(view, values))
     return replace(tree.leaf, mesh=cards(kept, tree.atlas))

@@ -1,4 +1,4 @@
-"""System A: a 3D tree from one photo and a few strokes (Tan et al. 2008). The recipe reads top to bottom."""
+"""The trace of a photo in its own pixels, and the tree that grows from it (Tan et al. 2008)."""
 
 from dataclasses import dataclass, replace
 
@@ -17,7 +17,7 @@ from treestroke.core.types import Indices, Mask, Picture
 
 @dataclass(frozen=True, eq=False)
 class PhotoTrace:
-    """What strokes and photo show together, in photo px.
+    """The foliage and branches of a photo, in photo px.
 
     Attributes
     ----------
@@ -51,10 +51,10 @@ def trace_photo(photo: Picture, strokes: Strokes, known: Foliage | None = None) 
     StrokesError
         The strokes do not describe a tree.
     """
-    return _in_photo(read_photo(photo, strokes, known))
+    return _at_photo_size(read_photo(photo, strokes, known))
 
 
-def beside(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
+def with_side(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
     """Return the trace with another sketch of the tree's left side, which gives depth, or without one.
 
     Raises
@@ -73,8 +73,8 @@ def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Gener
     return None if traced.evidence.traced is None else grow_tree(traced.evidence, settings, rng).live
 
 
-def _in_photo(evidence: PhotoEvidence) -> PhotoTrace:
-    """Bring what was read to the photo's own size."""
+def _at_photo_size(evidence: PhotoEvidence) -> PhotoTrace:
+    """Scale the evidence to the photo's own size."""
     scale, size, traced = evidence.working.scale, evidence.working.size, evidence.traced
     mask = cv2.resize(evidence.foliage.mask.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST).astype(bool)
     if traced is None:

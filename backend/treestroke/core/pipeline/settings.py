@@ -146,8 +146,8 @@ def settings_from(values: Mapping[str, Any]) -> ModelSettings:
     known = [entry.name for entry in fields(ModelSettings)]
     for name in values:
         if name not in known:
-            what = f"there is no such setting; the settings are {', '.join(known)}"
-            raise SettingsError.at((name,), what, "unknown_setting")
+            fault = f"there is no such setting; the settings are {', '.join(known)}"
+            raise SettingsError.at((name,), fault, "unknown_setting")
     return ModelSettings(**values)
 
 
@@ -168,8 +168,8 @@ def check_seed(seed: Any) -> int:
         It is not a whole number from 0 to 2^63 - 1.
     """
     if not SEED.holds(seed):
-        what = f"{shown(seed)} is not allowed; give a whole number from 0 to {MAX_SEED}"
-        raise SettingsError.at(("seed",), what, "seed_invalid")
+        fault = f"{shown(seed)} is not allowed; give a whole number from 0 to {MAX_SEED}"
+        raise SettingsError.at(("seed",), fault, "seed_invalid")
     return int(seed)
 
 

@@ -20,7 +20,7 @@ from treestroke.core.types import Indices
 UNITS = 1000.0
 """Height of a tree, root to top, in which sketches are compared."""
 MARGIN = 0.02
-"""Of the tree's height: empty border around a crown's mask."""
+"""Empty border around a crown's mask, as a share of the tree's height."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ def draw_side(sketch: Sketch, place: str) -> Drawing:
         drawing = trace_sketch(sketch)
     except StrokesError as error:
         raise StrokesError(f"{place}: {error}", code=error.code, pointer=f"/{place}{error.pointer}") from error
-    warnings = tuple(replace(one, stroke=f"{place}/{one.stroke}") for one in drawing.warnings)
+    warnings = tuple(replace(warning, stroke=f"{place}/{warning.stroke}") for warning in drawing.warnings)
     return replace(drawing, warnings=warnings)
 
 
@@ -77,7 +77,7 @@ def in_units(tree: Branched, height_px: float) -> Branched:
 def side_of(
     drawing: Drawing, height_of: Callable[[Drawing], float], front_height_px: float, front: OrthographicCamera
 ) -> Side:
-    """Scale the left side so that its height, as ``height_of`` takes it, is that of the tree in the front's picture."""
+    """Scale the left side to the tree's height in the front's picture; ``height_of`` measures the side's height, px."""
     height_px = height_of(drawing)
     scale = front_height_px / height_px
     margin = MARGIN * front_height_px

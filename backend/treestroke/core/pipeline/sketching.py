@@ -1,4 +1,4 @@
-"""System D: a 3D tree from sketches of its front and its left side (depth retrieval), from top to bottom."""
+"""The first half of the sketches' recipe: from a front and a left side to a grown tree, by depth retrieval."""
 
 from dataclasses import dataclass, replace
 
@@ -13,9 +13,9 @@ from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.lift.spread import SeenCrown, lift
+from treestroke.core.lift.spread import FrontCrown, lift
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
-from treestroke.core.pipeline.growing import borne_kind
+from treestroke.core.pipeline.growing import grown_kind
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import (
@@ -38,7 +38,7 @@ from treestroke.core.trace.drawing import Drawing
 from treestroke.core.types import FoliageKind, Mask, Picture
 
 WORKING_HEIGHT = 1000.0
-"""Height, px, that a tree is brought to."""
+"""Height, px, to which a tree is scaled."""
 SMALL_BRANCHES = 8
 """Small branches for each round of growth that the settings allow."""
 LEAFED_SHARE = 0.035
@@ -72,7 +72,7 @@ class _Frame:
     Attributes
     ----------
     evidence
-        What it was brought from.
+        What the sketches show, on their own canvases.
     scale
         Its size over that of its canvas.
     tree
@@ -102,7 +102,7 @@ class _Frame:
 
 @dataclass(frozen=True, eq=False)
 class _LiftedSketch:
-    """The drawn branches in 3D (metres), the crown's volume, and how true the branches are to the sketches."""
+    """The drawn branches in 3D (metres), the crown's volume, and how well the branches match the sketches."""
 
     tree: Branched
     volume: CrownVolume
@@ -156,13 +156,13 @@ def _over(front: Sketch, photo: Picture) -> Sketch:
     size = photo.shape[1], photo.shape[0]
     fits = front.canvas[0] <= size[0] and front.canvas[1] <= size[1]
     if not fits or (front.ink is not None and front.canvas != size):
-        what = f"its canvas is {front.canvas[0]} x {front.canvas[1]} px, its photo {size[0]} x {size[1]}"
-        raise StrokesError.at(("front",), f"{what}; draw over the photo at its own size", "canvas_mismatch")
+        fault = f"its canvas is {front.canvas[0]} x {front.canvas[1]} px, its photo {size[0]} x {size[1]}"
+        raise StrokesError.at(("front",), f"{fault}; draw over the photo at its own size", "canvas_mismatch")
     return replace(front, canvas=size)
 
 
 def _framed(evidence: SketchEvidence, height_m: float) -> _Frame:
-    """Bring the front to the working size and set its scale: the height is that of the crown's top."""
+    """Scale the front to the working size; ``height_m`` is the height of the crown's top, metres."""
     front, (width, height) = evidence.front, evidence.front.size
     scale = min(WORKING_HEIGHT / crown_height(front), WORKING_SIDE / max(width, height))
     scale = scale if evidence.photo is None else min(scale, 1.0)
@@ -182,16 +182,16 @@ def _lifted(frame: _Frame, rng: np.random.Generator) -> _LiftedSketch:
     """Turn the drawn branches into the world: by the left side, or by spreading them in depth."""
     outline = turned_outline(frame.crown)
     if frame.side is None:
-        tree = lift(frame.tree.skeleton, frame.tree.branch, SeenCrown(outline, frame.camera), rng)
+        tree = lift(frame.tree.skeleton, frame.tree.branch, FrontCrown(outline, frame.camera), rng)
         return _LiftedSketch(Branched(tree, frame.tree.branch), outline, {})
-    deep = with_depth(frame.tree, frame.side, frame.height_px, frame.camera)
-    return _LiftedSketch(deep.tree, outline.with_side(frame.side.crown), deep.score)
+    retrieved = with_depth(frame.tree, frame.side, frame.height_px, frame.camera)
+    return _LiftedSketch(retrieved.tree, outline.with_side(frame.side.crown), retrieved.score)
 
 
 def _grown_tree(
     frame: _Frame, settings: ModelSettings, lifted: _LiftedSketch, grown: Grown, rng: np.random.Generator
 ) -> GrownTree:
-    """Gather what finishing the tree needs."""
+    """Return the grown tree that the second half of the recipe finishes."""
     main, camera = lifted.tree, frame.camera
     radii = grown.skeleton.radii[: len(main)]
     wood = seen_from_front(Skeleton(main.skeleton.points, radii, main.skeleton.parents), camera)
@@ -205,7 +205,7 @@ def _grown_tree(
         volume=lifted.volume,
         appearance=Appearance((replace(view, tree=tree),), shows_leaves),
         camera=camera.enlarged(frame.scale, frame.evidence.front.size),
-        likeness=tree,
+        expected_cover=tree,
         stature=_stature(frame, lifted.volume),
         score=lifted.score,
         reading=AS_DRAWN,
@@ -214,7 +214,7 @@ def _grown_tree(
 
 
 def _leafy(frame: _Frame, grown: Grown, rng: np.random.Generator) -> Mask:
-    """Tell where the tree is to have leaves: near its branches, in a crown whose outline is frayed."""
+    """Mark where the tree is to have leaves (h, w): near its branches, in a crown whose outline is frayed."""
     wood = drawn(seen_from_front(grown.skeleton, frame.camera), frame.crown.mask.shape)
     away = cv2.distanceTransform((~wood).astype(np.uint8), cv2.DIST_L2, 5)
     return np.asarray(frayed(frame.crown.mask, rng, np.inf) & (away <= LEAFED_SHARE * WORKING_HEIGHT))
@@ -229,7 +229,7 @@ def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels)
     photo = frame.evidence.photo
     if photo is None:
         season = "summer" if settings.season == "photo" else settings.season
-        kind = borne_kind("bare", replace(settings, season=season))
+        kind = grown_kind("bare", replace(settings, season=season))
         blank = np.full((*leafy.shape, 3), 255, dtype=np.uint8)
         unseen_stem = replace(stem, radii_px=np.zeros(len(stem.radii_px)))
         return kind, View(frame.camera, blank, leaves_from, leafy, leafy, unseen_stem), False
@@ -238,11 +238,11 @@ def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels)
     foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
     shown = foliage_kind(foliage.look, foliage.mask, stem.points_px)
     view = View(frame.camera, photo, leaves_from, foliage.pure, leafy, stem)
-    return borne_kind(shown, settings), view, shown != "bare"
+    return grown_kind(shown, settings), view, shown != "bare"
 
 
 def _stature(frame: _Frame, volume: CrownVolume) -> Stature:
-    """Tell the tree's height, which was given, and whether a brush told how thick the trunk is."""
+    """Return the tree's height, set by the person, and whether the trunk was drawn with a width."""
     camera, skeleton, trunk = frame.camera, frame.tree.skeleton, frame.tree.branch == 0
     heights = camera.heights_from_rows(skeleton.points[trunk, 1])
     drawn_at = skeleton.radii[trunk][np.abs(heights - BREAST_HEIGHT).argmin()] > 0

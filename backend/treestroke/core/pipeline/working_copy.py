@@ -44,7 +44,7 @@ class WorkingCopy:
             scale = known.metres / float(np.hypot(*(known.points[1] - known.points[0])))
         return OrthographicCamera(self.photo.shape[1], self.photo.shape[0], scale, (float(root[0]), float(root[1])))
 
-    def unreduced(self, camera: OrthographicCamera) -> OrthographicCamera:
+    def full_size_camera(self, camera: OrthographicCamera) -> OrthographicCamera:
         """Return the same camera for the photo at its own size."""
         return camera.enlarged(self.scale, self.size)
 

@@ -1,14 +1,14 @@
 """Decoding of what a caller hands in: the parts of `Inputs`, and settings."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
-from treestroke.codec.image import Warn, check_size, decode_fruit, decode_leaf, decode_photo, ignore_warning
+from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, ignore_warning
 from treestroke.codec.inputs import Inputs, part_of
 from treestroke.codec.project import Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
@@ -27,7 +27,6 @@ SketchLike = FileLike | Mapping[str, Any] | Sketch
 PartLike = FileLike | Mapping[str, Any] | Picture | Strokes | Sketch
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
-_CUTOUTS: Mapping[str, Callable[[bytes, str], Picture]] = {"leaf": decode_leaf, "fruit": decode_fruit}
 
 
 @contextmanager
@@ -120,14 +119,14 @@ def load_sketch(sketch: SketchLike, name: str) -> Sketch:
 def load_cutout(picture: FileLike, name: str) -> Picture:
     """Decode the picture of something cut out (path or PNG bytes) to (h, w, 4) uint8, sRGB with straight alpha.
 
-    ``name`` is its part: leaf or fruit.
+    ``name`` is its part.
 
     Raises
     ------
-    LeafError, FruitError
-        As `decode_leaf`; or the file cannot be read.
+    TreestrokeError
+        As `decode_cutout`; or the file cannot be read.
     """
-    return _CUTOUTS[name](*read_part(name, picture))
+    return decode_cutout(*read_part(name, picture), part_of(name).refusal)
 
 
 def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore_warning) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from treestroke.codec.image import decode_stored, encode_stored
 from treestroke.codec.inputs import Inputs
 from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError
 from treestroke.core.strokes import same_stroke
-from treestroke.service.inputs import load_cutout, load_parts, load_photo, load_settings, load_sketch, load_strokes
+from treestroke.service.loading import load_cutout, load_parts, load_photo, load_settings, load_sketch, load_strokes
 
 
 def test_path_bytes_and_pixels_give_the_same_photo(maple_photo: Path) -> None:
