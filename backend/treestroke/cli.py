@@ -80,7 +80,7 @@ def run() -> NoReturn:
     """Run the command line and exit with its code; a programming error is printed as one line, too."""
     if "--debug" not in sys.argv:
         sys.excepthook = _one_line
-    # Modules stay until the end, and a tree leaves hardly any cycles: garbage is searched for less often than by default.
+    # Modules stay until the end and a tree leaves hardly any cycles, so garbage is searched for less often than usual.
     gc.freeze()
     gc.set_threshold(_NEW_OBJECTS)
     # treestroke has no pydantic plugins; to look for some takes longer than to check strokes.
