@@ -1,6 +1,7 @@
 """The command line: parse, call one use case, write its results."""
 
 import argparse
+import gc
 import json
 import os
 import sys
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
+_NEW_OBJECTS = 10_000
+"""Objects made since the last search for garbage that start the next one."""
 _PRINTED = ("side_assumed", "photo_cut_short", "trunk_level", "outside_photo", "crown_unclear")
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
@@ -77,6 +80,9 @@ def run() -> NoReturn:
     """Run the command line and exit with its code; a programming error is printed as one line, too."""
     if "--debug" not in sys.argv:
         sys.excepthook = _one_line
+    # Modules stay until the end and a tree leaves hardly any cycles, so garbage is searched for less often than usual.
+    gc.freeze()
+    gc.set_threshold(_NEW_OBJECTS)
     # treestroke has no pydantic plugins; to look for some takes longer than to check strokes.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     sys.exit(main())

@@ -76,13 +76,16 @@ def fit_mixture(colours: NDArray[np.uint8], components: int) -> Mixture:
 def _nearest_seed(samples: Floats, count: int) -> Floats:
     """Assign each sample (n, 3) to the nearest of k samples drawn far from each other: shares (n, k), 0 or 1."""
     rng = np.random.default_rng(0)
-    chosen = [int(rng.integers(len(samples)))]
-    away = ((samples - samples[chosen[0]]) ** 2).sum(axis=1)[:, None]
-    while len(chosen) < count:
-        nearest = np.cumsum(away.min(axis=1))
-        chosen.append(int(np.searchsorted(nearest, rng.uniform(0, nearest[-1]), side="right")))
-        away = np.column_stack([away, ((samples - samples[chosen[-1]]) ** 2).sum(axis=1)])
-    return np.asarray(np.eye(count)[away.argmin(axis=1)])
+    chosen = int(rng.integers(len(samples)))
+    nearest = ((samples - samples[chosen]) ** 2).sum(axis=1)
+    seeds = np.zeros(len(samples), dtype=np.int64)
+    for seed in range(1, count):
+        up_to = np.cumsum(nearest)
+        chosen = int(np.searchsorted(up_to, rng.uniform(0, up_to[-1]), side="right"))
+        away = ((samples - samples[chosen]) ** 2).sum(axis=1)
+        seeds[away < nearest] = seed
+        nearest = np.minimum(nearest, away)
+    return np.asarray(np.eye(count)[seeds])
 
 
 def _most_likely(share: Floats, terms: Floats) -> Mixture:

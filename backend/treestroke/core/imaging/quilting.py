@@ -70,10 +70,11 @@ def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np
             place = np.ix_(
                 _around(row, params.patch[0], params.size[0]), _around(column, params.patch[1], params.size[1])
             )
-            patch = _best_patch(sample, clean, texture[place], filled[place], rng)
-            new = _newer_side(np.sum((patch - texture[place]) ** 2, axis=2), filled[place], params.overlap)
-            share = _feathered(new, filled[place])[..., None]
-            texture[place] = share * patch + (1.0 - share) * texture[place]
+            old, known = texture[place], filled[place]
+            patch = _best_patch(sample, clean, old, known, rng)
+            new = _newer_side(_squared_distances(patch, old), known, params.overlap)
+            share = _feathered(new, known)[..., None]
+            texture[place] = share * patch + (1.0 - share) * old
             filled[place] = True
     return texture
 
@@ -101,12 +102,18 @@ def _best_patch(
     old, known = old[compared], filled[compared]
     costs = []
     for y, x in zip(row.tolist(), column.tolist(), strict=True):
-        difference = np.sum((sample[y : y + h, x : x + w][compared] - old) ** 2, axis=2)
+        difference = _squared_distances(sample[y : y + h, x : x + w][compared], old)
         misfit = float(difference[known].mean()) if known.any() else 0.0
         costs.append(misfit + 4.0 * spread * float(1.0 - clean[y : y + h, x : x + w][compared].mean()))
     best = int(np.argmin(costs))
     y, x = int(row[best]), int(column[best])
     return sample[y : y + h, x : x + w]
+
+
+def _squared_distances(first: Floats, second: Floats) -> Floats:
+    """Return the squared distance (h, w) of values (h, w, c), channel by channel: numpy sums short axes slowly."""
+    squares = np.moveaxis(first - second, 2, 0) ** 2
+    return np.asarray(squares[0] + sum(squares[1:]))
 
 
 def _feathered(new: NDArray[np.bool_], filled: NDArray[np.bool_]) -> Floats:

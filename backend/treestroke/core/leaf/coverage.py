@@ -63,5 +63,7 @@ def _cells(leaves: Leaves, dots: Floats, grid: FoliageGrid) -> Indices:
     across, up = dots[..., 0] * np.where(leaves.flips, -1.0, 1.0)[:, None], dots[..., 1]
     # One coordinate after the other: numpy is slow where the last axis is short.
     centres, rights, ups = (vectors.T[..., None] for vectors in (leaves.centres, leaves.rights, leaves.ups))
-    points = centres + across * rights + up * ups
+    points = across * rights
+    points += centres
+    points += up * ups
     return grid.cells_of(points.reshape(3, -1).T).reshape(points.shape[1:])

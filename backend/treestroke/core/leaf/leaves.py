@@ -50,7 +50,7 @@ class Leaves:
 
     def select(self, kept: Mask) -> "Leaves":
         """Keep the marked cards (m,), a mask."""
-        return Leaves(*(getattr(self, field.name)[kept] for field in fields(self)))
+        return Leaves(*(getattr(self, field.name).compress(kept, axis=0) for field in fields(self)))
 
 
 def join_leaves(parts: Sequence[Leaves]) -> Leaves:

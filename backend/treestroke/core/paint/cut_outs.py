@@ -84,4 +84,6 @@ def mean_lab(picture: Picture) -> Floats:
 
 def mean_solid_colour(picture: Picture) -> Floats:
     """Mean colour (3,), sRGB, 0 to 255, of the solid pixels of a picture (h, w, 4)."""
-    return np.asarray(picture[picture[..., 3] >= SOLID_ALPHA][:, :3].mean(axis=0))
+    solid = (picture[..., 3] >= SOLID_ALPHA).astype(np.uint8)
+    total = cv2.sumElems(cv2.bitwise_and(picture, picture, mask=solid))[:3]
+    return np.array(total) / np.count_nonzero(solid)

@@ -79,11 +79,12 @@ def nearest_colour(lab: Floats, centres: Floats) -> tuple[Indices, Floats]:
     """Return the index (n,) and squared distance (n,) of the nearest centre (k, 3) to each colour (n, 3), CIE Lab."""
     best = np.zeros(len(lab), dtype=np.int64)
     least = np.full(len(lab), np.inf)
-    for index, centre in enumerate(centres):
-        gap = lab - centre
-        square = gap[:, 0] ** 2 + gap[:, 1] ** 2 + gap[:, 2] ** 2
+    lightness, red, yellow = np.ascontiguousarray(lab.T)
+    for index, centre in enumerate(centres.tolist()):
+        square = (lightness - centre[0]) ** 2 + (red - centre[1]) ** 2 + (yellow - centre[2]) ** 2
         closer = square < least
-        best[closer], least[closer] = index, square[closer]
+        np.copyto(best, index, where=closer)
+        np.copyto(least, square, where=closer)
     return best, least
 
 

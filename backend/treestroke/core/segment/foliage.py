@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 
 from treestroke.core.imaging.grid_cut import cut_grid
+from treestroke.core.imaging.histogram import median_of_bytes
 from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.progress import Report, silent
@@ -144,7 +145,7 @@ def segment_foliage(
 def _without_glare(foliage: Mask, pixels: Picture) -> Mask:
     """Drop the pixels (h, w) that glare among dark foliage: clouds between the leaves."""
     brightness = np.maximum(pixels[..., 2], np.maximum(pixels[..., 0], pixels[..., 1]))
-    median = float(np.median(brightness[foliage])) if foliage.any() else 255.0
+    median = median_of_bytes(brightness[foliage]) if foliage.any() else 255.0
     return np.asarray(foliage & (brightness <= GLARE * median + 30))
 
 

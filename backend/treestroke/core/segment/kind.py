@@ -1,5 +1,6 @@
 """What a tree's twigs bear, judged by its picture: leaves, needles or nothing."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 import cv2
@@ -7,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import distances_to_segment
+from treestroke.core.imaging.histogram import median_of_bytes
 from treestroke.core.types import Floats, FoliageKind, Mask
 
 FoliageLook = Literal["bare", "dull", "fresh"]
@@ -35,11 +37,11 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Fol
     """
     if not mask.any():
         return "bare", 1.0
-    colours = photo[mask].astype(np.float64)
+    red, green, blue = colours = tuple(photo[..., channel][mask] for channel in range(3))
     # How much green or red exceed blue in the median pixel, relative to its brightness: below 0 it is bluish.
-    warmest = np.maximum(colours[:, 0], colours[:, 1])
-    brightness = np.maximum(warmest, colours[:, 2])
-    tint = float(np.median((warmest - colours[:, 2]) / np.maximum(brightness, 40.0)))
+    warmest = np.maximum(red, green)
+    brightness = np.maximum(warmest, blue)
+    tint = float(np.median(np.subtract(warmest, blue, dtype=np.float64) / np.maximum(brightness, 40)))
     thinness = _thinness(mask, crown) / THIN - 1.0
     colourless = min(1.0 - tint / COLOURLESS, 1.0 - float((brightness > 200).mean()) / WHITE)
     # Foliage with colour, or white foliage, is not a web of twigs: the costly search for lines is skipped.
@@ -81,9 +83,9 @@ def _disc(share: float, crown: Mask) -> NDArray[np.uint8]:
     return np.asarray(cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)), dtype=np.uint8)
 
 
-def _is_dull_green(colours: Floats) -> bool:
-    """Tell whether colours (n, 3), sRGB, are dark and green, but not vivid, by their median."""
-    red, green, blue = np.median(colours, axis=0)
+def _is_dull_green(colours: Sequence[NDArray[np.uint8]]) -> bool:
+    """Tell whether colours, three channels (n,), sRGB, are dark and green, but not vivid, by their median."""
+    red, green, blue = map(median_of_bytes, colours)
     return bool(max(red, green, blue) < DARKNESS and green >= blue and green > 0.97 * red)
 
 

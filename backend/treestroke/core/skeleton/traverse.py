@@ -32,12 +32,11 @@ def accumulate_to_root(skeleton: Skeleton, values: Floats) -> Floats:
 
 def heaviest_children(skeleton: Skeleton, weights: Floats) -> Indices:
     """Return the index (n,) of each joint's child of greatest weight (n,), the first among equals; -1 at a tip."""
-    best = np.full(len(skeleton), -1, dtype=np.int64)
-    for child in range(len(skeleton) - 1, -1, -1):
-        parent = skeleton.parents[child]
-        if parent >= 0 and (best[parent] < 0 or weights[child] >= weights[best[parent]]):
+    best, weight = [-1] * len(skeleton), weights.tolist()
+    for child, parent in reversed(list(enumerate(skeleton.parents.tolist()))):
+        if parent >= 0 and (best[parent] < 0 or weight[child] >= weight[best[parent]]):
             best[parent] = child
-    return best
+    return np.array(best, dtype=np.int64)
 
 
 def limbs(skeleton: Skeleton, successors: Indices) -> list[Indices]:
@@ -46,11 +45,12 @@ def limbs(skeleton: Skeleton, successors: Indices) -> list[Indices]:
     Each limb that is not a stem begins with the joint of another limb that it leaves, so limbs share only their forks
     and together contain every edge once. Limbs come in the order of their first own joint.
     """
-    starts = [j for j in range(len(skeleton)) if skeleton.parents[j] < 0 or successors[skeleton.parents[j]] != j]
+    parents, following = skeleton.parents.tolist(), successors.tolist()
+    starts = [joint for joint, parent in enumerate(parents) if parent < 0 or following[parent] != joint]
     found = []
     for start in starts:
-        chain = [start] if skeleton.parents[start] < 0 else [int(skeleton.parents[start]), start]
-        while successors[chain[-1]] >= 0 and (len(chain) == 1 or chain[-1] >= start):
-            chain.append(int(successors[chain[-1]]))
+        chain = [start] if parents[start] < 0 else [parents[start], start]
+        while following[chain[-1]] >= 0 and (len(chain) == 1 or chain[-1] >= start):
+            chain.append(following[chain[-1]])
         found.append(np.array(chain, dtype=np.int64))
     return found
