@@ -157,15 +157,15 @@ def _kind_of_sketch(value: object) -> str:
     return "pixels" if pictured else "lines"
 
 
-class Sketch(
-    RootModel[
-        Annotated[
-            Annotated[StrokeSketch, Tag("lines")] | Annotated[PictureSketch, Tag("pixels")],
-            Discriminator(_kind_of_sketch),
-        ]
-    ]
-):
+class Sketch(RootModel[Any]):
     """One side of a tree, drawn."""
+
+    model_config = ConfigDict(defer_build=True)
+
+    root: Annotated[
+        Annotated[StrokeSketch, Tag("lines")] | Annotated[PictureSketch, Tag("pixels")],
+        Discriminator(_kind_of_sketch),
+    ]
 
 
 class Sketches(RequestPart):
