@@ -47,13 +47,7 @@ class Parser(argparse.ArgumentParser):
     """An argument parser that raises its message instead of printing the usage."""
 
     def error(self, message: str) -> NoReturn:
-        """Raise the message.
-
-        Raises
-        ------
-        UsageError
-            Always.
-        """
+        """Raise the message as a `UsageError`."""
         raise UsageError(f"{message}; see {self.prog} --help")
 
 

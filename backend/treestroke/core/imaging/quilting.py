@@ -112,8 +112,7 @@ def _best_patch(
 
 def _squared_distances(first: Floats, second: Floats) -> Floats:
     """Return the squared distance (h, w) of values (h, w, c), channel by channel: numpy sums short axes slowly."""
-    squares = np.moveaxis(first - second, 2, 0) ** 2
-    return np.asarray(squares[0] + sum(squares[1:]))
+    return np.asarray(sum(np.moveaxis(first - second, 2, 0) ** 2))
 
 
 def _feathered(new: NDArray[np.bool_], filled: NDArray[np.bool_]) -> Floats:
