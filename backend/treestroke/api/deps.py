@@ -57,7 +57,7 @@ async def _json_body(request: Request) -> bytes:
 
 
 def form_of(request: Request, **limits: int) -> AbstractAsyncContextManager[FormData]:
-    """Return a form, read within limits; the folder for its large fields' temporary files is made anew if gone."""
+    """Return a form, read within limits; the folder for its large fields' temporary files is made again if gone."""
     os.makedirs(gettempdir(), 0o700, exist_ok=True)
     return request.form(**limits)
 

@@ -1,6 +1,6 @@
 """A tree as Wavefront OBJ, with its material file and pictures.
 
-Written by ourselves: trimesh's OBJ writer computes the normals of several objects anew, so that leaves would lose
+Written by ourselves: trimesh's OBJ writer recomputes the normals of several objects, so that leaves would lose
 theirs, which lean out of the crown; it knows no ``map_d``; and it takes more than twice as long.
 """
 

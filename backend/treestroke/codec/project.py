@@ -67,7 +67,7 @@ def read_project(file: BinaryIO, name: str) -> Project:
             _check_sizes(archive, members, name)
             contents = {part: _content(archive, info) for part, info in members.items()}
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, RuntimeError) as error:
-        fault = f"this is not a readable project file ({error}); export it anew"
+        fault = f"this is not a readable project file ({error}); export it again"
         raise TreestrokeError(f"{name}: {fault}", code="project_unreadable") from error
     settings = _settings(contents.pop(_SETTINGS, b"{}"), name)
     return Project(stored_inputs(contents), settings)
@@ -117,7 +117,7 @@ def _members(archive: zipfile.ZipFile, name: str) -> dict[str, zipfile.ZipInfo]:
     for info in archive.infolist():
         part = _part_name(info.filename)
         if part in found:
-            fault = f"{info.filename} is not its only {part}; export it anew"
+            fault = f"{info.filename} is not its only {part}; export it again"
             raise TreestrokeError(f"{name}: {fault}", code="project_unreadable")
         if part is not None:
             found[part] = info
@@ -181,8 +181,8 @@ def _content(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> bytes:
 
 
 def _settings(text: bytes, name: str) -> dict[str, Any]:
-    value = read_json(text, SettingsError, f"{name}: settings.json is", "export the project anew")
+    value = read_json(text, SettingsError, f"{name}: settings.json is", "export the project again")
     if not isinstance(value, dict):
-        fault = "settings.json must hold an object; export the project anew"
+        fault = "settings.json must hold an object; export the project again"
         raise SettingsError(f"{name}: {fault}", code="wrong_type")
     return value

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 from treestroke.core.errors import SettingsError, TreestrokeError, shown
 from treestroke.core.pipeline.settings import MAX_SEED, settings_from
-from treestroke.core.stroke_rules import Place
+from treestroke.core.stroke_rules import NO_TRUNK, Place
 from treestroke.limits import MAX_CANVAS, MAX_LEAF_BYTES, MAX_NAME, MAX_REV, MAX_SKETCH_BYTES, MIN_CANVAS
 
 M = TypeVar("M", bound=BaseModel)
@@ -26,12 +26,12 @@ class Rule(NamedTuple):
 _PAIR = Rule("wrong_type", "a point is a pair [x, y], not {count} values; give two numbers")
 _LENGTH = Rule("scale_invalid", "it has {count} points, it needs 2; draw a straight line")
 _MANY = Rule("too_many_strokes", "there are {count} {key}, at most {max_length} are allowed; leave some out", 1)
-_TRUNK = Rule("trunk_missing", "there is none; draw one stroke from the tree's root up its trunk")
+_TRUNK = Rule("trunk_missing", NO_TRUNK)
 _CANVAS = Rule(
     "canvas_invalid",
     f"it must be [width, height], whole numbers from {MIN_CANVAS} to {MAX_CANVAS}; give the drawing's size, px",
 )
-_NOT_PNG = Rule("wrong_type", f"it must be base64 of a PNG of at most {MAX_LEAF_BYTES // 10**6} MB; encode it anew")
+_NOT_PNG = Rule("wrong_type", f"it must be base64 of a PNG of at most {MAX_LEAF_BYTES // 10**6} MB; encode it again")
 
 _BY_KEY_AND_TYPE = {
     ("crown", "missing"): Rule("crown_missing", "it is missing; draw one stroke around the foliage"),
@@ -44,7 +44,7 @@ _BY_KEY_AND_TYPE = {
     ),
     ("point", "too_short"): _PAIR,
     ("point", "too_long"): _PAIR,
-    ("width", "greater_than"): Rule("width_invalid", "{value} is no width; give pixels above 0 or leave it out"),
+    ("width", "greater_than"): Rule("width_invalid", "{value} is not a width; give pixels above 0 or leave it out"),
     ("branches", "missing"): _TRUNK,
     ("branches", "too_short"): _TRUNK,
     ("branches", "too_long"): _MANY,
@@ -52,12 +52,12 @@ _BY_KEY_AND_TYPE = {
     ("scale/points", "too_short"): _LENGTH,
     ("scale/points", "too_long"): _LENGTH,
     ("metres", "missing"): Rule("missing_key", "it has no metres; give the line's length", 1),
-    ("metres", "greater_than"): Rule("scale_invalid", "{value} metres is no length; give metres above 0"),
+    ("metres", "greater_than"): Rule("scale_invalid", "{value} metres is not a length; give metres above 0"),
     ("canvas", "tuple_type"): Rule("wrong_type", "it must be a list [width, height], not {kind}; give one"),
     ("picture", "string_too_long"): Rule(
         "sketch_too_large_file", f"the picture has more than {MAX_SKETCH_BYTES // 10**6} MB; save it smaller"
     ),
-    ("picture", "string_type"): Rule("wrong_type", "it must be a PNG in base64, not {kind}; encode it anew"),
+    ("picture", "string_type"): Rule("wrong_type", "it must be a PNG in base64, not {kind}; encode it again"),
     ("name", "missing"): Rule("missing_key", "it is missing; send it"),
 }
 """By the key at fault (`point`: one of ``points``) and pydantic's type of error."""
@@ -111,8 +111,8 @@ def _refusal(error: ValidationError, value: object, kind: type[TreestrokeError])
     place, found, facts = _place(fault["loc"], value, fault["type"] == "missing"), fault["input"], fault.get("ctx", {})
     key = facts["key"][0] if "key" in facts else ""
     if fault["type"] == "unknown_key" and place != ("settings",):
-        what = f"the key {shown(key)} is unknown; allowed are {facts['allowed']}"
-        return kind.at(place, what, "unknown_key", key=str(key))
+        message = f"the key {shown(key)} is unknown; allowed are {facts['allowed']}"
+        return kind.at(place, message, "unknown_key", key=str(key))
     if "key" in facts:
         place = (*place, key)
     if place[:1] == ("settings",) and len(place) > 1:

@@ -37,7 +37,7 @@ def parse_sketch(data: bytes, name: str) -> Sketch:
         if data.startswith(PNG):
             return read_picture(data)
         check_ascii(data, StrokesError)
-        return sketch_from(read_json(data, StrokesError, "the sketch is neither PNG nor JSON:", "save it anew"))
+        return sketch_from(read_json(data, StrokesError, "the sketch is neither PNG nor JSON:", "save it again"))
     except StrokesError as error:
         raise error.within(name) from error
 

@@ -27,7 +27,7 @@ def parse_strokes(text: str | bytes, name: str) -> Strokes:
     data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
     try:
         check_ascii(data, StrokesError)
-        return strokes_from(read_json(data, StrokesError, "the strokes are", "save them anew"))
+        return strokes_from(read_json(data, StrokesError, "the strokes are", "save them again"))
     except StrokesError as error:
         raise error.within(name) from error
 

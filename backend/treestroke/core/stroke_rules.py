@@ -30,6 +30,7 @@ MOST_OUTSIDE, LOOSE, OUTSIDE_PLACES = 0.15, 0.05, 500
 `OUTSIDE_PLACES` places; a stroke around a tree that the edge cuts stays nearer."""
 Place = tuple[str | int, ...]
 """Keys that lead from the strokes as a whole to one of their parts."""
+NO_TRUNK = "there is no trunk stroke; draw one from the tree's root up its trunk"
 CROSSING = StrokeWarning("crown_crosses_itself", "crown", "the crown crosses itself; all that it encloses was taken")
 
 
@@ -77,8 +78,8 @@ def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, 
     for place, stroke in drawn:
         share = _share_outside(stroke.points, width, height)
         if share > MOST_OUTSIDE:
-            what = f"{share:.0%} of it lies well outside the photo and was moved to its edge"
-            detail = f"{what}; {how}: draw it on this one, as it stands upright"
+            problem = f"{share:.0%} of it lies well outside the photo and was moved to its edge"
+            detail = f"{problem}; {how}: draw it on this one, as it stands upright"
             warnings.append(StrokeWarning("outside_photo", place, detail))
     return tuple(warnings)
 
@@ -100,8 +101,8 @@ def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:
     way = trunk.points - trunk.points[0]
     if -float(way[:, 1].min()) >= LEAST_RISE * float(np.hypot(*way.T).max()):
         return ()
-    what = "it lies level or runs down from its first point, the root"
-    detail = f"{what}; draw it from the root up the trunk, on the photo as it stands upright"
+    problem = "it lies level or runs down from its first point, the root"
+    detail = f"{problem}; draw it from the root up the trunk, on the photo as it stands upright"
     return (StrokeWarning("trunk_level", "branches/0", detail),)
 
 
@@ -114,8 +115,7 @@ def require_trunk(strokes: Strokes) -> None:
         There is no branch stroke.
     """
     if not strokes.branches:
-        what = "there is none; draw one stroke from the tree's root up its trunk"
-        raise StrokesError.at(("branches",), what, "trunk_missing")
+        raise StrokesError.at(("branches",), NO_TRUNK, "trunk_missing")
 
 
 def check_count(count: int) -> None:
@@ -127,8 +127,8 @@ def check_count(count: int) -> None:
         There are more than `MAX_STROKES`.
     """
     if count > MAX_STROKES:
-        what = f"there are {count}, at most {MAX_STROKES} are allowed; leave some out"
-        raise StrokesError.at((), what, "too_many_strokes")
+        problem = f"there are {count}, at most {MAX_STROKES} are allowed; leave some out"
+        raise StrokesError.at((), problem, "too_many_strokes")
 
 
 def clamped(stroke: Stroke, place: Place, size: tuple[int, int], least: int, ground: str = "photo") -> Stroke:
@@ -146,14 +146,14 @@ def clamped(stroke: Stroke, place: Place, size: tuple[int, int], least: int, gro
     if points.ndim != 2 or points.shape[1] != 2:
         raise StrokesError.at(place, "points must be pairs of x and y; give [[x, y], ...]", "wrong_type")
     if len(points) > MAX_POINTS:
-        what = f"it has {len(points)} points, at most {MAX_POINTS} are allowed; draw it with fewer"
-        raise StrokesError.at(place, what, "too_many_points")
+        problem = f"it has {len(points)} points, at most {MAX_POINTS} are allowed; draw it with fewer"
+        raise StrokesError.at(place, problem, "too_many_points")
     if not np.isfinite(points).all():
-        what = f"a coordinate is not a finite number; give pixels of the {ground}"
-        raise StrokesError.at(place, what, "non_finite_number")
+        problem = f"a coordinate is not a finite number; give pixels of the {ground}"
+        raise StrokesError.at(place, problem, "non_finite_number")
     if stroke.width is not None and not (np.isfinite(stroke.width) and stroke.width > 0):
-        what = f"width is {stroke.width}; give pixels above 0 or leave it out"
-        raise StrokesError.at(place, what, "width_invalid", key="width")
+        problem = f"width is {stroke.width}; give pixels above 0 or leave it out"
+        raise StrokesError.at(place, problem, "width_invalid", key="width")
     points = np.clip(points, 0.0, np.asarray(size, dtype=np.float64))
     distinct = len(set(map(tuple, points.tolist())))  # np.unique by rows costs 30 ms at its first call
     if distinct < least:
@@ -165,12 +165,12 @@ def clamped(stroke: Stroke, place: Place, size: tuple[int, int], least: int, gro
 def _known_length(scale: Length, width: int, height: int) -> Length:
     """Return a known length, checked by itself, with its ends (2, 2), px, clamped to the photo."""
     if len(scale.points) != 2:
-        what = f"it has {len(scale.points)} points, it needs 2; draw a straight line"
-        raise StrokesError.at(("scale",), what, "scale_invalid", key="points")
+        problem = f"it has {len(scale.points)} points, it needs 2; draw a straight line"
+        raise StrokesError.at(("scale",), problem, "scale_invalid", key="points")
     ends = clamped(Stroke(scale.points), ("scale",), (width, height), 2).points
     if not (np.isfinite(scale.metres) and scale.metres > 0):
-        what = f"{scale.metres} metres is no length; give metres above 0"
-        raise StrokesError.at(("scale",), what, "scale_invalid", key="metres")
+        problem = f"{scale.metres} metres is not a length; give metres above 0"
+        raise StrokesError.at(("scale",), problem, "scale_invalid", key="metres")
     return Length(ends, float(scale.metres))
 
 
@@ -181,8 +181,8 @@ def _check_scale(strokes: Strokes) -> None:
     height_px = strokes.branches[0].points[0, 1] - strokes.crown.points[:, 1].min()
     height_m = height_px * strokes.scale.metres / float(np.hypot(*np.diff(strokes.scale.points, axis=0)[0]))
     if not TREE_HEIGHTS[0] <= height_m <= TREE_HEIGHTS[1]:
-        what = f"by it the tree is {height_m:.3g} m high, not {TREE_HEIGHTS[0]:g} to {TREE_HEIGHTS[1]:g} m"
-        raise StrokesError.at(("scale",), f"{what}; check its metres and its ends", "scale_unlikely")
+        problem = f"by it the tree is {height_m:.3g} m high, not {TREE_HEIGHTS[0]:g} to {TREE_HEIGHTS[1]:g} m"
+        raise StrokesError.at(("scale",), f"{problem}; check its metres and its ends", "scale_unlikely")
 
 
 def check_crown(crown: NDArray[np.bool_], ground: str = "photo") -> None:
@@ -213,8 +213,8 @@ def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side
         return
     outline = np.vstack([strokes.crown.points, strokes.crown.points[:1]])
     if _nearest(outline, drawn)[1].min() > TOUCH_SHARE * side:
-        what = "the trunk neither touches nor points into the crown; draw it from the root up to the foliage"
-        raise StrokesError.at(("branches", 0), what, "trunk_outside_crown")
+        problem = "the trunk neither touches nor points into the crown; draw it from the root up to the foliage"
+        raise StrokesError.at(("branches", 0), problem, "trunk_outside_crown")
 
 
 def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], tuple[StrokeWarning, ...]]:

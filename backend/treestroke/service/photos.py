@@ -68,7 +68,7 @@ def store_pixels(resources: Resources, content: bytes) -> PhotoRow:
     try:
         columns = resources.tracers(sha256, tracer.keep_photo, folder, content, resources.photo_bytes, room)
     except Crashed as error:
-        raise PhotoError("photo: it cannot be decoded; save or copy it anew") from error
+        raise PhotoError("photo: it cannot be decoded; save or copy it again") from error
     return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **columns)
 
 

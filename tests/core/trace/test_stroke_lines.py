@@ -112,7 +112,7 @@ def test_points_are_clamped_to_the_canvas() -> None:
 @pytest.mark.parametrize(
     ("drawn", "message", "code"),
     [
-        (sketch(), "^branches: there is none; draw one stroke", "trunk_missing"),
+        (sketch(), "^branches: there is no trunk stroke; draw one", "trunk_missing"),
         (sketch(TRUNK, [[5, 5], [5, 5]]), "^branches/1: it has 1 distinct point inside the canvas", "stroke_too_short"),
         (sketch([[450, 1050], [np.nan, 4]]), "^branches/0: a coordinate is not a finite", "non_finite_number"),
         (sketch(TRUNK, widths=(0,)), "^branches/0: width is 0", "width_invalid"),

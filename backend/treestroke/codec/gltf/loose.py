@@ -28,7 +28,7 @@ def encode_gltf(
 
 
 def _take_pictures(document: Document, stem: str) -> dict[str, bytes]:
-    """Move the pictures out of the buffer into files: their bytes by name. The rest of the buffer is packed anew."""
+    """Move the pictures out of the buffer into files: their bytes by name. The rest of the buffer is packed again."""
     views, content = document.tables.pop("bufferViews"), bytes(document.binary)
     document.binary.clear()
     spans = [content[view["byteOffset"] : view["byteOffset"] + view["byteLength"]] for view in views]

@@ -52,8 +52,8 @@ def tree_height(root: Floats, points: Floats, canvas: tuple[int, int]) -> float:
     """
     height = float(root[1] - points[:, 1].min())
     if height < MIN_HEIGHT * max(canvas):
-        what = "the strokes do not rise above the lower end of the trunk; draw the tree upward from its root"
-        raise StrokesError.at(("branches",), what, "tree_flat")
+        problem = "the strokes do not rise above the lower end of the trunk; draw the tree upward from its root"
+        raise StrokesError.at(("branches",), problem, "tree_flat")
     return height
 
 
@@ -67,10 +67,10 @@ def check_length(length: float, height: float) -> None:
     """
     most = MAX_JOINTS * STEP
     if length > most * height:
-        what = (
+        problem = (
             f"all together they are {length / height:.0f} times as long as the tree is high, at most {most:.0f} times"
         )
-        raise StrokesError.at(("branches",), f"{what} is allowed; draw fewer or shorter ones", "strokes_too_long")
+        raise StrokesError.at(("branches",), f"{problem} is allowed; draw fewer or shorter ones", "strokes_too_long")
 
 
 def join_lines(lines: list[BranchLine], height: float) -> Branched:
@@ -104,8 +104,8 @@ def join_lines(lines: list[BranchLine], height: float) -> Branched:
         branch += [index] * len(own)
         stations.append((at, joints))
     if len(parents) > MAX_JOINTS:
-        what = f"all together they bend too often ({len(parents)} joints, at most {MAX_JOINTS}); draw them smoother"
-        raise StrokesError.at(("branches",), what, "strokes_too_long")
+        problem = f"all together they bend too often ({len(parents)} joints, at most {MAX_JOINTS}); draw them smoother"
+        raise StrokesError.at(("branches",), problem, "strokes_too_long")
     return Branched(Skeleton(np.concatenate(points), np.concatenate(radii), np.array(parents)), np.array(branch))
 
 

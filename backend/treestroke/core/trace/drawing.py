@@ -77,6 +77,6 @@ def _drawn_crown(crown: Stroke, tree: Branched, canvas: tuple[int, int]) -> tupl
     filled, crossing = filled_and_crossing(outline * coarse, *size)
     check_crown(filled, "canvas")
     if not sample_nearest(filled, tree.skeleton.points * coarse, False).any():
-        what = "no branch reaches into it; draw it around the foliage of the tree that is drawn"
-        raise StrokesError.at(("crown",), what, "crown_apart")
+        problem = "no branch reaches into it; draw it around the foliage of the tree that is drawn"
+        raise StrokesError.at(("crown",), problem, "crown_apart")
     return np.array(outline), (CROSSING,) if crossing else ()

@@ -34,8 +34,8 @@ def bridge_gaps(lines: Mask, ink: Mask, half_widths: NDArray[np.float32]) -> tup
     extent[0] = 0
     kept = extent > min(max(3.0, SPECK * max(ink.shape)), float(extent.max()) - 1)
     if np.count_nonzero(kept) > MAX_STROKES:
-        what = f"the picture has {np.count_nonzero(kept)} separate strokes, at most {MAX_STROKES} are allowed"
-        raise StrokesError(f"{what}; leave some out", code="too_many_strokes")
+        problem = f"the picture has {np.count_nonzero(kept)} separate strokes, at most {MAX_STROKES} are allowed"
+        raise StrokesError(f"{problem}; leave some out", code="too_many_strokes")
     lines = lines & kept[labels]
     pixels = np.argwhere(lines)
     owner = labels[tuple(pixels.T)].astype(np.int64)

@@ -50,8 +50,8 @@ def split_into_branches(graph: Graph, root: int) -> tuple[list[BranchPath], list
         The graph has too many loops.
     """
     if len(graph.arcs) - len(graph.at) >= MAX_STROKES:
-        what = f"its lines close more than {MAX_STROKES} loops; draw branches that do not meet again"
-        raise StrokesError(f"the picture does not show a tree: {what}", code="too_many_strokes")
+        problem = f"its lines close more than {MAX_STROKES} loops; draw branches that do not meet again"
+        raise StrokesError(f"the picture does not show a tree: {problem}", code="too_many_strokes")
     _separate_crossings(graph, root)
     cuts = _cut_loops(graph, root)
     return _branches(graph, root, {node for node, _ in cuts}), [place for _, place in cuts]

@@ -68,8 +68,8 @@ def follow_ink(ink: Mask) -> tuple[list[BranchLine], float, tuple[StrokeWarning,
     _check_amount(len(graph.arcs), MAX_ARCS)
     graph = merge_crossings(drop_spurs(graph))
     if not graph.arcs:
-        what = "the picture has dots but no strokes; draw the trunk and the main branches as lines"
-        raise StrokesError(what, code="sketch_empty")
+        problem = "the picture has dots but no strokes; draw the trunk and the main branches as lines"
+        raise StrokesError(problem, code="sketch_empty")
     paths, cuts = split_into_branches(graph, _root(graph, in_trunk))
     pen = 2 * float(np.median(half_widths[lines & small])) <= PEN_PX
     branches = _branch_lines(paths, small, pen, scale)
@@ -84,8 +84,8 @@ def follow_ink(ink: Mask) -> tuple[list[BranchLine], float, tuple[StrokeWarning,
 def _check_amount(count: int, most: int) -> None:
     """Refuse a picture with more pixels or arcs than a sketch has."""
     if count > most:
-        what = "the picture has more lines than a sketch; draw the main branches only"
-        raise StrokesError(what, code="too_many_strokes")
+        problem = "the picture has more lines than a sketch; draw the main branches only"
+        raise StrokesError(problem, code="too_many_strokes")
 
 
 def _reduced(ink: Mask) -> tuple[Mask, NDArray[np.float32], Floats]:
@@ -97,8 +97,10 @@ def _reduced(ink: Mask) -> tuple[Mask, NDArray[np.float32], Floats]:
     half_widths = _half_widths(small)
     widest = float(half_widths.max())
     if 2 * widest > WIDEST * max(small.shape):
-        what = f"the picture has a patch wider than {WIDEST:.0%} of it, which is not a stroke; draw branches as lines"
-        raise StrokesError(what, code="sketch_filled")
+        problem = (
+            f"the picture has a patch wider than {WIDEST:.0%} of it, which is not a stroke; draw branches as lines"
+        )
+        raise StrokesError(problem, code="sketch_filled")
     if widest > WORKED_HALF_WIDTH:
         small = _shrink(ink, max(ink.shape) / max(small.shape) * widest / WORKED_HALF_WIDTH)
         half_widths = _half_widths(small)

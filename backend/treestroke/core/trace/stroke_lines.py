@@ -14,7 +14,7 @@ import numpy as np
 
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.polyline import arc_lengths, place_at, places_along, resample
-from treestroke.core.stroke_rules import TOUCH_SHARE, check_count, clamped
+from treestroke.core.stroke_rules import NO_TRUNK, TOUCH_SHARE, check_count, clamped
 from treestroke.core.strokes import Stroke, StrokeWarning
 from treestroke.core.trace.branch_lines import BranchLine, check_length, tree_height
 from treestroke.core.types import Floats, Indices
@@ -47,8 +47,7 @@ def link_strokes(
     """
     check_count(1 + len(branches))
     if not branches:
-        what = "there is none; draw one stroke from the tree's root up its trunk"
-        raise StrokesError.at(("branches",), what, "trunk_missing")
+        raise StrokesError.at(("branches",), NO_TRUNK, "trunk_missing")
     strokes = [clamped(stroke, ("branches", i), canvas, 2, "canvas") for i, stroke in enumerate(branches)]
     strokes[0], warnings = _upright(strokes[0])
     height = tree_height(strokes[0].points[0], np.concatenate([stroke.points for stroke in strokes]), canvas)
