@@ -23,5 +23,5 @@ export default defineConfig({
     fs: { allow: ['..'] },
     proxy: { '/v1': process.env.TREESTROKE_AT ?? 'http://127.0.0.1:8000' },
   },
-  test: { include: ['test/**/*.test.ts'] },
+  test: { include: ['test/**/*.test.{ts,tsx}'] },
 })

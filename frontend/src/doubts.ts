@@ -1,4 +1,5 @@
-import type { State, StrokeWarning } from './state'
+import type { StrokeWarning } from './api/types'
+import type { State } from './state'
 import { type StrokeRef, strokeAt } from './strokes'
 
 /** Codes of warnings that a stroke may mean no tree. */

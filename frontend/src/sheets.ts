@@ -1,5 +1,9 @@
-import type { Ground, Photo, State } from './state'
+import type { PhotoSheet, Sheet, Sheets, State } from './state'
 import { type Line, lineOf, onSheet, type Point, type SheetName, type Side, type Strokes, strokeRefs } from './strokes'
+
+type Open = Pick<State, 'sheets'>
+
+export const SHEET_NAMES = ['front', 'side'] as const
 
 /** Where a tree stands and where it ends, px down its sheet. */
 export interface Levels {
@@ -20,28 +24,36 @@ const EXPECTED: Levels = { root: 0.92, top: 0.08 }
 /** Lines of the side that lie as near to the front's need no mention, as a share of the tree's height. */
 const ALIKE = 0.04
 
-/** Take white paper, as high as another sheet where there is one. */
-export function paper(height = PAPER.height): Ground {
+/** Return a sheet of white paper, as high as another one where a height is given. */
+export function paper(height = PAPER.height): Sheet {
   return sheetOfSize({ width: Math.round((PAPER.width / PAPER.height) * height), height })
 }
 
-/** Take white paper of a size, px. */
-export function sheetOfSize({ width, height }: Extent): Ground {
+/** Return a sheet of white paper of a size, px. */
+export function sheetOfSize({ width, height }: Extent): Sheet {
   return { id: null, width, height, file: null, url: null }
 }
 
-export function isPhoto(ground: Ground | null): ground is Photo {
-  return ground !== null && ground.id !== null && ground.file !== null && ground.url !== null
+/** Whether the service has the picture that lies under a sheet's strokes. */
+export function hasPhoto(sheet: Sheet): sheet is PhotoSheet {
+  return sheet.id !== null && sheet.file !== null && sheet.url !== null
 }
 
-/** Give what is drawn on; null where the sheet is not open. */
-export function groundOf({ photo, side }: Pick<State, 'photo' | 'side'>, sheet: SheetName): Ground | null {
-  return sheet === 'front' ? photo : side
+/** Return a sheet by its name; null where it is not open. */
+export function sheetOf({ sheets }: Open, name: SheetName): Sheet | null {
+  return sheets?.[name] ?? null
 }
 
-/** Whether strokes lie on paper: the photo of a tree that is traced is none. */
-export function isPaper({ source }: Pick<State, 'source'>, sheet: SheetName): boolean {
-  return source === 'sketch' || sheet === 'side'
+/** Whether a sheet is paper to sketch on; the photo of a tree that is traced is not. */
+export function isPaper({ sheets }: Open, name: SheetName): boolean {
+  return sheets?.source === 'sketch' || name === 'side'
+}
+
+/** Put another sheet in the place of the one with this name. */
+export function replaceSheet(sheets: Sheets, name: SheetName, sheet: Sheet): Sheets {
+  if (name === 'side') return { ...sheets, side: sheet }
+  if (sheets.source === 'sketch') return { ...sheets, front: sheet }
+  return hasPhoto(sheet) ? { ...sheets, front: sheet } : sheets
 }
 
 /** How wide the brush is on a sheet, px; null for a pencil. */
@@ -49,12 +61,12 @@ export function brushWidth({ brush }: Pick<State, 'brush'>, { height }: Extent):
   return brush === null ? null : Math.round(brush * height * 10) / 10
 }
 
-/** List the sheets that are open. */
-export function openSheets({ side }: Pick<State, 'side'>): readonly SheetName[] {
-  return side ? ['front', 'side'] : ['front']
+/** List the names of the sheets that are open. */
+export function openSheets({ sheets }: Open): readonly SheetName[] {
+  return SHEET_NAMES.filter(name => sheets?.[name])
 }
 
-/** Find where a sketched tree stands and ends; null before its first branch. */
+/** Return where a sketched tree stands and ends; null before its first branch. */
 export function levelsOf({ branches }: Side): Levels | null {
   const [trunk] = branches
   if (!trunk) return null
@@ -62,16 +74,16 @@ export function levelsOf({ branches }: Side): Levels | null {
   return { root: Math.max(...down(trunk.points)), top: Math.min(...branches.flatMap(({ points }) => down(points))) }
 }
 
-/** Give the lines that run through all sheets, on one of them: those of the front's tree, or where one is expected. */
-export function commonLevels(state: Pick<State, 'photo' | 'side' | 'history'>, sheet: SheetName): Levels | null {
-  const [front, ground] = [state.photo, groundOf(state, sheet)]
-  if (!front || !ground) return null
+/** Return the lines that run through all sheets, on one of them: those of the front's tree, or where one is expected. */
+export function commonLevels(state: Open & Pick<State, 'history'>, sheet: SheetName): Levels | null {
+  const [front, shown] = [sheetOf(state, 'front'), sheetOf(state, sheet)]
+  if (!front || !shown) return null
   const { root, top } = levelsOf(state.history.present) ?? scaled(EXPECTED, front.height)
-  return scaled({ root, top }, ground.height / front.height)
+  return scaled({ root, top }, shown.height / front.height)
 }
 
-/** Give the side's own lines where they lie elsewhere: its drawing will be brought to the front's height. */
-export function strayLevels(state: Pick<State, 'photo' | 'side' | 'history'>): Levels | null {
+/** Return the side's own lines where they lie elsewhere: its drawing will be scaled to the front's height. */
+export function strayLevels(state: Open & Pick<State, 'history'>): Levels | null {
   const common = commonLevels(state, 'side')
   const own = levelsOf(onSheet(state.history.present, 'side'))
   if (!common || !own) return null

@@ -1,21 +1,10 @@
 import { DEFAULT_SETTINGS } from './api/defaults'
-import type { components } from './api/schema'
+import type { Grown, Limits, Model, Settings, TraceAnswer } from './api/types'
 import { begin, type History } from './history'
 import { type Line, NO_STROKES, type SheetName, type StrokeRef, type Strokes } from './strokes'
 
-type Schemas = components['schemas']
-export type TraceAnswer = Schemas['TraceAnswer']
-export type SketchTraceAnswer = Schemas['SketchTraceAnswer']
-export type TracedSkeleton = Schemas['TracedSkeleton']
-export type StrokeWarning = Schemas['StrokeWarning']
-export type Grown = Schemas['GrownSkeleton']
-export type PhotoFrame = Schemas['PhotoFrame']
-export type Model = Schemas['ModelInfo']
-export type Limits = Schemas['Limits']
-export type Settings = Required<Schemas['ModelSettings']>
-
-/** What is drawn on: white paper, perhaps with a picture under the strokes. */
-export interface Ground {
+/** White paper, perhaps with a picture under the strokes. */
+export interface Sheet {
   /** Of the photo that the service has; null where it has none. */
   readonly id: string | null
   /** Pixels, upright. */
@@ -25,21 +14,25 @@ export interface Ground {
   readonly file: Blob | null
   /** Where the upright picture can be shown from. */
   readonly url: string | null
-  /** What was mended in reading the picture, in words for the user. */
-  readonly mended?: string
-  /** The picture is out of sight for now. */
+  /** What was corrected while the picture was read, in words for the user. */
+  readonly corrections?: string
+  /** The picture is hidden for now. */
   readonly hidden?: true
 }
 
-/** A photo that the service has. */
-export interface Photo extends Ground {
+/** A sheet with a photo that the service has. */
+export interface PhotoSheet extends Sheet {
   readonly id: string
   readonly file: Blob
   readonly url: string
 }
 
-/** What the tree is made of: strokes over a photo, or sketches of its sides. */
-export type Source = 'photo' | 'sketch'
+/** The sheets that are open, by what the tree is made of: strokes over a photo, or sketches of its sides. */
+export type Sheets =
+  | { readonly source: 'photo'; readonly front: PhotoSheet; readonly side: Sheet | null }
+  | { readonly source: 'sketch'; readonly front: Sheet; readonly side: Sheet | null }
+
+export type Source = Sheets['source']
 
 /** What the pointer does on the photo. */
 export type Tool = 'crown' | 'branch' | 'scale' | 'select'
@@ -57,6 +50,16 @@ export interface Fault {
   readonly stroke?: StrokeRef
 }
 
+/** A message that has no place of its own on the page; it goes by itself unless it `stays`. */
+export interface Notice {
+  readonly text: string
+  /** What can be done about it. */
+  readonly action?: { readonly label: string; run(): void }
+  readonly stays?: true
+  /** Called when it has gone. */
+  gone?(): void
+}
+
 /** What was traced, and of which strokes. */
 export interface Traced {
   readonly of: Strokes
@@ -65,51 +68,53 @@ export interface Traced {
   readonly crowns?: Readonly<Partial<Record<SheetName, Line>>>
 }
 
-export interface State {
-  readonly source: Source
-  /** The photo, or the front's sheet; null while nothing is open. */
-  readonly photo: Ground | null
-  /** The sheet of the tree's left side, while it is open. */
-  readonly side: Ground | null
+/** A person's own pictures, PNGs. */
+export interface OwnPictures {
+  readonly leaf: Blob | null
+  readonly fruit: Blob | null
+}
+
+/** A model that was asked for or opened, and what it was made of. */
+export interface ShownModel extends OwnPictures {
+  readonly info: Model
+  /** What it was made of. */
+  readonly strokes: Strokes
+  /** Which of its trees is shown, from 1. */
+  readonly variant: number
+  /** Its skeleton, when it has just been grown. */
+  readonly growth: Grown | null
+  /** The GLB of the tree that is shown. */
+  readonly glb: ArrayBuffer | null
+}
+
+export interface State extends OwnPictures {
+  /** Null while nothing is open. */
+  readonly sheets: Sheets | null
   /** The sheet that was touched last. */
-  readonly sheet: SheetName
+  readonly active: SheetName
   readonly name: string
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
-  /** The person's own picture of a leaf, a PNG. */
-  readonly leaf: Blob | null
-  /** And of a fruit. */
-  readonly fruit: Blob | null
   readonly tool: Tool
-  /** How wide branches are drawn on paper, as a share of its height; null for a pencil, which says nothing of it. */
+  /** How wide branches are drawn on paper, as a share of its height; null for a pencil, which sets no width. */
   readonly brush: number | null
   readonly selection: Selection | null
   /** A photo, a sketch or a project is being read. */
   readonly opening: boolean
   readonly tracing: boolean
   readonly traced: Traced | null
-  /** What was mended in reading the pictures of sketches, and the strokes that came of them. */
-  readonly remark: { readonly of: Strokes; readonly text: string } | null
+  /** What was corrected while pictures of sketches were read, and the strokes that were read from them. */
+  readonly corrections: { readonly of: Strokes; readonly text: string } | null
   /** The live tree. */
-  readonly grown: Grown | null
+  readonly liveTree: Grown | null
   /** A model is being asked for. */
   readonly asking: boolean
-  /** The model that was asked for last or is looked at. */
-  readonly model: Model | null
-  /** The strokes that the model was made of. */
-  readonly modelOf: Strokes | null
-  /** The leaf and the fruit that the model was made with. */
-  readonly modelLeaf: Blob | null
-  readonly modelFruit: Blob | null
-  /** Which of the model's trees is looked at, from 1. */
-  readonly variant: number
-  /** The model's skeleton, when it has just been grown. */
-  readonly growth: Grown | null
-  /** The GLB of that tree. */
-  readonly tree: ArrayBuffer | null
+  readonly model: ShownModel | null
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
+  /** The dialog that is open. */
+  readonly dialog: 'gallery' | 'shortcuts' | null
   /** What the service takes, once it has said so. */
   readonly limits: Limits | null
   /** False while the browser cannot keep the drawing. */
@@ -117,13 +122,14 @@ export interface State {
   /** False while the service cannot be reached. */
   readonly online: boolean
   readonly faults: Readonly<Partial<Record<Place, Fault>>>
+  readonly notices: readonly Notice[]
+  /** What screen readers say. */
+  readonly announcement: string
 }
 
 export const EMPTY: State = {
-  source: 'photo',
-  photo: null,
-  side: null,
-  sheet: 'front',
+  sheets: null,
+  active: 'front',
   name: '',
   history: begin(NO_STROKES),
   settings: DEFAULT_SETTINGS,
@@ -136,21 +142,23 @@ export const EMPTY: State = {
   opening: false,
   tracing: false,
   traced: null,
-  remark: null,
-  grown: null,
+  corrections: null,
+  liveTree: null,
   asking: false,
   model: null,
-  modelOf: null,
-  modelLeaf: null,
-  modelFruit: null,
-  variant: 1,
-  growth: null,
-  tree: null,
   shows: 'live',
+  dialog: null,
   limits: null,
   kept: true,
   online: true,
   faults: {},
+  notices: [],
+  announcement: '',
+}
+
+/** Return the state with nothing open; what is not about the drawing stays. */
+export function closed({ limits, online, notices, announcement }: State): State {
+  return { ...EMPTY, limits, online, notices, announcement }
 }
 
 /** Holds the one state of the page and tells who listens what changed. */
@@ -170,6 +178,29 @@ export class Store {
     const before = this.#state
     this.#state = { ...before, ...change }
     for (const listener of this.#listeners) listener(this.#state, before)
+  }
+
+  /** Change the model that is shown, where it still is the one with this id. */
+  setModel(id: string, change: Partial<ShownModel>): void {
+    const { model } = this.#state
+    if (model?.info.id === id) this.set({ model: { ...model, ...change } })
+  }
+
+  /** Have screen readers say a sentence. */
+  announce(announcement: string): void {
+    this.set({ announcement })
+  }
+
+  /** Show a notice; the call ends it. */
+  notify(notice: Notice): () => void {
+    this.set({ notices: [...this.#state.notices, notice] })
+    return () => this.dismiss(notice)
+  }
+
+  dismiss(notice: Notice): void {
+    if (!this.#state.notices.includes(notice)) return
+    this.set({ notices: this.#state.notices.filter(other => other !== notice) })
+    notice.gone?.()
   }
 
   /** Put a fault in its place, or take it away. */

@@ -1,4 +1,4 @@
-import type { components } from './api/schema'
+import type { WireStrokes } from './api/types'
 
 /** A place on a sheet, the upright photo or paper, pixels from the outer corner of its top-left one: x right, y down. */
 export type Point = readonly [x: number, y: number]
@@ -44,8 +44,6 @@ export interface StrokeRef {
   /** Absent: it is on the front's sheet. */
   readonly sheet?: 'side'
 }
-
-type WireStrokes = components['schemas']['Strokes']
 
 export const NO_STROKES: Strokes = { crown: null, branches: [], erase: [], scale: null }
 

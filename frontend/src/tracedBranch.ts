@@ -1,5 +1,5 @@
+import type { TracedSkeleton } from './api/types'
 import { along, cross, distance, distanceToPiece, type Piece } from './plane'
-import type { TracedSkeleton } from './state'
 import type { Line, Point } from './strokes'
 
 /** Places where a branch's first step may be cut, as shares of the step. */

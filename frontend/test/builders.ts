@@ -1,4 +1,5 @@
-import type { Grown, Model, Photo, SketchTraceAnswer, TraceAnswer } from '../src/state'
+import type { Grown, Model, SketchTraceAnswer, TraceAnswer } from '../src/api/types'
+import type { Photo } from '../src/state'
 import type { Line } from '../src/strokes'
 
 /** The beginning of a PNG: as much of one as the page itself looks at. */

@@ -1,8 +1,9 @@
 import { expect, test } from 'vitest'
+import type { StrokeWarning } from '../src/api/types'
 import { doubtIn, remarksOn } from '../src/doubts'
 import { begin } from '../src/history'
-import { sightOf } from '../src/sketch/sheet'
-import { EMPTY, type State, type StrokeWarning } from '../src/state'
+import { sightOf } from '../src/sketch/sheetView'
+import { EMPTY, type State } from '../src/state'
 import { NO_STROKES, withStroke } from '../src/strokes'
 import { answer, CROWN, photo, TRUNK } from './builders'
 

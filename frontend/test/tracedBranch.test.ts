@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
+import type { TracedSkeleton } from '../src/api/types'
 import { cross, distance, type Piece } from '../src/plane'
-import type { TracedSkeleton } from '../src/state'
 import { branchAt, continues, eraseLine, firstJoint, pieceTo } from '../src/tracedBranch'
 import { TREE } from './sketch/tree'
 

@@ -1,6 +1,6 @@
-import type { Limits, Model, Settings, SketchTraceAnswer, TraceAnswer } from '../state'
 import { type Strokes, toWire } from '../strokes'
 import type { components } from './schema'
+import type { Limits, Model, Settings, SketchTraceAnswer, TraceAnswer } from './types'
 
 type Schemas = components['schemas']
 
@@ -25,15 +25,15 @@ export class Unreachable extends Error {}
 type Sketches = Schemas['Sketches']
 
 /** What a tree is made of: strokes over a photo, sketches of its sides, or both. */
-export interface Evidence {
+export interface Inputs {
   readonly photo?: string
   readonly strokes?: Strokes
   readonly sketches?: Sketches
 }
 
-/** What is wished for when a tree is grown. */
-export interface Wish {
-  readonly evidence: Evidence
+/** A request for a model. */
+export interface ModelRequest {
+  readonly inputs: Inputs
   readonly settings: Settings
   readonly seed: number
   readonly name: string
@@ -79,10 +79,10 @@ export class Client {
   }
 
   /** Ask for a model; the same `key` asks for the same one, however often it is sent. */
-  async grow({ evidence: { strokes, ...evidence }, leaf, fruit, ...wish }: Wish, key: string): Promise<Model> {
-    const drawn = { ...evidence, ...(strokes && { strokes: toWire(strokes) }) }
+  async grow({ inputs: { strokes, ...inputs }, leaf, fruit, ...order }: ModelRequest, key: string): Promise<Model> {
+    const drawn = { ...inputs, ...(strokes && { strokes: toWire(strokes) }) }
     const pictures = { ...(leaf && { leaf: await base64(leaf) }), ...(fruit && { fruit: await base64(fruit) }) }
-    return ask('POST', '/v1/models', json({ ...drawn, ...wish, ...pictures }, { 'Idempotency-Key': key }))
+    return ask('POST', '/v1/models', json({ ...drawn, ...order, ...pictures }, { 'Idempotency-Key': key }))
   }
 
   getModel(id: string): Promise<Model> {

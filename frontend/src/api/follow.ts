@@ -1,4 +1,4 @@
-import type { Grown, Model } from '../state'
+import type { Grown, Model } from './types'
 
 /** What happens to a model that is followed. */
 export interface Following {

@@ -1,4 +1,4 @@
-import type { PhotoFrame } from '../state'
+import type { PhotoFrame } from '../api/types'
 
 /** A point or direction in the preview's world: +Y up, +X photo right, +Z to the camera; 1 unit = the photo's height. */
 export type Vec3 = readonly [number, number, number]

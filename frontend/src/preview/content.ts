@@ -9,7 +9,7 @@ import {
   type Texture,
   Vector3,
 } from 'three'
-import type { PhotoFrame } from '../state'
+import type { PhotoFrame } from '../api/types'
 import { type Box, unitsPerMetre } from './camera'
 import { groundShadow } from './canopy'
 import { restMatrix } from './resting'

@@ -7,7 +7,7 @@ import {
   type Object3D,
   type Texture,
 } from 'three'
-import type { PhotoFrame } from '../state'
+import type { PhotoFrame } from '../api/types'
 import { type Box, unitsPerMetre } from './camera'
 import { canopyOf, lightAt } from './canopy'
 import { type Content, disposeMesh, placed, trianglesOf } from './content'

@@ -1,5 +1,5 @@
 import './preview.css'
-import type { Grown } from '../state'
+import type { Grown } from '../api/types'
 import { press } from './keys'
 import { probeWebgl } from './software'
 import { Viewer } from './viewer'

@@ -1,5 +1,5 @@
 import { BufferAttribute, BufferGeometry, Color, Mesh } from 'three'
-import type { Grown } from '../state'
+import type { Grown } from '../api/types'
 import { canopyOf, lightAt } from './canopy'
 import { boxOf, type Content, disposeMesh, placed, trianglesOf } from './content'
 import { type Shades, THICKENING, woodMaterial } from './shading'

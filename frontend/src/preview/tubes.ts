@@ -1,4 +1,4 @@
-import type { Grown } from '../state'
+import type { Grown } from '../api/types'
 
 /**
  * A skeleton's surface, in metres: rings of vertices joined along the edges, which are sorted by the iteration of their birth.

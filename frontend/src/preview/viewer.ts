@@ -1,4 +1,4 @@
-import type { Grown } from '../state'
+import type { Grown } from '../api/types'
 import { Ageing } from './ageing'
 import { photoRect, type Viewport } from './camera'
 import type { Content } from './content'

@@ -1,10 +1,10 @@
-import type { Sheet } from './overlay'
+import type { DrawTarget } from './drawTarget'
 import type { Size, View } from './viewport'
 
 /** Bottom to top. */
 const NAMES = ['photo', 'traced', 'strokes', 'pen'] as const
 export type LayerName = (typeof NAMES)[number]
-export type Paint = Record<LayerName, (sheet: Sheet) => void>
+export type Paint = Record<LayerName, (target: DrawTarget) => void>
 
 /** Canvases one above the other; those that were touched are painted anew in the next frame. */
 export class Layers {

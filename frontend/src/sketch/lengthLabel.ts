@@ -1,7 +1,7 @@
 import type { Line, Point, Scale } from '../strokes'
 import { text } from '../text'
+import type { DrawTarget } from './drawTarget'
 import { INK } from './ink'
-import type { Sheet } from './overlay'
 import { type Size, toScreen, type View } from './viewport'
 
 const FONT = '600 13px system-ui, sans-serif'
@@ -23,7 +23,7 @@ export function labelPlace([from, to]: Line, view: View, { width, height }: Size
 }
 
 /** Write a measured line's length beside it. */
-export function drawLength({ ctx, density, view }: Sheet, { points, metres }: Scale): void {
+export function drawLength({ ctx, density, view }: DrawTarget, { points, metres }: Scale): void {
   const words = text.metres(metres)
   ctx.setTransform(density, 0, 0, density, 0, 0)
   ctx.font = FONT

@@ -1,7 +1,7 @@
 import type { Levels } from '../sheets'
 import { text } from '../text'
+import type { DrawTarget } from './drawTarget'
 import { type Inks, PAPER_INK } from './ink'
-import type { Sheet } from './overlay'
 
 /** The lines of all sheets, and those that one's own tree stands and ends at. */
 export interface LevelLines {
@@ -36,11 +36,11 @@ const AWAY = 8
 const CROWDED = 18
 
 /** Draw lines across the window where the trees of all sheets stand and end. */
-export function drawLevels(sheet: Sheet, { levels, stray, width }: LevelLines, inks: Inks): void {
-  const { ctx, density, view } = sheet
+export function drawLevels(target: DrawTarget, { levels, stray, width }: LevelLines, inks: Inks): void {
+  const { ctx, density, view } = target
   ctx.setTransform(density, 0, 0, density, 0, 0)
   ctx.lineCap = 'butt'
-  const lines = [levels.root, levels.top].map(down => screen(sheet, down))
+  const lines = [levels.root, levels.top].map(down => screen(target, down))
   const all = { from: 0, to: ctx.canvas.width / density, colour: PAPER_INK.level, width: WIDTH }
   const photo = { from: view.x, to: view.x + width * view.scale }
   for (const y of lines) line(ctx, y, all)
@@ -52,13 +52,13 @@ export function drawLevels(sheet: Sheet, { levels, stray, width }: LevelLines, i
   const across = AWAY + Math.max(0, view.x)
   for (const [at, words] of [root, top].entries())
     label(ctx, lines[at]!, words, { colour: inks.levelWords, align: 'left', across })
-  if (stray) drawStray(sheet, [stray.root, stray.top], { ...all, colour: inks.stray }, lines)
+  if (stray) drawStray(target, [stray.root, stray.top], { ...all, colour: inks.stray }, lines)
 }
 
 /** Dot the lines of a tree that stands or ends elsewhere, and say beside one that it will be fitted. */
-function drawStray(sheet: Sheet, stray: readonly number[], ruled: Ruled, lines: readonly number[]): void {
-  const { ctx } = sheet
-  const own = stray.map(down => screen(sheet, down))
+function drawStray(target: DrawTarget, stray: readonly number[], ruled: Ruled, lines: readonly number[]): void {
+  const { ctx } = target
+  const own = stray.map(down => screen(target, down))
   ctx.setLineDash(DOTS)
   for (const y of own) line(ctx, y, { ...ruled, width: 1.5 * WIDTH })
   ctx.setLineDash([])
@@ -70,7 +70,7 @@ function drawStray(sheet: Sheet, stray: readonly number[], ruled: Ruled, lines: 
   })
 }
 
-function screen({ view }: Sheet, down: number): number {
+function screen({ view }: DrawTarget, down: number): number {
   return Math.round(view.y + down * view.scale) + 0.5
 }
 

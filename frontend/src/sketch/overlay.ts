@@ -1,19 +1,13 @@
+import type { TraceAnswer, TracedSkeleton } from '../api/types'
 import { along, distance } from '../plane'
-import type { Selection, TraceAnswer, TracedSkeleton } from '../state'
+import type { Selection } from '../state'
 import { type Line, lineOf, type Point, type StrokeKind, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { branchAt } from '../tracedBranch'
+import type { DrawTarget } from './drawTarget'
 import { INK, type Inks, WIDTH } from './ink'
 import { drawLength } from './lengthLabel'
 import { curve, foliagePath, rulerPath, smoothPath, woodAt, woodPath } from './paths'
 import type { PenLine } from './penLine'
-import type { View } from './viewport'
-
-/** What a canvas of the window is drawn with: its device px per CSS px, and where the photo lies. */
-export interface Sheet {
-  readonly ctx: CanvasRenderingContext2D
-  readonly density: number
-  readonly view: View
-}
 
 /** What the strokes' layer shows. */
 export interface Marks {
@@ -39,62 +33,62 @@ const TICK = 7
 const AIM = { inner: 4, outer: 13 }
 
 /** Draw what was traced: the foliage's tint and the branches. */
-export function drawTraced(sheet: Sheet, answer: TraceAnswer): void {
-  const { ctx } = sheet
-  onPhoto(sheet)
+export function drawTraced(target: DrawTarget, answer: TraceAnswer): void {
+  const { ctx } = target
+  onPhoto(target)
   const foliage = foliagePath(answer)
   // Small photos would drown in their leaves' outlines.
-  const fine = Math.min(1, 0.4 + sheet.view.scale)
+  const fine = Math.min(1, 0.4 + target.view.scale)
   ctx.lineJoin = 'round'
-  outline(sheet, foliage, INK.foliageShade, fine * WIDTH.shade)
+  outline(target, foliage, INK.foliageShade, fine * WIDTH.shade)
   ctx.fillStyle = INK.foliage
   ctx.fill(foliage, 'evenodd')
-  outline(sheet, foliage, INK.foliageEdge, fine * WIDTH.edge)
-  drawWood(sheet, answer.skeleton)
+  outline(target, foliage, INK.foliageEdge, fine * WIDTH.edge)
+  drawWood(target, answer.skeleton)
 }
 
 /** Draw the strokes, the mark on the one at fault, and what is selected or under the pointer. */
-export function drawMarks(sheet: Sheet, marks: Marks, inks: Inks): void {
-  onPhoto(sheet)
-  sheet.ctx.lineCap = 'round'
-  sheet.ctx.lineJoin = 'round'
-  if (!same(marks.hovered, marks.selection)) drawHalo(sheet, marks, marks.hovered, inks.hoverHalo)
-  drawHalo(sheet, marks, marks.fault, inks.faultHalo)
-  drawHalo(sheet, marks, marks.selection, inks.selectedHalo)
+export function drawMarks(target: DrawTarget, marks: Marks, inks: Inks): void {
+  onPhoto(target)
+  target.ctx.lineCap = 'round'
+  target.ctx.lineJoin = 'round'
+  if (!same(marks.hovered, marks.selection)) drawHalo(target, marks, marks.hovered, inks.hoverHalo)
+  drawHalo(target, marks, marks.fault, inks.faultHalo)
+  drawHalo(target, marks, marks.selection, inks.selectedHalo)
   for (const ref of strokeRefs(marks.strokes)) {
     const colour = same(ref, marks.fault) ? inks.fault : same(ref, marks.selection) ? inks.selected : inks[ref.kind]
     const look = { kind: ref.kind, colour, casing: inks.casing, width: brushOf(marks.strokes, ref) }
-    drawStroke(sheet, lineOf(marks.strokes, ref), pathOf(sheet, marks.strokes, ref), look)
+    drawStroke(target, lineOf(marks.strokes, ref), pathOf(target, marks.strokes, ref), look)
   }
   // What is selected has its length in a field beside it.
-  if (marks.strokes.scale && marks.selection?.kind !== 'scale') drawLength(sheet, marks.strokes.scale)
+  if (marks.strokes.scale && marks.selection?.kind !== 'scale') drawLength(target, marks.strokes.scale)
 }
 
 /** Draw the stroke under way. */
-export function drawPenLine(sheet: Sheet, { points: line, kind, width }: PenLine, inks: Inks): void {
-  onPhoto(sheet)
-  sheet.ctx.lineCap = 'round'
-  sheet.ctx.lineJoin = 'round'
-  const path = kind === 'scale' ? rulerPath(line, TICK / sheet.view.scale) : curve(line)
-  drawStroke(sheet, line, path, { kind, colour: inks[kind], casing: inks.casing, width: width ?? undefined })
+export function drawPenLine(target: DrawTarget, { points: line, kind, width }: PenLine, inks: Inks): void {
+  onPhoto(target)
+  target.ctx.lineCap = 'round'
+  target.ctx.lineJoin = 'round'
+  const path = kind === 'scale' ? rulerPath(line, TICK / target.view.scale) : curve(line)
+  drawStroke(target, line, path, { kind, colour: inks[kind], casing: inks.casing, width: width ?? undefined })
 }
 
 /** Draw the crown that was taken where none was drawn. */
-export function drawCrownTaken(sheet: Sheet, crown: Line, { crown: colour }: Inks): void {
+export function drawCrownTaken(target: DrawTarget, crown: Line, { crown: colour }: Inks): void {
   const [first] = crown
   if (!first) return
-  onPhoto(sheet)
-  sheet.ctx.lineCap = 'round'
-  sheet.ctx.setLineDash(TAKEN_DASH.map(length => length / sheet.view.scale))
-  outline(sheet, smoothPath(crown), colour, 1)
-  outline(sheet, curve([crown.at(-1)!, first]), colour, 1)
-  sheet.ctx.setLineDash([])
+  onPhoto(target)
+  target.ctx.lineCap = 'round'
+  target.ctx.setLineDash(TAKEN_DASH.map(length => length / target.view.scale))
+  outline(target, smoothPath(crown), colour, 1)
+  outline(target, curve([crown.at(-1)!, first]), colour, 1)
+  target.ctx.setLineDash([])
 }
 
 /** Draw where the keyboard's pen is. */
-export function drawAim(sheet: Sheet, at: Point, penDown: boolean): void {
-  onPhoto(sheet)
-  const { scale } = sheet.view
+export function drawAim(target: DrawTarget, at: Point, penDown: boolean): void {
+  onPhoto(target)
+  const { scale } = target.view
   const path = new Path2D()
   for (const [right, down] of [
     [1, 0],
@@ -106,11 +100,11 @@ export function drawAim(sheet: Sheet, at: Point, penDown: boolean): void {
     path.lineTo(at[0] + (right * AIM.outer) / scale, at[1] + (down * AIM.outer) / scale)
   }
   if (penDown) path.arc(at[0], at[1], AIM.inner / scale, 0, 2 * Math.PI)
-  cased(sheet, path, { kind: 'branch', colour: INK.selected, casing: INK.casing })
+  cased(target, path, { kind: 'branch', colour: INK.selected, casing: INK.casing })
 }
 
 /** Wood with a light rim; each part is cut out of what lies under it, so that the photo shows through. */
-function drawWood({ ctx, view }: Sheet, skeleton: TracedSkeleton): void {
+function drawWood({ ctx, view }: DrawTarget, skeleton: TracedSkeleton): void {
   const { rim, stroked, found } = woodAt(skeleton, view.scale)
   ctx.fillStyle = INK.woodRim
   ctx.fill(rim)
@@ -127,44 +121,44 @@ function inlay(ctx: CanvasRenderingContext2D, path: Path2D, colour: string): voi
   ctx.fill(path)
 }
 
-function drawStroke(sheet: Sheet, line: Line, path: Path2D, look: Look): void {
-  cased(sheet, path, look)
+function drawStroke(target: DrawTarget, line: Line, path: Path2D, look: Look): void {
+  cased(target, path, look)
   const [first, last] = [line[0], line.at(-1)]
   if (look.kind !== 'crown' || !first || !last || line.length < 3) return
   // The service closes a crown from its last point to its first.
-  sheet.ctx.setLineDash(DASH.map(length => length / sheet.view.scale))
-  cased(sheet, curve([last, first]), look)
-  sheet.ctx.setLineDash([])
+  target.ctx.setLineDash(DASH.map(length => length / target.view.scale))
+  cased(target, curve([last, first]), look)
+  target.ctx.setLineDash([])
 }
 
-function cased(sheet: Sheet, path: Path2D, { kind, colour, casing, width = 0 }: Look): void {
-  const wide = Math.max(WIDTH.line[kind], width * sheet.view.scale)
-  outline(sheet, path, casing, wide + WIDTH.casing)
-  outline(sheet, path, colour, wide)
+function cased(target: DrawTarget, path: Path2D, { kind, colour, casing, width = 0 }: Look): void {
+  const wide = Math.max(WIDTH.line[kind], width * target.view.scale)
+  outline(target, path, casing, wide + WIDTH.casing)
+  outline(target, path, colour, wide)
 }
 
 function brushOf({ branches }: Strokes, { kind, index }: StrokeRef): number | undefined {
   return kind === 'branch' ? branches[index]?.width : undefined
 }
 
-function drawHalo(sheet: Sheet, marks: Marks, selection: Selection | null, colour: string): void {
-  if (selection?.kind === 'traced') drawBranchHalo(sheet, marks.skeleton, selection.joint, colour)
+function drawHalo(target: DrawTarget, marks: Marks, selection: Selection | null, colour: string): void {
+  if (selection?.kind === 'traced') drawBranchHalo(target, marks.skeleton, selection.joint, colour)
   else if (selection) {
-    const wide = (brushOf(marks.strokes, selection) ?? 0) * sheet.view.scale
-    outline(sheet, pathOf(sheet, marks.strokes, selection), colour, wide + WIDTH.halo)
+    const wide = (brushOf(marks.strokes, selection) ?? 0) * target.view.scale
+    outline(target, pathOf(target, marks.strokes, selection), colour, wide + WIDTH.halo)
   }
 }
 
-function drawBranchHalo(sheet: Sheet, skeleton: TracedSkeleton | null, joint: number, colour: string): void {
+function drawBranchHalo(target: DrawTarget, skeleton: TracedSkeleton | null, joint: number, colour: string): void {
   if (!skeleton || skeleton.stroke[joint] !== -1) return
-  const { scale } = sheet.view
+  const { scale } = target.view
   const [joints, least] = [branchAt(skeleton, joint), WIDTH.thinnestWood / scale]
-  sheet.ctx.fillStyle = colour
-  sheet.ctx.fill(woodPath(skeleton, joints, least, WIDTH.halo / 3 / scale))
-  inlay(sheet.ctx, woodPath(skeleton, joints, least, 0), INK.selectedWood)
+  target.ctx.fillStyle = colour
+  target.ctx.fill(woodPath(skeleton, joints, least, WIDTH.halo / 3 / scale))
+  inlay(target.ctx, woodPath(skeleton, joints, least, 0), INK.selectedWood)
 }
 
-function pathOf({ view }: Sheet, strokes: Strokes, ref: StrokeRef): Path2D {
+function pathOf({ view }: DrawTarget, strokes: Strokes, ref: StrokeRef): Path2D {
   const line = lineOf(strokes, ref)
   if (ref.kind === 'scale') return rulerPath(line, TICK / view.scale)
   return ref.kind === 'erase' ? crossPath(line, CROSS / view.scale) : smoothPath(line)
@@ -191,14 +185,14 @@ function middleOf(line: Line): Point {
   return line[0] ?? [0, 0]
 }
 
-function outline({ ctx, view }: Sheet, path: Path2D, colour: string, width: number): void {
+function outline({ ctx, view }: DrawTarget, path: Path2D, colour: string, width: number): void {
   ctx.strokeStyle = colour
   ctx.lineWidth = width / view.scale
   ctx.stroke(path)
 }
 
 /** Draw in photo px from here on. */
-function onPhoto({ ctx, density, view: { scale, x, y } }: Sheet): void {
+function onPhoto({ ctx, density, view: { scale, x, y } }: DrawTarget): void {
   ctx.setTransform(density * scale, 0, 0, density * scale, density * x, density * y)
 }
 

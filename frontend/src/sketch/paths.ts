@@ -1,5 +1,5 @@
+import type { TraceAnswer, TracedSkeleton } from '../api/types'
 import { distance, type Piece } from '../plane'
-import type { TraceAnswer, TracedSkeleton } from '../state'
 import type { Line } from '../strokes'
 import { continues, pieceTo } from '../tracedBranch'
 import { WIDTH } from './ink'

@@ -1,6 +1,6 @@
-import type { Ground } from '../state'
+import type { Sheet } from '../state'
+import type { DrawTarget } from './drawTarget'
 import { INK, PAPER } from './ink'
-import type { Sheet } from './overlay'
 
 /** A photo that is shown much smaller than it is would be slow to draw and glitter; halves of halves are neither. */
 const HALVINGS = 4
@@ -9,26 +9,26 @@ const PIXELS_SHOW = 12
 
 /** The upright picture or the paper, ready to be drawn at any scale. */
 export class PhotoLayer {
-  #ground: Ground | null = null
+  #sheet: Sheet | null = null
   #levels: CanvasImageSource[] = []
 
   constructor(private readonly loaded: () => void) {}
 
   /** Show another photo or paper, or none; `loaded` is called when its picture can be drawn. */
-  show(ground: Ground | null): void {
-    const before = this.#ground
-    this.#ground = ground
-    if (ground?.url === before?.url) return
+  show(sheet: Sheet | null): void {
+    const before = this.#sheet
+    this.#sheet = sheet
+    if (sheet?.url === before?.url) return
     this.#levels = []
-    if (ground?.url) void this.#load(ground.url)
+    if (sheet?.url) void this.#load(sheet.url)
   }
 
   /** Draw the photo; on `paper` it shines through. */
-  draw({ ctx, density, view: { scale, x, y } }: Sheet, paper: boolean): void {
-    if (!this.#ground) return
-    const { width, height, hidden } = this.#ground
+  draw({ ctx, density, view: { scale, x, y } }: DrawTarget, paper: boolean): void {
+    if (!this.#sheet) return
+    const { width, height, hidden } = this.#sheet
     ctx.setTransform(density * scale, 0, 0, density * scale, density * x, density * y)
-    if (paper) drawPaper(ctx, this.#ground)
+    if (paper) drawPaper(ctx, this.#sheet)
     const shrunk = Math.floor(Math.log2(1 / Math.min(1, scale * density)))
     const picture = this.#levels[Math.min(shrunk, this.#levels.length - 1)]
     ctx.imageSmoothingEnabled = scale < PIXELS_SHOW
@@ -45,13 +45,13 @@ export class PhotoLayer {
     const picture = new Image()
     picture.src = url
     await picture.decode().catch(() => undefined)
-    if (this.#ground?.url !== url || !picture.naturalWidth) return
+    if (this.#sheet?.url !== url || !picture.naturalWidth) return
     this.#levels = halvings(picture)
     this.loaded()
   }
 }
 
-function drawPaper(ctx: CanvasRenderingContext2D, { width, height }: Ground): void {
+function drawPaper(ctx: CanvasRenderingContext2D, { width, height }: Sheet): void {
   ctx.shadowColor = PAPER.shade
   ctx.shadowBlur = 14
   ctx.shadowOffsetY = 3

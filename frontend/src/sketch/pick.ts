@@ -1,5 +1,6 @@
+import type { TracedSkeleton } from '../api/types'
 import { along, distance, distanceToLine, nearestShare } from '../plane'
-import type { Selection, TracedSkeleton } from '../state'
+import type { Selection } from '../state'
 import { lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { firstJoint, pieceTo } from '../tracedBranch'
 

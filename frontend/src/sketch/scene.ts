@@ -1,16 +1,18 @@
-import type { Selection, TraceAnswer } from '../state'
+import type { TraceAnswer } from '../api/types'
+import type { Selection } from '../state'
 import type { Point } from '../strokes'
+import type { DrawTarget } from './drawTarget'
 import { INK, PAPER_INK } from './ink'
 import { Layers } from './layers'
 import { drawLevels } from './levels'
-import { drawAim, drawCrownTaken, drawMarks, drawPenLine, drawTraced, type Sheet } from './overlay'
+import { drawAim, drawCrownTaken, drawMarks, drawPenLine, drawTraced } from './overlay'
 import type { PenLine } from './penLine'
 import { PhotoLayer } from './photoLayer'
-import type { SheetSight } from './sheet'
+import type { SheetView } from './sheetView'
 import type { View } from './viewport'
 
 /** What is seen beside the page's state. */
-export interface Sight {
+export interface SketchStatus {
   readonly view: View
   /** What was traced of this photo. */
   readonly traced: TraceAnswer | null
@@ -28,40 +30,40 @@ export class Scene {
 
   constructor(
     host: HTMLElement,
-    private readonly sight: () => Sight,
-    private readonly shown: () => SheetSight,
+    private readonly status: () => SketchStatus,
+    private readonly shown: () => SheetView,
   ) {
     const paint = {
-      photo: (sheet: Sheet) => this.picture.draw(sheet, this.shown().isPaper),
-      traced: (sheet: Sheet) => this.#drawTraced(sheet),
-      strokes: (sheet: Sheet) => this.#drawMarks(sheet),
-      pen: (sheet: Sheet) => this.#drawPen(sheet),
+      photo: (target: DrawTarget) => this.picture.draw(target, this.shown().isPaper),
+      traced: (target: DrawTarget) => this.#drawTraced(target),
+      strokes: (target: DrawTarget) => this.#drawMarks(target),
+      pen: (target: DrawTarget) => this.#drawPen(target),
     }
-    this.layers = new Layers(host, paint, () => sight().view)
+    this.layers = new Layers(host, paint, () => status().view)
   }
 
-  #drawTraced(sheet: Sheet): void {
-    const { traced } = this.sight()
-    const { ground, levels, stray, crown } = this.shown()
-    if (traced && ground) drawTraced(sheet, traced)
-    if (crown) drawCrownTaken(sheet, crown, this.#inks)
-    if (levels && ground) drawLevels(sheet, { levels, stray, width: ground.width }, this.#inks)
+  #drawTraced(target: DrawTarget): void {
+    const { traced } = this.status()
+    const { sheet, levels, stray, crown } = this.shown()
+    if (traced && sheet) drawTraced(target, traced)
+    if (crown) drawCrownTaken(target, crown, this.#inks)
+    if (levels && sheet) drawLevels(target, { levels, stray, width: sheet.width }, this.#inks)
   }
 
   get #inks() {
     return this.shown().isPaper ? PAPER_INK : INK
   }
 
-  #drawMarks(sheet: Sheet): void {
-    const { ground, strokes, selection, fault } = this.shown()
-    if (!ground) return
-    const { traced, hovered } = this.sight()
-    drawMarks(sheet, { strokes, skeleton: traced?.skeleton ?? null, selection, hovered, fault }, this.#inks)
+  #drawMarks(target: DrawTarget): void {
+    const { sheet, strokes, selection, fault } = this.shown()
+    if (!sheet) return
+    const { traced, hovered } = this.status()
+    drawMarks(target, { strokes, skeleton: traced?.skeleton ?? null, selection, hovered, fault }, this.#inks)
   }
 
-  #drawPen(sheet: Sheet): void {
-    const { pen, aim } = this.sight()
-    if (pen) drawPenLine(sheet, pen, this.#inks)
-    if (aim) drawAim(sheet, aim, pen !== null)
+  #drawPen(target: DrawTarget): void {
+    const { pen, aim } = this.status()
+    if (pen) drawPenLine(target, pen, this.#inks)
+    if (aim) drawAim(target, aim, pen !== null)
   }
 }

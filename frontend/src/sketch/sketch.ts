@@ -1,5 +1,6 @@
+import type { TraceAnswer } from '../api/types'
 import type { Extent } from '../sheets'
-import type { Ground, Selection, State, Store, TraceAnswer } from '../state'
+import type { Selection, Sheet, State, Store } from '../state'
 import type { Line, Point, SheetName } from '../strokes'
 import { Camera } from './camera'
 import { AT_REST, type DrawnKind, type GestureEvent, gestured, type Intent, type PointerKind } from './gesture'
@@ -7,8 +8,8 @@ import { type KeyCommand, keyCommand, stepped } from './keys'
 import { PenLine } from './penLine'
 import { otherEnd, pick } from './pick'
 import { listenToPointers, listenToSpace } from './pointing'
-import { Scene, type Sight } from './scene'
-import { extentOf, ofSheet, type SheetSight, sightOf } from './sheet'
+import { Scene, type SketchStatus } from './scene'
+import { extentOf, ofSheet, type SheetView, viewOf } from './sheetView'
 import './sketch.css'
 import type { SketchEvents, SketchLabels } from './sketchEvents'
 import { toPhoto, toScreen, type View, within } from './viewport'
@@ -26,13 +27,13 @@ export class Sketch {
   readonly #camera = new Camera(view => this.#looked(view))
   readonly #scene = new Scene(
     this.#element,
-    () => this.#sight,
+    () => this.#status,
     () => this.#shown,
   )
   readonly #resizing = new ResizeObserver(() => this.#resize())
-  readonly #sheet: SheetName
+  readonly #name: SheetName
   #state: State
-  #shown: SheetSight
+  #shown: SheetView
   #gesture = AT_REST
   #pen: PenLine | null = null
   /** The keyboard's pen, photo px. */
@@ -49,9 +50,9 @@ export class Sketch {
     private readonly events: SketchEvents,
     labels: SketchLabels,
   ) {
-    this.#sheet = labels.sheet
+    this.#name = labels.sheet
     this.#state = store.state
-    this.#shown = sightOf(store.state, labels.sheet)
+    this.#shown = viewOf(store.state, labels.sheet)
     this.#label(labels)
     host.append(this.#element)
     this.#listen()
@@ -112,8 +113,8 @@ export class Sketch {
 
   /** Who comes by keyboard sees where the pen is. */
   #focused(): void {
-    const { ground } = this.#shown
-    if (ground && this.#element.matches(':focus-visible')) this.#aim ??= this.#middle(ground)
+    const { sheet } = this.#shown
+    if (sheet && this.#element.matches(':focus-visible')) this.#aim ??= this.#middle(sheet)
     this.#scene.layers.touch('pen')
     this.events.touched()
   }
@@ -133,8 +134,8 @@ export class Sketch {
   #changed(now: State): void {
     const [before, shown] = [this.#state, this.#shown]
     this.#state = now
-    this.#shown = sightOf(now, this.#sheet)
-    this.#relay(shown.ground, before)
+    this.#shown = viewOf(now, this.#name)
+    this.#relay(shown.sheet, before)
     if (this.#shown.tool !== shown.tool) this.#putAway()
     if (now.history !== before.history || now.traced !== before.traced) this.#hovered = null
     this.#element.classList.toggle('sketch-stale', now.traced !== null && now.traced.of !== now.history.present)
@@ -144,27 +145,27 @@ export class Sketch {
   }
 
   /** Bring what lies under the strokes into step. */
-  #relay(was: Ground | null, before: State): void {
-    const { ground } = this.#shown
-    const { side, traced, photo } = this.#state
+  #relay(was: Sheet | null, before: State): void {
+    const { sheet } = this.#shown
+    const { sheets, traced } = this.#state
     this.#element.classList.toggle('sketch-paper', this.#shown.isPaper)
-    if (ground && was && sameSize(ground, was) && ground.id === was.id) {
-      if (ground !== was) this.#scene.picture.show(ground)
-      if (ground !== was) this.#scene.layers.touch('photo')
-      if (side !== before.side || photo !== before.photo) this.#camera.reach(extentOf(this.#state, this.#sheet)!)
-    } else if (ground !== was) {
+    if (sheet && was && sameSize(sheet, was) && sheet.id === was.id) {
+      if (sheet !== was) this.#scene.picture.show(sheet)
+      if (sheet !== was) this.#scene.layers.touch('photo')
+      if (sheets !== before.sheets) this.#camera.reach(extentOf(this.#state, this.#name)!)
+    } else if (sheet !== was) {
       this.#foreign = traced === before.traced ? (traced?.answer ?? null) : null
       this.#open()
     }
-    if (side !== before.side) this.#scene.layers.touch('traced')
+    if (sheets?.side !== before.sheets?.side) this.#scene.layers.touch('traced')
   }
 
   #open(): void {
-    const { ground } = this.#shown
+    const { sheet } = this.#shown
     this.#putAway()
     this.#aim = null
-    this.#scene.picture.show(ground)
-    if (ground) this.#camera.open(ground, extentOf(this.#state, this.#sheet)!)
+    this.#scene.picture.show(sheet)
+    if (sheet) this.#camera.open(sheet, extentOf(this.#state, this.#name)!)
     this.#scene.layers.touchAll()
   }
 
@@ -180,7 +181,7 @@ export class Sketch {
   }
 
   #gestured(event: GestureEvent): void {
-    if (!this.#shown.ground) return
+    if (!this.#shown.sheet) return
     const { state, intents } = gestured(this.#gesture, event)
     this.#gesture = state
     for (const intent of intents) this.#do(intent)
@@ -205,9 +206,9 @@ export class Sketch {
 
   #begin(kind: DrawnKind, at: Point): void {
     this.#aim = null
-    const { ground, brush } = this.#shown
+    const { sheet, brush } = this.#shown
     const width = kind === 'branch' ? brush : null
-    this.#pen = new PenLine(kind, ground!, kind === 'scale' ? this.#otherEnd(at) : null, width)
+    this.#pen = new PenLine(kind, sheet!, kind === 'scale' ? this.#otherEnd(at) : null, width)
     this.#extend([at])
   }
 
@@ -230,7 +231,7 @@ export class Sketch {
   }
 
   #select(at: Point, reach: number): void {
-    this.events.selected(ofSheet(this.#pick(at, reach), this.#sheet))
+    this.events.selected(ofSheet(this.#pick(at, reach), this.#name))
   }
 
   #pick(at: Point, reach: number): Selection | null {
@@ -246,8 +247,8 @@ export class Sketch {
   }
 
   #hover(at: Point | null): void {
-    const { ground, tool } = this.#shown
-    const free = ground && this.#gesture.mode.name === 'idle' ? at : null
+    const { sheet, tool } = this.#shown
+    const free = sheet && this.#gesture.mode.name === 'idle' ? at : null
     this.#overEnd = Boolean(free && (tool === 'select' || tool === 'scale') && this.#otherEnd(free))
     this.#pointAt()
     const hovered = free && tool === 'select' ? this.#pick(free, REACH.mouse) : null
@@ -266,9 +267,9 @@ export class Sketch {
 
   #pressed(event: KeyboardEvent): void {
     const command = keyCommand(event)
-    if (!command || !this.#shown.ground) return
+    if (!command || !this.#shown.sheet) return
     event.preventDefault()
-    this.#command(command, this.#shown.ground)
+    this.#command(command, this.#shown.sheet)
   }
 
   #command(command: KeyCommand, photo: Extent): void {
@@ -314,7 +315,7 @@ export class Sketch {
     else if (this.#shown.selection) this.events.selected(null)
   }
 
-  get #sight(): Sight {
+  get #status(): SketchStatus {
     const focused = document.activeElement === this.#element
     const { view } = this.#camera
     return { view, traced: this.#traced, hovered: this.#hovered, pen: this.#pen, aim: focused ? this.#aim : null }

@@ -1,4 +1,4 @@
-import type { Settings } from '../state'
+import type { Settings } from '../api/types'
 
 const photos = import.meta.glob<string>('../../../examples/*.jpg', { query: '?url', import: 'default', eager: true })
 const strokes = import.meta.glob<string>('../../../examples/*.strokes.json', {

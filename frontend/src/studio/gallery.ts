@@ -1,18 +1,15 @@
 import type { Client } from '../api/client'
 import { isOver } from '../api/follow'
-import { EMPTY, type Model, type State, type Store } from '../state'
+import type { Model } from '../api/types'
+import type { State, Store } from '../state'
+import { faultOf } from './faultText'
 import type { Grower } from './grower'
-import { faultOf } from './sentences'
 
-type Looked = Pick<State, 'model' | 'modelOf' | 'modelLeaf' | 'modelFruit' | 'variant' | 'growth' | 'tree' | 'shows'>
-
-const NONE = lookedAt(EMPTY)
-
-/** One's models, newest first, page by page. What goes wrong stands in the gallery's place of the state. */
+/** The models of this service, newest first, page by page; what is wrong is put among the state's faults. */
 export class Gallery {
   #next: string | null = null
-  /** What was looked at when it was deleted. */
-  #looked: Looked | null = null
+  /** What was shown when it was deleted. */
+  #deleted: Pick<State, 'model' | 'shows'> | null = null
 
   constructor(
     private readonly store: Store,
@@ -36,19 +33,21 @@ export class Gallery {
   rename(id: string, name: string): Promise<Model | null> {
     return this.#trying(async () => {
       const model = await this.client.renameModel(id, name)
-      if (this.store.state.model?.id === id) this.store.set({ model, name })
+      this.store.setModel(id, { info: model })
+      if (this.store.state.model?.info.id === id) this.store.set({ name })
       return model
     })
   }
 
-  /** Delete a model; what is looked at goes with it, the drawing stays. */
+  /** Delete a model; where it is shown it goes, and the drawing stays. */
   remove(id: string): Promise<true | null> {
     return this.#trying<true>(async () => {
       await this.client.removeModel(id)
-      if (this.store.state.model?.id !== id) return true
-      this.#looked = lookedAt(this.store.state)
+      const { model, shows } = this.store.state
+      if (model?.info.id !== id) return true
+      this.#deleted = { model, shows }
       this.grower.leave()
-      this.store.set(NONE)
+      this.store.set({ model: null, shows: 'live' })
       return true
     })
   }
@@ -56,9 +55,10 @@ export class Gallery {
   /** Take a deletion back. */
   restore(id: string): Promise<Model | null> {
     return this.#trying(async () => {
-      const model = await this.client.restoreModel(id)
-      if (this.#looked?.model?.id === id && !this.store.state.model) this.store.set({ ...this.#looked, model })
-      return model
+      const info = await this.client.restoreModel(id)
+      const { model, shows } = this.#deleted ?? {}
+      if (model?.info.id === id && !this.store.state.model) this.store.set({ model: { ...model, info }, shows: shows! })
+      return info
     })
   }
 
@@ -77,8 +77,4 @@ export class Gallery {
       return null
     }
   }
-}
-
-function lookedAt({ model, modelOf, modelLeaf, modelFruit, variant, growth, tree, shows }: State): Looked {
-  return { model, modelOf, modelLeaf, modelFruit, variant, growth, tree, shows }
 }

@@ -1,10 +1,11 @@
 import { type Client, Unreachable } from '../api/client'
 import { follow, isOver } from '../api/follow'
-import type { Model, State, Store } from '../state'
+import type { Model } from '../api/types'
+import type { OwnPictures, Store } from '../state'
 import type { Strokes } from '../strokes'
 import { text } from '../text'
-import { evidenceOf } from './evidence'
-import { faultOf } from './sentences'
+import { faultOf } from './faultText'
+import { inputsOf } from './inputs'
 import { treeOf } from './variants'
 
 const AGAIN_MS = 2000
@@ -13,7 +14,7 @@ const TRIES = 5
 /** Has trees grown and follows them until they stand in the preview. */
 export class Grower {
   #leave = () => {}
-  /** Of the model that is looked at, by their addresses. */
+  /** GLBs of the model that is shown, by their addresses. */
   readonly #trees = new Map<string, ArrayBuffer>()
 
   constructor(
@@ -25,13 +26,13 @@ export class Grower {
   async grow(): Promise<void> {
     const { settings, seed, name, leaf, fruit, faults } = this.store.state
     const strokes = this.store.strokes
-    const evidence = evidenceOf(this.store.state)
-    if (!evidence || faults.strokes?.stroke || this.isGrowing) return
+    const inputs = inputsOf(this.store.state)
+    if (!inputs || faults.strokes?.stroke || this.isGrowing) return
     this.store.fault('grow', null)
     this.store.set({ asking: true })
     try {
-      const wish = { evidence, settings, seed, name, leaf, fruit }
-      this.show(await patiently(key => this.client.grow(wish, key)), strokes, { leaf, fruit })
+      const order = { inputs, settings, seed, name, leaf, fruit }
+      this.show(await patiently(key => this.client.grow(order, key)), strokes, { leaf, fruit })
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     } finally {
@@ -47,32 +48,34 @@ export class Grower {
 
   get isGrowing(): boolean {
     const { asking, model } = this.store.state
-    return asking || (model !== null && !isOver(model))
+    return asking || (model !== null && !isOver(model.info))
   }
 
-  /** Follow a model, made of `strokes` and with pictures of one's own or none, into the preview. */
-  show(model: Model, strokes: Strokes, { leaf, fruit }: Pick<State, 'leaf' | 'fruit'>): void {
+  /** Show a model, made of `strokes` and the person's own pictures, and follow it until it is finished. */
+  show(info: Model, strokes: Strokes, { leaf, fruit }: OwnPictures): void {
     this.leave()
     this.#trees.clear()
-    const looked = { modelOf: strokes, modelLeaf: leaf, modelFruit: fruit, variant: 1 }
-    this.store.set({ model, ...looked, growth: null, tree: null, shows: 'model' })
-    this.#leave = follow(model.id, {
+    this.store.set({ model: { info, strokes, leaf, fruit, variant: 1, growth: null, glb: null }, shows: 'model' })
+    this.#leave = follow(info.id, {
       changed: now => this.#change(now),
-      grew: growth => this.store.set({ growth, shows: 'model' }),
+      grew: growth => {
+        this.store.setModel(info.id, { growth })
+        this.store.set({ shows: 'model' })
+      },
       connected: online => this.store.set({ online }),
       gone: () => this.#forget(),
     })
   }
 
-  /** Look at another of the model's trees, from 1; the one before stays in sight until it has come. */
+  /** Show another of the model's trees, from 1; the one before is shown until it has been fetched. */
   async choose(variant: number): Promise<void> {
     const { model } = this.store.state
-    if (!model || !treeOf(model, variant)) return
-    this.store.set({ variant, shows: 'model' })
-    await this.#fetch(model)
+    if (!model || !treeOf(model.info, variant)) return
+    this.store.set({ model: { ...model, variant }, shows: 'model' })
+    await this.#fetch(model.info)
   }
 
-  /** Follow no model any more. */
+  /** Stop following the model. */
   leave(): void {
     this.#leave()
     this.#leave = () => {}
@@ -82,33 +85,34 @@ export class Grower {
     const { model } = this.store.state
     if (!model) return
     try {
-      this.#change(await patiently(() => this.client.cancelModel(model.id)))
+      this.#change(await patiently(() => this.client.cancelModel(model.info.id)))
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     }
   }
 
   #change(model: Model): void {
-    this.store.set({ model, online: true })
+    this.store.setModel(model.id, { info: model })
+    this.store.set({ online: true })
     if (model.error) this.store.fault('grow', { text: model.error.detail })
     if (model.status === 'succeeded') this.#fetch(model)
   }
 
-  /** Bring the finished tree, or the one of them that was chosen. */
-  async #fetch(model: Model): Promise<void> {
-    const { variant } = this.store.state
+  /** Fetch the finished tree, or the one of them that was chosen. */
+  async #fetch(info: Model): Promise<void> {
+    const variant = this.store.state.model?.variant ?? 1
     try {
-      const tree = await this.#bring(treeOf(model, variant)!)
-      const { state } = this.store
-      if (state.model?.id !== model.id || state.variant !== variant) return
-      this.store.set({ tree, shows: 'model' })
+      const glb = await this.#download(treeOf(info, variant)!)
+      const { model } = this.store.state
+      if (model?.info.id !== info.id || model.variant !== variant) return
+      this.store.set({ model: { ...model, glb }, shows: 'model' })
       this.store.fault('grow', null)
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     }
   }
 
-  async #bring(url: string): Promise<ArrayBuffer> {
+  async #download(url: string): Promise<ArrayBuffer> {
     const known = this.#trees.get(url)
     if (known) return known
     const tree = await (await patiently(() => this.client.getFile(url))).arrayBuffer()
@@ -118,7 +122,7 @@ export class Grower {
 
   #forget(): void {
     this.leave()
-    this.store.set({ model: null, modelOf: null, shows: 'live' })
+    this.store.set({ model: null, shows: 'live' })
     this.store.fault('grow', { text: text.faults.modelGone })
   }
 }

@@ -1,6 +1,6 @@
 import { text } from '../text'
+import { Unusable } from './faultText'
 import { isPng } from './png'
-import { Unusable } from './sentences'
 
 /** A picture is looked at in this size, px: what is transparent anywhere is so there, too. */
 const SIDE = 128

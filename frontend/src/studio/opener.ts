@@ -1,30 +1,31 @@
 import { type Client, Refused } from '../api/client'
 import { DEFAULT_SETTINGS } from '../api/defaults'
+import type { Model } from '../api/types'
 import { begin, type History } from '../history'
-import { fittedTo, groundOf, paper, sheetOfSize } from '../sheets'
-import { EMPTY, type Ground, type Model, type Photo, type State, type Store } from '../state'
+import { fittedTo, paper, sheetOf, sheetOfSize } from '../sheets'
+import { closed, type PhotoSheet, type Sheet, type Sheets, type State, type Store } from '../state'
 import { fromWire, NO_STROKES, onSheet, type SheetName, type Strokes, withSheet } from '../strokes'
 import { text } from '../text'
-import { redrawn } from './desk'
+import type { DraftStore, DraftWithPictures } from './draftStore'
 import type { Example, SketchExample } from './examples'
+import { faultOf, Unusable } from './faultText'
 import type { Grower } from './grower'
-import type { Keeper, Kept } from './keeper'
 import { pictureOf, uploaded } from './photos'
 import { isProject, type Project, readProject } from './project'
-import { faultOf, Unusable } from './sentences'
-import { type Drawn, paired, remarkOn, type SketchFile } from './sketches'
+import { redrawn } from './sheetActions'
+import { correctionsOn, type Drawn, paired, type SketchFile } from './sketches'
 import { readSketch } from './sketchPicture'
 
 /** What takes the place of the present drawing. */
-interface Drawing extends Partial<Pick<State, 'source' | 'side' | 'settings' | 'seed' | 'leaf' | 'fruit'>> {
-  readonly photo: Ground
+interface Drawing extends Partial<Pick<State, 'settings' | 'seed' | 'leaf' | 'fruit'>> {
+  readonly sheets: Sheets
   readonly name: string
   readonly history: History<Strokes>
-  /** What was mended in reading it. */
-  readonly remark?: string | undefined
+  /** What was corrected while it was read. */
+  readonly corrections?: string | undefined
 }
 
-/** In the place of a picture that is no longer known: another than any. */
+/** Stands for a picture that is no longer known: it differs from any other. */
 const FORGOTTEN = new Blob([])
 
 /** Opens photos, paper, projects, examples, drawings and models; what was open before stays until that has worked. */
@@ -35,7 +36,7 @@ export class Opener {
   constructor(
     private readonly store: Store,
     private readonly client: Client,
-    private readonly keeper: Keeper,
+    private readonly drafts: DraftStore,
     private readonly grower: Grower,
   ) {}
 
@@ -43,15 +44,16 @@ export class Opener {
   openFile(file: File): Promise<void> {
     return this.#opening(async () => {
       if (isProject(file)) return this.#projectOf(await this.#read(file), stem(file.name))
-      const photo = await this.#upload(file)
-      return () => this.#put({ photo, name: stem(file.name), history: begin(NO_STROKES) })
+      const sheets = onPhoto(await this.#upload(file))
+      return () => this.#put({ sheets, name: stem(file.name), history: begin(NO_STROKES) })
     })
   }
 
   /** Open two white sheets. */
   openPaper(): Promise<void> {
     return this.#opening(async () => () => {
-      this.#put({ source: 'sketch', photo: paper(), side: paper(), name: '', history: begin(NO_STROKES) })
+      const sheets: Sheets = { source: 'sketch', front: paper(), side: paper() }
+      this.#put({ sheets, name: '', history: begin(NO_STROKES) })
     })
   }
 
@@ -68,9 +70,9 @@ export class Opener {
     return this.#opening(async () => {
       const sketch = await this.#sketchIn(file)
       return () => {
-        if (!groundOf(this.store.state, sheet)) return
+        if (!sheetOf(this.store.state, sheet)) return
         this.store.set(redrawn(this.store.state, sheet, sketch))
-        this.#remark(remarkOn(sheet, sketch))
+        this.#showCorrections(correctionsOn(sheet, sketch))
       }
     })
   }
@@ -92,15 +94,15 @@ export class Opener {
     return this.#opening(async () => {
       const [file, drawn] = await Promise.all([this.client.getFile(photo), this.client.getFile(strokes)])
       const history = begin(fromWire(await jsonOf(drawn)))
-      const ground = await this.#upload(file)
-      return () => this.#putToGrow({ photo: ground, name: text.examples[name] ?? name, history })
+      const sheets = onPhoto(await this.#upload(file))
+      return () => this.#putToGrow({ sheets, name: text.examples[name] ?? name, history })
     })
   }
 
   /** Open a drawing that the browser has kept, with the model that was grown of it. */
   openDraft(id: string): Promise<void> {
     return this.#opening(async () => {
-      const found = await this.keeper.find(id)
+      const found = await this.drafts.find(id)
       if (!found) throw new Unusable(text.faults.draftGone)
       const { draft, leaf, fruit } = found
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
@@ -110,9 +112,9 @@ export class Opener {
         fruit: draft.modelHadOtherFruit ? FORGOTTEN : fruit,
       }
       return async () => {
-        this.#put({ ...draft, ...sheets, settings, leaf, fruit }, id)
+        this.#put({ name: draft.name, history: draft.history, seed: draft.seed, sheets, settings, leaf, fruit }, id)
         const model = draft.model && (await this.#find(draft.model))
-        if (model && draft.modelOf && this.keeper.id === id) this.grower.show(model, draft.modelOf, own)
+        if (model && draft.modelOf && this.drafts.id === id) this.grower.show(model, draft.modelOf, own)
       }
     })
   }
@@ -136,19 +138,19 @@ export class Opener {
   /** Go back to where a photo is chosen; the drawing is kept. */
   close(): void {
     this.grower.leave()
-    this.keeper.begin(null)
-    this.store.set({ ...EMPTY, limits: this.store.state.limits })
+    this.drafts.begin(null)
+    this.store.set(closed(this.store.state))
   }
 
   /** Bring what is to be opened, then put it in its place, unless something else was asked for or left meanwhile. */
   async #opening(bring: () => Promise<() => void | Promise<void>>): Promise<void> {
-    const [turn, left] = [++this.#asked, this.keeper.id]
+    const [turn, left] = [++this.#asked, this.drafts.id]
     const isLast = () => turn === this.#asked
     this.store.fault('photo', null)
     this.store.set({ opening: true })
     try {
       const put = await bring()
-      if (isLast() && this.keeper.id === left) await put()
+      if (isLast() && this.drafts.id === left) await put()
     } catch (error) {
       const fault = faultOf(error)
       if (isLast()) this.store.fault('photo', fault)
@@ -171,22 +173,24 @@ export class Opener {
     return readSketch(file, this.client, this.store.state.limits)
   }
 
-  #upload(file: Blob): Promise<Photo> {
+  #upload(file: Blob): Promise<PhotoSheet> {
     return uploaded(file, this.client, this.store.state.limits)
   }
 
-  /** Lay the sheets of a kept drawing out; over a photo, tracing finds out whether the service still has it. */
-  async #sheetsOf({ draft, photo: file, side: guide }: Kept): Promise<Pick<State, 'side'> & { photo: Ground }> {
-    const { photo, side } = draft
-    const left = side ? { ...sheetOfSize(side), file: guide, url: guide && URL.createObjectURL(guide) } : null
-    if (!file) return { photo: sheetOfSize(photo), side: left }
-    if (draft.source === 'sketch') return { photo: await this.#photoOf(photo.id, file), side: left }
+  /** Return the sheets of a kept drawing; over a photo, tracing finds out whether the service still has it. */
+  async #sheetsOf({ draft, photo: file, side: guide }: DraftWithPictures): Promise<Sheets> {
+    const { photo, source = 'photo' } = draft
+    const side = draft.side
+      ? { ...sheetOfSize(draft.side), file: guide, url: guide && URL.createObjectURL(guide) }
+      : null
+    if (!file) return { source: 'sketch', front: sheetOfSize(photo), side }
+    if (source === 'sketch') return { source, front: await this.#photoOf(photo.id, file), side }
     const url = await pictureOf(file, photo, `/v1/photos/${photo.id}/image`)
-    return { photo: { ...photo, file, url }, side: left }
+    return { source, front: { ...photo, id: photo.id!, file, url }, side }
   }
 
   /** Find a photo that the service had, or send its copy again. */
-  async #photoOf(known: string | null, file: Blob): Promise<Photo> {
+  async #photoOf(known: string | null, file: Blob): Promise<PhotoSheet> {
     if (known === null) return this.#upload(file)
     try {
       const { id, width, height, image } = await this.client.getPhoto(known)
@@ -212,38 +216,37 @@ export class Opener {
   }
 
   #put(drawing: Drawing, draft: string | null = null): void {
-    const { source = 'photo', side = null, photo, name, history } = drawing
+    const { sheets, name, history } = drawing
     const { settings = DEFAULT_SETTINGS, seed = 0, leaf = null, fruit = null } = drawing
-    const { limits, online } = this.store.state
     this.grower.leave()
-    this.keeper.begin(draft)
-    const tool = history.present.crown || source === 'sketch' ? 'branch' : 'crown'
-    const opened = { source, photo, side, name, history, settings, seed, leaf, fruit, tool } as const
-    this.store.set({ ...EMPTY, limits, online, opening: true, ...opened })
-    this.#remark(drawing.remark ?? photo.mended)
+    this.drafts.begin(draft)
+    const tool = history.present.crown || sheets.source === 'sketch' ? 'branch' : 'crown'
+    const opened = { sheets, name, history, settings, seed, leaf, fruit, tool } as const
+    this.store.set({ ...closed(this.store.state), opening: true, ...opened })
+    this.#showCorrections(drawing.corrections ?? sheets.front.corrections)
   }
 
-  #remark(said = ''): void {
-    this.store.set({ remark: said ? { of: this.store.strokes, text: said } : null })
+  #showCorrections(text = ''): void {
+    this.store.set({ corrections: text ? { of: this.store.strokes, text } : null })
   }
 
-  /** Lay strokes out on their sheets; those of the front go with the photo that lies under them. */
+  /** Open the sheets that strokes lie on; the front's strokes are fitted to the photo that lies under them. */
   async #laidOut(
-    { photo: file, strokes, sheets = {}, remark }: Drawn & Pick<Project, 'photo'>,
+    { photo: file, strokes, sizes = {}, corrections }: Drawn & Pick<Project, 'photo'>,
     send = (photo: Blob) => this.#upload(photo),
   ) {
-    const { front, side } = sheets
-    const photo: Ground = file ? await send(file) : sheetOfSize(front!)
-    const left = side ? sheetOfSize(side) : front ? paper(photo.height) : null
-    const moved = front ? withSheet(strokes, 'front', fittedTo(onSheet(strokes, 'front'), front, photo)) : strokes
-    return {
-      source: front ? ('sketch' as const) : ('photo' as const),
-      photo,
-      side: left,
-      history: begin(moved),
-      remark,
-    }
+    const size = sizes.front
+    const side = sizes.side ? sheetOfSize(sizes.side) : null
+    if (!size) return { sheets: onPhoto(await send(file!), side), history: begin(strokes), corrections }
+    const front = file ? await send(file) : sheetOfSize(size)
+    const fitted = withSheet(strokes, 'front', fittedTo(onSheet(strokes, 'front'), size, front))
+    const sheets: Sheets = { source: 'sketch', front, side: side ?? paper(front.height) }
+    return { sheets, history: begin(fitted), corrections }
   }
+}
+
+function onPhoto(front: PhotoSheet, side: Sheet | null = null): Sheets {
+  return { source: 'photo', front, side }
 }
 
 async function jsonOf(file: Blob): Promise<unknown> {

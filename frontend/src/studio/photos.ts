@@ -1,7 +1,8 @@
 import type { Client } from '../api/client'
-import type { Limits, Photo } from '../state'
+import type { Limits } from '../api/types'
+import type { PhotoSheet } from '../state'
 import { text } from '../text'
-import { sentenceOf, Unusable } from './sentences'
+import { sentenceOf, Unusable } from './faultText'
 
 /** Types of the photos that the service reads, by the endings of their files; the usual ending of each comes first. */
 export const TYPES: Readonly<Record<string, string>> = {
@@ -28,12 +29,12 @@ export function typeOf(file: File): string {
 }
 
 /** Send a photo to the service. */
-export async function uploaded(chosen: Blob, client: Client, limits: Limits | null): Promise<Photo> {
+export async function uploaded(chosen: Blob, client: Client, limits: Limits | null): Promise<PhotoSheet> {
   const file = typed(chosen)
   const { id, width, height, image, warnings } = await sent(file, client, limits)
-  const mended = warnings?.map(({ detail }) => sentenceOf(detail)).join(' ')
+  const corrections = warnings?.map(({ detail }) => sentenceOf(detail)).join(' ')
   const url = await pictureOf(file, { width, height }, image)
-  return { id, width, height, file, url, ...(mended && { mended }) }
+  return { id, width, height, file, url, ...(corrections && { corrections }) }
 }
 
 /** Have the service turn a photo that the browser cannot show into one that it can; the service does not keep it. */

@@ -1,11 +1,11 @@
 import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate'
 import { DEFAULT_SETTINGS } from '../api/defaults'
+import type { Settings } from '../api/types'
 import { isDrawn } from '../sheets'
-import type { Settings } from '../state'
 import { fromWire, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
 import { text } from '../text'
+import { Unusable } from './faultText'
 import { TYPES } from './photos'
-import { Unusable } from './sentences'
 import { type Drawn, paired, type SketchFile, sketchFrom, sketchToWire } from './sketches'
 
 /** What a project file holds. */
@@ -38,14 +38,14 @@ export function fileName(name: string, ending: string): string {
 }
 
 /** Write a project as the command line and the service do: a ZIP of the pictures, the strokes and settings.json. */
-export async function writeProject({ photo, strokes, sheets = {}, settings, seed, ...own }: Project): Promise<Blob> {
+export async function writeProject({ photo, strokes, sizes = {}, settings, seed, ...own }: Project): Promise<Blob> {
   const ending = Object.keys(TYPES).find(key => TYPES[key] === photo?.type) ?? 'jpg'
   const archive = zipSync({
     ...(await member(`photo.${ending}`, photo)),
     ...(await member(PICTURES.leaf, own.leaf)),
     ...(await member(PICTURES.fruit, own.fruit ?? null)),
-    ...(sheets.front ? {} : { 'strokes.json': written(toWire(onSheet(strokes, 'front'))) }),
-    ...sketches(strokes, sheets),
+    ...(sizes.front ? {} : { 'strokes.json': written(toWire(onSheet(strokes, 'front'))) }),
+    ...sketches(strokes, sizes),
     'settings.json': strToU8(JSON.stringify({ ...settings, seed }, null, 2)),
   })
   return new Blob([archive], { type: 'application/zip' })
@@ -56,9 +56,9 @@ async function member(name: string, picture: Blob | null): Promise<Record<string
   return picture ? { [name]: [new Uint8Array(await picture.arrayBuffer()), { level: 0 }] } : {}
 }
 
-function sketches(strokes: Strokes, sheets: NonNullable<Project['sheets']>): Record<string, Uint8Array> {
+function sketches(strokes: Strokes, sizes: NonNullable<Project['sizes']>): Record<string, Uint8Array> {
   const drawn = SHEETS.flatMap(sheet => {
-    const size = sheets[sheet]
+    const size = sizes[sheet]
     return size && isDrawn(strokes, sheet) ? [[`${sheet}.json`, written(sketchToWire(strokes, sheet, size))]] : []
   })
   return Object.fromEntries(drawn)

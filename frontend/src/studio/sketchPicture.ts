@@ -1,11 +1,11 @@
 import type { Client } from '../api/client'
 import type { components } from '../api/schema'
+import type { Limits, StrokeWarning, TracedSkeleton } from '../api/types'
 import { distance, simplified } from '../plane'
-import type { Limits, StrokeWarning, TracedSkeleton } from '../state'
 import { type Branch, type Line, NO_STROKES } from '../strokes'
 import { text } from '../text'
+import { sentenceOf, Unusable } from './faultText'
 import { isPng } from './png'
-import { sentenceOf, Unusable } from './sentences'
 import { type SketchFile, sketchFrom } from './sketches'
 
 /** Branches that the service takes as strokes. */
@@ -33,9 +33,9 @@ export function sketchIn(
   const [width, height] = size
   const all = branchesOf(skeleton, APART * Math.max(width, height))
   const branches = longest(all, bearersOf(skeleton), MOST_BRANCHES)
-  const remark = [...remarksOn(warnings), ...leftOut(all.length - branches.length)].join(' ')
+  const corrections = [...correctionsFrom(warnings), ...leftOut(all.length - branches.length)].join(' ')
   const strokes = { ...NO_STROKES, crown: crown_drawn ? crown : null, branches }
-  return { strokes, size: { width, height }, ...(remark && { remark }) }
+  return { strokes, size: { width, height }, ...(corrections && { corrections }) }
 }
 
 async function fromJson(file: Blob): Promise<SketchFile> {
@@ -91,7 +91,7 @@ function median(values: readonly number[]): number {
   return values.toSorted((one, other) => one - other)[Math.floor(values.length / 2)]!
 }
 
-function remarksOn(warnings: readonly StrokeWarning[]): string[] {
+function correctionsFrom(warnings: readonly StrokeWarning[]): string[] {
   const { mended } = text.sheets
   return [...new Set(warnings.map(({ code }) => code))].map(code => {
     const alike = warnings.filter(warning => warning.code === code)

@@ -1,25 +1,23 @@
-import type { components } from '../api/schema'
+import type { StrokeSketch } from '../api/types'
 import type { Extent } from '../sheets'
 import { fromWire, type Line, onSheet, type SheetName, type Strokes, toWire, withSheet } from '../strokes'
 import { text } from '../text'
-
-export type StrokeSketch = components['schemas']['StrokeSketch']
 
 /** One sheet's strokes, and how large a sheet they were drawn on. */
 export interface SketchFile {
   readonly strokes: Strokes
   readonly size: Extent
-  /** What was mended in a picture of them, in sentences for the user. */
-  readonly remark?: string
+  /** What was corrected in a picture of them, in sentences for the user. */
+  readonly corrections?: string
 }
 
 /** What is drawn of a tree: over its photo, or on sheets. */
 export interface Drawn {
   readonly strokes: Strokes
   /** The sizes of the sheets that sketches were drawn on; the front's makes the tree one of sketches. */
-  readonly sheets?: Readonly<Partial<Record<SheetName, Extent>>>
-  /** What was mended in pictures of sketches, in sentences for the user. */
-  readonly remark?: string
+  readonly sizes?: Readonly<Partial<Record<SheetName, Extent>>>
+  /** What was corrected in pictures of sketches, in sentences for the user. */
+  readonly corrections?: string
 }
 
 /** Room around strokes whose sheet is not known, as a share of their height. */
@@ -41,15 +39,15 @@ export function sketchFrom(value: unknown): SketchFile {
 
 /** Put the left side beside the front, which is no sketch where its size is not given. */
 export function paired(front: Pick<SketchFile, 'strokes'> & Partial<SketchFile>, side: SketchFile | null): Drawn {
-  const sheets = { ...(front.size && { front: front.size }), ...(side && { side: side.size }) }
+  const sizes = { ...(front.size && { front: front.size }), ...(side && { side: side.size }) }
   const strokes = side ? withSheet(front.strokes, 'side', side.strokes) : front.strokes
-  const remark = [remarkOn('front', front), side && remarkOn('side', side)].filter(Boolean).join(' ')
-  return { strokes, sheets, ...(remark && { remark }) }
+  const corrections = [correctionsOn('front', front), side && correctionsOn('side', side)].filter(Boolean).join(' ')
+  return { strokes, sizes, ...(corrections && { corrections }) }
 }
 
-/** Say of a sheet what was mended on it. */
-export function remarkOn(sheet: SheetName, { remark }: Partial<SketchFile>): string {
-  return remark ? text.sheets.remark(text.sheets[sheet], remark) : ''
+/** Return what was corrected on a sheet, as a sentence. */
+export function correctionsOn(sheet: SheetName, { corrections }: Partial<SketchFile>): string {
+  return corrections ? text.sheets.remark(text.sheets[sheet], corrections) : ''
 }
 
 function canvasOf(value: unknown): Extent | null {

@@ -1,10 +1,10 @@
 import { type Client, Refused, Unreachable } from '../api/client'
-import { isPhoto } from '../sheets'
-import type { Ground, Photo, Store, Traced } from '../state'
+import { hasPhoto } from '../sheets'
+import type { PhotoSheet, Sheet, Store, Traced } from '../state'
 import type { Strokes } from '../strokes'
-import { canTrace, traced } from './evidence'
+import { faultOf } from './faultText'
+import { canTrace, traced } from './inputs'
 import { Rounds } from './rounds'
-import { faultOf } from './sentences'
 
 const AGAIN_MS = 1500
 
@@ -30,7 +30,7 @@ export class Tracer {
       () => this.#rounds.ask(),
     )
     store.watch(
-      state => state.photo,
+      state => state.sheets?.front,
       () => this.#rounds.ask(),
     )
   }
@@ -45,35 +45,35 @@ export class Tracer {
 
   /** Do the next thing that is due; false where nothing is. */
   async #step(): Promise<boolean> {
-    const { photo, traced: found, grown } = this.store.state
+    const { sheets, traced: found, liveTree } = this.store.state
     const strokes = this.store.strokes
-    if (!strokes.branches.length && grown) this.store.set({ grown: null })
+    if (!strokes.branches.length && liveTree) this.store.set({ liveTree: null })
     if (!strokes.branches.length) this.#grownOf = null
     if (strokes !== this.#refused) this.#refused = null
     const traceable = canTrace(this.store.state)
-    if (!traceable && found) this.store.set({ traced: null, grown: null })
-    if (!photo || !traceable || strokes === this.#refused) return false
+    if (!traceable && found) this.store.set({ traced: null, liveTree: null })
+    if (!sheets || !traceable || strokes === this.#refused) return false
     const isTraced = found?.of === strokes
     if (isTraced && (!strokes.branches.length || this.#grownOf === strokes)) return false
     try {
-      await this.#ask(photo, strokes, isTraced)
+      await this.#ask(sheets.front, strokes, isTraced)
     } catch (error) {
-      await this.#mend(error, photo, strokes)
+      await this.#recover(error, sheets.front, strokes)
     }
     return true
   }
 
-  async #ask(photo: Ground, strokes: Strokes, grow: boolean): Promise<void> {
+  async #ask(front: Sheet, strokes: Strokes, grow: boolean): Promise<void> {
     if (!grow) this.store.set({ tracing: true })
     const found = await traced(this.client, this.store.state, grow)
     this.store.set({ online: true })
-    if (this.#isStale(photo, strokes)) return
+    if (this.#isStale(front, strokes)) return
     this.store.fault('strokes', null)
     if (!grow) return this.#take({ of: strokes, ...found })
     this.#grownOf = strokes
     this.store.set({
-      grown: found.answer.grown ?? null,
-      shows: strokes === this.store.state.modelOf ? 'model' : 'live',
+      liveTree: found.answer.grown ?? null,
+      shows: strokes === this.store.state.model?.strokes ? 'model' : 'live',
     })
   }
 
@@ -83,27 +83,28 @@ export class Tracer {
     this.store.set({ traced, tracing: false, selection: selection?.kind === 'traced' ? null : selection })
   }
 
-  #isStale(photo: Ground, strokes: Strokes): boolean {
-    return this.store.state.photo?.id !== photo.id || this.store.strokes !== strokes
+  #isStale(front: Sheet, strokes: Strokes): boolean {
+    return this.store.state.sheets?.front.id !== front.id || this.store.strokes !== strokes
   }
 
-  async #mend(error: unknown, photo: Ground, strokes: Strokes): Promise<void> {
+  async #recover(error: unknown, front: Sheet, strokes: Strokes): Promise<void> {
     if (error instanceof Unreachable) {
       this.store.set({ online: false })
       await this.wait(AGAIN_MS)
-    } else if (error instanceof Refused && error.status === 404 && isPhoto(photo)) {
-      await this.#bringBack(photo)
+    } else if (error instanceof Refused && error.status === 404 && hasPhoto(front)) {
+      await this.#uploadAgain(front)
     } else {
       this.#refused = strokes
-      if (!this.#isStale(photo, strokes)) this.store.fault('strokes', faultOf(error))
+      if (!this.#isStale(front, strokes)) this.store.fault('strokes', faultOf(error))
     }
   }
 
   /** Send the photo again: the service has forgotten it. */
-  async #bringBack(photo: Photo): Promise<void> {
+  async #uploadAgain(photo: PhotoSheet): Promise<void> {
     try {
       const { id } = await this.client.addPhoto(photo.file)
-      if (this.store.state.photo?.id === photo.id) this.store.set({ photo: { ...photo, id } })
+      const { sheets } = this.store.state
+      if (sheets?.front.id === photo.id) this.store.set({ sheets: { ...sheets, front: { ...photo, id } } })
     } catch (error) {
       if (!(error instanceof Unreachable)) throw error
       await this.wait(AGAIN_MS)

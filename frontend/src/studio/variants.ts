@@ -1,4 +1,4 @@
-import type { Model } from '../state'
+import type { Model } from '../api/types'
 
 const TREE = /^tree\.(?:v(\d+)\.)?(.+)$/
 

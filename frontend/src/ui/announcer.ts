@@ -1,4 +1,5 @@
-import type { Ground, Store, TracedSkeleton } from '../state'
+import type { TracedSkeleton } from '../api/types'
+import type { Sheet, Store } from '../state'
 import type { Point } from '../strokes'
 import { text } from '../text'
 import { editSaid } from './edits'
@@ -43,7 +44,7 @@ export function announceDrawing(store: Store): void {
 }
 
 /** Say what the keyboard's pen does, at a place of the photo in pixels. */
-export function announcePen(pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Ground): void {
+export function announcePen(pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Sheet): void {
   const right = Math.round((x / width) * 100)
   const down = Math.round((y / height) * 100)
   if (pen === 'up') announce(text.strokes.penUp)

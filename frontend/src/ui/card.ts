@@ -1,4 +1,4 @@
-import type { Model } from '../state'
+import type { Model } from '../api/types'
 import { fileName } from '../studio/project'
 import { text } from '../text'
 import { button, el, icon } from './dom'

@@ -1,4 +1,4 @@
-import type { Draft } from '../studio/keeper'
+import type { Draft } from '../studio/draftStore'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el, icon } from './dom'

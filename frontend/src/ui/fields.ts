@@ -1,6 +1,6 @@
 import { text } from '../text'
 import { el } from './dom'
-import { numberAt, numberIn, placeOf, type Span } from './spans'
+import { numberAt, numberIn, placeOf, type Span } from './parts/spans'
 
 /** A labelled setting; `show` brings it back to what is chosen. */
 export interface Row {

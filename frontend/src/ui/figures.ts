@@ -1,4 +1,4 @@
-import type { Model } from '../state'
+import type { Model } from '../api/types'
 import { text } from '../text'
 
 /** A figure of the score card: what, how much, and what that means. */

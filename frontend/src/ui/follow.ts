@@ -1,6 +1,7 @@
 import { isOver } from '../api/follow'
+import type { Grown } from '../api/types'
 import type { Preview } from '../preview/preview'
-import type { Grown, State, Store } from '../state'
+import type { State, Store } from '../state'
 import { onSheet, type Strokes } from '../strokes'
 import { text } from '../text'
 import { paperUrl } from './drawn'

@@ -1,5 +1,5 @@
 import { isOver } from '../api/follow'
-import type { Model } from '../state'
+import type { Model } from '../api/types'
 import { Gallery } from '../studio/gallery'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'

@@ -1,4 +1,4 @@
-import type { Specimen } from '../studio/herbarium'
+import type { Specimen } from '../studio/ownPictures'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el } from './dom'

@@ -6,7 +6,7 @@ import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { button, el, icon } from './dom'
 import { ICONS } from './icons'
-import { numberIn } from './spans'
+import { numberIn } from './parts/spans'
 import './lengthField.css'
 
 /** Beside a line; `look` keeps it there when the photo is moved. */

@@ -1,4 +1,4 @@
-import type { Model } from '../state'
+import type { Model } from '../api/types'
 import { text } from '../text'
 import { spoken } from './settingGroups'
 

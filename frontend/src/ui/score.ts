@@ -1,4 +1,5 @@
-import type { Model, Store } from '../state'
+import type { Model } from '../api/types'
+import type { Store } from '../state'
 import { aloneOf } from '../studio/variants'
 import { text } from '../text'
 import { el } from './dom'

@@ -1,4 +1,4 @@
-import type { Settings } from '../state'
+import type { Settings } from '../api/types'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { severalField, toggleField } from './choiceFields'

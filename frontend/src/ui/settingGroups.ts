@@ -1,7 +1,7 @@
 import { DEFAULT_SETTINGS } from '../api/defaults'
-import type { Limits, Settings } from '../state'
+import type { Limits, Settings } from '../api/types'
 import { text } from '../text'
-import type { Span } from './spans'
+import type { Span } from './parts/spans'
 
 export type Value = string | number | boolean | readonly string[]
 /** What the service says of a setting: a span of numbers, one or several names, or yes and no. */

@@ -1,5 +1,6 @@
 import { isOver } from '../api/follow'
-import type { Model, State } from '../state'
+import type { Model } from '../api/types'
+import type { State } from '../state'
 import { text } from '../text'
 import { isOfFile, sameValue } from './settingGroups'
 

@@ -1,4 +1,4 @@
-import type { Model } from '../state'
+import type { Model } from '../api/types'
 import { fileName } from '../studio/project'
 import { treeFiles, variantsOf } from '../studio/variants'
 import { text } from '../text'

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest'
+import type { Grown } from '../../src/api/types'
 import { type Tubes, tubes } from '../../src/preview/tubes'
-import type { Grown } from '../../src/state'
 
 const photo = { width: 100, height: 100, metres_per_pixel: 0.01, root: [50, 90] as [number, number] }
 

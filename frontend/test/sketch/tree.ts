@@ -1,4 +1,4 @@
-import type { TracedSkeleton } from '../../src/state'
+import type { TracedSkeleton } from '../../src/api/types'
 
 /**
  * A stroked trunk 0-1-2 and a traced branch 3-4-5 off joint 1, which forks at 4 into its continuation 5 and the thinner

@@ -2,7 +2,7 @@ import { afterEach, beforeEach, expect, test, vi } from 'vitest'
 import { Client } from '../../src/api/client'
 import { Store } from '../../src/state'
 import { Grower } from '../../src/studio/grower'
-import { Sketchbook } from '../../src/studio/sketchbook'
+import { Sketchbook } from '../../src/studio/strokeActions'
 import { CROWN, grown, model, photo, TRUNK } from '../builders'
 import { type Call, Events, problem, service, settle } from '../service'
 

@@ -1,7 +1,7 @@
 import { afterEach, expect, test, vi } from 'vitest'
 import { Client } from '../../src/api/client'
 import { Store } from '../../src/state'
-import { Sketchbook } from '../../src/studio/sketchbook'
+import { Sketchbook } from '../../src/studio/strokeActions'
 import { Tracer } from '../../src/studio/tracer'
 import { answer, CROWN, grown, LIMB, photo, TRUNK } from '../builders'
 import { type Call, problem, service, settle } from '../service'

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import type { Grown } from '../../src/state'
+import type { Grown } from '../../src/api/types'
 import { Store } from '../../src/state'
 import { followState } from '../../src/ui/follow'
 import { grown, model, photo } from '../builders'

@@ -1,6 +1,7 @@
 import { expect, test } from 'vitest'
+import type { Grown, Model, StrokeWarning, TraceAnswer } from '../../src/api/types'
 import { advance, begin } from '../../src/history'
-import { EMPTY, type Grown, type Model, type State, type StrokeWarning, type TraceAnswer } from '../../src/state'
+import { EMPTY, type State } from '../../src/state'
 import { type Line, NO_STROKES, withSheet, withStroke } from '../../src/strokes'
 import { text } from '../../src/text'
 import { hintOf } from '../../src/ui/hint'

@@ -2,7 +2,7 @@
 import 'fake-indexeddb/auto'
 import { afterEach, expect, test, vi } from 'vitest'
 import type { Photo } from '../../src/state'
-import type { Draft } from '../../src/studio/keeper'
+import type { Draft } from '../../src/studio/draftStore'
 import { Studio } from '../../src/studio/studio'
 import { followSession, resume } from '../../src/ui/session'
 

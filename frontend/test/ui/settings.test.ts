@@ -1,7 +1,7 @@
 // @vitest-environment jsdom
 import 'fake-indexeddb/auto'
 import { beforeEach, expect, test, vi } from 'vitest'
-import type { Limits } from '../../src/state'
+import type { Limits } from '../../src/api/types'
 import { Studio } from '../../src/studio/studio'
 import { settingsPanel } from '../../src/ui/settings'
 import { CROWN, model, photo, TRUNK } from '../builders'

@@ -1,5 +1,6 @@
 import { expect, test } from 'vitest'
-import { EMPTY, type Model, type Photo } from '../../src/state'
+import type { Model } from '../../src/api/types'
+import { EMPTY, type Photo } from '../../src/state'
 import { titleOf } from '../../src/ui/title'
 
 const photo = { id: 'photo' } as Photo

@@ -1,7 +1,8 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb'
+import type { Settings } from '../api/types'
 import type { History } from '../history'
 import type { Extent } from '../sheets'
-import type { Settings, Source, State, Store } from '../state'
+import type { Sheets, Source, State, Store } from '../state'
 import { isEmpty, type Strokes } from '../strokes'
 import { Rounds } from './rounds'
 
@@ -33,20 +34,20 @@ const PICTURES = ['photo', 'side', 'leaf', 'fruit'] as const
 type Pictures = Readonly<Record<(typeof PICTURES)[number], Blob | null>>
 
 /** A drawing with its pictures. */
-export interface Kept extends Pictures {
+export interface DraftWithPictures extends Pictures {
   readonly draft: Draft
 }
 
-interface Shelf extends DBSchema {
+interface DraftDatabase extends DBSchema {
   drafts: { key: string; value: Draft; indexes: { saved: number } }
   photos: { key: string; value: Blob }
 }
 
 const KEPT = 12
-const KEYS = ['photo', 'side', 'name', 'history', 'settings', 'seed', 'leaf', 'fruit', 'model', 'modelOf'] as const
+const KEYS = ['sheets', 'name', 'history', 'settings', 'seed', 'leaf', 'fruit', 'model'] as const
 
 /** Keeps every drawing in the browser as it is drawn, with its undo history, so that a reload or a crash loses nothing. */
-export class Keeper {
+export class DraftStore {
   #id: string | null = null
   /** What has been written of this drawing. */
   #written: Pictures | null = null
@@ -54,9 +55,9 @@ export class Keeper {
 
   constructor(
     private readonly store: Store,
-    private readonly shelf: Promise<IDBPDatabase<Shelf>> = open(),
+    private readonly database: Promise<IDBPDatabase<DraftDatabase>> = open(),
   ) {
-    shelf.catch(() => store.set({ kept: false }))
+    database.catch(() => store.set({ kept: false }))
     for (const key of KEYS)
       store.watch(
         state => state[key],
@@ -77,28 +78,28 @@ export class Keeper {
 
   /** List what is kept, the latest first; drawings without a stroke are not worth coming back to. */
   async list(): Promise<Draft[]> {
-    const drafts = await (await this.shelf).getAllFromIndex('drafts', 'saved')
+    const drafts = await (await this.database).getAllFromIndex('drafts', 'saved')
     return drafts.filter(({ history }) => !isEmpty(history.present)).reverse()
   }
 
   /** Find a drawing and its pictures. */
-  async find(id: string): Promise<Kept | null> {
-    const shelf = await this.shelf
-    const found = PICTURES.map(async what => [what, (await shelf.get('photos', keyOf(id, what))) ?? null] as const)
-    const [draft, ...pictures] = await Promise.all([shelf.get('drafts', id), ...found])
-    const kept = Object.fromEntries(pictures) as Pictures
-    return draft && (kept.photo || draft.source === 'sketch') ? { draft, ...kept } : null
+  async find(id: string): Promise<DraftWithPictures | null> {
+    const database = await this.database
+    const found = PICTURES.map(async what => [what, (await database.get('photos', keyOf(id, what))) ?? null] as const)
+    const [draft, ...pictures] = await Promise.all([database.get('drafts', id), ...found])
+    const stored = Object.fromEntries(pictures) as Pictures
+    return draft && (stored.photo || draft.source === 'sketch') ? { draft, ...stored } : null
   }
 
   async remove(id: string): Promise<void> {
-    await removeAll(await this.shelf, [id])
+    await removeAll(await this.database, [id])
   }
 
   /** Put a drawing back that was removed. */
-  async restore({ draft, ...pictures }: Kept): Promise<void> {
-    const shelf = await this.shelf
-    await putPictures(shelf, draft.id, pictures, null)
-    await shelf.put('drafts', draft)
+  async restore({ draft, ...pictures }: DraftWithPictures): Promise<void> {
+    const database = await this.database
+    await putPictures(database, draft.id, pictures, null)
+    await database.put('drafts', draft)
   }
 
   async #keep(): Promise<void> {
@@ -111,27 +112,30 @@ export class Keeper {
 
   async #write(state: State): Promise<void> {
     const id = this.#id
-    if (!id || !state.photo) return
-    const { photo, side, leaf, fruit } = state
-    const shelf = await this.shelf
+    const { sheets, leaf, fruit } = state
+    if (!id || !sheets) return
+    const database = await this.database
     const before = this.#written
-    const pictures = { photo: photo.file, side: side?.file ?? null, leaf, fruit }
-    await putPictures(shelf, id, pictures, before)
-    await shelf.put('drafts', draftOf(state, id))
-    if (!before) await prune(shelf)
+    const pictures = { photo: sheets.front.file, side: sheets.side?.file ?? null, leaf, fruit }
+    await putPictures(database, id, pictures, before)
+    await database.put('drafts', draftOf({ ...state, sheets }, id))
+    if (!before) await prune(database)
     if (this.#id === id) this.#written = pictures
     if (!state.kept) this.store.set({ kept: true })
   }
 }
 
-function draftOf(state: State, id: string): Draft {
-  const { source, photo, side, name, history, settings, seed, model, modelOf, modelLeaf, modelFruit } = state
+function draftOf(state: State & { readonly sheets: Sheets }, id: string): Draft {
+  const { name, history, settings, seed, model } = state
+  const { source, front, side } = state.sheets
   return {
-    ...{ id, saved: Date.now(), source, name, history, settings, seed, modelOf, model: model?.id ?? null },
-    photo: { id: photo!.id, width: photo!.width, height: photo!.height },
+    ...{ id, saved: Date.now(), source, name, history, settings, seed },
+    photo: { id: front.id, width: front.width, height: front.height },
     side: side && { width: side.width, height: side.height },
-    modelHadOtherLeaf: modelLeaf !== state.leaf,
-    modelHadOtherFruit: modelFruit !== state.fruit,
+    model: model?.info.id ?? null,
+    modelOf: model?.strokes ?? null,
+    modelHadOtherLeaf: (model?.leaf ?? null) !== state.leaf,
+    modelHadOtherFruit: (model?.fruit ?? null) !== state.fruit,
   }
 }
 
@@ -142,7 +146,7 @@ function keyOf(id: string, what: keyof Pictures): string {
 
 /** Write the pictures that are others than before. */
 async function putPictures(
-  shelf: IDBPDatabase<Shelf>,
+  database: IDBPDatabase<DraftDatabase>,
   id: string,
   pictures: Pictures,
   before: Pictures | null,
@@ -150,29 +154,29 @@ async function putPictures(
   for (const what of PICTURES) {
     const picture = pictures[what]
     if (before && before[what] === picture) continue
-    if (picture) await shelf.put('photos', picture, keyOf(id, what))
-    else await shelf.delete('photos', keyOf(id, what))
+    if (picture) await database.put('photos', picture, keyOf(id, what))
+    else await database.delete('photos', keyOf(id, what))
   }
 }
 
-/** Asynchronous, so that a browser without a shelf rejects instead of throwing. */
-async function open(): Promise<IDBPDatabase<Shelf>> {
-  return openDB<Shelf>('treestroke', 1, {
-    upgrade(shelf) {
-      shelf.createObjectStore('drafts', { keyPath: 'id' }).createIndex('saved', 'saved')
-      shelf.createObjectStore('photos')
+/** Asynchronous, so that a browser without a database rejects instead of throwing. */
+async function open(): Promise<IDBPDatabase<DraftDatabase>> {
+  return openDB<DraftDatabase>('treestroke', 1, {
+    upgrade(database) {
+      database.createObjectStore('drafts', { keyPath: 'id' }).createIndex('saved', 'saved')
+      database.createObjectStore('photos')
     },
   })
 }
 
 /** Let the drawings go that were touched longest ago. */
-async function prune(shelf: IDBPDatabase<Shelf>): Promise<void> {
-  const ids = await shelf.getAllKeysFromIndex('drafts', 'saved')
-  await removeAll(shelf, ids.slice(0, Math.max(0, ids.length - KEPT)))
+async function prune(database: IDBPDatabase<DraftDatabase>): Promise<void> {
+  const ids = await database.getAllKeysFromIndex('drafts', 'saved')
+  await removeAll(database, ids.slice(0, Math.max(0, ids.length - KEPT)))
 }
 
-async function removeAll(shelf: IDBPDatabase<Shelf>, ids: readonly string[]): Promise<void> {
-  const change = shelf.transaction(['drafts', 'photos'], 'readwrite')
+async function removeAll(database: IDBPDatabase<DraftDatabase>, ids: readonly string[]): Promise<void> {
+  const change = database.transaction(['drafts', 'photos'], 'readwrite')
   for (const id of ids) {
     change.objectStore('drafts').delete(id)
     for (const what of PICTURES) change.objectStore('photos').delete(keyOf(id, what))

@@ -1,12 +1,22 @@
+import type { TraceAnswer } from '../api/types'
 import { doubtIn } from '../doubts'
-import { brushWidth, commonLevels, type Extent, groundOf, isPaper, type Levels, strayLevels } from '../sheets'
-import type { Ground, Selection, State, Tool, TraceAnswer } from '../state'
+import {
+  brushWidth,
+  commonLevels,
+  type Extent,
+  isPaper,
+  type Levels,
+  openSheets,
+  sheetOf,
+  strayLevels,
+} from '../sheets'
+import type { Selection, Sheet, State, Tool } from '../state'
 import { type Line, onSheet, type SheetName, type StrokeRef, type Strokes } from '../strokes'
 
 /** What one sheet shows of the page's state, as if there were no other. */
-export interface SheetSight {
-  readonly ground: Ground | null
-  /** White paper, or tracing paper over a picture; a photo of a tree that is traced is none. */
+export interface SheetView {
+  readonly sheet: Sheet | null
+  /** White paper, or tracing paper over a picture; the photo of a tree that is traced is not paper. */
   readonly isPaper: boolean
   readonly strokes: Strokes
   readonly selection: Selection | null
@@ -25,33 +35,33 @@ export interface SheetSight {
   readonly stray: Levels | null
 }
 
-/** See one sheet of the state. */
-export function sightOf(state: State, sheet: SheetName): SheetSight {
+/** Return what one sheet shows of the state. */
+export function viewOf(state: State, name: SheetName): SheetView {
   const { history, selection, faults, traced } = state
-  const [ground, onPaper] = [groundOf(state, sheet), isPaper(state, sheet)]
-  const strokes = onSheet(history.present, sheet)
+  const [sheet, onPaper] = [sheetOf(state, name), isPaper(state, name)]
+  const strokes = onSheet(history.present, name)
   return {
-    ground,
+    sheet,
     isPaper: onPaper,
     strokes,
-    selection: local(selection, sheet),
-    fault: local(faults.strokes?.stroke ?? doubtIn(state)?.stroke ?? null, sheet),
+    selection: local(selection, name),
+    fault: local(faults.strokes?.stroke ?? doubtIn(state)?.stroke ?? null, name),
     tool: onPaper && state.tool === 'scale' ? 'select' : state.tool,
-    brush: onPaper && ground ? brushWidth(state, ground) : null,
+    brush: onPaper && sheet ? brushWidth(state, sheet) : null,
     traced: onPaper || !strokes.crown ? null : (traced?.answer ?? null),
-    crown: onPaper && !strokes.crown && strokes.branches.length ? (traced?.crowns?.[sheet] ?? null) : null,
-    levels: state.side || state.source === 'sketch' ? commonLevels(state, sheet) : null,
-    stray: sheet === 'side' ? strayLevels(state) : null,
+    crown: onPaper && !strokes.crown && strokes.branches.length ? (traced?.crowns?.[name] ?? null) : null,
+    levels: state.sheets?.side || state.sheets?.source === 'sketch' ? commonLevels(state, name) : null,
+    stray: name === 'side' ? strayLevels(state) : null,
   }
 }
 
 /** What is to be seen whole on a sheet, px of it: as wide as the widest, so that all are seen at one scale. */
-export function extentOf(state: State, sheet: SheetName): Extent | null {
-  const ground = groundOf(state, sheet)
-  if (!ground) return null
-  const grounds = [state.photo, state.side].filter(one => one !== null)
-  const widths = grounds.map(({ width, height }) => (width / height) * ground.height)
-  return { width: Math.max(...widths), height: ground.height }
+export function extentOf(state: State, name: SheetName): Extent | null {
+  const sheet = sheetOf(state, name)
+  if (!sheet) return null
+  const open = openSheets(state).map(other => sheetOf(state, other)!)
+  const widths = open.map(({ width, height }) => (width / height) * sheet.height)
+  return { width: Math.max(...widths), height: sheet.height }
 }
 
 /** Name something of one sheet for all of the page. */
@@ -59,7 +69,7 @@ export function ofSheet<S extends Selection>(selection: S | null, sheet: SheetNa
   return selection && sheet === 'side' && selection.kind !== 'traced' ? { ...selection, sheet } : selection
 }
 
-/** Give what is selected as its own sheet names it; null on other sheets. */
+/** Return what is selected as its own sheet names it; null on other sheets. */
 function local<S extends Selection>(selection: S | null, sheet: SheetName): S | null {
   if (!selection || selection.kind === 'traced') return sheet === 'front' ? selection : null
   const { sheet: own = 'front', ...rest } = selection

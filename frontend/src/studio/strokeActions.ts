@@ -1,5 +1,5 @@
 import { advance, type History, redo, undo } from '../history'
-import { brushWidth, groundOf, isDrawn, isPaper, paper } from '../sheets'
+import { brushWidth, isDrawn, isPaper, paper, sheetOf } from '../sheets'
 import type { Selection, Store, Tool } from '../state'
 import {
   isEmpty,
@@ -20,7 +20,7 @@ import { metresOf } from './scaling'
 const SCALE: Selection = { kind: 'scale', index: 0 }
 
 /** Edits of the strokes; each can be undone. */
-export class Sketchbook {
+export class StrokeActions {
   constructor(private readonly store: Store) {}
 
   /** Take a finished stroke; over a photo the trunk is what comes after the crown. */
@@ -73,8 +73,8 @@ export class Sketchbook {
   /** How wide the brush is on a sheet, px; a photo itself shows how thick branches are. */
   #brush(sheet: SheetName): number | null {
     const { state } = this.store
-    const ground = groundOf(state, sheet)
-    return ground && isPaper(state, sheet) ? brushWidth(state, ground) : null
+    const drawnOn = sheetOf(state, sheet)
+    return drawnOn && isPaper(state, sheet) ? brushWidth(state, drawnOn) : null
   }
 
   /** Lay the measured line; an end that was moved leaves its length as it was said, a line of its own guesses it. */
@@ -90,10 +90,11 @@ export class Sketchbook {
   }
 
   #set(history: History<Strokes>, selection: Selection | null = null): void {
-    const { photo, side } = this.store.state
-    // What was put away with the side's sheet comes back with it.
-    const reopened = !side && photo && isDrawn(history.present, 'side') && { side: paper(photo.height) }
-    this.store.set({ history, selection, ...reopened })
+    const { sheets } = this.store.state
+    // What was closed with the side's sheet comes back with it.
+    const reopened = sheets && !sheets.side && isDrawn(history.present, 'side')
+    const side = reopened ? paper(sheets.front.height) : null
+    this.store.set({ history, selection, ...(side && { sheets: { ...sheets!, side } }) })
     this.store.fault('strokes', null)
   }
 }

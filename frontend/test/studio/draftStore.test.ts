@@ -2,8 +2,8 @@ import 'fake-indexeddb/auto'
 import { IDBFactory } from 'fake-indexeddb'
 import { beforeEach, expect, test, vi } from 'vitest'
 import { Store } from '../../src/state'
-import { Keeper } from '../../src/studio/keeper'
-import { Sketchbook } from '../../src/studio/sketchbook'
+import { Keeper } from '../../src/studio/draftStore'
+import { Sketchbook } from '../../src/studio/strokeActions'
 import { CROWN, photo, TRUNK } from '../builders'
 
 beforeEach(() => {

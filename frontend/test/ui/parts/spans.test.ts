@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { numberAt, numberIn, placeOf } from '../../src/ui/spans'
+import { numberAt, numberIn, placeOf } from '../../../src/ui/parts/spans'
 
 const HEIGHT = { min: 0.1, max: 150, whole: false }
 const DENSITY = { min: 0, max: 3, whole: false }

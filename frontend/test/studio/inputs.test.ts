@@ -4,7 +4,7 @@ import { begin } from '../../src/history'
 import { paper } from '../../src/sheets'
 import { EMPTY, type State } from '../../src/state'
 import { NO_STROKES, withSheet, withStroke } from '../../src/strokes'
-import { canTrace, evidenceOf, traced } from '../../src/studio/evidence'
+import { canTrace, evidenceOf, traced } from '../../src/studio/inputs'
 import { answer, CROWN, LIMB, photo, sketchAnswer, TRUNK } from '../builders'
 import { service } from '../service'
 

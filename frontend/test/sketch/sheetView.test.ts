@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
 import { begin } from '../../src/history'
 import { paper } from '../../src/sheets'
-import { extentOf, ofSheet, sightOf } from '../../src/sketch/sheet'
+import { extentOf, ofSheet, sightOf } from '../../src/sketch/sheetView'
 import { EMPTY, type State } from '../../src/state'
 import { NO_STROKES, withSheet, withStroke } from '../../src/strokes'
 import { answer, CROWN, LIMB, photo, TRUNK } from '../builders'

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
 import { Store } from '../../src/state'
-import { Herbarium } from '../../src/studio/herbarium'
-import { Unusable } from '../../src/studio/sentences'
+import { Unusable } from '../../src/studio/faultText'
+import { Herbarium } from '../../src/studio/ownPictures'
 import { photo } from '../builders'
 
 const leaf = new Blob(['leaf'])

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { Refused, Unreachable } from '../../src/api/client'
-import { faultOf, Unusable } from '../../src/studio/sentences'
+import { faultOf, Unusable } from '../../src/studio/faultText'
 
 test("the service's words become a sentence without their place", () => {
   const fault = faultOf(new Refused(422, 'other', 'settings/height: 900 is too high; give 0.1 to 150', null))

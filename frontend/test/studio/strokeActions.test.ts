@@ -1,7 +1,7 @@
 import { beforeEach, expect, test } from 'vitest'
 import { Store } from '../../src/state'
 import { NO_STROKES } from '../../src/strokes'
-import { Sketchbook } from '../../src/studio/sketchbook'
+import { Sketchbook } from '../../src/studio/strokeActions'
 import { answer, CROWN, LIMB, TRUNK } from '../builders'
 
 let store: Store

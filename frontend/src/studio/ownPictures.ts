@@ -1,0 +1,30 @@
+import type { OwnPictures, Store } from '../state'
+import { faultOf } from './faultText'
+import { readLeaf } from './leafPicture'
+
+/** Takes a person's own pictures of a leaf and a fruit; what is wrong with one is put among the state's faults. */
+export class OwnPictureActions {
+  constructor(
+    private readonly store: Store,
+    private readonly read: (file: Blob, mostBytes: number) => Promise<Blob> = readLeaf,
+  ) {}
+
+  /** Take a picture in the place of the last one, which stays where the new one cannot be used. */
+  async take(file: Blob, kind: keyof OwnPictures = 'leaf'): Promise<void> {
+    const { sheets, limits } = this.store.state
+    try {
+      const picture = await this.read(file, limits?.leaf_bytes ?? Number.POSITIVE_INFINITY)
+      if (this.store.state.sheets?.front !== sheets?.front) return
+      this.store.set({ [kind]: picture })
+      this.store.fault(kind, null)
+    } catch (error) {
+      this.store.fault(kind, faultOf(error))
+    }
+  }
+
+  /** Go back to the species' leaves, and to no fruit. */
+  remove(kind: keyof OwnPictures = 'leaf'): void {
+    this.store.set({ [kind]: null })
+    this.store.fault(kind, null)
+  }
+}

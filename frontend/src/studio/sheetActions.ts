@@ -1,0 +1,115 @@
+import type { Client } from '../api/client'
+import { advance, throughout } from '../history'
+import { type Extent, fittedTo, isDrawn, openSheets, paper, replaceSheet, sheetOf, sheetOfSize } from '../sheets'
+import type { PhotoSheet, Sheet, State, Store } from '../state'
+import { NO_STROKES, onSheet, type SheetName, withSheet } from '../strokes'
+import { faultOf } from './faultText'
+import { drawable, uploaded } from './photos'
+import type { SketchFile } from './sketches'
+
+/** Opens and closes sheets, and puts pictures under what is drawn on them. */
+export class SheetActions {
+  constructor(
+    private readonly store: Store,
+    private readonly client: Client,
+    private readonly sizeOf: (picture: Blob) => Promise<Extent> = decodedSize,
+  ) {}
+
+  /** Open the sheet of the tree's left side, as high as the front's. */
+  openSide(): void {
+    const { sheets } = this.store.state
+    if (!sheets || sheets.side) return
+    this.store.set({ sheets: { ...sheets, side: paper(sheets.front.height) }, active: 'side', tool: 'branch' })
+  }
+
+  /** Close the side's sheet with what is on it; an undo brings the strokes back, and it with them. */
+  closeSide(): void {
+    const { sheets } = this.store.state
+    if (!sheets?.side) return
+    const { history } = { ...this.store.state, ...moved(this.store.state, 'side', paper(sheets.front.height)) }
+    const rest = isDrawn(history.present, 'side') ? advance(history, onSheet(history.present, 'front')) : history
+    this.store.set({ sheets: { ...sheets, side: null }, active: 'front', selection: null, history: rest })
+  }
+
+  /** Draw on a sheet from now on. */
+  activate(sheet: SheetName): void {
+    if (openSheets(this.store.state).includes(sheet)) this.store.set({ active: sheet })
+  }
+
+  /** Draw branches on paper so wide, as a share of its height; null for a pencil. */
+  chooseBrush(brush: number | null): void {
+    this.store.set({ brush, tool: 'branch', selection: null })
+  }
+
+  /** Put a picture under what is drawn on a sheet; the front's gives the tree its colours, so the service gets it. */
+  async addPicture(name: SheetName, file: Blob): Promise<void> {
+    const before = sheetOf(this.store.state, name)
+    try {
+      const sheet = name === 'front' ? await this.#upload(file) : await this.#local(file)
+      if (before && sheetOf(this.store.state, name) === before) {
+        this.store.set(moved(this.store.state, name, sheet))
+        if (sheet.corrections) this.store.set({ corrections: { of: this.store.strokes, text: sheet.corrections } })
+      }
+      this.store.fault('photo', null)
+    } catch (error) {
+      this.store.fault('photo', faultOf(error))
+    }
+  }
+
+  /** Remove the picture from under a sheet's strokes. */
+  removePicture(name: SheetName): void {
+    this.#change(name, sheetOfSize)
+  }
+
+  /** Show or hide the picture under a sheet's strokes. */
+  showPicture(name: SheetName, shown: boolean): void {
+    this.#change(name, ({ hidden: _, ...sheet }) => (shown ? sheet : { ...sheet, hidden: true }))
+  }
+
+  #change(name: SheetName, change: (sheet: Sheet) => Sheet): void {
+    const { sheets } = this.store.state
+    if (sheets?.[name]) this.store.set({ sheets: replaceSheet(sheets, name, change(sheets[name])) })
+  }
+
+  #upload(file: Blob): Promise<PhotoSheet> {
+    return uploaded(file, this.client, this.store.state.limits)
+  }
+
+  /** Keep a picture in the browser; one that it cannot show (HEIC, in most) the service turns into one that it can. */
+  async #local(chosen: Blob): Promise<Sheet> {
+    const { limits } = this.store.state
+    const known = await this.sizeOf(chosen).catch(() => null)
+    const file = known ? chosen : await drawable(chosen, this.client, limits)
+    const size = known ?? (await this.sizeOf(file))
+    return { ...sheetOfSize(size), file, url: URL.createObjectURL(file) }
+  }
+}
+
+/** Put a sketch in the place of a sheet's strokes, which an undo brings back; paper without a picture becomes as large. */
+export function redrawn(state: State, name: SheetName, { strokes, size }: SketchFile): Partial<State> {
+  const before = sheetOf(state, name)!
+  const sheet = before.url ? before : sheetOfSize(size)
+  const { history, sheets } = { ...state, ...moved(state, name, sheet) }
+  const drawn = withSheet(history.present, name, fittedTo(strokes, size, sheet))
+  return { sheets, history: advance(history, drawn), selection: null, active: name, tool: 'branch' }
+}
+
+/** Put another sheet under a sheet's strokes, which keep their place on it, those that can be undone too. */
+function moved({ history, sheets }: State, name: SheetName, sheet: Sheet): Pick<State, 'sheets'> & Partial<State> {
+  const before = sheets![name]!
+  const open = replaceSheet(sheets!, name, sheet)
+  if (before.width === sheet.width && before.height === sheet.height) return { sheets: open }
+  const fitted = throughout(history, strokes =>
+    isDrawn(strokes, name)
+      ? withSheet(strokes, name, { ...NO_STROKES, ...fittedTo(onSheet(strokes, name), before, sheet) })
+      : strokes,
+  )
+  return { sheets: open, history: fitted, selection: null }
+}
+
+async function decodedSize(picture: Blob): Promise<Extent> {
+  const bitmap = await createImageBitmap(picture)
+  const { width, height } = bitmap
+  bitmap.close()
+  return { width, height }
+}
