@@ -8,7 +8,7 @@ interface Props {
   /** The attributes of the button that opens and closes it. */
   readonly opener: ButtonHTMLAttributes
   readonly class?: string
-  readonly label?: string
+  readonly label: string
   readonly children: ComponentChildren
 }
 
@@ -22,14 +22,7 @@ export function Popover({ opener, class: name = '', label, children }: Props) {
   return (
     <>
       <button type="button" {...opener} popovertarget={id} ref={button} />
-      <div
-        id={id}
-        class={`popover ${name}`.trim()}
-        popover="auto"
-        role={label && 'group'}
-        aria-label={label}
-        onToggle={place}
-      >
+      <div id={id} class={`popover ${name}`.trim()} popover="auto" role="group" aria-label={label} onToggle={place}>
         {children}
       </div>
     </>
