@@ -1,14 +1,21 @@
 // @vitest-environment jsdom
+import { type ComponentChild, render } from 'preact'
 import { expect, test, vi } from 'vitest'
-import { NO_STROKES, withSheet, withStroke } from '../../src/strokes'
-import { drawnOn, drawnPair, paperUrl } from '../../src/ui/drawn'
-import { CROWN, LIMB, TRUNK } from '../builders'
+import { NO_STROKES, withSheet, withStroke } from '../../../src/strokes'
+import { PairPicture, paperUrl, SheetPicture } from '../../../src/ui/parts/drawn'
+import { CROWN, LIMB, TRUNK } from '../../builders'
 
 const PAPER = { width: 900, height: 1200 }
 const front = { ...withStroke(NO_STROKES, 'branch', TRUNK, 30), crown: CROWN }
 
+function pictureOf(drawn: ComponentChild): Element {
+  const host = document.createElement('div')
+  render(drawn, host)
+  return host.firstElementChild!
+}
+
 test('strokes are drawn in the sheet’s own pixels, a brush as wide as it is', () => {
-  const picture = drawnOn(PAPER, front)
+  const picture = pictureOf(<SheetPicture size={PAPER} strokes={front} />)
   expect(picture.getAttribute('viewBox')).toBe('0 0 900 1200')
   const [crown, trunk] = [...picture.querySelectorAll('path')]
   expect(crown?.getAttribute('d')).toMatch(/z$/)
@@ -16,7 +23,8 @@ test('strokes are drawn in the sheet’s own pixels, a brush as wide as it is', 
 })
 
 test('two sides stand beside each other, as high as each other, with no more paper than they need', () => {
-  const pair = drawnPair(PAPER, withSheet(front, 'side', withStroke(NO_STROKES, 'branch', LIMB)), { ...PAPER })
+  const both = withSheet(front, 'side', withStroke(NO_STROKES, 'branch', LIMB))
+  const pair = pictureOf(<PairPicture front={PAPER} strokes={both} side={{ ...PAPER }} />)
   const [left, top, width, height] = pair.getAttribute('viewBox')!.split(' ').map(Number)
   expect([left, top, height]).toEqual([20, 10, 85])
   expect(width).toBeGreaterThan(60 + 20)
