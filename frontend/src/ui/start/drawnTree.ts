@@ -1,4 +1,4 @@
-import type { Point } from '../strokes'
+import type { Point } from '../../strokes'
 
 /** A piece of a branch: a curve that bends towards `bend`. */
 export interface Twig {

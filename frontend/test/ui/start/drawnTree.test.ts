@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { drawnTree, outline } from '../../src/ui/drawnTree'
+import { drawnTree, outline } from '../../../src/ui/start/drawnTree'
 
 test('the tree of the illustration is always the same one', () => {
   expect(drawnTree()).toEqual(drawnTree())

@@ -1,17 +1,17 @@
 // @vitest-environment jsdom
 import 'fake-indexeddb/auto'
 import { afterEach, expect, test, vi } from 'vitest'
-import type { Photo } from '../../src/state'
-import type { Draft } from '../../src/studio/draftStore'
-import { Studio } from '../../src/studio/studio'
-import { followSession, resume } from '../../src/ui/session'
+import type { Draft } from '../../../src/studio/draftStore'
+import { Studio } from '../../../src/studio/studio'
+import { followSession, isToResume, resume } from '../../../src/ui/start/session'
+import { photoSheets, shownModel } from '../../builders'
 
 const MODEL = `mdl_${'a'.repeat(24)}`
 
 function studioWith(drafts: readonly { id: string; model?: string }[]) {
   const studio = new Studio()
-  vi.spyOn(studio.keeper, 'list').mockResolvedValue(drafts as unknown as Draft[])
-  vi.spyOn(studio.keeper, 'find').mockImplementation(async id => {
+  vi.spyOn(studio.drafts, 'list').mockResolvedValue(drafts as unknown as Draft[])
+  vi.spyOn(studio.drafts, 'find').mockImplementation(async id => {
     const draft = drafts.find(one => one.id === id) as unknown as Draft | undefined
     return draft ? { draft, photo: new Blob(), side: null, leaf: null, fruit: null } : null
   })
@@ -27,6 +27,7 @@ afterEach(() => {
 
 test('a fresh tab opens nothing', async () => {
   const { studio, openDraft, openModel } = studioWith([{ id: 'one' }])
+  expect(isToResume()).toBe(false)
   await resume(studio)
   expect(openDraft).not.toHaveBeenCalled()
   expect(openModel).not.toHaveBeenCalled()
@@ -35,6 +36,7 @@ test('a fresh tab opens nothing', async () => {
 test('a reload opens the drawing of this tab', async () => {
   sessionStorage.setItem('draft', 'two')
   const { studio, openDraft } = studioWith([{ id: 'one' }, { id: 'two' }])
+  expect(isToResume()).toBe(true)
   await resume(studio)
   expect(openDraft).toHaveBeenCalledWith('two')
 })
@@ -49,6 +51,7 @@ test('a drawing that is no longer kept is not asked for', async () => {
 test('a link to a model opens the model', async () => {
   history.replaceState(null, '', `#${MODEL}`)
   const { studio, openModel } = studioWith([{ id: 'one' }])
+  expect(isToResume()).toBe(true)
   await resume(studio)
   expect(openModel).toHaveBeenCalledWith(MODEL)
 })
@@ -75,11 +78,11 @@ test('what is in the address and is no model is left alone', async () => {
 test('address and memory follow what is open', () => {
   const { studio } = studioWith([])
   followSession(studio)
-  studio.keeper.begin('mine')
-  studio.store.set({ photo: { id: 'photo' } as Photo, model: { id: MODEL } as never })
+  studio.drafts.begin('mine')
+  studio.store.set({ sheets: photoSheets(), model: shownModel({ id: MODEL }) })
   expect(location.hash).toBe(`#${MODEL}`)
   expect(sessionStorage.getItem('draft')).toBe('mine')
-  studio.store.set({ photo: null, model: null })
+  studio.store.set({ sheets: null, model: null })
   expect(location.hash).toBe('')
   expect(sessionStorage.getItem('draft')).toBeNull()
 })

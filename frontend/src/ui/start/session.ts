@@ -1,8 +1,13 @@
-import { isEmpty } from '../strokes'
-import type { Studio } from '../studio/studio'
+import { isEmpty } from '../../strokes'
+import type { Studio } from '../../studio/studio'
 
 const MODEL = /^#(mdl_[0-9a-f]{24})$/
 const DRAFT = 'draft'
+
+/** Whether something was open before, which `resume` opens again. */
+export function isToResume(): boolean {
+  return modelInAddress() !== null || remembered() !== null
+}
 
 /** Open again what was open: the model that the address names, or the drawing that this tab was at. */
 export async function resume(studio: Studio): Promise<void> {
@@ -14,18 +19,18 @@ export async function resume(studio: Studio): Promise<void> {
 
 /** Keep the address and the tab's memory at what is open, and follow an address that is changed by hand. */
 export function followSession(studio: Studio): void {
-  const { store, keeper } = studio
+  const { store, drafts } = studio
   store.watch(
-    state => state.model?.id ?? null,
+    state => state.model?.info.id ?? null,
     id => history.replaceState(null, '', id ? `#${id}` : location.pathname + location.search),
   )
   store.watch(
-    state => state.photo,
-    photo => remember(photo && keeper.id),
+    state => state.sheets?.front,
+    front => remember(front ? drafts.id : null),
   )
   addEventListener('hashchange', () => modelInAddress() && resume(studio))
   addEventListener('beforeunload', event => {
-    if (!store.state.kept && store.state.photo && !isEmpty(store.strokes)) event.preventDefault()
+    if (!store.state.kept && store.state.sheets && !isEmpty(store.strokes)) event.preventDefault()
   })
 }
 
@@ -34,15 +39,15 @@ function modelInAddress(): string | null {
 }
 
 /** Find the drawing whose model it is: its strokes may be newer. This tab's own comes first, then the latest. */
-async function draftOf({ keeper }: Studio, model: string): Promise<string | null> {
-  const drafts = await keeper.list().catch(() => [])
-  const ids = drafts.filter(draft => draft.model === model).map(draft => draft.id)
+async function draftOf({ drafts }: Studio, model: string): Promise<string | null> {
+  const kept = await drafts.list().catch(() => [])
+  const ids = kept.filter(draft => draft.model === model).map(draft => draft.id)
   return ids.find(id => id === remembered()) ?? ids[0] ?? null
 }
 
-async function keptDraft({ keeper }: Studio): Promise<string | null> {
+async function keptDraft({ drafts }: Studio): Promise<string | null> {
   const id = remembered()
-  return id && (await keeper.find(id).catch(() => null)) ? id : null
+  return id && (await drafts.find(id).catch(() => null)) ? id : null
 }
 
 function remembered(): string | null {

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { ago } from '../../src/ui/when'
+import { ago } from '../../../src/ui/start/when'
 
 const NOW = Date.UTC(2026, 5, 15, 12)
 

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { afterGap } from '../../src/ui/portrait'
+import { afterGap } from '../../../src/ui/start/portrait'
 
 const SKY = [180, 200, 230, 255]
 const WHITE = [255, 255, 255, 255]

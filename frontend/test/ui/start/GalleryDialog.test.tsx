@@ -1,10 +1,13 @@
 // @vitest-environment jsdom
 import 'fake-indexeddb/auto'
+import { render } from 'preact'
+import { act } from 'preact/test-utils'
 import { afterEach, beforeEach, expect, test, vi } from 'vitest'
-import { Studio } from '../../src/studio/studio'
-import { openGallery } from '../../src/ui/gallery'
-import { model } from '../builders'
-import { type Call, service, settle } from '../service'
+import { Studio } from '../../../src/studio/studio'
+import { StudioProvider, useStore } from '../../../src/ui/parts/useStore'
+import { GalleryDialog } from '../../../src/ui/start/GalleryDialog'
+import { model } from '../../builders'
+import { type Call, service, settle } from '../../service'
 
 let studio: Studio
 let calls: Call[]
@@ -27,14 +30,29 @@ beforeEach(() => {
   studio = new Studio()
 })
 afterEach(() => {
-  document.body.replaceChildren()
+  render(null, document.body)
   vi.unstubAllGlobals()
 })
 
+function Shown() {
+  return useStore(({ dialog }) => dialog === 'gallery') && <GalleryDialog />
+}
+
 async function open(): Promise<void> {
-  openGallery(studio)
+  studio.store.set({ dialog: 'gallery' })
+  act(() =>
+    render(
+      <StudioProvider value={studio}>
+        <Shown />
+      </StudioProvider>,
+      document.body,
+    ),
+  )
   await settle()
 }
+
+/** Click, and let the page be drawn. */
+const click = (target: Element | null) => act(() => (target as HTMLElement).click())
 
 const cards = () => [...document.querySelectorAll<HTMLElement>('.card')]
 const named = (label: string) => document.querySelector<HTMLElement>(`[aria-label="${label}"]`)!
@@ -48,26 +66,26 @@ test('models stand there by name, one without a name too, with what became of th
 
 test('a deleted card gives its place to an undo that has the focus, and undo brings it back', async () => {
   await open()
-  named('Delete Oak').click()
+  click(named('Delete Oak'))
   await settle()
   expect([document.activeElement!.textContent, names()]).toEqual(['Undo', ['Unnamed tree']])
-  ;(document.activeElement as HTMLElement).click()
+  click(document.activeElement)
   await settle()
   expect([document.activeElement, names()]).toEqual([named('Open Oak'), ['Oak', 'Unnamed tree']])
 })
 
 test('a name is written in place: Enter keeps it, Escape does not and leaves the gallery open', async () => {
   await open()
-  named('Rename Oak').click()
+  click(named('Rename Oak'))
   const press = (key: string) => {
     const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true })
-    document.activeElement!.dispatchEvent(event)
+    act(() => void document.activeElement!.dispatchEvent(event))
     return event
   }
   ;(document.activeElement as HTMLInputElement).value = 'Elm'
   expect(press('Escape').defaultPrevented).toBe(true)
   expect([names()[0], document.activeElement]).toEqual(['Oak', named('Rename Oak')])
-  named('Rename Oak').click()
+  click(named('Rename Oak'))
   ;(document.activeElement as HTMLInputElement).value = ' Ash '
   press('Enter')
   await settle()
@@ -80,7 +98,7 @@ test('a name is written in place: Enter keeps it, Escape does not and leaves the
 test('opening a model closes the gallery', async () => {
   const opened = vi.spyOn(studio.opener, 'openModel').mockResolvedValue()
   await open()
-  named('Open Oak').click()
+  click(named('Open Oak'))
   expect([opened.mock.calls, document.querySelector('dialog')]).toEqual([[['mdl_1']], null])
 })
 

@@ -1,4 +1,4 @@
-import { text } from '../text'
+import { text } from '../../text'
 
 const STEPS = [
   ['minute', 60],
