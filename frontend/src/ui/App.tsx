@@ -80,7 +80,7 @@ function Opening() {
       {opening && (
         <>
           <span class="opening-leaf" />
-          {text.welcome.reading}
+          {text.welcome.opening}
         </>
       )}
     </div>

@@ -22,7 +22,6 @@ export function Popover({ opener, class: name = '', label, children }: Props) {
   return (
     <>
       <button type="button" {...opener} popovertarget={id} ref={button} />
-      {/* biome-ignore lint/a11y/useSemanticElements: it holds more than fields */}
       <div id={id} class={`popover ${name}`.trim()} popover="auto" role="group" aria-label={label} onToggle={place}>
         {children}
       </div>

@@ -125,7 +125,7 @@ function usesOf(types: readonly string[], photo: Use, drawing: Use): readonly Us
 function openOne(studio: Studio, files: readonly File[]): void {
   const file = files.find(one => isPicture(one) || isProject(one))
   if (file) openFile(studio, file)
-  else if (files.length) studio.store.fault('photo', { text: text.welcome.notThis })
+  else if (files.length) studio.store.fault('photo', { text: text.welcome.unknownFile })
 }
 
 function named(picture: File): File {

@@ -17,6 +17,8 @@ interface Entry {
   readonly deleted: boolean
 }
 
+type Change = (id: string, changed: Partial<Entry>) => void
+
 /** One's trees: to open, rename, download and delete. */
 export function GalleryDialog() {
   return (
@@ -29,33 +31,15 @@ export function GalleryDialog() {
 function Trees() {
   const { store, client, grower } = useStudio()
   const [gallery] = useState(() => new Gallery(store, client, grower))
-  const [entries, setEntries] = useState<readonly Entry[]>([])
-  const [page, setPage] = useState<'loading' | 'loaded' | 'failed'>('loading')
+  const { entries, page, load, change } = usePages(gallery)
   const [focused, setFocused] = useState<string | null>(null)
   const list = useRef<HTMLUListElement>(null)
   const fault = useStore(({ faults }) => faults.gallery)
-  const load = async () => {
-    setPage('loading')
-    const models = await gallery.more()
-    setPage(models ? 'loaded' : 'failed')
-    setEntries(now => [...now, ...(models ?? []).map(model => ({ model, deleted: false }))])
-    return models
-  }
   /** The button that was pressed may vanish: the focus goes on to what it brought. */
   const loadAndFocus = async () => {
     const models = await load()
     if (models?.[0]) setFocused(models[0].id)
     else if (models) list.current?.closest('dialog')?.querySelector('button')?.focus()
-  }
-  useEffect(() => {
-    store.fault('gallery', null)
-    void load()
-  }, [])
-  useLook(gallery, entries, setEntries)
-  const put = (entry: Entry) => setEntries(now => now.map(other => (other.model.id === entry.model.id ? entry : other)))
-  const restored = (model: Model) => {
-    setFocused(model.id)
-    put({ model, deleted: false })
   }
   return (
     <div class="gallery">
@@ -66,13 +50,10 @@ function Trees() {
         </button>
       </div>
       <ul class="cards" ref={list}>
-        {entries.map(({ model, deleted }) =>
-          deleted ? (
-            <Deleted key={model.id} model={model} gallery={gallery} restored={restored} />
-          ) : (
-            <Tree key={model.id} model={model} gallery={gallery} focused={focused === model.id} put={put} />
-          ),
-        )}
+        {entries.map(({ model, deleted }) => {
+          const one = { key: model.id, model, gallery, change }
+          return deleted ? <Deleted {...one} focus={setFocused} /> : <Tree {...one} focused={focused === model.id} />
+        })}
       </ul>
       <p class="gallery-empty" hidden={page !== 'loaded' || entries.length > 0}>
         <Sapling />
@@ -88,33 +69,45 @@ function Trees() {
   )
 }
 
-/** Look again and again how the models under way are. */
-function useLook(
-  gallery: Gallery,
-  entries: readonly Entry[],
-  setEntries: (change: (now: readonly Entry[]) => readonly Entry[]) => void,
-): void {
+/** Load the models page by page, and look again and again how those under way are. */
+function usePages(gallery: Gallery) {
+  const { store } = useStudio()
+  const [entries, setEntries] = useState<readonly Entry[]>([])
+  const [page, setPage] = useState<'loading' | 'loaded' | 'failed'>('loading')
+  const load = async () => {
+    setPage('loading')
+    const models = await gallery.more()
+    setPage(models ? 'loaded' : 'failed')
+    setEntries(now => [...now, ...(models ?? []).map(model => ({ model, deleted: false }))])
+    return models
+  }
   useEffect(() => {
-    const growing = entries.flatMap(({ model, deleted }) => (deleted || isOver(model) ? [] : [model]))
+    store.fault('gallery', null)
+    void load()
+  }, [])
+  useEffect(() => {
+    const growing = entries.filter(({ model, deleted }) => !deleted && !isOver(model))
     if (!growing.length) return
     const look = async () => {
-      const found = await Promise.all(growing.map(model => gallery.look(model)))
-      const latest = new Map(found.flatMap(model => (model ? [[model.id, model]] : [])))
+      const found = await Promise.all(growing.map(({ model }) => gallery.look(model)))
+      const latest = new Map(found.map(model => [model?.id, model]))
       setEntries(now => now.map(entry => ({ ...entry, model: latest.get(entry.model.id) ?? entry.model })))
     }
     const timer = setTimeout(look, LOOK_MS)
     return () => clearTimeout(timer)
-  }, [gallery, entries, setEntries])
+  }, [entries])
+  const change: Change = (id, changed) =>
+    setEntries(now => now.map(entry => (entry.model.id === id ? { ...entry, ...changed } : entry)))
+  return { entries, page, load, change }
 }
 
-interface TreeProps {
+interface EntryProps {
   readonly model: Model
   readonly gallery: Gallery
-  readonly focused: boolean
-  put(entry: Entry): void
+  readonly change: Change
 }
 
-function Tree({ model, gallery, focused, put }: TreeProps) {
+function Tree({ model, gallery, change, focused }: EntryProps & { readonly focused: boolean }) {
   const { store, opener } = useStudio()
   const open = () => {
     store.set({ dialog: null })
@@ -122,31 +115,26 @@ function Tree({ model, gallery, focused, put }: TreeProps) {
   }
   const rename = async (name: string) => {
     const renamed = await gallery.rename(model.id, name)
-    if (renamed) put({ model: renamed, deleted: false })
+    if (renamed) change(model.id, { model: renamed })
   }
   const remove = async () => {
     if (!(await gallery.remove(model.id))) return
-    put({ model, deleted: true })
+    change(model.id, { deleted: true })
     store.announce(text.gallery.removed(nameOf(model)))
   }
   return <ModelCard model={model} focused={focused} open={open} rename={rename} remove={remove} />
 }
 
-interface DeletedProps {
-  readonly model: Model
-  readonly gallery: Gallery
-  restored(model: Model): void
-}
-
 /** The place of a deleted model, with the button that brings it back. */
-function Deleted({ model, gallery, restored }: DeletedProps) {
+function Deleted({ model, gallery, change, focus }: EntryProps & { focus(id: string): void }) {
   const { store } = useStudio()
   const undo = useRef<HTMLButtonElement>(null)
   useLayoutEffect(() => undo.current!.focus(), [])
   const restore = async () => {
-    const found = await gallery.restore(model.id)
-    if (!found) return
-    restored(found)
+    const restored = await gallery.restore(model.id)
+    if (!restored) return
+    focus(model.id)
+    change(model.id, { model: restored, deleted: false })
     store.announce(text.gallery.restored(nameOf(model)))
   }
   return (

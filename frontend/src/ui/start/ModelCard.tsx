@@ -3,6 +3,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
 import type { Model } from '../../api/types'
 import { fileName } from '../../studio/project'
 import { text } from '../../text'
+import { LANGUAGE } from '../../text/plural'
 import { Icon } from '../parts/Icon'
 import { IconButton } from '../parts/IconButton'
 import { ICONS } from '../parts/icons'
@@ -47,7 +48,7 @@ export function ModelCard({ model, focused, open, rename, remove }: Props) {
       </button>
       {renaming ? <NameField name={model.name} end={end} /> : <h3 class="card-name">{name}</h3>}
       <div class="card-foot">
-        <time dateTime={model.created} title={new Date(model.created).toLocaleString('en')}>
+        <time dateTime={model.created} title={new Date(model.created).toLocaleString(LANGUAGE)}>
           {ago(Date.parse(model.created))}
         </time>
         <div class="card-tools">
@@ -84,8 +85,8 @@ function Picture({ model }: { readonly model: Model }) {
 
 function statusOf({ status, progress }: Model): string {
   if (status === 'succeeded') return ''
-  const said = text.gallery.status[status]
-  return status === 'running' ? `${said} · ${text.progress.percent(Math.floor(progress * 100))}` : said
+  if (status === 'running') return text.gallery.growing(Math.floor(progress * 100) / 100)
+  return text.gallery.status[status]
 }
 
 function Download({ model }: { readonly model: Model }) {

@@ -20,11 +20,12 @@ const TREES = 4
 export function Welcome({ late }: { readonly late: boolean }) {
   const closed = useStore(({ sheets }) => sheets === null)
   const { welcome, sheets } = text
+  const device = matchMedia('(pointer: coarse)').matches ? 'touch' : 'mouse'
   return (
     <div class={late ? 'welcome is-late' : 'welcome'} hidden={!closed}>
       <Hero />
       <Drafts closed={closed} />
-      <Section id="examples" title={welcome.examples} hint={welcome.examplesHint}>
+      <Section id="examples" title={welcome.examples} hint={welcome.examplesHint[device]}>
         <ul class="picks">
           {EXAMPLES.map(example => (
             <ExampleCard key={example.name} example={example} />
@@ -44,8 +45,7 @@ export function Welcome({ late }: { readonly late: boolean }) {
 }
 
 function Hero() {
-  const studio = useStudio()
-  const { welcome, sheets } = text
+  const { welcome } = text
   return (
     <section class="hero">
       <div class="hero-words">
@@ -58,34 +58,9 @@ function Hero() {
           ])}
         </h1>
         <Lead />
-        <div class="hero-begin">
-          <button type="button" class="button chief hero-choose" onClick={() => choose(studio)}>
-            <Icon path={ICONS.photo} />
-            {welcome.choose}
-          </button>
-          <span class="hero-other">{welcome.otherWays}</span>
-        </div>
-        <div class="hero-begin">
-          <button
-            type="button"
-            class="button outlined hero-draw"
-            onClick={() => mayLeave(studio) && studio.opener.openPaper()}
-          >
-            <Icon path={ICONS.sheet} />
-            {sheets.welcome.draw}
-          </button>
-          <button
-            type="button"
-            class="button outlined hero-draw"
-            onClick={() => chooseSketch(file => openSketch(studio, file))}
-          >
-            <Icon path={ICONS.drawing} />
-            {sheets.openDrawing}
-          </button>
-          <span class="soft">{sheets.welcome.drawHint}</span>
-        </div>
+        <Beginnings />
         <OpeningFault />
-        <p class="soft">{welcome.takes}</p>
+        <p class="soft">{welcome.formats}</p>
       </div>
       <div class="hero-art">
         <Illustration />
@@ -94,16 +69,47 @@ function Hero() {
   )
 }
 
+/** What to do, in a sentence; its two strokes are underlined in their colours. */
 function Lead() {
-  const { before, leaves, between, trunk, after } = text.welcome.lead
+  const { lead, leadStrokes } = text.welcome
+  const parts = lead.split(/\{(leaves|trunk)\}/)
   return (
     <p class="lead">
-      {before}
-      <span class="lead-leaves">{leaves}</span>
-      {between}
-      <span class="lead-trunk">{trunk}</span>
-      {after}
+      {parts.map(part => {
+        const stroke = part === 'leaves' || part === 'trunk' ? part : null
+        return stroke ? <span class={`lead-${stroke}`}>{leadStrokes[stroke]}</span> : part
+      })}
     </p>
+  )
+}
+
+/** The ways to begin: a photo, white paper, a drawing. */
+function Beginnings() {
+  const studio = useStudio()
+  const { welcome, sheets } = text
+  const draw = () => mayLeave(studio) && studio.opener.openPaper()
+  const open = () => chooseSketch(file => openSketch(studio, file))
+  return (
+    <>
+      <div class="hero-begin">
+        <button type="button" class="button chief hero-choose" onClick={() => choose(studio)}>
+          <Icon path={ICONS.photo} />
+          {welcome.choose}
+        </button>
+        <span class="hero-other">{welcome.otherWays}</span>
+      </div>
+      <div class="hero-begin">
+        <button type="button" class="button outlined hero-draw" onClick={draw}>
+          <Icon path={ICONS.sheet} />
+          {sheets.welcome.draw}
+        </button>
+        <button type="button" class="button outlined hero-draw" onClick={open}>
+          <Icon path={ICONS.drawing} />
+          {sheets.openDrawing}
+        </button>
+        <span class="soft">{sheets.welcome.drawHint}</span>
+      </div>
+    </>
   )
 }
 
@@ -127,8 +133,8 @@ interface SectionProps {
 
 function Section({ id, title, hint, hidden = false, children }: SectionProps) {
   return (
-    <section class="shelf" aria-labelledby={id} hidden={hidden}>
-      <div class="shelf-head">
+    <section class="welcome-section" aria-labelledby={id} hidden={hidden}>
+      <div class="welcome-section-head">
         <h2 id={id}>{title}</h2>
         <p class="soft">{hint}</p>
       </div>
@@ -167,7 +173,7 @@ function GrownTrees({ closed }: { readonly closed: boolean }) {
   }, [closed])
   const pictures = models.flatMap(({ files }) => files['preview.png'] ?? []).slice(0, TREES)
   return (
-    <div class="shelf grown-shelf" hidden={!models.length}>
+    <div class="welcome-section" hidden={!models.length}>
       <button type="button" class="button outlined grown" onClick={() => store.set({ dialog: 'gallery' })}>
         <Icon path={ICONS.gallery} />
         {text.welcome.grown}

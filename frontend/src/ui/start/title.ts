@@ -15,5 +15,5 @@ export function titleOf({ sheets, name, asking, model }: Pick<State, 'sheets' | 
   const named = name || text.header.untitled
   const growing = asking || (model !== null && !isOver(model.info))
   const progress = asking ? 0 : (model?.info.progress ?? 0)
-  return growing ? text.header.growing(Math.floor(progress * 100), named) : text.header.title(named)
+  return growing ? text.header.growing(Math.floor(progress * 100) / 100, named) : text.header.title(named)
 }

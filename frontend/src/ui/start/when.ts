@@ -1,4 +1,5 @@
 import { text } from '../../text'
+import { LANGUAGE } from '../../text/plural'
 
 const STEPS = [
   ['minute', 60],
@@ -13,7 +14,7 @@ export function ago(then: number, now = Date.now()): string {
   const seconds = (now - then) / 1000
   const step = STEPS.findLast(([, length]) => seconds >= length)
   if (!step) return text.gallery.justNow
-  if (seconds > FAR_S) return new Intl.DateTimeFormat('en', { dateStyle: 'medium' }).format(then)
+  if (seconds > FAR_S) return new Intl.DateTimeFormat(LANGUAGE, { dateStyle: 'medium' }).format(then)
   const [unit, length] = step
-  return new Intl.RelativeTimeFormat('en', { numeric: 'auto' }).format(-Math.floor(seconds / length), unit)
+  return new Intl.RelativeTimeFormat(LANGUAGE, { numeric: 'auto' }).format(-Math.floor(seconds / length), unit)
 }

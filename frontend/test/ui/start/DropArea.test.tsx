@@ -88,5 +88,5 @@ test('strokes are a drawing wherever they are dropped, and what is neither is sa
   drop(strokes, document.body, 10)
   expect(openSketch.mock.calls).toEqual([[strokes]])
   drop(new File(['x'], 'notes.txt', { type: 'text/plain' }), document.body, 10)
-  expect(store.state.faults.photo?.text).toBe(text.welcome.notThis)
+  expect(store.state.faults.photo?.text).toBe(text.welcome.unknownFile)
 })

@@ -17,10 +17,10 @@ test('a drawing gives its name, and has one without a name', () => {
 })
 
 test('progress stands before the name while a tree grows, and no longer', () => {
-  expect(titleOf({ ...open, name: 'Old oak', model: model('running', 0.426) })).toBe('42 % – Old oak')
+  expect(titleOf({ ...open, name: 'Old oak', model: model('running', 0.426) })).toBe('42% – Old oak')
   expect(titleOf({ ...open, name: 'Old oak', model: model('succeeded', 1) })).toBe('Old oak – treestroke')
 })
 
 test('asking for another tree begins at 0 %', () => {
-  expect(titleOf({ ...open, name: 'Old oak', asking: true, model: model('succeeded', 1) })).toBe('0 % – Old oak')
+  expect(titleOf({ ...open, name: 'Old oak', asking: true, model: model('succeeded', 1) })).toBe('0% – Old oak')
 })
