@@ -102,7 +102,7 @@ def test_a_leaf_of_ones_own_is_seen_sent_and_kept(visitor: Visitor, service: Ser
     panel = settings(visitor, "Leaves")
     photo = {"name": "leaf.jpg", "mimeType": "image/jpeg", "buffer": b"\xff\xd8 no PNG"}
     visitor.choose(panel.get_by_role("button", name="Choose a picture"), photo)
-    expect(panel.get_by_text("This is no PNG.")).to_be_visible()
+    expect(panel.get_by_text("This is not a PNG.")).to_be_visible()
     cut_out = {"name": "leaf.png", "mimeType": "image/png", "buffer": leaf()}
     visitor.choose(panel.get_by_role("button", name="Choose a picture"), cut_out)
     expect(panel.get_by_role("img", name="Your leaf")).to_be_visible()
