@@ -1,16 +1,42 @@
-import { text } from '../text'
-import { openDialog } from './dialog'
-import { el } from './dom'
-import { withCtrl } from './shortcutKeys'
-import './shortcutSheet.css'
+import { Fragment } from 'preact'
+import { text } from '../../text'
+import { withCtrl } from '../parts/shortcutKeys'
+import './shortcutsDialog.css'
 
 type Row = readonly [what: string, ...keys: string[]]
 
-/** Show every shortcut. */
-export function openShortcuts(): void {
-  const sheet = el('div', { class: 'shortcuts' })
-  for (const [title, rows] of groups()) sheet.append(group(title, rows))
-  openDialog(text.shortcuts.title, sheet)
+/** Every shortcut, by what it is about. */
+export function ShortcutsDialog() {
+  return (
+    <div class="shortcuts">
+      {groups().map(([title, rows]) => (
+        <section key={title}>
+          <h3>{title}</h3>
+          <dl>
+            {rows.map(row => (
+              <Shortcut key={row[0]} row={row} />
+            ))}
+          </dl>
+        </section>
+      ))}
+    </div>
+  )
+}
+
+function Shortcut({ row: [what, ...keys] }: { readonly row: Row }) {
+  return (
+    <div>
+      <dt>{what}</dt>
+      <dd>
+        {keys.map((key, index) => (
+          <Fragment key={key}>
+            {index > 0 && ` ${text.shortcuts.keys.or} `}
+            <kbd>{key}</kbd>
+          </Fragment>
+        ))}
+      </dd>
+    </div>
+  )
 }
 
 function groups(): [string, Row[]][] {
@@ -68,13 +94,4 @@ function groups(): [string, Row[]][] {
       ],
     ],
   ]
-}
-
-function group(title: string, rows: readonly Row[]): HTMLElement {
-  const list = el('dl', {})
-  for (const [what, ...keys] of rows) {
-    const shown = keys.flatMap((key, index) => [index ? ` ${text.shortcuts.keys.or} ` : '', el('kbd', {}, key)])
-    list.append(el('div', {}, el('dt', {}, what), el('dd', {}, ...shown)))
-  }
-  return el('section', {}, el('h3', {}, title), list)
 }

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
-import { advance, begin, redo, undo } from '../../src/history'
-import { type Line, NO_STROKES, withoutStroke, withScale, withSheet, withStroke } from '../../src/strokes'
-import { editSaid } from '../../src/ui/edits'
+import { advance, begin, redo, undo } from '../../../src/history'
+import { type Line, NO_STROKES, withoutStroke, withScale, withSheet, withStroke } from '../../../src/strokes'
+import { editSaid } from '../../../src/ui/drawing/announcements'
 
 const LOOP: Line = [
   [0, 0],
