@@ -36,11 +36,16 @@ export function HintLine() {
 function usePointer(): PointerKind {
   const [pointer, setPointer] = useState<PointerKind>(matchMedia('(pointer: coarse)').matches ? 'touch' : 'mouse')
   useLayoutEffect(() => {
-    const used = ({ pointerType }: PointerEvent) => setPointer(pointerType as PointerKind)
+    const used = ({ pointerType }: PointerEvent) => setPointer(kindOf(pointerType))
     addEventListener('pointerdown', used)
     return () => removeEventListener('pointerdown', used)
   }, [])
   return pointer
+}
+
+/** A browser may not know what a pointer is. */
+function kindOf(pointerType: string): PointerKind {
+  return pointerType === 'touch' || pointerType === 'pen' ? pointerType : 'mouse'
 }
 
 function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint }) {

@@ -85,7 +85,7 @@ function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Sca
         <IconButton label={text.length.delete} icon={ICONS.remove} onClick={() => strokes.remove()} />
       </div>
       <p class="length-wrong" role="alert">
-        {isWrong && text.length.wrong}
+        {isWrong && text.length.wrong(SPAN.min, SPAN.max)}
       </p>
     </div>
   )

@@ -43,7 +43,7 @@ function SheetTools({ name }: Props) {
         onClick={() => chooseSketch(file => void opener.openOn(name, file))}
       />
       <IconButton
-        label={words.lay}
+        label={words.addPicture}
         icon={ICONS.photo}
         hidden={!onPaper || hasPicture}
         onClick={() => choosePicture(file => void sheets.addPicture(name, file))}
@@ -56,7 +56,7 @@ function SheetTools({ name }: Props) {
         onClick={() => sheets.showPicture(name, isHidden)}
       />
       <IconButton
-        label={words.lift}
+        label={words.removePicture}
         icon={ICONS.remove}
         hidden={!onPaper || !hasPicture}
         onClick={() => sheets.removePicture(name)}

@@ -1,7 +1,9 @@
-import { Fragment } from 'preact'
 import { text } from '../../text'
+import { LANGUAGE } from '../../text/plural'
 import { withCtrl } from '../parts/shortcutKeys'
 import './shortcutsDialog.css'
+
+const OR = new Intl.ListFormat(LANGUAGE, { type: 'disjunction' })
 
 type Row = readonly [what: string, ...keys: string[]]
 
@@ -28,12 +30,7 @@ function Shortcut({ row: [what, ...keys] }: { readonly row: Row }) {
     <div>
       <dt>{what}</dt>
       <dd>
-        {keys.map((key, index) => (
-          <Fragment key={key}>
-            {index > 0 && ` ${text.shortcuts.keys.or} `}
-            <kbd>{key}</kbd>
-          </Fragment>
-        ))}
+        {OR.formatToParts(keys).map(({ type, value }) => (type === 'element' ? <kbd key={value}>{value}</kbd> : value))}
       </dd>
     </div>
   )
@@ -64,7 +61,7 @@ function groups(): [string, Row[]][] {
       ],
     ],
     [
-      titles.photo,
+      titles.view,
       [
         [said.zoom, said.wheel, '+', '−'],
         [said.pan, said.spaceDrag],
@@ -88,8 +85,8 @@ function groups(): [string, Row[]][] {
       titles.tree,
       [
         [said.orbit, said.arrows],
-        [said.closer, '+', '−'],
-        [said.views, `1 ${keys.to} 5`],
+        [said.zoom, '+', '−'],
+        [said.views, said.viewKeys],
         [said.leaves, 'L'],
       ],
     ],

@@ -15,7 +15,6 @@ interface Props {
 /** The bar that zooms the active sheet. */
 export function ZoomBar({ zoom, scale }: Props) {
   const { tools: words } = text
-  const percent = Math.round(scale * 100)
   return (
     <div class="zoombar" role="group" aria-label={words.zoom}>
       <IconButton label={words.withKey(words.zoomOut, '−')} icon={ICONS.minus} onClick={() => zoom.zoom(1 / FACTOR)} />
@@ -23,10 +22,10 @@ export function ZoomBar({ zoom, scale }: Props) {
         type="button"
         class="button zoom-percent"
         title={words.toActual}
-        aria-label={words.actual(percent)}
+        aria-label={words.actual(scale)}
         onClick={() => zoom.actual()}
       >
-        {words.percent(percent)}
+        {words.percent(scale)}
       </button>
       <IconButton label={words.withKey(words.zoomIn, '+')} icon={ICONS.plus} onClick={() => zoom.zoom(FACTOR)} />
       <button

@@ -22,11 +22,11 @@ export function announceDrawing(store: Store): () => void {
     ),
     say(
       state => state.active,
-      sheet => (store.state.sheets?.side ? text.sheets.turnedTo[sheet] : null),
+      sheet => (store.state.sheets?.side ? text.sheets.activated[sheet] : null),
     ),
     say(
       state => state.tool,
-      tool => (store.state.sheets ? text.tools.taken[tool] : null),
+      tool => (store.state.sheets ? text.tools.chosen[tool] : null),
     ),
     say(
       state => state.traced,
@@ -44,8 +44,7 @@ export function announceDrawing(store: Store): () => void {
 
 /** Say what the keyboard's pen does, at a place of a sheet in pixels. */
 export function announcePen(store: Store, pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Sheet): void {
-  const right = Math.round((x / width) * 100)
-  const down = Math.round((y / height) * 100)
+  const [right, down] = [x / width, y / height]
   if (pen === 'up') store.announce(text.strokes.penUp)
   else store.announce(pen === 'down' ? text.strokes.penDown(right, down) : text.strokes.penAt(right, down))
 }

@@ -52,8 +52,9 @@ function step(state: State, pointer: PointerKind): Hint {
   if (selection) return { tone: 'step', text: text.hints.selected(strokeName(selection)), deletes: true }
   if (tool === 'scale') return stepTo(text.hints.measure, text.hints.measureNear)
   if (isPaper(state, state.active)) return sketchStep(state, pointer) ?? laterStep(state, pointer)
-  if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.takeCrown)
-  if (!branches.length) return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.takeBranch)
+  if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.chooseCrown)
+  if (!branches.length)
+    return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.chooseBranch)
   return laterStep(state, pointer)
 }
 
@@ -63,7 +64,7 @@ function sketchStep(state: State, pointer: PointerKind): Hint | null {
   const { branches, side } = state.history.present
   const onSide = state.active === 'side'
   if (state.tool !== 'branch' && !(onSide ? side : state.history.present)?.branches.length)
-    return stepTo(hints.takeBranch)
+    return stepTo(hints.chooseBranch)
   if (onSide) return sideStep(state, hints.how[pointer])
   if (!branches.length) return stepTo(hints.trunk, hints.how[pointer])
   const goesOn = branches.length > 1 && !side?.branches.length && !state.model

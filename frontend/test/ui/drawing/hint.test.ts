@@ -41,8 +41,8 @@ test('the finished tree is announced until the strokes change', () => {
 })
 
 test('with the wrong tool in hand the right one is named', () => {
-  expect(said({ tool: 'branch' })).toBe(text.hints.takeCrown)
-  expect(said({ tool: 'select', history: begin(crown) })).toBe(text.hints.takeBranch)
+  expect(said({ tool: 'branch' })).toBe(text.hints.chooseCrown)
+  expect(said({ tool: 'select', history: begin(crown) })).toBe(text.hints.chooseBranch)
 })
 
 test('the gesture is that of the pointer in use', () => {
@@ -63,7 +63,7 @@ test('a lost connection is said', () => {
 test('a warning about the stroke just drawn is said with the next step', () => {
   const history = advance(begin(trunk), two)
   const hint = hintOf(state({ tool: 'branch', history, traced: traced(two, JOINED) }), 'mouse')
-  expect(hint).toEqual({ tone: 'note', text: 'Branch 2 was joined to the nearest branch.', how: text.hints.waiting })
+  expect(hint).toEqual({ tone: 'note', text: 'Branch 2: joined to the nearest branch.', how: text.hints.waiting })
 })
 
 test('a warning about an older stroke is not said again', () => {
@@ -83,14 +83,16 @@ test('a doubt about a stroke is said until it is drawn anew, whatever was drawn 
   const outside = { code: 'outside_photo', stroke: 'crown', detail: '40% of it lies outside' }
   const history = advance(begin(trunk), two)
   expect(said({ tool: 'branch', history, traced: traced(two, JOINED, level) })).toBe(text.hints.doubts.trunk_level)
-  expect(said({ tool: 'branch', history, traced: traced(two, outside) })).toContain('Much of the crown lies outside')
+  expect(said({ tool: 'branch', history, traced: traced(two, outside) })).toContain(
+    'Crown: much of it is outside the photo.',
+  )
   expect(said({ tool: 'branch', history, traced: traced(trunk, level) })).toBe(text.hints.waiting)
 })
 
 test('what is selected can be deleted from the line', () => {
   const selection = { kind: 'crown', index: 0 } as const
   expect(hintOf(state({ history: begin(two), selection }), 'mouse')).toMatchObject({
-    text: 'Crown is selected.',
+    text: 'Selected: Crown',
     deletes: true,
   })
 })
@@ -110,7 +112,7 @@ test('on paper it goes from the trunk to the branches, to the other side, and on
   const drawing = (present: typeof two, change: Partial<State> = {}) =>
     said({ sheets: sketchSheets(paper(), paper()), tool: 'branch', history: begin(present), ...change })
   expect(drawing(NO_STROKES)).toBe(hints.trunk)
-  expect(drawing(NO_STROKES, { tool: 'crown' })).toBe(hints.takeBranch)
+  expect(drawing(NO_STROKES, { tool: 'crown' })).toBe(hints.chooseBranch)
   expect(drawing(limbed)).toBe(hints.side)
   expect(drawing(limbed, { active: 'side' })).toBe(hints.sideTrunk)
   expect(drawing(withSheet(limbed, 'side', bare), { active: 'side' })).toBe(hints.branches)
@@ -126,7 +128,7 @@ test('beside a photo the side’s sheet says what it is for', () => {
 })
 
 test('what was mended in reading a drawing is said until it is drawn on', () => {
-  const corrections = { of: trunk, text: 'Front: a gap was bridged.' }
+  const corrections = { of: trunk, text: 'Front: 1 gap was closed.' }
   expect(hintOf(state({ tool: 'branch', history: begin(trunk), corrections }), 'mouse')).toEqual({
     tone: 'note',
     text: corrections.text,
