@@ -12,7 +12,7 @@ export interface StrokeRemark {
 }
 
 /** List what the service remarked on the strokes as they stand. */
-export function remarksOn({ traced, history }: State): StrokeRemark[] {
+export function remarksOn({ traced, history }: Pick<State, 'traced' | 'history'>): StrokeRemark[] {
   if (traced?.of !== history.present) return []
   return traced.answer.warnings.map(warning => ({ warning, stroke: strokeAt(`/${warning.stroke}`) }))
 }

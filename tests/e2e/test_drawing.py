@@ -50,7 +50,7 @@ def test_what_is_deleted_comes_back_by_undo(visitor: Visitor) -> None:
     both = last_branches(visitor)
     visitor.page.keyboard.press("v")
     visitor.page.mouse.click(*visitor.view().at(LIMB[1]))
-    expect(visitor.page.get_by_text("Branch 2 is selected.")).to_be_visible()
+    expect(visitor.page.locator(".hint-text", has_text="Selected: Branch 2")).to_be_visible()
     visitor.shot("selected")
     visitor.page.keyboard.press("Delete")
     visitor.until(lambda: len(last_branches(visitor)) == 1)
@@ -64,8 +64,8 @@ def test_what_is_deleted_comes_back_by_undo(visitor: Visitor) -> None:
     assert last_branches(visitor) == both
 
 
-def test_a_trunk_that_lies_level_is_told_of_until_it_is_drawn_anew(visitor: Visitor) -> None:
-    page, told = visitor.page, "The trunk lies level or runs down."
+def test_a_trunk_that_does_not_go_up_is_told_of_until_it_is_drawn_again(visitor: Visitor) -> None:
+    page, told = visitor.page, "The trunk does not go up."
     opened(visitor).draw_tree({**STROKES, "branches": [{"points": LEVEL}]})
     expect(page.locator(".hint-text", has_text=told)).to_be_visible()
     page.get_by_role("button", name="Strokes (2)").click()
@@ -119,7 +119,7 @@ def test_a_traced_branch_that_is_deleted_is_gone_and_comes_back(visitor: Visitor
     page.keyboard.press("v")
     joint = a_traced_joint(visitor.skeleton(), visitor.traced[-1]["crown"]["points"])
     page.mouse.click(*visitor.view().at(joint))
-    expect(page.get_by_text("Traced branch is selected.")).to_be_visible()
+    expect(page.locator(".hint-text", has_text="Selected: Traced branch")).to_be_visible()
     visitor.shot("traced-selected")
     page.keyboard.press("Delete")
     visitor.until(lambda: len(visitor.traced[-1]["erase"]) == 1)

@@ -115,7 +115,7 @@ def test_a_sketch_and_its_photo_survive_a_reload(visitor: Visitor) -> None:
     visitor.sheet = "front"
     before = visitor.view().at(FRONT[1][-1])
     visitor.give(visitor.sketch, PHOTO)
-    expect(page.get_by_role("button", name="Take the photo away")).to_be_visible()
+    expect(page.get_by_role("button", name="Remove the photo")).to_be_visible()
     visitor.until(lambda: visitor.traced[-1]["front"]["canvas"] != [900, 1200])
     assert visitor.view().at(branches(visitor, "front")[1][-1])[1] == pytest.approx(before[1], abs=40)
     visitor.shot("sketch-over-photo")
@@ -123,7 +123,7 @@ def test_a_sketch_and_its_photo_survive_a_reload(visitor: Visitor) -> None:
     visitor.reload()
     visitor.wait_for_preview("live")
     assert [branches(visitor, sheet) for sheet in ("front", "side")] == drawn
-    expect(page.get_by_role("button", name="Take the photo away")).to_be_visible()
+    expect(page.get_by_role("button", name="Remove the photo")).to_be_visible()
 
 
 def test_a_side_sketch_says_how_deep_the_tree_of_a_photo_is(visitor: Visitor, service: Service) -> None:
@@ -157,7 +157,7 @@ def test_a_pair_of_pictures_is_an_example_that_is_grown_and_drawn_on(
     page.get_by_role("button", name="Imagined tree").click()
     visitor.wait_for_preview("model")
     expect(page.get_by_text("are in the tree").first).to_be_visible()
-    expect(page.get_by_text("rings of branches were cut open")).to_be_visible()
+    expect(page.get_by_text("loops of branches were cut open")).to_be_visible()
     read = {sheet: branches(visitor, sheet) for sheet in DRAWINGS}
     assert all(len(lines) > 10 for lines in read.values())
     assert all("crown" in visitor.traced[-1][sheet] for sheet in DRAWINGS)

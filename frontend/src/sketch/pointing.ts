@@ -52,16 +52,16 @@ export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, h
   })
 }
 
-/** Hear the space bar, where no control of the page would take it. */
-export function listenToSpace(element: HTMLElement, told: (held: boolean) => void): void {
+/** Hear the space bar, where no control of the page would take it, until the signal. */
+export function listenToSpace(element: HTMLElement, told: (held: boolean) => void, signal: AbortSignal): void {
   const heard = (event: KeyboardEvent) => {
     if (event.key !== ' ' || (event.target !== element && event.target !== document.body)) return
     event.preventDefault()
     told(event.type === 'keydown')
   }
-  document.addEventListener('keydown', heard)
-  document.addEventListener('keyup', heard)
-  window.addEventListener('blur', () => told(false))
+  document.addEventListener('keydown', heard, { signal })
+  document.addEventListener('keyup', heard, { signal })
+  window.addEventListener('blur', () => told(false), { signal })
 }
 
 /** What a turn of the wheel at a place (CSS px) means: it zooms; sideways, or with Shift, it pans. */

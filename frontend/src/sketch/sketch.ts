@@ -31,6 +31,8 @@ export class Sketch {
     () => this.#shown,
   )
   readonly #resizing = new ResizeObserver(() => this.#resize())
+  readonly #listening = new AbortController()
+  readonly #unwatch: () => void
   readonly #name: SheetName
   #state: State
   #shown: SheetView
@@ -48,22 +50,37 @@ export class Sketch {
     host: HTMLElement,
     store: Store,
     private readonly events: SketchEvents,
-    labels: SketchLabels,
+    name: SheetName,
   ) {
-    this.#name = labels.sheet
+    this.#name = name
     this.#state = store.state
-    this.#shown = viewOf(store.state, labels.sheet)
-    this.#label(labels)
-    host.append(this.#element)
+    this.#shown = viewOf(store.state, name)
+    this.#element.dataset.sheet = name
+    this.#element.className = 'sketch-surface'
+    this.#element.tabIndex = 0
+    this.#element.role = 'application'
+    host.prepend(this.#element)
     this.#listen()
     this.#resizing.observe(this.#element)
     this.#open()
     this.#resize()
     // A listener before this one may have gone on to a newer state already.
-    store.watch(
+    this.#unwatch = store.watch(
       state => state,
       () => this.#changed(store.state),
     )
+  }
+
+  /** Leave the page. */
+  end(): void {
+    this.#unwatch()
+    this.#resizing.disconnect()
+    this.#listening.abort()
+    this.#element.remove()
+  }
+
+  focus(): void {
+    this.#element.focus({ preventScroll: true })
   }
 
   fit(): void {
@@ -86,17 +103,9 @@ export class Sketch {
   }
 
   /** Say what is drawn on, and how to do it by keyboard. */
-  name({ canvas, keys }: Omit<SketchLabels, 'sheet'>): void {
+  name({ canvas, keys }: SketchLabels): void {
     this.#element.ariaLabel = canvas
     this.#element.setAttribute('aria-description', keys)
-  }
-
-  #label({ sheet, ...labels }: SketchLabels): void {
-    this.#element.dataset.sheet = sheet
-    this.#element.className = 'sketch-surface'
-    this.#element.tabIndex = 0
-    this.#element.role = 'application'
-    this.name(labels)
   }
 
   #listen(): void {
@@ -104,7 +113,7 @@ export class Sketch {
     const tool = (at: Point) => (this.#shown.tool === 'select' && this.#otherEnd(at) ? 'scale' : this.#shown.tool)
     const wheel = (intent: Intent) => this.#do(intent)
     listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#hover(at) })
-    listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }))
+    listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }), this.#listening.signal)
     this.#element.addEventListener('pointerdown', () => this.events.touched())
     this.#element.addEventListener('keydown', event => this.#pressed(event))
     this.#element.addEventListener('focus', () => this.#focused())

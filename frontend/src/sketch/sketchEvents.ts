@@ -1,11 +1,10 @@
 import type { Selection } from '../state'
-import type { Line, Point, SheetName } from '../strokes'
+import type { Line, Point } from '../strokes'
 import type { DrawnKind } from './gesture'
 import type { View } from './viewport'
 
-/** Which sheet it is, and how it is spoken of. */
+/** What a sheet is called, for screen readers. */
 export interface SketchLabels {
-  readonly sheet: SheetName
   /** The canvas's name. */
   readonly canvas: string
   /** How to draw by keyboard. */

@@ -92,10 +92,10 @@ function median(values: readonly number[]): number {
 }
 
 function correctionsFrom(warnings: readonly StrokeWarning[]): string[] {
-  const { mended } = text.sheets
+  const { corrected } = text.sheets
   return [...new Set(warnings.map(({ code }) => code))].map(code => {
     const alike = warnings.filter(warning => warning.code === code)
-    const known = (mended as Readonly<Record<string, (count: number) => string>>)[code]
+    const known = (corrected as Readonly<Record<string, (count: number) => string>>)[code]
     return known ? known(alike.length) : alike.map(({ detail }) => sentenceOf(detail)).join(' ')
   })
 }

@@ -1,93 +1,95 @@
+import { plural } from './plural'
+
 /** What is said of the two sheets, the front's and the left side's. */
 export const sheetsText = {
   front: 'Front',
   side: 'Left side',
   /** In which direction each is seen. */
   seen: {
-    front: 'as the viewer stands before it',
-    side: 'from its left; viewer at the right',
+    front: 'Seen from the front',
+    side: 'Seen from its left, front at the right',
   },
   seenLong: {
-    front: 'You stand before the tree and look at it.',
-    side: 'You stand at the tree’s left, as the front shows it. What comes towards you in the front view is on the right here.',
+    front: 'You stand in front of the tree.',
+    side: 'You stand to the left of the front view. The tree’s front is on the right.',
   },
   canvas: { front: 'Paper to draw the front on', side: 'Paper to draw the left side on' },
   canvasKeys:
-    'Arrow keys move the pen, with Shift by small steps. Enter sets it down and lifts it up. B takes the branch, C the crown, the brackets a thinner or a wider brush. S goes to the other sheet. Escape drops the stroke.',
-  turnedTo: { front: 'The front’s sheet.', side: 'The left side’s sheet.' },
+    'Arrow keys move the pen. Hold Shift for small steps. Enter puts the pen down or lifts it. B chooses Branch, C Crown. Square brackets change the brush. S goes to the other sheet. Escape cancels the stroke.',
+  activated: { front: 'Front sheet.', side: 'Left side sheet.' },
   /** At the lines that run through both sheets. */
   levels: { root: 'ground', top: 'treetop' },
   /** Beside the dotted lines of a side that was drawn with another height. */
-  stray: 'drawn to here: it will be fitted',
-  on: (stroke: string) => `${stroke}, left side`,
-  lay: 'Lay a photo under',
+  stray: 'drawn to here, will be scaled',
+  on: (stroke: string) => `${stroke} (left side)`,
+  addPicture: 'Add a photo to draw over',
   openDrawing: 'Open a drawing',
   opened: 'Drawing opened.',
   /** Where a picture is dropped: what comes of it, and what for. */
   drop: {
-    lay: ['Lay it under this sheet', 'a photo to draw over'],
-    photo: ['Open it as a photo', 'to draw over its tree'],
-    drawing: ['Open it as a drawing', 'its strokes become yours to draw on'],
+    lay: ['Add it to this sheet', 'You draw over the photo.'],
+    photo: ['Open it as a photo', 'You draw over its tree.'],
+    drawing: ['Open it as a drawing', 'You add to its strokes.'],
   },
   remark: (sheet: string, what: string) => `${sheet}: ${what}`,
-  /** What was mended in the picture of a sketch, by the service's codes. */
-  mended: {
-    branch_joined: (count: number) => (count === 1 ? 'a gap was bridged.' : `${count} gaps were bridged.`),
+  /** What was corrected in the picture of a sketch, by the service's codes. */
+  corrected: {
+    branch_joined: (count: number) => plural(count, { one: '# gap was closed.', other: '# gaps were closed.' }),
     loop_cut: (count: number) =>
-      count === 1 ? 'a ring of branches was cut open.' : `${count} rings of branches were cut open.`,
-    crown_crosses_itself: () => 'the crown line crosses itself; everything inside it was taken.',
+      plural(count, { one: '# loop of branches was cut open.', other: '# loops of branches were cut open.' }),
+    crown_crosses_itself: () => 'The crown line crosses itself. Everything inside it counts as crown.',
   },
   leftOut: (count: number, most: number) =>
-    count === 1
-      ? `the shortest branch was left out: ${most} can be drawn at most.`
-      : `the ${count} shortest branches were left out: ${most} can be drawn at most.`,
+    plural(count, {
+      one: `The shortest branch was left out. At most ${most} can be drawn.`,
+      other: `The # shortest branches were left out. At most ${most} can be drawn.`,
+    }),
   hide: 'Hide the photo',
   show: 'Show the photo',
-  lift: 'Take the photo away',
-  close: 'Put this sheet away',
+  removePicture: 'Remove the photo',
+  close: 'Close this sheet',
   open: 'Draw its left side, too',
-  openWhy: 'What you draw there takes the place of the depth that is guessed.',
+  openWhy: 'What you draw there replaces the guessed depth.',
   brushes: {
     group: 'Brush',
-    pencil: 'Pencil: thickness is worked out',
+    pencil: 'Pencil, automatic thickness',
     fine: 'Fine brush',
     medium: 'Medium brush',
     broad: 'Broad brush',
-    taken: (brush: string) => `${brush}.`,
   },
   hints: {
-    trunk: 'Draw the trunk upward, then branches.',
-    takeBranch: 'Take Branch and draw the trunk from the ground up.',
-    side: 'Now draw it from its left, on the other sheet.',
-    sideHow: 'Else its depth is guessed.',
-    sideTrunk: 'Draw the trunk again, from line to line.',
+    trunk: 'Draw the trunk from the ground up, then branches.',
+    chooseBranch: 'Choose Branch, then draw the trunk from the ground up.',
+    side: 'Now draw its left side on the other sheet.',
+    sideHow: 'Without it, the depth is guessed.',
+    sideTrunk: 'Draw the trunk again, from the ground line to the treetop line.',
     branches: 'Draw the branches as seen from the left.',
-    refine: 'Draw on, on either sheet, or grow the tree.',
+    refine: 'Draw more on either sheet, or grow the tree.',
     mixed: 'Draw the trunk and its branches as seen from the left.',
-    mixedGrow: 'Draw on, or grow the tree: the side stands in for the depth that is guessed.',
+    mixedGrow: 'Draw more, or grow the tree. This side replaces the guessed depth.',
     how: {
-      mouse: 'Drag, each branch outward; or drop a drawing.',
-      touch: 'One finger draws; two move and zoom.',
+      mouse: 'Drag along each branch outward, or drop a drawing here.',
+      touch: 'Draw with your finger. Use two fingers to move and zoom.',
       pen: 'Draw with the pen, each branch outward.',
     },
   },
-  assumed: 'Only the front is drawn: how deep the tree is was guessed.',
-  noFront: 'First draw the trunk on the front’s sheet.',
+  assumed: 'Only the front is drawn. The tree’s depth is guessed.',
+  noFront: 'First draw the trunk on the front sheet.',
   drawing: 'Drawing',
   welcome: {
     draw: 'Draw it yourself',
-    drawHint: 'on white paper, from two sides; or bring a PNG of dark strokes',
+    drawHint: 'Draw two sides on white paper, or open a PNG of dark strokes.',
     examples: 'Or drawn from two sides',
-    examplesHint: 'Two sketches, one tree: no photo needed.',
+    examplesHint: 'Two sketches make one tree, without a photo.',
   },
   tabs: { front: 'Front', side: 'Left side', tree: 'Tree' },
-  keys: { other: 'The other sheet', thinner: 'Thinner, wider brush' },
+  keys: { other: 'Go to the other sheet', thinner: 'Thinner or wider brush' },
   fruit: {
-    label: 'Fruit of your own',
-    why: 'A PNG of one fruit with a transparent background, its stalk at the top. Fruits hang among the leaves.',
+    label: 'Your own fruit',
+    why: 'A PNG of one fruit, stalk up, on a transparent background. Fruits hang among the leaves.',
     choose: 'Choose a fruit',
     shown: 'Your fruit',
-    taken: 'Your fruit is taken.',
+    taken: 'Your fruit is added.',
     removed: 'Your fruit is removed.',
   },
   score: {
@@ -98,17 +100,17 @@ export const sheetsText = {
         : `${front} of the front’s strokes and ${side} of the side’s are in the tree`,
     /** By the least share of strokes that each needs, the best first. */
     words: [
-      [0.98, 'The tree goes where you drew.'],
-      [0.9, 'The tree goes nearly everywhere where you drew.'],
-      [0, 'The tree leaves some strokes out: let branches begin on those that bear them.'],
+      [0.98, 'The tree follows your strokes.'],
+      [0.9, 'The tree follows nearly all of your strokes.'],
+      [0, 'Some strokes are not in the tree. Begin each branch on its parent branch.'],
     ] as readonly (readonly [number, string])[],
     rows: {
-      frontCovered: ['Front’s strokes', 'How many of them the tree covers, seen from the front.'],
-      sideCovered: ['Side’s strokes', 'How many of them the tree covers, seen from its left.'],
-      frontTrue: ['True to the front', 'How much of its main branches you drew there.'],
-      sideTrue: ['True to the side', 'How much of its main branches you drew there.'],
-      paired: ['Found on both', 'Branches of the front that one of the side goes with.'],
-      inPlanes: ['In two planes', 'Main branches that lie flat in one of the sheets; few is good.'],
+      frontCovered: ['Front strokes covered', 'How many of them the tree covers, seen from the front.'],
+      sideCovered: ['Side strokes covered', 'How many of them the tree covers, seen from its left.'],
+      frontTrue: ['Drawn on the front', 'How much of its main branches you drew there.'],
+      sideTrue: ['Drawn on the side', 'How much of its main branches you drew there.'],
+      paired: ['Found on both sheets', 'Front branches that match a branch of the side.'],
+      inPlanes: ['Flat branches', 'Main branches that lie in the plane of a sheet. Fewer is better.'],
     },
   },
 } as const

@@ -103,9 +103,9 @@ test('a sketch that is a picture is read as strokes, and what was mended in it i
   const project = await readProject(picture, async file => {
     const [held, strokes] = [await file.text(), { ...NO_STROKES }]
     const branches = [{ points: ways[held]!, width: 7 }]
-    return { strokes: { ...strokes, branches }, size, ...(held === 'left' && { corrections: 'a gap was bridged.' }) }
+    return { strokes: { ...strokes, branches }, size, ...(held === 'left' && { corrections: '1 gap was closed.' }) }
   })
-  expect(project).toMatchObject({ sizes: { front: size, side: size }, corrections: 'Left side: a gap was bridged.' })
+  expect(project).toMatchObject({ sizes: { front: size, side: size }, corrections: 'Left side: 1 gap was closed.' })
   expect(project.strokes.branches).toEqual([{ points: TRUNK, width: 7 }])
   expect(project.strokes.side?.branches).toEqual([{ points: LIMB, width: 7 }])
 })

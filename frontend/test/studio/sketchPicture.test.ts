@@ -63,6 +63,6 @@ test('what was mended is said once for each kind', () => {
   const told = (code: string, detail = '') => ({ code, stroke: 'front/picture', detail })
   const warnings = [told('loop_cut'), told('branch_joined'), told('loop_cut'), told('new_one', 'a dot was dropped')]
   const { corrections } = sketchIn(SHOWN, warnings)
-  expect(corrections).toMatch(/^2 rings of branches were cut open\. a gap was bridged\. A dot was dropped\.$/)
+  expect(corrections).toMatch(/^2 loops of branches were cut open\. 1 gap was closed\. A dot was dropped\.$/)
   expect(sketchIn(SHOWN).corrections).toBeUndefined()
 })

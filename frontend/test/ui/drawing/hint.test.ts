@@ -1,10 +1,12 @@
 import { expect, test } from 'vitest'
-import type { Grown, Model, StrokeWarning, TraceAnswer } from '../../src/api/types'
-import { advance, begin } from '../../src/history'
-import { EMPTY, type State } from '../../src/state'
-import { type Line, NO_STROKES, withSheet, withStroke } from '../../src/strokes'
-import { text } from '../../src/text'
-import { hintOf } from '../../src/ui/hint'
+import type { StrokeWarning, TraceAnswer } from '../../../src/api/types'
+import { advance, begin } from '../../../src/history'
+import { paper } from '../../../src/sheets'
+import { EMPTY, type State } from '../../../src/state'
+import { type Line, NO_STROKES, withSheet, withStroke } from '../../../src/strokes'
+import { text } from '../../../src/text'
+import { hintOf } from '../../../src/ui/drawing/hint'
+import { grown, photo, photoSheets, shownModel, sketchSheets } from '../../builders'
 
 const LINE: Line = [
   [0, 0],
@@ -25,22 +27,22 @@ test('a newcomer is led from the crown to the trunk to the tree', () => {
   expect(said({})).toBe(text.hints.crown)
   expect(said({ tool: 'branch', history: begin(crown) })).toBe(text.hints.trunk)
   expect(said({ tool: 'branch', history: begin(trunk) })).toBe(text.hints.waiting)
-  expect(said({ tool: 'branch', history: begin(trunk), grown: {} as Grown })).toBe(text.hints.refine)
-  expect(said({ tool: 'branch', history: begin(trunk), model: { status: 'running' } as Model })).toBe(
+  expect(said({ tool: 'branch', history: begin(trunk), liveTree: grown() })).toBe(text.hints.refine)
+  expect(said({ tool: 'branch', history: begin(trunk), model: shownModel({ status: 'running' }) })).toBe(
     text.hints.growing,
   )
 })
 
 test('the finished tree is announced until the strokes change', () => {
-  const model = { status: 'succeeded' } as Model
-  const done = { tool: 'branch', grown: {} as Grown, model, modelOf: trunk } as const
+  const model = shownModel({ status: 'succeeded' }, { strokes: trunk })
+  const done = { tool: 'branch', liveTree: grown(), model } as const
   expect(said({ ...done, history: begin(trunk) })).toBe(text.hints.done)
   expect(said({ ...done, history: begin(two) })).toBe(text.hints.refine)
 })
 
 test('with the wrong tool in hand the right one is named', () => {
-  expect(said({ tool: 'branch' })).toBe(text.hints.takeCrown)
-  expect(said({ tool: 'select', history: begin(crown) })).toBe(text.hints.takeBranch)
+  expect(said({ tool: 'branch' })).toBe(text.hints.chooseCrown)
+  expect(said({ tool: 'select', history: begin(crown) })).toBe(text.hints.chooseBranch)
 })
 
 test('the gesture is that of the pointer in use', () => {
@@ -61,7 +63,7 @@ test('a lost connection is said', () => {
 test('a warning about the stroke just drawn is said with the next step', () => {
   const history = advance(begin(trunk), two)
   const hint = hintOf(state({ tool: 'branch', history, traced: traced(two, JOINED) }), 'mouse')
-  expect(hint).toEqual({ tone: 'note', text: 'Branch 2 was joined to the nearest branch.', how: text.hints.waiting })
+  expect(hint).toEqual({ tone: 'note', text: 'Branch 2: joined to the nearest branch.', how: text.hints.waiting })
 })
 
 test('a warning about an older stroke is not said again', () => {
@@ -81,14 +83,16 @@ test('a doubt about a stroke is said until it is drawn anew, whatever was drawn 
   const outside = { code: 'outside_photo', stroke: 'crown', detail: '40% of it lies outside' }
   const history = advance(begin(trunk), two)
   expect(said({ tool: 'branch', history, traced: traced(two, JOINED, level) })).toBe(text.hints.doubts.trunk_level)
-  expect(said({ tool: 'branch', history, traced: traced(two, outside) })).toContain('Much of the crown lies outside')
+  expect(said({ tool: 'branch', history, traced: traced(two, outside) })).toContain(
+    'Crown: much of it is outside the photo.',
+  )
   expect(said({ tool: 'branch', history, traced: traced(trunk, level) })).toBe(text.hints.waiting)
 })
 
 test('what is selected can be deleted from the line', () => {
   const selection = { kind: 'crown', index: 0 } as const
   expect(hintOf(state({ history: begin(two), selection }), 'mouse')).toMatchObject({
-    text: 'Crown is selected.',
+    text: 'Selected: Crown',
     deletes: true,
   })
 })
@@ -106,28 +110,29 @@ test('on paper it goes from the trunk to the branches, to the other side, and on
   const { hints } = text.sheets
   const [bare, limbed] = [withStroke(NO_STROKES, 'branch', LINE), withStroke(trunk, 'branch', LINE)]
   const drawing = (present: typeof two, change: Partial<State> = {}) =>
-    said({ source: 'sketch', tool: 'branch', history: begin(present), ...change })
+    said({ sheets: sketchSheets(paper(), paper()), tool: 'branch', history: begin(present), ...change })
   expect(drawing(NO_STROKES)).toBe(hints.trunk)
-  expect(drawing(NO_STROKES, { tool: 'crown' })).toBe(hints.takeBranch)
+  expect(drawing(NO_STROKES, { tool: 'crown' })).toBe(hints.chooseBranch)
   expect(drawing(limbed)).toBe(hints.side)
-  expect(drawing(limbed, { sheet: 'side' })).toBe(hints.sideTrunk)
-  expect(drawing(withSheet(limbed, 'side', bare), { sheet: 'side' })).toBe(hints.branches)
-  expect(drawing(withSheet(limbed, 'side', limbed), { grown: {} as Grown })).toBe(hints.refine)
+  expect(drawing(limbed, { active: 'side' })).toBe(hints.sideTrunk)
+  expect(drawing(withSheet(limbed, 'side', bare), { active: 'side' })).toBe(hints.branches)
+  expect(drawing(withSheet(limbed, 'side', limbed), { liveTree: grown() })).toBe(hints.refine)
 })
 
 test('beside a photo the side’s sheet says what it is for', () => {
   const { hints } = text.sheets
-  const beside = (present: typeof two) => said({ sheet: 'side', tool: 'branch', history: begin(present) })
+  const beside = (present: typeof two) =>
+    said({ sheets: photoSheets(photo(), paper()), active: 'side', tool: 'branch', history: begin(present) })
   expect(beside(two)).toBe(hints.mixed)
   expect(beside(withSheet(two, 'side', two))).toBe(hints.mixedGrow)
 })
 
 test('what was mended in reading a drawing is said until it is drawn on', () => {
-  const remark = { of: trunk, text: 'Front: a gap was bridged.' }
-  expect(hintOf(state({ tool: 'branch', history: begin(trunk), remark }), 'mouse')).toEqual({
+  const corrections = { of: trunk, text: 'Front: 1 gap was closed.' }
+  expect(hintOf(state({ tool: 'branch', history: begin(trunk), corrections }), 'mouse')).toEqual({
     tone: 'note',
-    text: remark.text,
+    text: corrections.text,
     how: text.hints.waiting,
   })
-  expect(said({ tool: 'branch', history: begin(two), remark })).toBe(text.hints.waiting)
+  expect(said({ tool: 'branch', history: begin(two), corrections })).toBe(text.hints.waiting)
 })

@@ -1,10 +1,11 @@
-import { isOver } from '../api/follow'
-import { doubtIn, remarksOn, type StrokeRemark } from '../doubts'
-import type { PointerKind } from '../sketch/gesture'
-import type { State } from '../state'
-import { lineOf, type StrokeRef } from '../strokes'
-import { text } from '../text'
-import { strokeName } from './strokeNames'
+import { isOver } from '../../api/follow'
+import { doubtIn, remarksOn, type StrokeRemark } from '../../doubts'
+import { isPaper } from '../../sheets'
+import type { PointerKind } from '../../sketch/gesture'
+import type { State } from '../../state'
+import { lineOf, type StrokeRef } from '../../strokes'
+import { text } from '../../text'
+import { remarkText, strokeName } from './strokeTexts'
 
 /** The next step, or what stands in its way. */
 export interface Hint {
@@ -28,10 +29,10 @@ export function hintOf(state: State, pointer: PointerKind): Hint {
   return note && !next.deletes ? { tone: 'note', text: note, how: next.text } : next
 }
 
-/** Say what was mended in what is drawn, as it was read or in the stroke that was drawn last, and what is in doubt. */
+/** Say what was corrected in what is drawn, as it was read or in the stroke that was drawn last, and what is in doubt. */
 function noteOf(state: State): string | null {
-  const { remark, history } = state
-  if (remark?.of === history.present) return remark.text
+  const { corrections, history } = state
+  if (corrections?.of === history.present) return corrections.text
   const said = doubtIn(state) ?? newRemark(state)
   return said ? remarkText(said) : null
 }
@@ -43,17 +44,6 @@ function newRemark(state: State): StrokeRemark | undefined {
   return before && remarksOn(state).find(({ stroke }) => stroke && lineOf(present, stroke) !== lineOf(before, stroke))
 }
 
-/** Put a remark of the service into the page's words. */
-export function remarkText({ warning: { code, stroke: place, detail }, stroke }: StrokeRemark): string {
-  const words: Readonly<Record<string, string | ((stroke: string) => string)>> = {
-    ...text.hints.warnings,
-    ...text.hints.doubts,
-  }
-  const [known, name] = [words[code], stroke ? strokeName(stroke) : place]
-  if (typeof known === 'string') return known
-  return known ? known(name) : `${name}: ${detail}`
-}
-
 function step(state: State, pointer: PointerKind): Hint {
   const { tool, selection, history } = state
   const { crown, branches } = history.present
@@ -61,10 +51,10 @@ function step(state: State, pointer: PointerKind): Hint {
   if (selection?.kind === 'scale') return stepTo(text.hints.measured)
   if (selection) return { tone: 'step', text: text.hints.selected(strokeName(selection)), deletes: true }
   if (tool === 'scale') return stepTo(text.hints.measure, text.hints.measureNear)
-  if (state.source === 'sketch' || state.sheet === 'side')
-    return sketchStep(state, pointer) ?? laterStep(state, pointer)
-  if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.takeCrown)
-  if (!branches.length) return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.takeBranch)
+  if (isPaper(state, state.active)) return sketchStep(state, pointer) ?? laterStep(state, pointer)
+  if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.chooseCrown)
+  if (!branches.length)
+    return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.chooseBranch)
   return laterStep(state, pointer)
 }
 
@@ -72,29 +62,29 @@ function step(state: State, pointer: PointerKind): Hint {
 function sketchStep(state: State, pointer: PointerKind): Hint | null {
   const { hints } = text.sheets
   const { branches, side } = state.history.present
-  const onSide = state.sheet === 'side'
+  const onSide = state.active === 'side'
   if (state.tool !== 'branch' && !(onSide ? side : state.history.present)?.branches.length)
-    return stepTo(hints.takeBranch)
+    return stepTo(hints.chooseBranch)
   if (onSide) return sideStep(state, hints.how[pointer])
   if (!branches.length) return stepTo(hints.trunk, hints.how[pointer])
   const goesOn = branches.length > 1 && !side?.branches.length && !state.model
   return goesOn ? stepTo(hints.side, hints.sideHow) : null
 }
 
-function sideStep({ source, history }: State, how: string): Hint | null {
+function sideStep({ sheets, history }: State, how: string): Hint | null {
   const { hints } = text.sheets
   const count = history.present.side?.branches.length ?? 0
-  if (count === 0) return stepTo(source === 'photo' ? hints.mixed : hints.sideTrunk, how)
+  if (count === 0) return stepTo(sheets?.source === 'photo' ? hints.mixed : hints.sideTrunk, how)
   if (count === 1) return stepTo(hints.branches, how)
-  return source === 'photo' ? stepTo(hints.mixedGrow) : null
+  return sheets?.source === 'photo' ? stepTo(hints.mixedGrow) : null
 }
 
-function laterStep({ tool, history, grown, model, ...state }: State, pointer: PointerKind): Hint {
+function laterStep({ tool, history, liveTree, model, sheets }: State, pointer: PointerKind): Hint {
   if (tool === 'select') return stepTo(text.hints.select, text.hints.how[pointer].select)
-  if (model && !isOver(model)) return stepTo(text.hints.growing)
-  if (model?.status === 'succeeded' && state.modelOf === history.present) return stepTo(text.hints.done)
-  if (!grown) return stepTo(text.hints.waiting)
-  return stepTo(state.source === 'sketch' ? text.sheets.hints.refine : text.hints.refine)
+  if (model && !isOver(model.info)) return stepTo(text.hints.growing)
+  if (model?.info.status === 'succeeded' && model.strokes === history.present) return stepTo(text.hints.done)
+  if (!liveTree) return stepTo(text.hints.waiting)
+  return stepTo(sheets?.source === 'sketch' ? text.sheets.hints.refine : text.hints.refine)
 }
 
 function stepTo(sentence: string, how?: string): Hint {

@@ -1,9 +1,11 @@
 // @vitest-environment jsdom
 import 'fake-indexeddb/auto'
+import { act } from 'preact/test-utils'
 import { beforeEach, expect, test } from 'vitest'
-import type { Line } from '../../src/strokes'
-import { Studio } from '../../src/studio/studio'
-import { toolbar } from '../../src/ui/toolbar'
+import type { Line, StrokeKind } from '../../../src/strokes'
+import { Studio } from '../../../src/studio/studio'
+import { Toolbar } from '../../../src/ui/drawing/Toolbar'
+import { mount } from './mount'
 
 const LINE: Line = [
   [0, 0],
@@ -14,55 +16,59 @@ let studio: Studio
 const named = (name: string) => document.querySelector<HTMLButtonElement>(`[title^="${name}"]`)!
 const rows = () => [...document.querySelectorAll('.stroke-name')].map(row => row.textContent)
 
-beforeEach(() => {
+/** Draw a stroke of its own, and let the bar follow. */
+const draw = (kind: StrokeKind) => act(() => studio.strokes.draw(kind, [...LINE]))
+const click = (button: HTMLElement) => act(() => button.click())
+
+beforeEach(async () => {
   studio = new Studio()
-  document.body.replaceChildren(toolbar(studio))
+  await mount(studio, <Toolbar />)
 })
 
-test('one tool is held, and a click takes another', () => {
+test('one tool is held, and a click takes another', async () => {
   const held = () => [...document.querySelectorAll<HTMLElement>('[aria-pressed="true"]')].map(one => one.dataset.tool)
   expect(held()).toEqual(['crown'])
-  named('Select').click()
+  await click(named('Select'))
   expect(held()).toEqual(['select'])
   expect(studio.store.state.tool).toBe('select')
 })
 
-test('what cannot be done is said to be disabled and does nothing, but keeps the focus', () => {
+test('what cannot be done is said to be disabled and does nothing, but keeps the focus', async () => {
   const undo = named('Undo')
   expect(undo.getAttribute('aria-disabled')).toBe('true')
   expect(undo.disabled).toBe(false)
-  studio.sketchbook.draw('crown', LINE)
+  await draw('crown')
   expect(undo.getAttribute('aria-disabled')).toBe('false')
-  undo.click()
+  await click(undo)
   expect(studio.store.strokes.crown).toBeNull()
   expect(undo.getAttribute('aria-disabled')).toBe('true')
 })
 
-test('the list names every stroke, and deletes and selects them', () => {
-  studio.sketchbook.draw('crown', LINE)
-  studio.sketchbook.draw('branch', LINE)
-  studio.sketchbook.draw('branch', LINE)
+test('the list names every stroke, and deletes and selects them', async () => {
+  await draw('crown')
+  await draw('branch')
+  await draw('branch')
   expect(rows()).toEqual(['Crown', 'Trunk', 'Branch 2'])
-  document.querySelectorAll<HTMLElement>('.stroke-name')[1]!.click()
+  await click(document.querySelectorAll<HTMLElement>('.stroke-name')[1]!)
   expect(studio.store.state.selection).toEqual({ kind: 'branch', index: 0 })
-  document.querySelector<HTMLElement>('[aria-label="Delete Crown"]')!.click()
+  await click(document.querySelector<HTMLElement>('[aria-label="Delete Crown"]')!)
   expect(rows()).toEqual(['Trunk', 'Branch 2'])
 })
 
-test('the focus stays in the list when its row is deleted', () => {
-  studio.sketchbook.draw('crown', LINE)
-  studio.sketchbook.draw('branch', LINE)
+test('the focus stays in the list when its row is deleted', async () => {
+  await draw('crown')
+  await draw('branch')
   const last = document.querySelector<HTMLElement>('[aria-label="Delete Trunk"]')!
   last.focus()
-  last.click()
+  await click(last)
   expect(document.activeElement?.textContent).toBe('Crown')
 })
 
-test('clearing is one edit that undo takes back', () => {
-  studio.sketchbook.draw('crown', LINE)
-  studio.sketchbook.draw('branch', LINE)
-  named('Clear').click()
+test('clearing is one edit that undo takes back', async () => {
+  await draw('crown')
+  await draw('branch')
+  await click(named('Clear'))
   expect(rows()).toEqual([])
-  named('Undo').click()
+  await click(named('Undo'))
   expect(rows()).toEqual(['Crown', 'Trunk'])
 })

@@ -1,4 +1,4 @@
-import type { Tool } from '../state'
+import type { Tool } from '../../state'
 
 type Key = Pick<KeyboardEvent, 'key' | 'ctrlKey' | 'metaKey' | 'altKey' | 'shiftKey'>
 /** What a key asks of the page. */

@@ -1,16 +1,39 @@
-import { text } from '../text'
-import { openDialog } from './dialog'
-import { el } from './dom'
-import { withCtrl } from './shortcutKeys'
-import './shortcutSheet.css'
+import { text } from '../../text'
+import { LANGUAGE } from '../../text/plural'
+import { withCtrl } from '../parts/shortcutKeys'
+import './shortcutsDialog.css'
+
+const OR = new Intl.ListFormat(LANGUAGE, { type: 'disjunction' })
 
 type Row = readonly [what: string, ...keys: string[]]
 
-/** Show every shortcut. */
-export function openShortcuts(): void {
-  const sheet = el('div', { class: 'shortcuts' })
-  for (const [title, rows] of groups()) sheet.append(group(title, rows))
-  openDialog(text.shortcuts.title, sheet)
+/** Every shortcut, by what it is about. */
+export function ShortcutsDialog() {
+  return (
+    <div class="shortcuts">
+      {groups().map(([title, rows]) => (
+        <section key={title}>
+          <h3>{title}</h3>
+          <dl>
+            {rows.map(row => (
+              <Shortcut key={row[0]} row={row} />
+            ))}
+          </dl>
+        </section>
+      ))}
+    </div>
+  )
+}
+
+function Shortcut({ row: [what, ...keys] }: { readonly row: Row }) {
+  return (
+    <div>
+      <dt>{what}</dt>
+      <dd>
+        {OR.formatToParts(keys).map(({ type, value }) => (type === 'element' ? <kbd key={value}>{value}</kbd> : value))}
+      </dd>
+    </div>
+  )
 }
 
 function groups(): [string, Row[]][] {
@@ -38,7 +61,7 @@ function groups(): [string, Row[]][] {
       ],
     ],
     [
-      titles.photo,
+      titles.view,
       [
         [said.zoom, said.wheel, '+', '−'],
         [said.pan, said.spaceDrag],
@@ -62,19 +85,10 @@ function groups(): [string, Row[]][] {
       titles.tree,
       [
         [said.orbit, said.arrows],
-        [said.closer, '+', '−'],
-        [said.views, `1 ${keys.to} 5`],
+        [said.zoom, '+', '−'],
+        [said.views, said.viewKeys],
         [said.leaves, 'L'],
       ],
     ],
   ]
-}
-
-function group(title: string, rows: readonly Row[]): HTMLElement {
-  const list = el('dl', {})
-  for (const [what, ...keys] of rows) {
-    const shown = keys.flatMap((key, index) => [index ? ` ${text.shortcuts.keys.or} ` : '', el('kbd', {}, key)])
-    list.append(el('div', {}, el('dt', {}, what), el('dd', {}, ...shown)))
-  }
-  return el('section', {}, el('h3', {}, title), list)
 }

@@ -1,6 +1,6 @@
 // @vitest-environment jsdom
 import { expect, test } from 'vitest'
-import { BRUSHES, nextBrush } from '../../src/ui/brushes'
+import { BRUSHES, nextBrush } from '../../../src/ui/drawing/DrawingFoot'
 
 test('brushes go from the pencil to the broadest, and no further', () => {
   const widths = BRUSHES.map(([width]) => width)

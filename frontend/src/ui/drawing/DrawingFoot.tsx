@@ -1,0 +1,73 @@
+import { isPaper } from '../../sheets'
+import { text } from '../../text'
+import { Icon } from '../parts/Icon'
+import { ICONS } from '../parts/icons'
+import { useStore, useStudio } from '../parts/useStore'
+
+const { brushes: words } = text.sheets
+
+/** How wide each brush is, as a share of the paper's height; a pencil has no width. */
+export const BRUSHES = [
+  [null, words.pencil],
+  [0.008, words.fine],
+  [0.018, words.medium],
+  [0.036, words.broad],
+] as const
+/** A brush's width as it is shown, CSS px for all of the paper's height. */
+const SHOWN = 480
+
+/** Return the brush so many steps wider than another; the thinnest and the widest stay what they are. */
+export function nextBrush(brush: number | null, steps: number): number | null {
+  const at = BRUSHES.findIndex(([width]) => width === brush)
+  return BRUSHES[Math.min(Math.max(at + steps, 0), BRUSHES.length - 1)]![0]
+}
+
+/** What lies at the foot of the drawing: the choice of the brush on paper, or the way to the left side's sheet. */
+export function DrawingFoot() {
+  const { sheets } = useStudio()
+  const onPaper = useStore(state => isPaper(state, state.active))
+  const canOpenSide = useStore(
+    ({ sheets: open, history }) =>
+      open?.source === 'photo' && open.side === null && history.present.branches.length > 0,
+  )
+  return (
+    <div class="drawing-foot">
+      <div class="brushes" role="group" aria-label={words.group} hidden={!onPaper}>
+        {BRUSHES.map(([brush, label]) => (
+          <BrushButton key={label} brush={brush} label={label} />
+        ))}
+      </div>
+      <button
+        type="button"
+        class="button outlined side-opener"
+        title={text.sheets.openWhy}
+        hidden={!canOpenSide}
+        onClick={() => sheets.openSide()}
+      >
+        <Icon path={ICONS.sheet} />
+        {text.sheets.open}
+      </button>
+    </div>
+  )
+}
+
+function BrushButton({ brush, label }: { readonly brush: number | null; readonly label: string }) {
+  const { sheets } = useStudio()
+  const isHeld = useStore(state => state.brush === brush && state.tool === 'branch')
+  return (
+    <button
+      type="button"
+      class="button square"
+      title={label}
+      aria-label={label}
+      aria-pressed={isHeld}
+      onClick={() => sheets.chooseBrush(brush)}
+    >
+      {brush === null ? (
+        <Icon path={ICONS.pencil} />
+      ) : (
+        <span class="brush-dot" style={{ '--dot': `${brush * SHOWN}px` }} />
+      )}
+    </button>
+  )
+}

@@ -1,0 +1,40 @@
+import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks'
+import { useStore, useStudio } from '../parts/useStore'
+import { DrawingFoot } from './DrawingFoot'
+import { HintLine } from './HintLine'
+import { Sheets } from './Sheets'
+import { SheetSketches, type Views } from './sheetSketches'
+import { listenToShortcuts } from './shortcuts'
+import { Toolbar } from './Toolbar'
+import { ZoomBar } from './ZoomBar'
+
+/** The sheets, the tools to draw on them, and what comes next. */
+export function DrawingPane() {
+  const studio = useStudio()
+  const active = useStore(state => state.active)
+  const [views, setViews] = useState<Views>({})
+  const sketches = useMemo(
+    () => new SheetSketches(studio, (name, view) => setViews(before => ({ ...before, [name]: view }))),
+    [studio],
+  )
+  const turned = useRef(false)
+  const turnToOther = () => {
+    turned.current = Boolean(studio.store.state.sheets?.side)
+    studio.sheets.activate(studio.store.state.active === 'front' ? 'side' : 'front')
+  }
+  // A phone shows the other sheet only now: it could not take the focus before.
+  useLayoutEffect(() => {
+    if (turned.current) sketches.focus(active)
+    turned.current = false
+  }, [active])
+  useLayoutEffect(() => listenToShortcuts(studio, sketches, turnToOther), [studio])
+  return (
+    <>
+      <Toolbar />
+      <HintLine />
+      <Sheets sketches={sketches} views={views} />
+      <DrawingFoot />
+      <ZoomBar zoom={sketches} scale={views[active]?.scale ?? 1} />
+    </>
+  )
+}

@@ -1,0 +1,72 @@
+import { useLayoutEffect, useState } from 'preact/hooks'
+import type { PointerKind } from '../../sketch/gesture'
+import { text } from '../../text'
+import { useStore, useStudio } from '../parts/useStore'
+import { type Hint, hintOf } from './hint'
+import './hintLine.css'
+
+/** The one line that says what comes next, with what can be done about it at once. */
+export function HintLine() {
+  const pointer = usePointer()
+  const hint = hintOf(
+    useStore(state => state),
+    pointer,
+  )
+  const isTracing = useStore(state => state.tracing)
+  return (
+    <div class={isTracing ? 'hint-row is-tracing' : 'hint-row'}>
+      <div class="hint-over">
+        <div class="hint" data-tone={hint.tone}>
+          {/* An alert is heard when it comes into the page. */}
+          <p key={hint.tone} class="hint-text" role={hint.tone === 'fault' ? 'alert' : undefined}>
+            <strong>{hint.text}</strong>
+            {hint.how && <span class="hint-how"> {hint.how}</span>}
+          </p>
+          <HintActions hint={hint} />
+        </div>
+        <p class="hint-tracing" aria-hidden="true">
+          {text.hints.tracing}
+        </p>
+      </div>
+    </div>
+  )
+}
+
+/** Return the kind of pointer that was used last; before that, the one that the device is made for. */
+function usePointer(): PointerKind {
+  const [pointer, setPointer] = useState<PointerKind>(matchMedia('(pointer: coarse)').matches ? 'touch' : 'mouse')
+  useLayoutEffect(() => {
+    const used = ({ pointerType }: PointerEvent) => setPointer(kindOf(pointerType))
+    addEventListener('pointerdown', used)
+    return () => removeEventListener('pointerdown', used)
+  }, [])
+  return pointer
+}
+
+/** A browser may not know what a pointer is. */
+function kindOf(pointerType: string): PointerKind {
+  return pointerType === 'touch' || pointerType === 'pen' ? pointerType : 'mouse'
+}
+
+function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint }) {
+  const { strokes } = useStudio()
+  const removeStroke = () => {
+    strokes.select(stroke!)
+    strokes.remove()
+  }
+  return (
+    <>
+      {stroke && <Action label={text.hints.deleteStroke} run={removeStroke} />}
+      {tone === 'fault' && <Action label={text.hints.undo} run={() => strokes.undo()} />}
+      {deletes && <Action label={text.hints.delete} run={() => strokes.remove()} />}
+    </>
+  )
+}
+
+function Action({ label, run }: { readonly label: string; run(): void }) {
+  return (
+    <button type="button" class="button outlined small" onClick={run}>
+      {label}
+    </button>
+  )
+}

@@ -1,0 +1,107 @@
+import type { RefObject } from 'preact'
+import { useLayoutEffect, useRef, useState } from 'preact/hooks'
+import type { SheetName } from '../../strokes'
+import { text } from '../../text'
+import { useStore, useStudio } from '../parts/useStore'
+import { TreePane } from '../tree/TreePane'
+import { announceDrawing } from './announcements'
+import { Divider } from './Divider'
+import { DrawingPane } from './DrawingPane'
+import './workspace.css'
+
+type Shown = 'drawing' | 'both' | 'tree'
+/** What the switch gives the whole height of a phone: with one sheet, and with two. */
+type Choice = Shown | SheetName
+const ONE_SHEET: readonly Choice[] = ['drawing', 'both', 'tree']
+const TWO_SHEETS: readonly Choice[] = ['front', 'side', 'tree']
+const LABELS: Readonly<Record<Choice, string>> = {
+  drawing: text.workspace.drawing,
+  both: text.workspace.both,
+  ...text.sheets.tabs,
+}
+
+/** The drawing and the tree beside each other; both stay while the page does, hidden while nothing is open. */
+export function Workspace() {
+  const { store } = useStudio()
+  const isOpen = useStore(({ sheets }) => sheets !== null)
+  const hasSide = useStore(({ sheets }) => Boolean(sheets?.side))
+  const [shown, show] = useShown(hasSide)
+  const [split, setSplit] = useState<number | null>(null)
+  const element = useRef<HTMLDivElement>(null)
+  useLayoutEffect(() => announceDrawing(store), [store])
+  useFocusOnOpening(element, isOpen)
+  return (
+    <div
+      class={hasSide ? 'workspace two-sheets' : 'workspace'}
+      data-shows={shown}
+      hidden={!isOpen}
+      style={split === null ? {} : { '--split': `${split}%` }}
+      ref={element}
+    >
+      <section class="pane drawing-pane" aria-label={text.workspace.drawing}>
+        <DrawingPane />
+      </section>
+      <Divider split={split} move={setSplit} />
+      <PaneChooser shown={shown} hasSide={hasSide} show={show} />
+      <section class="pane tree-pane" aria-label={text.workspace.tree}>
+        <TreePane />
+      </section>
+    </div>
+  )
+}
+
+/** Keep what a phone shows: two sheets leave no room for the tree beside them, until it is asked for. */
+function useShown(hasSide: boolean): [Shown, (shown: Shown) => void] {
+  const [shown, show] = useState<Shown>('both')
+  const isAsked = useStore(({ asking }) => asking) && hasSide
+  useLayoutEffect(() => show(hasSide ? 'drawing' : 'both'), [hasSide])
+  useLayoutEffect(() => {
+    if (isAsked) show('tree')
+  }, [isAsked])
+  return [shown, show]
+}
+
+/** Move the focus to where the work goes on when a drawing is opened or closed, as what was clicked is gone. */
+function useFocusOnOpening(workspace: RefObject<HTMLElement | null>, isOpen: boolean): void {
+  const wasOpen = useRef(isOpen)
+  useLayoutEffect(() => {
+    if (isOpen === wasOpen.current) return
+    wasOpen.current = isOpen
+    const place = isOpen ? workspace.current!.querySelector('.canvas > *') : workspace.current!.closest('main')
+    ;(place as HTMLElement | null)?.focus({ preventScroll: true })
+  }, [isOpen])
+}
+
+interface ChooserProps {
+  readonly shown: Shown
+  readonly hasSide: boolean
+  show(shown: Shown): void
+}
+
+/** The switch that gives a sheet or the tree the whole height of a phone. */
+function PaneChooser({ shown, hasSide, show }: ChooserProps) {
+  const { sheets } = useStudio()
+  const active = useStore(state => state.active)
+  const [choices, chosen] = hasSide ? [TWO_SHEETS, shown === 'tree' ? 'tree' : active] : [ONE_SHEET, shown]
+  const choose = (choice: Choice) => {
+    const isSheet = choice === 'front' || choice === 'side'
+    if (isSheet) sheets.activate(choice)
+    show(isSheet ? 'drawing' : choice)
+  }
+  return (
+    <div class="chooser" role="group" aria-label={text.workspace.show}>
+      {choices.map(choice => (
+        <button
+          type="button"
+          class="button"
+          key={choice}
+          data-show={choice}
+          aria-pressed={choice === chosen}
+          onClick={() => choose(choice)}
+        >
+          {LABELS[choice]}
+        </button>
+      ))}
+    </div>
+  )
+}

@@ -1,0 +1,77 @@
+import type { TracedSkeleton } from '../../api/types'
+import type { History } from '../../history'
+import type { Sheet, State, Store } from '../../state'
+import { isEmpty, lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../../strokes'
+import { text } from '../../text'
+import { strokeName } from './strokeTexts'
+
+/** Have screen readers say what the eye sees on the sheets: tools, strokes, what was found; the call ends it. */
+export function announceDrawing(store: Store): () => void {
+  const say = <T>(select: (state: State) => T, sentence: (now: T, before: T) => string | null) => {
+    let before = select(store.state)
+    return store.watch(select, now => {
+      const said = now === before ? null : sentence(now, before)
+      before = now
+      if (said) store.announce(said)
+    })
+  }
+  const ends = [
+    say(
+      state => state.history,
+      (now, before) => editSaid(before, now),
+    ),
+    say(
+      state => state.active,
+      sheet => (store.state.sheets?.side ? text.sheets.activated[sheet] : null),
+    ),
+    say(
+      state => state.tool,
+      tool => (store.state.sheets ? text.tools.chosen[tool] : null),
+    ),
+    say(
+      state => state.traced,
+      traced => traced && text.strokes.branchesFound(tipCount(traced.answer.skeleton)),
+    ),
+    say(
+      state => state.selection,
+      selection => selection && text.strokes.selected(strokeName(selection)),
+    ),
+  ]
+  return () => {
+    for (const end of ends) end()
+  }
+}
+
+/** Say what the keyboard's pen does, at a place of a sheet in pixels. */
+export function announcePen(store: Store, pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Sheet): void {
+  const [right, down] = [x / width, y / height]
+  if (pen === 'up') store.announce(text.strokes.penUp)
+  else store.announce(pen === 'down' ? text.strokes.penDown(right, down) : text.strokes.penAt(right, down))
+}
+
+/** Say what an edit of the strokes did, for those who do not see it; null where another drawing was opened. */
+export function editSaid(before: History<Strokes>, now: History<Strokes>): string | null {
+  if (now.future[0] === before.present) return text.strokes.undone
+  if (now.past.at(-1) !== before.present) return null
+  if (before.future[0] === now.present) return text.strokes.redone
+  if (isEmpty(now.present)) return text.strokes.cleared
+  const { scale } = now.present
+  if (scale && before.present.scale?.points === scale.points && before.present.scale !== scale)
+    return text.strokes.measured(text.metres(scale.metres))
+  const [gone] = missing(before.present, now.present)
+  const [come, more] = missing(now.present, before.present)
+  if (come) return more ? text.sheets.opened : text.strokes.drawn(strokeName(come))
+  return gone ? text.strokes.deleted(strokeName(gone)) : null
+}
+
+/** Find the strokes of `strokes` that `others` have not: more than one were not drawn, but opened. */
+function missing(strokes: Strokes, others: Strokes): StrokeRef[] {
+  const known = new Set(strokeRefs(others).map(ref => lineOf(others, ref)))
+  return strokeRefs(strokes).filter(ref => !known.has(lineOf(strokes, ref)))
+}
+
+/** Count the ends of what was traced: as many branches does the eye see. */
+function tipCount({ parents }: TracedSkeleton): number {
+  const bearing = new Set(parents)
+  return parents.filter((_, joint) => !bearing.has(joint)).length
+}

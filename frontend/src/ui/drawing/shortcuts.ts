@@ -1,0 +1,55 @@
+import { isPaper } from '../../sheets'
+import type { Studio } from '../../studio/studio'
+import { choose } from '../parts/files'
+import { saveProject } from '../parts/saving'
+import { type Command, commandOf } from '../parts/shortcutKeys'
+import { nextBrush } from './DrawingFoot'
+import type { Zoom } from './sheetSketches'
+
+/** Where keys write or have a meaning of their own. */
+const TYPING = 'input, select, textarea, [contenteditable]'
+
+/** Act on the page's keys, unless they are written into a field, or a dialog is open; the call ends it. */
+export function listenToShortcuts(studio: Studio, zoom: Zoom, turnToOther: () => void): () => void {
+  const commands = commandsOf(studio, zoom, turnToOther)
+  const press = (event: KeyboardEvent) => {
+    const command = commandOf(event)
+    if (!command || !isFree(event, command)) return
+    if (!studio.store.state.sheets && !['open', 'help'].includes(command)) return
+    event.preventDefault()
+    commands[command]()
+  }
+  addEventListener('keydown', press)
+  return () => removeEventListener('keydown', press)
+}
+
+function commandsOf(studio: Studio, zoom: Zoom, turnToOther: () => void): Readonly<Record<Command, () => unknown>> {
+  const { store, strokes, grower, sheets } = studio
+  const brush = (steps: number) =>
+    isPaper(store.state, store.state.active) && sheets.chooseBrush(nextBrush(store.state.brush, steps))
+  return {
+    crown: () => strokes.hold('crown'),
+    branch: () => strokes.hold('branch'),
+    scale: () => strokes.hold('scale'),
+    select: () => strokes.hold('select'),
+    other: turnToOther,
+    thinner: () => brush(-1),
+    thicker: () => brush(1),
+    undo: () => strokes.undo(),
+    redo: () => strokes.redo(),
+    remove: () => strokes.remove(),
+    save: () => saveProject(studio),
+    open: () => choose(studio),
+    grow: () => grower.grow(),
+    fit: () => zoom.fit(),
+    actual: () => zoom.actual(),
+    help: () => store.set({ dialog: 'shortcuts' }),
+  }
+}
+
+function isFree(event: KeyboardEvent, command: Command): boolean {
+  if (event.defaultPrevented || document.querySelector('dialog[open]')) return false
+  const target = event.target instanceof Element ? event.target : document.body
+  // The browser's own saving and opening would only be in the way.
+  return ['save', 'open'].includes(command) || !target.closest(TYPING)
+}

@@ -1,0 +1,105 @@
+import { expect, test } from 'vitest'
+import { advance, begin, redo, undo } from '../../../src/history'
+import { paper } from '../../../src/sheets'
+import { type State, Store } from '../../../src/state'
+import { type Line, NO_STROKES, withoutStroke, withScale, withSheet, withStroke } from '../../../src/strokes'
+import { text } from '../../../src/text'
+import { announceDrawing, announcePen, editSaid } from '../../../src/ui/drawing/announcements'
+import { answer, drawnAnswer, sketchSheets } from '../../builders'
+
+const LOOP: Line = [
+  [0, 0],
+  [9, 0],
+  [9, 9],
+]
+const TRUNK: Line = [
+  [5, 20],
+  [5, 5],
+]
+const empty = begin(NO_STROKES)
+const crowned = advance(empty, withStroke(empty.present, 'crown', LOOP))
+const trunked = advance(crowned, withStroke(crowned.present, 'branch', TRUNK))
+const branched = advance(trunked, withStroke(trunked.present, 'branch', [...TRUNK]))
+
+test('what was drawn is named', () => {
+  expect(editSaid(empty, crowned)).toBe('Drawn: Crown.')
+  expect(editSaid(crowned, trunked)).toBe('Drawn: Trunk.')
+  expect(editSaid(trunked, branched)).toBe('Drawn: Branch 2.')
+})
+
+test('a crown drawn anew is a drawn crown, not a deleted one', () => {
+  expect(editSaid(crowned, advance(crowned, withStroke(crowned.present, 'crown', [...LOOP])))).toBe('Drawn: Crown.')
+})
+
+test('what was deleted is named as it was', () => {
+  const without = advance(branched, withoutStroke(branched.present, { kind: 'branch', index: 1 }))
+  expect(editSaid(branched, without)).toBe('Deleted: Branch 2.')
+})
+
+test('clearing, undoing and redoing are told apart', () => {
+  const cleared = advance(branched, NO_STROKES)
+  expect(editSaid(branched, cleared)).toBe('All strokes cleared.')
+  expect(editSaid(cleared, undo(cleared))).toBe('Undone.')
+  expect(editSaid(undo(branched), redo(undo(branched)))).toBe('Redone.')
+})
+
+test('nothing is said of another drawing', () => {
+  expect(editSaid(branched, begin(withStroke(NO_STROKES, 'crown', LOOP)))).toBeNull()
+})
+
+test('a measured line is named, and its length when that is said', () => {
+  const lined = advance(trunked, withScale(trunked.present, [...TRUNK], 1))
+  const measured = advance(lined, withScale(lined.present, lined.present.scale!.points, 1.8))
+  expect([editSaid(trunked, lined), editSaid(lined, measured)]).toEqual([
+    'Drawn: Measured line.',
+    'The measured line is 1.8 m long.',
+  ])
+})
+
+test('what is drawn on the other sheet is told as such', () => {
+  const side = withSheet(trunked.present, 'side', withStroke(NO_STROKES, 'branch', [...TRUNK]))
+  expect(editSaid(trunked, advance(trunked, side))).toBe('Drawn: Trunk (left side).')
+})
+
+test('strokes that come all at once were opened, not drawn', () => {
+  expect(editSaid(empty, advance(empty, branched.present))).toBe('Drawing opened.')
+})
+
+test('tools, sheets and what is selected are said, until the call', () => {
+  const store = new Store()
+  store.set({ sheets: sketchSheets(paper(), paper()) })
+  const end = announceDrawing(store)
+  const saidOf = (change: Partial<State>) => {
+    store.set(change)
+    return store.state.announcement
+  }
+  expect(saidOf({})).toBe('')
+  expect(saidOf({ tool: 'branch' })).toBe(text.tools.chosen.branch)
+  expect(saidOf({ active: 'side' })).toBe(text.sheets.activated.side)
+  expect(saidOf({ selection: { kind: 'branch', index: 0, sheet: 'side' } })).toBe('Selected: Trunk (left side).')
+  expect(saidOf({ history: crowned })).toBe('Drawn: Crown.')
+  end()
+  expect(saidOf({ tool: 'crown' })).toBe('Drawn: Crown.')
+})
+
+test('as many branches are found as the traced skeleton has ends', () => {
+  const store = new Store()
+  const end = announceDrawing(store)
+  const { skeleton } = drawnAnswer().front
+  store.set({ traced: { of: NO_STROKES, answer: { ...answer(), skeleton } } })
+  expect(store.state.announcement).toBe('2 branches found.')
+  end()
+})
+
+test('the keyboard’s pen is told by shares of the sheet', () => {
+  const store = new Store()
+  const said = (pen: 'down' | 'up' | 'move') => {
+    announcePen(store, pen, [225, 900], paper())
+    return store.state.announcement
+  }
+  expect([said('down'), said('move'), said('up')]).toEqual([
+    'Pen down, 25% from the left, 75% from the top.',
+    '25% from the left, 75% from the top.',
+    'Pen up.',
+  ])
+})
