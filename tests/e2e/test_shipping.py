@@ -153,7 +153,7 @@ def test_further_files_are_listed_by_what_they_are_and_taken_home(visitor: Visit
     grow_again(visitor, service)
     page.locator(".downloads-opener").click()
     downloads = page.get_by_role("dialog", name="Take it away")
-    shelves = downloads.locator(".takings h3").all_inner_texts()
+    shelves = downloads.locator(".tree-downloads h3").all_inner_texts()
     assert shelves == ["This tree", "Levels of detail", "Other formats", "Skeleton"]
     visitor.shot("downloads")
     for label, ending in (("Middle distance", ".lod1.glb"), ("Wavefront OBJ", ".obj.zip"), ("Skeleton, SWC", ".swc")):

@@ -12,15 +12,15 @@ export const treeText = {
     settings: 'Settings',
     cancel: 'Cancel',
     /** What the line above the Grow button says, by where growing stands. */
-    standing: {
+    status: {
       noPhoto: 'Open a photo of a tree to begin.',
       noCrown: 'First draw one loose stroke around the crown.',
       noTrunk: 'Now draw a stroke up the trunk, then it can grow.',
       noFront: sheetsText.noFront,
-      noSense: 'A stroke cannot be used: mend it, then the tree can grow.',
+      badStroke: 'A stroke cannot be used: mend it, then the tree can grow.',
       ready: 'Ready to grow bark, twigs and leaves.',
       asking: 'Asking for the tree',
-      bringing: 'Bringing the tree',
+      loading: 'Bringing the tree',
       strokesChanged: 'The strokes have changed since this tree was grown.',
       settingsChanged: 'The settings have changed since this tree was grown.',
       filesChanged: 'Grow makes the files that you chose; the tree stays the same.',
@@ -73,8 +73,10 @@ export const treeText = {
       group: 'Tree',
       oneOf: (number: number, count: number) => `Tree ${number} of ${count}`,
     },
-    live: ['Live', ' skeleton'],
-    grown: ['Grown', ' tree'],
+    showing: {
+      live: ['Live', ' skeleton'],
+      model: ['Grown', ' tree'],
+    },
     absent: 'This browser shows no 3D (WebGL is off). All else works, downloads too.',
     lost: 'The 3D view was lost and is coming back.',
     unreadable: 'The tree cannot be shown here. Its download is whole; or grow it again.',
