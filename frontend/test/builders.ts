@@ -1,6 +1,6 @@
 import type { Grown, Model, SketchTraceAnswer, TraceAnswer } from '../src/api/types'
-import type { Photo } from '../src/state'
-import type { Line } from '../src/strokes'
+import type { PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
+import { type Line, NO_STROKES } from '../src/strokes'
 
 /** The beginning of a PNG: as much of one as the page itself looks at. */
 export const PNG = new Uint8Array([137, 80, 78, 71, 13, 10, 26, 10])
@@ -20,8 +20,24 @@ export const LIMB: Line = [
   [70, 30],
 ]
 
-export function photo(changes: Partial<Photo> = {}): Photo {
+export function photo(changes: Partial<PhotoSheet> = {}): PhotoSheet {
   return { id: 'pho_1', width: 100, height: 100, file: new Blob(['a photo']), url: 'blob:photo', ...changes }
+}
+
+/** A photo that is open, alone or with the sheet of its left side. */
+export function photoSheets(front = photo(), side: Sheet | null = null): Sheets {
+  return { source: 'photo', front, side }
+}
+
+/** Paper that is open. */
+export function sketchSheets(front: Sheet, side: Sheet | null = null): Sheets {
+  return { source: 'sketch', front, side }
+}
+
+/** A model that is shown. */
+export function shownModel(info: Partial<Model> = {}, changes: Partial<ShownModel> = {}): ShownModel {
+  const made = { strokes: NO_STROKES, leaf: null, fruit: null, variant: 1, growth: null, glb: null }
+  return { info: model(info), ...made, ...changes }
 }
 
 export function answer(grown: Grown | null = null): TraceAnswer {

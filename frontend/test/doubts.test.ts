@@ -2,17 +2,17 @@ import { expect, test } from 'vitest'
 import type { StrokeWarning } from '../src/api/types'
 import { doubtIn, remarksOn } from '../src/doubts'
 import { begin } from '../src/history'
-import { sightOf } from '../src/sketch/sheetView'
+import { viewOf } from '../src/sketch/sheetView'
 import { EMPTY, type State } from '../src/state'
 import { NO_STROKES, withStroke } from '../src/strokes'
-import { answer, CROWN, photo, TRUNK } from './builders'
+import { answer, CROWN, photoSheets, TRUNK } from './builders'
 
 const drawn = withStroke(withStroke(NO_STROKES, 'crown', CROWN), 'branch', TRUNK)
 const LEVEL = { code: 'trunk_level', stroke: 'branches/0', detail: 'it lies level' }
 const JOINED = { code: 'branch_joined', stroke: 'branches/1', detail: 'it was joined' }
 const told = (...warnings: StrokeWarning[]): State => ({
   ...EMPTY,
-  photo: photo(),
+  sheets: photoSheets(),
   history: begin(drawn),
   traced: { of: drawn, answer: { ...answer(), warnings } },
 })
@@ -31,6 +31,6 @@ test('what is mended is no doubt, and one about other strokes is gone', () => {
 })
 
 test('the stroke in doubt is marked on its sheet', () => {
-  expect(sightOf(told(LEVEL), 'front').fault).toEqual({ kind: 'branch', index: 0 })
-  expect(sightOf(told(JOINED), 'front').fault).toBeNull()
+  expect(viewOf(told(LEVEL), 'front').fault).toEqual({ kind: 'branch', index: 0 })
+  expect(viewOf(told(JOINED), 'front').fault).toBeNull()
 })

@@ -3,7 +3,7 @@ import { begin } from '../src/history'
 import { brushWidth, commonLevels, fittedTo, isDrawn, isPaper, levelsOf, paper, strayLevels } from '../src/sheets'
 import { EMPTY, type State } from '../src/state'
 import { type Line, NO_STROKES, type Strokes, withSheet, withStroke } from '../src/strokes'
-import { photo } from './builders'
+import { photo, photoSheets, sketchSheets } from './builders'
 
 const up = (root: number, top: number): Line => [
   [450, root],
@@ -13,7 +13,7 @@ const trunk = (root: number, top: number) => withStroke(NO_STROKES, 'branch', up
 const both = (front: Strokes, side: Strokes) => withSheet(front, 'side', side)
 const state = (present: Strokes, changes: Partial<State> = {}): State => ({
   ...EMPTY,
-  ...{ source: 'sketch', photo: paper(), side: paper(), history: begin(present) },
+  ...{ sheets: sketchSheets(paper(), paper()), history: begin(present) },
   ...changes,
 })
 
@@ -22,10 +22,10 @@ test('paper is upright, and as high as the sheet that it lies beside', () => {
   expect(paper(600)).toMatchObject({ width: 450, height: 600 })
 })
 
-test('only a photo whose tree is traced is no paper', () => {
-  expect(isPaper({ source: 'photo' }, 'front')).toBe(false)
-  expect(isPaper({ source: 'photo' }, 'side')).toBe(true)
-  expect(isPaper({ source: 'sketch' }, 'front')).toBe(true)
+test('every sheet is paper but the photo whose tree is traced', () => {
+  expect(isPaper({ sheets: photoSheets() }, 'front')).toBe(false)
+  expect(isPaper({ sheets: photoSheets() }, 'side')).toBe(true)
+  expect(isPaper({ sheets: sketchSheets(paper()) }, 'front')).toBe(true)
 })
 
 test('a tree stands where its trunk does and ends at its topmost stroke, whichever way the trunk was drawn', () => {
@@ -37,10 +37,10 @@ test('a tree stands where its trunk does and ends at its topmost stroke, whichev
 
 test('the lines run through both sheets at one height: where a tree is expected, then where the front’s is', () => {
   expect(commonLevels(state(NO_STROKES), 'side')).toEqual({ root: 1104, top: 96 })
-  const drawn = state(trunk(1000, 200), { side: paper(600) })
+  const drawn = state(trunk(1000, 200), { sheets: sketchSheets(paper(), paper(600)) })
   expect(commonLevels(drawn, 'front')).toEqual({ root: 1000, top: 200 })
   expect(commonLevels(drawn, 'side')).toEqual({ root: 500, top: 100 })
-  expect(commonLevels({ ...drawn, side: null }, 'side')).toBeNull()
+  expect(commonLevels({ ...drawn, sheets: sketchSheets(paper()) }, 'side')).toBeNull()
 })
 
 test('a side of another height shows its own lines, one of the same height none', () => {

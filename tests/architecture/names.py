@@ -139,7 +139,13 @@ def _python_files() -> list[Path]:
 
 def _other_files() -> list[Path]:
     page = ROOT / "frontend"
-    return [*PACKAGE.rglob("*.c"), *page.glob("*.ts"), *(page / "src").rglob("*.ts"), page / "index.html"]
+    return [
+        *PACKAGE.rglob("*.c"),
+        *page.glob("*.ts"),
+        *(page / "src").rglob("*.ts"),
+        *(page / "src").rglob("*.tsx"),
+        page / "index.html",
+    ]
 
 
 def _without_comments(path: Path) -> str:

@@ -25,7 +25,7 @@ ALLOWED = {
     "leaf_03_mirrored": "an example of a glTF node's name",
 }
 """What is named though no source has it, and why."""
-SOURCE_ENDINGS = ("py", "pyi", "c", "ts", "md", "toml", "txt", "yml")
+SOURCE_ENDINGS = ("py", "pyi", "c", "ts", "tsx", "md", "toml", "txt", "yml")
 FENCED = re.compile(r"^```.*?^```", re.M | re.S)
 TOKEN = re.compile(r"`([^`\n]+)`")
 PATH = re.compile(rf"[\w.-]+(/[\w.-]+)+/?|[\w.-]+/|[\w-][\w.-]*\.(?:{'|'.join(SOURCE_ENDINGS)})")

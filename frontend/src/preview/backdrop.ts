@@ -110,7 +110,7 @@ export class Backdrop {
 }
 
 /** A round of meadow under the tree that takes its shadow and fades into the floor like the edge of a wash. */
-export class Sheet {
+export class Meadow {
   readonly mesh: Mesh
   private readonly uniforms = {
     meadow: { value: new Color() },

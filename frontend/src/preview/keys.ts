@@ -1,4 +1,4 @@
-import type { View } from './preview'
+import type { View } from './status'
 
 /** What the keys of the canvas move. */
 export interface Keyed {

@@ -2,36 +2,12 @@ import './preview.css'
 import type { Grown } from '../api/types'
 import { press } from './keys'
 import { probeWebgl } from './software'
+import { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
 import { Viewer } from './viewer'
 
-/** The views that have a name; the photo's own is parallel and lies exactly over the photo. */
-export type View = 'photo' | 'front' | 'side' | 'back' | 'top'
+export { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
 
-/** What the preview shows and what it draws with. */
-export interface PreviewStatus {
-  webgl: 'ok' | 'software' | 'lost' | 'absent'
-  view: View | 'free'
-  shows: 'empty' | 'live' | 'growing' | 'model'
-  leaves: boolean
-  triangles: number
-  /** What winds there are; none where the file has none. */
-  winds: readonly string[]
-  /** The one that blows. */
-  wind: string | null
-}
-
-/** Nothing is shown yet. */
-export const NOTHING_SHOWN: PreviewStatus = {
-  webgl: 'ok',
-  view: 'photo',
-  shows: 'empty',
-  leaves: true,
-  triangles: 0,
-  winds: [],
-  wind: null,
-}
-
-/** How the preview speaks and to whom. `software`: what is known of the WebGL; absent, it is found out. */
+/** The preview's labels, and who is told its status. `software`: whether WebGL is drawn by the processor; found out where absent. */
 export interface PreviewOptions {
   labels: { wipe: string; canvas: string }
   reducedMotion: () => boolean

@@ -1,5 +1,5 @@
 import { DirectionalLight, HemisphereLight, NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three'
-import { Backdrop, DARK, LIGHT, type Scheme, Sheet } from './backdrop'
+import { Backdrop, DARK, LIGHT, Meadow, type Scheme } from './backdrop'
 import { type Box, horizonOf, VIEW_SLOPE, type Viewport } from './camera'
 import { type Content, groundUnder, shadowOf } from './content'
 import type { Rig } from './rig'
@@ -19,7 +19,7 @@ export class Stage {
   private readonly sun = new DirectionalLight()
   private readonly sky = new HemisphereLight()
   private readonly backdrop = new Backdrop()
-  private readonly ground = new Sheet()
+  private readonly ground = new Meadow()
   private content: Content | null = null
 
   constructor(

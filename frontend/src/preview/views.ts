@@ -1,6 +1,6 @@
 import { type Pose, photoPose, treePose, type Viewport } from './camera'
 import type { Content } from './content'
-import type { View } from './preview'
+import type { View } from './status'
 
 /** Azimuth and polar angle, in radians. */
 const DIRECTIONS: Record<Exclude<View, 'photo'>, [number, number]> = {

@@ -2,9 +2,9 @@ import 'fake-indexeddb/auto'
 import { IDBFactory } from 'fake-indexeddb'
 import { beforeEach, expect, test, vi } from 'vitest'
 import { Store } from '../../src/state'
-import { Keeper } from '../../src/studio/draftStore'
-import { Sketchbook } from '../../src/studio/strokeActions'
-import { CROWN, photo, TRUNK } from '../builders'
+import { DraftStore } from '../../src/studio/draftStore'
+import { StrokeActions } from '../../src/studio/strokeActions'
+import { CROWN, photo, photoSheets, TRUNK } from '../builders'
 
 beforeEach(() => {
   globalThis.indexedDB = new IDBFactory()
@@ -12,83 +12,86 @@ beforeEach(() => {
 
 function begin() {
   const store = new Store()
-  const keeper = new Keeper(store)
-  keeper.begin(null)
-  return { store, keeper, sketchbook: new Sketchbook(store) }
+  const drafts = new DraftStore(store)
+  drafts.begin(null)
+  return { store, drafts, strokes: new StrokeActions(store) }
 }
 
 /** A drawing of a crown and a trunk, as kept. */
 async function kept() {
-  const { store, keeper, sketchbook } = begin()
-  store.set({ photo: photo(), name: 'Oak' })
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
-  await vi.waitFor(async () => expect((await keeper.find(keeper.id!))?.draft.history.past).toHaveLength(2))
-  return { store, keeper, sketchbook }
+  const { store, drafts, strokes } = begin()
+  store.set({ sheets: photoSheets(), name: 'Oak' })
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
+  await vi.waitFor(async () => expect((await drafts.find(drafts.id!))?.draft.history.past).toHaveLength(2))
+  return { store, drafts, strokes }
 }
 
 test('a drawing is kept with its photo and its undo history', async () => {
-  const { store, keeper } = await kept()
-  const found = (await new Keeper(new Store()).find(keeper.id!))!
+  const { store, drafts } = await kept()
+  const found = (await new DraftStore(new Store()).find(drafts.id!))!
   expect(found.draft).toMatchObject({ name: 'Oak', history: store.state.history, photo: { id: 'pho_1' } })
   expect(await found.photo?.text()).toBe('a photo')
 })
 
 test('what is deleted or undone is kept, too', async () => {
-  const { keeper, sketchbook } = await kept()
-  sketchbook.clear()
-  sketchbook.undo()
-  sketchbook.undo()
+  const { drafts, strokes } = await kept()
+  strokes.clear()
+  strokes.undo()
+  strokes.undo()
   await vi.waitFor(async () => {
-    const { draft } = (await keeper.find(keeper.id!))!
+    const { draft } = (await drafts.find(drafts.id!))!
     expect([draft.history.present.branches.length, draft.history.future.length]).toEqual([0, 2])
   })
 })
 
 test('the latest drawing is listed first, and those without a stroke are not', async () => {
-  const { store, keeper, sketchbook } = await kept()
-  const first = keeper.id
-  keeper.begin(null)
-  store.set({ photo: photo({ id: 'pho_2', file: new Blob(['another']) }), history: new Store().state.history })
-  await vi.waitFor(async () => expect(await keeper.find(keeper.id!)).not.toBeNull())
-  expect((await keeper.list()).map(draft => draft.id)).toEqual([first])
-  sketchbook.draw('crown', CROWN)
-  await vi.waitFor(async () => expect((await keeper.list()).map(draft => draft.id)).toEqual([keeper.id, first]))
+  const { store, drafts, strokes } = await kept()
+  const first = drafts.id
+  drafts.begin(null)
+  store.set({
+    sheets: photoSheets(photo({ id: 'pho_2', file: new Blob(['another']) })),
+    history: new Store().state.history,
+  })
+  await vi.waitFor(async () => expect(await drafts.find(drafts.id!)).not.toBeNull())
+  expect((await drafts.list()).map(draft => draft.id)).toEqual([first])
+  strokes.draw('crown', CROWN)
+  await vi.waitFor(async () => expect((await drafts.list()).map(draft => draft.id)).toEqual([drafts.id, first]))
 })
 
 test('no more than a dozen are kept', async () => {
-  const { store, keeper } = await kept()
-  const first = keeper.id!
+  const { store, drafts } = await kept()
+  const first = drafts.id!
   for (let i = 0; i < 13; i++) {
-    keeper.begin(null)
-    store.set({ photo: photo({ file: new Blob([`photo ${i}`]) }) })
-    await vi.waitFor(async () => expect(await keeper.find(keeper.id!)).not.toBeNull())
+    drafts.begin(null)
+    store.set({ sheets: photoSheets(photo({ file: new Blob([`photo ${i}`]) })) })
+    await vi.waitFor(async () => expect(await drafts.find(drafts.id!)).not.toBeNull())
   }
-  expect(await keeper.list()).toHaveLength(12)
-  expect(await keeper.find(first)).toBeNull()
+  expect(await drafts.list()).toHaveLength(12)
+  expect(await drafts.find(first)).toBeNull()
 })
 
 test('a deleted drawing is gone', async () => {
-  const { keeper } = await kept()
-  await keeper.remove(keeper.id!)
-  expect(await keeper.find(keeper.id!)).toBeNull()
+  const { drafts } = await kept()
+  await drafts.remove(drafts.id!)
+  expect(await drafts.find(drafts.id!)).toBeNull()
 })
 
 test('a browser that keeps nothing is noticed', async () => {
   const store = new Store()
-  new Keeper(store, Promise.reject(new DOMException('private', 'InvalidStateError')))
+  new DraftStore(store, Promise.reject(new DOMException('private', 'InvalidStateError')))
   await vi.waitFor(() => expect(store.state.kept).toBe(false))
 })
 
 test('a leaf of one’s own is kept with the drawing, goes with it, and comes back with it', async () => {
-  const { store, keeper } = await kept()
-  const id = keeper.id!
+  const { store, drafts } = await kept()
+  const id = drafts.id!
   store.set({ leaf: new Blob(['leaf']) })
-  await vi.waitFor(async () => expect(await (await keeper.find(id))!.leaf?.text()).toBe('leaf'))
-  const found = (await keeper.find(id))!
-  await keeper.remove(id)
-  await keeper.restore(found)
-  expect(await (await keeper.find(id))!.leaf?.text()).toBe('leaf')
+  await vi.waitFor(async () => expect(await (await drafts.find(id))!.leaf?.text()).toBe('leaf'))
+  const found = (await drafts.find(id))!
+  await drafts.remove(id)
+  await drafts.restore(found)
+  expect(await (await drafts.find(id))!.leaf?.text()).toBe('leaf')
   store.set({ leaf: null })
-  await vi.waitFor(async () => expect((await keeper.find(id))!.leaf).toBeNull())
+  await vi.waitFor(async () => expect((await drafts.find(id))!.leaf).toBeNull())
 })

@@ -2,7 +2,7 @@ import { afterEach, expect, test, vi } from 'vitest'
 import { Client } from '../../src/api/client'
 import { Store } from '../../src/state'
 import { Gallery } from '../../src/studio/gallery'
-import { model } from '../builders'
+import { model, shownModel } from '../builders'
 import { type Call, problem, service } from '../service'
 
 afterEach(() => vi.unstubAllGlobals())
@@ -44,29 +44,33 @@ test('a page that cannot be had is a sentence in the gallery, and asked for agai
 test('the tree that is looked at goes when it is deleted, the strokes stay, and undo brings it back', async () => {
   service(serve)
   const { store, grower, gallery } = begin()
-  const tree = new ArrayBuffer(4)
+  const glb = new ArrayBuffer(4)
   const drawn = store.strokes
-  store.set({ model: model({ status: 'succeeded' }), modelOf: drawn, tree, shows: 'model' })
+  store.set({ model: shownModel({ status: 'succeeded' }, { strokes: drawn, glb }), shows: 'model' })
   await gallery.remove('mdl_1')
-  expect([store.state.model, store.state.tree, store.strokes]).toEqual([null, null, drawn])
+  expect([store.state.model, store.strokes]).toEqual([null, drawn])
   expect(grower.leave).toHaveBeenCalledOnce()
   await gallery.restore('mdl_1')
-  expect([store.state.model?.id, store.state.tree, store.state.modelOf]).toEqual(['mdl_1', tree, drawn])
+  expect([store.state.model?.info.id, store.state.model?.glb, store.state.model?.strokes]).toEqual([
+    'mdl_1',
+    glb,
+    drawn,
+  ])
 })
 
 test('another tree than the one looked at goes without a trace', async () => {
   service(serve)
   const { store, grower, gallery } = begin()
-  store.set({ model: model({ id: 'mdl_9' }) })
+  store.set({ model: shownModel({ id: 'mdl_9' }) })
   await gallery.remove('mdl_1')
-  expect(store.state.model?.id).toBe('mdl_9')
+  expect(store.state.model?.info.id).toBe('mdl_9')
   expect(grower.leave).not.toHaveBeenCalled()
 })
 
 test('the name of the tree that is looked at is that of the drawing too', async () => {
   service(serve)
   const { store, gallery } = begin()
-  store.set({ model: model({ status: 'succeeded' }), name: 'Oak' })
+  store.set({ model: shownModel({ status: 'succeeded' }), name: 'Oak' })
   await gallery.rename('mdl_1', 'Old oak')
-  expect([store.state.name, store.state.model?.name]).toEqual(['Old oak', 'Old oak'])
+  expect([store.state.name, store.state.model?.info.name]).toEqual(['Old oak', 'Old oak'])
 })

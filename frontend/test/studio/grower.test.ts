@@ -2,8 +2,8 @@ import { afterEach, beforeEach, expect, test, vi } from 'vitest'
 import { Client } from '../../src/api/client'
 import { Store } from '../../src/state'
 import { Grower } from '../../src/studio/grower'
-import { Sketchbook } from '../../src/studio/strokeActions'
-import { CROWN, grown, model, photo, TRUNK } from '../builders'
+import { StrokeActions } from '../../src/studio/strokeActions'
+import { CROWN, grown, model, photoSheets, TRUNK } from '../builders'
 import { type Call, Events, problem, service, settle } from '../service'
 
 const GLB = new Uint8Array([103, 108, 84, 70])
@@ -19,11 +19,11 @@ afterEach(() => {
 
 function begin() {
   const store = new Store()
-  store.set({ photo: photo(), name: 'Oak', seed: 3 })
-  const sketchbook = new Sketchbook(store)
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
-  return { store, sketchbook, grower: new Grower(store, new Client()) }
+  store.set({ sheets: photoSheets(), name: 'Oak', seed: 3 })
+  const strokes = new StrokeActions(store)
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
+  return { store, strokes, grower: new Grower(store, new Client()) }
 }
 
 function serve({ method, path }: Call): Response {
@@ -39,13 +39,13 @@ test('a tree is asked for with what was drawn, followed, and brought', async () 
   const { store, grower } = begin()
   await grower.grow()
   expect(calls[0]!.body).toMatchObject({ photo: 'pho_1', name: 'Oak', seed: 3, settings: { height: 10 } })
-  expect([store.state.model?.status, store.state.modelOf]).toEqual(['queued', store.strokes])
+  expect([store.state.model?.info.status, store.state.model?.strokes]).toEqual(['queued', store.strokes])
   Events.last.tell('progress', model({ status: 'running', progress: 0.4 }))
   Events.last.tell('preview', grown(5))
-  expect([store.state.model?.progress, store.state.growth]).toEqual([0.4, grown(5)])
+  expect([store.state.model?.info.progress, store.state.model?.growth]).toEqual([0.4, grown(5)])
   Events.last.tell('succeeded', finished())
   await settle()
-  expect(new Uint8Array(store.state.tree!)).toEqual(GLB)
+  expect(new Uint8Array(store.state.model!.glb!)).toEqual(GLB)
   expect(Events.last.readyState).toBe(Events.CLOSED)
 })
 
@@ -60,8 +60,8 @@ test('a second press while a tree grows asks for nothing', async () => {
 
 test('without a trunk nothing is asked for', async () => {
   const calls = service(serve)
-  const { sketchbook, grower } = begin()
-  sketchbook.undo()
+  const { strokes, grower } = begin()
+  strokes.undo()
   await grower.grow()
   expect(calls).toHaveLength(0)
 })
@@ -90,7 +90,7 @@ test('a request that got lost is sent again under the same key', async () => {
   await asked
   expect(new Set(keys).size).toBe(1)
   expect(keys).toHaveLength(3)
-  expect(store.state.model?.id).toBe('mdl_1')
+  expect(store.state.model?.info.id).toBe('mdl_1')
 })
 
 test('a refusal is said, and nothing else changes', async () => {
@@ -137,7 +137,7 @@ test('a canceled tree is no longer growing', async () => {
   await grower.grow()
   await grower.cancel()
   expect(calls.at(-1)!.path).toBe('/v1/models/mdl_1/cancel')
-  expect([store.state.model?.status, grower.isGrowing]).toEqual(['canceled', false])
+  expect([store.state.model?.info.status, grower.isGrowing]).toEqual(['canceled', false])
 })
 
 test('another model takes the followed one’s place, and its tree is not mistaken', async () => {
@@ -149,7 +149,7 @@ test('another model takes the followed one’s place, and its tree is not mistak
   grower.show(model({ id: 'mdl_2' }), store.strokes, { leaf: null, fruit: null })
   await settle()
   expect(first.readyState).toBe(Events.CLOSED)
-  expect([store.state.model?.id, store.state.tree]).toEqual(['mdl_2', null])
+  expect([store.state.model?.info.id, store.state.model?.glb]).toEqual(['mdl_2', null])
 })
 
 test('another tree of the same strokes has another seed', async () => {
@@ -168,7 +168,7 @@ test('a leaf of one’s own is sent with the wish, whole', async () => {
   store.set({ leaf })
   await grower.grow()
   expect(Buffer.from(calls[0]!.body.leaf, 'base64').equals(Buffer.from(bytes))).toBe(true)
-  expect(store.state.modelLeaf).toBe(leaf)
+  expect(store.state.model?.leaf).toBe(leaf)
   Events.last.tell('canceled', model({ status: 'canceled' }))
   store.set({ leaf: null })
   await grower.grow()
@@ -180,13 +180,13 @@ test('another of the model’s trees is brought once, and the last choice stands
   const { store, grower } = begin()
   const files = { 'tree.glb': '/tree.glb', 'tree.v2.glb': '/tree.v2.glb' }
   grower.show(model({ status: 'succeeded', files }), store.strokes, { leaf: null, fruit: null })
-  const shown = () => new TextDecoder().decode(store.state.tree!)
+  const shown = () => new TextDecoder().decode(store.state.model!.glb!)
   await Promise.all([grower.choose(2), grower.choose(1), grower.choose(2)])
-  expect([store.state.variant, shown()]).toEqual([2, '/tree.v2.glb'])
+  expect([store.state.model?.variant, shown()]).toEqual([2, '/tree.v2.glb'])
   const asked = calls.length
   await grower.choose(1)
   await grower.choose(3)
-  expect([store.state.variant, shown(), calls.length]).toEqual([1, '/tree.glb', asked])
+  expect([store.state.model?.variant, shown(), calls.length]).toEqual([1, '/tree.glb', asked])
   grower.show(model({ id: 'mdl_2' }), store.strokes, { leaf: null, fruit: null })
-  expect([store.state.variant, store.state.tree]).toEqual([1, null])
+  expect([store.state.model?.variant, store.state.model?.glb]).toEqual([1, null])
 })

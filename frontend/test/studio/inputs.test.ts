@@ -4,36 +4,36 @@ import { begin } from '../../src/history'
 import { paper } from '../../src/sheets'
 import { EMPTY, type State } from '../../src/state'
 import { NO_STROKES, withSheet, withStroke } from '../../src/strokes'
-import { canTrace, evidenceOf, traced } from '../../src/studio/inputs'
-import { answer, CROWN, LIMB, photo, sketchAnswer, TRUNK } from '../builders'
+import { canTrace, inputsOf, traced } from '../../src/studio/inputs'
+import { answer, CROWN, LIMB, photo, photoSheets, sketchAnswer, sketchSheets, TRUNK } from '../builders'
 import { service } from '../service'
 
 const trunk = withStroke(NO_STROKES, 'branch', TRUNK)
 const crowned = { ...trunk, crown: CROWN }
 const both = withSheet(trunk, 'side', withStroke(NO_STROKES, 'branch', LIMB, 7))
-const sketched: State = { ...EMPTY, source: 'sketch', photo: paper(), side: paper(600), history: begin(both) }
-const overPhoto: State = { ...EMPTY, photo: photo(), history: begin(crowned) }
+const sketched: State = { ...EMPTY, sheets: sketchSheets(paper(), paper(600)), history: begin(both) }
+const overPhoto: State = { ...EMPTY, sheets: photoSheets(), history: begin(crowned) }
 const SIDE = { canvas: [450, 600], branches: [{ points: LIMB, width: 7 }] }
 
 test('two sketches make a tree, each with the size of its paper; a photo under the front goes with them', () => {
   const front = { canvas: [900, 1200], branches: [{ points: TRUNK }] }
-  expect(evidenceOf(sketched)).toEqual({ sketches: { front, side: SIDE } })
-  expect(evidenceOf({ ...sketched, photo: photo() })).toMatchObject({ photo: 'pho_1' })
+  expect(inputsOf(sketched)).toEqual({ sketches: { front, side: SIDE } })
+  expect(inputsOf({ ...sketched, sheets: sketchSheets(photo(), paper(600)) })).toMatchObject({ photo: 'pho_1' })
 })
 
 test('a front alone is enough, a side alone is not', () => {
-  expect(evidenceOf({ ...sketched, history: begin(trunk) })?.sketches).not.toHaveProperty('side')
+  expect(inputsOf({ ...sketched, history: begin(trunk) })?.sketches).not.toHaveProperty('side')
   const sideOnly = withSheet(NO_STROKES, 'side', trunk)
-  expect(evidenceOf({ ...sketched, history: begin(sideOnly) })).toBeNull()
+  expect(inputsOf({ ...sketched, history: begin(sideOnly) })).toBeNull()
 })
 
 test('a side goes with the strokes over a photo while its sheet is open', () => {
-  const mixed = { ...overPhoto, side: paper(600), history: begin(withSheet(crowned, 'side', both)) }
+  const sheets = photoSheets(photo(), paper(600))
   const drawn = withSheet(crowned, 'side', withStroke(NO_STROKES, 'branch', LIMB, 7))
-  const evidence = evidenceOf({ ...mixed, history: begin(drawn) })
-  expect(evidence).toEqual({ photo: 'pho_1', strokes: crowned, sketches: { side: SIDE } })
-  expect(evidenceOf(overPhoto)).toEqual({ photo: 'pho_1', strokes: crowned })
-  expect(evidenceOf({ ...mixed, side: null })).toEqual({ photo: 'pho_1', strokes: crowned })
+  const history = begin(drawn)
+  expect(inputsOf({ sheets, history })).toEqual({ photo: 'pho_1', strokes: crowned, sketches: { side: SIDE } })
+  expect(inputsOf(overPhoto)).toEqual({ photo: 'pho_1', strokes: crowned })
+  expect(inputsOf({ sheets: photoSheets(), history })).toEqual({ photo: 'pho_1', strokes: crowned })
 })
 
 test('a photo is traced from its crown on, paper from its first branch on', () => {

@@ -40,8 +40,13 @@ test('a photo is opened under its name, upright as the browser shows it', async 
   service(serve)
   const { store, opener } = new Studio()
   await opener.openFile(jpeg())
-  expect(store.state).toMatchObject({ name: 'Old oak', opening: false, tool: 'crown', photo: { id: 'pho_1' } })
-  expect(store.state.photo?.url).toMatch(/^blob:/)
+  expect(store.state).toMatchObject({
+    name: 'Old oak',
+    opening: false,
+    tool: 'crown',
+    sheets: { front: { id: 'pho_1' } },
+  })
+  expect(store.state.sheets?.front?.url).toMatch(/^blob:/)
 })
 
 test('a picture that the browser sees otherwise is shown as the service has it', async () => {
@@ -49,7 +54,7 @@ test('a picture that the browser sees otherwise is shown as the service has it',
   vi.stubGlobal('createImageBitmap', async () => ({ width: 60, height: 80, close() {} }))
   const { store, opener } = new Studio()
   await opener.openFile(jpeg())
-  expect(store.state.photo?.url).toBe(PHOTO.image)
+  expect(store.state.sheets?.front?.url).toBe(PHOTO.image)
 })
 
 test.each(['oak.HEIC', 'oak.tif', 'oak.avif'])(
@@ -58,8 +63,8 @@ test.each(['oak.HEIC', 'oak.tif', 'oak.avif'])(
     service(serve)
     const { store, opener } = new Studio()
     await opener.openFile(new File(['a photo'], name))
-    expect(store.state.photo?.url).toBe(PHOTO.image)
-    expect(store.state.photo?.file?.type).toMatch(/^image\/(heic|tiff|avif)$/)
+    expect(store.state.sheets?.front?.url).toBe(PHOTO.image)
+    expect(store.state.sheets?.front?.file?.type).toMatch(/^image\/(heic|tiff|avif)$/)
   },
 )
 
@@ -69,7 +74,7 @@ test('what was mended in a photo is said as it opens', async () => {
   service(call => (call.path === '/v1/photos' ? Response.json({ ...PHOTO, warnings }, { status: 201 }) : serve(call)))
   const { store, opener } = new Studio()
   await opener.openFile(jpeg())
-  expect(store.state.remark).toEqual({
+  expect(store.state.corrections).toEqual({
     of: store.strokes,
     text: "The photo's file is cut short, but nothing of its picture is missing; copy it anew.",
   })
@@ -78,14 +83,14 @@ test('what was mended in a photo is said as it opens', async () => {
 test('a file that is no photo leaves the drawing as it was', async () => {
   let good = true
   service(call => (good ? serve(call) : problem(422, 'photo_unreadable', 'photo: it is no picture; save it as JPEG')))
-  const { store, opener, sketchbook } = new Studio()
+  const { store, opener, strokes } = new Studio()
   await opener.openFile(jpeg())
-  sketchbook.draw('crown', CROWN)
+  strokes.draw('crown', CROWN)
   const before = store.state
   good = false
   await opener.openFile(new File(['text'], 'notes.txt'))
   expect(store.state.faults.photo?.text).toBe('It is no picture; save it as JPEG.')
-  expect([store.state.photo, store.strokes]).toEqual([before.photo, before.history.present])
+  expect([store.state.sheets?.front, store.strokes]).toEqual([before.sheets?.front, before.history.present])
 })
 
 test('a file that is too large is not even sent', async () => {
@@ -111,7 +116,7 @@ test('an example is opened with its strokes and grown', async () => {
   const calls = service(call => (call.path.endsWith('x.json') ? Response.json(toWire(STROKES)) : serve(call)))
   const { store, opener } = new Studio()
   await opener.openExample({ name: 'oak_02', photo: '/page/x.jpg', strokes: '/page/x.json' })
-  await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
+  await vi.waitFor(() => expect(store.state.model?.info.status).toBe('queued'))
   expect(store.state.name).toBe('Young oak')
   expect(calls.find(call => call.path === '/v1/models')!.body.strokes).toEqual(toWire(STROKES))
 })
@@ -120,8 +125,13 @@ test('a model is opened with the strokes, settings and seed that it was made of'
   service(serve)
   const { store, opener } = new Studio()
   await opener.openModel('mdl_1')
-  expect(store.state).toMatchObject({ name: 'Oak', seed: 5, settings: { height: 14 }, model: { id: 'mdl_1' } })
-  expect(store.state.modelOf).toBe(store.strokes)
+  expect(store.state).toMatchObject({
+    name: 'Oak',
+    seed: 5,
+    settings: { height: 14 },
+    model: { info: { id: 'mdl_1' } },
+  })
+  expect(store.state.model?.strokes).toBe(store.strokes)
 })
 
 test('a model whose photo was deleted brings its own copy', async () => {
@@ -131,7 +141,7 @@ test('a model whose photo was deleted brings its own copy', async () => {
   const { store, opener } = new Studio()
   await opener.openModel('mdl_1')
   expect(calls.some(({ method, path }) => method === 'POST' && path === '/v1/photos')).toBe(true)
-  expect(await store.state.photo!.file?.text()).toBe('a photo')
+  expect(await store.state.sheets?.front.file?.text()).toBe('a photo')
 })
 
 test('a model that is gone is said', async () => {
@@ -145,40 +155,40 @@ test('a kept drawing comes back with its history and its model', async () => {
   service(serve)
   const before = new Studio()
   await before.opener.openFile(jpeg())
-  before.sketchbook.draw('crown', CROWN)
-  before.sketchbook.draw('branch', TRUNK)
+  before.strokes.draw('crown', CROWN)
+  before.strokes.draw('branch', TRUNK)
   await before.grower.grow()
-  const id = before.keeper.id!
-  await vi.waitFor(async () => expect((await before.keeper.find(id))?.draft.model).toBe('mdl_1'))
+  const id = before.drafts.id!
+  await vi.waitFor(async () => expect((await before.drafts.find(id))?.draft.model).toBe('mdl_1'))
   const { store, opener } = new Studio()
   await opener.openDraft(id)
   expect(store.state.history).toEqual(before.store.state.history)
-  expect(store.state).toMatchObject({ name: 'Old oak', model: { id: 'mdl_1' } })
-  expect(store.state.modelOf).toEqual(store.strokes)
+  expect(store.state).toMatchObject({ name: 'Old oak', model: { info: { id: 'mdl_1' } } })
+  expect(store.state.model?.strokes).toEqual(store.strokes)
 })
 
 test('closing leaves nothing open and keeps the drawing', async () => {
   service(serve)
-  const { store, opener, keeper, sketchbook } = new Studio()
+  const { store, opener, drafts, strokes } = new Studio()
   await opener.openFile(jpeg())
-  sketchbook.draw('crown', CROWN)
-  const id = keeper.id!
-  await vi.waitFor(async () => expect((await keeper.find(id))?.draft.history.past).toHaveLength(1))
+  strokes.draw('crown', CROWN)
+  const id = drafts.id!
+  await vi.waitFor(async () => expect((await drafts.find(id))?.draft.history.past).toHaveLength(1))
   opener.close()
-  expect([store.state.photo, store.state.model]).toEqual([null, null])
-  expect((await keeper.list()).map(draft => draft.id)).toEqual([id])
+  expect([store.state.sheets, store.state.model]).toEqual([null, null])
+  expect((await drafts.list()).map(draft => draft.id)).toEqual([id])
 })
 
 test('a leaf of one’s own comes with a project, with a model and with a kept drawing', async () => {
   service(async call => (call.path === '/project' ? new Response(await made(new Blob(['a leaf']))) : serve(call)))
-  const { store, opener, keeper } = new Studio()
+  const { store, opener, drafts } = new Studio()
   await opener.openFile(new File([await made(new Blob(['mine']))], 'Maple.treestroke'))
   expect(await store.state.leaf?.text()).toBe('mine')
-  const id = keeper.id!
-  await vi.waitFor(async () => expect(await (await keeper.find(id))?.leaf?.text()).toBe('mine'))
+  const id = drafts.id!
+  await vi.waitFor(async () => expect(await (await drafts.find(id))?.leaf?.text()).toBe('mine'))
   await opener.openModel('mdl_1')
   expect(await store.state.leaf?.text()).toBe('a leaf')
-  expect(store.state.modelLeaf).toBe(store.state.leaf)
+  expect(store.state.model?.leaf).toBe(store.state.leaf)
   await opener.openDraft(id)
   expect(await store.state.leaf?.text()).toBe('mine')
 })
@@ -187,17 +197,19 @@ test('a drawing on paper is kept and comes back: both sheets, the side’s pictu
   const calls = service(serve)
   const before = new Studio()
   await before.opener.openPaper()
-  before.sketchbook.draw('branch', TRUNK)
-  before.sketchbook.draw('branch', TRUNK, 'side')
-  await before.desk.lay('side', jpeg('side.jpg', 'a guide'))
+  before.strokes.draw('branch', TRUNK)
+  before.strokes.draw('branch', TRUNK, 'side')
+  await before.sheets.addPicture('side', jpeg('side.jpg', 'a guide'))
   before.store.set({ fruit: new Blob(['a pear']) })
-  const id = before.keeper.id!
-  await vi.waitFor(async () => expect(await (await before.keeper.find(id))?.fruit?.text()).toBe('a pear'))
+  const id = before.drafts.id!
+  await vi.waitFor(async () => expect(await (await before.drafts.find(id))?.fruit?.text()).toBe('a pear'))
   const { store, opener } = new Studio()
   await opener.openDraft(id)
-  expect(store.state).toMatchObject({ source: 'sketch', photo: { id: null, width: 900, height: 1200, url: null } })
-  expect(store.state.side).toMatchObject({ width: 100, height: 100 })
-  expect(await store.state.side?.file?.text()).toBe('a guide')
+  expect(store.state).toMatchObject({
+    sheets: { source: 'sketch', front: { id: null, width: 900, height: 1200, url: null } },
+  })
+  expect(store.state.sheets?.side).toMatchObject({ width: 100, height: 100 })
+  expect(await store.state.sheets?.side?.file?.text()).toBe('a guide')
   expect(store.state.history).toEqual(before.store.state.history)
   expect(calls.some(({ path }) => path === '/v1/photos')).toBe(false)
 })
@@ -211,8 +223,12 @@ test('an example from two sides is opened on paper of its size and grown, with i
   const { store, opener } = new Studio()
   const urls = { front: '/page/f.json', side: '/page/s.json', leaf: undefined, fruit: '/page/fruit.png' }
   await opener.openSketches({ name: 'pear', ...urls, settings: { height: 8 } })
-  await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
-  expect(store.state).toMatchObject({ name: 'Pear tree', tool: 'branch', side: { width: 1200, height: 1100 } })
+  await vi.waitFor(() => expect(store.state.model?.info.status).toBe('queued'))
+  expect(store.state).toMatchObject({
+    name: 'Pear tree',
+    tool: 'branch',
+    sheets: { side: { width: 1200, height: 1100 } },
+  })
   const { body } = calls.find(call => call.path === '/v1/models')!
   expect(body).toMatchObject({
     sketches: { front: sketch, side: sketch },
@@ -224,11 +240,13 @@ test('an example from two sides is opened on paper of its size and grown, with i
 test('sketches over a photo are laid on it as large as it is', async () => {
   service(serve)
   const strokes = { ...NO_STROKES, branches: [{ points: TRUNK }] }
-  const sheets = { front: { width: 200, height: 200 } }
-  const file = await writeProject({ photo: jpeg(), strokes, sheets, settings: DEFAULT_SETTINGS, seed: 0, leaf: null })
+  const sizes = { front: { width: 200, height: 200 } }
+  const file = await writeProject({ photo: jpeg(), strokes, sizes, settings: DEFAULT_SETTINGS, seed: 0, leaf: null })
   const { store, opener } = new Studio()
   await opener.openFile(new File([file], 'Pear.treestroke'))
-  expect(store.state).toMatchObject({ source: 'sketch', photo: { id: 'pho_1', width: 100 }, side: { height: 100 } })
+  expect(store.state).toMatchObject({
+    sheets: { source: 'sketch', front: { id: 'pho_1', width: 100 }, side: { height: 100 } },
+  })
   expect(store.strokes.branches[0]?.points).toEqual(TRUNK.map(([x, y]) => [x / 2, y / 2]))
 })
 
@@ -253,8 +271,12 @@ test('a drawing that is a picture is opened as strokes on paper of its size', as
   const calls = service(reads)
   const { store, opener } = new Studio()
   await opener.openSketch(png())
-  expect(store.state).toMatchObject({ source: 'sketch', name: 'Oak', tool: 'branch', photo: { width: 100, url: null } })
-  expect(store.state.side).toMatchObject({ height: 100 })
+  expect(store.state).toMatchObject({
+    name: 'Oak',
+    tool: 'branch',
+    sheets: { source: 'sketch', front: { width: 100, url: null } },
+  })
+  expect(store.state.sheets?.side).toMatchObject({ height: 100 })
   expect(store.strokes).toMatchObject(READ)
   expect(calls.find(isReading)!.body).toEqual({ front: { picture: Buffer.from(PNG).toString('base64') }, grow: false })
 })
@@ -264,32 +286,35 @@ test('a drawing that is strokes is opened without asking', async () => {
   const { store, opener } = new Studio()
   const sketch = { canvas: [200, 300], branches: [{ points: TRUNK }] }
   await opener.openSketch(new File([JSON.stringify(sketch)], 'oak.front.json'))
-  expect(store.state.photo).toMatchObject({ width: 200, height: 300 })
+  expect(store.state.sheets?.front).toMatchObject({ width: 200, height: 300 })
   expect(calls.some(isReading)).toBe(false)
 })
 
 test('a drawing takes the place of a sheet’s strokes, which an undo brings back', async () => {
   service(reads)
-  const { store, opener, sketchbook } = new Studio()
+  const { store, opener, strokes } = new Studio()
   await opener.openPaper()
-  sketchbook.draw('branch', TRUNK)
-  sketchbook.draw('branch', LIMB, 'side')
+  strokes.draw('branch', TRUNK)
+  strokes.draw('branch', LIMB, 'side')
   await opener.openOn('side', png())
   expect(store.strokes.side).toEqual(READ)
-  expect(store.state).toMatchObject({ sheet: 'side', side: { width: 100, height: 100 }, photo: { width: 900 } })
+  expect(store.state).toMatchObject({
+    active: 'side',
+    sheets: { side: { width: 100, height: 100 }, front: { width: 900 } },
+  })
   expect(store.strokes.branches).toEqual([{ points: TRUNK }])
-  sketchbook.undo()
+  strokes.undo()
   expect(store.strokes.side?.branches).toHaveLength(1)
 })
 
 test('a drawing on a sheet with a photo is fitted to the photo', async () => {
   vi.stubGlobal('createImageBitmap', async () => ({ width: 400, height: 200, close() {} }))
   service(reads)
-  const { store, opener, desk } = new Studio()
+  const { store, opener, sheets } = new Studio()
   await opener.openPaper()
-  await desk.lay('side', jpeg())
+  await sheets.addPicture('side', jpeg())
   await opener.openOn('side', png())
-  expect(store.state.side).toMatchObject({ width: 400, height: 200 })
+  expect(store.state.sheets?.side).toMatchObject({ width: 400, height: 200 })
   expect(store.strokes.side?.branches[0]).toEqual({ points: TRUNK.map(([x, y]) => [100 + 2 * x, 2 * y]), width: 20 })
 })
 
@@ -298,8 +323,8 @@ test('what was mended in a drawing is said until it is drawn on', async () => {
   service(call => (isReading(call) ? Response.json({ ...drawnAnswer(), warnings }) : serve(call)))
   const { store, opener } = new Studio()
   await opener.openSketch(png())
-  expect(store.state.remark?.of).toBe(store.strokes)
-  expect(store.state.remark?.text).toMatch(/^Front: .*ring/)
+  expect(store.state.corrections?.of).toBe(store.strokes)
+  expect(store.state.corrections?.text).toMatch(/^Front: .*ring/)
 })
 
 test.each([
@@ -309,15 +334,15 @@ test.each([
 ])('%s is said and leaves the sheets as they were', async (_, file, word) => {
   const refusal = problem(422, 'sketch_empty', 'front/picture: the picture shows no strokes. Draw the tree')
   service(call => (isReading(call) ? refusal : serve(call)))
-  const { store, opener, sketchbook } = new Studio()
+  const { store, opener, strokes } = new Studio()
   await opener.openPaper()
   store.set({ limits: { sketch_bytes: 50 } as Limits })
-  sketchbook.draw('branch', TRUNK)
-  const { photo, side, history } = store.state
+  strokes.draw('branch', TRUNK)
+  const { sheets, history } = store.state
   await opener.openOn('front', file)
   expect(store.state.faults.photo?.text).toContain(word)
   expect(store.state).toMatchObject({ opening: false })
-  expect([store.state.photo, store.state.side, store.state.history]).toEqual([photo, side, history])
+  expect([store.state.sheets, store.state.history]).toEqual([sheets, history])
 })
 
 test('the file that was opened last wins, though the first takes longer', async () => {
@@ -347,7 +372,7 @@ test('a drawing that is left while another one is read stays left', async () => 
   opener.close()
   answered(Response.json(drawnAnswer()))
   await reading
-  expect(store.state).toMatchObject({ photo: null, opening: false })
+  expect(store.state).toMatchObject({ sheets: null, opening: false })
 })
 
 test('an example of pictures is opened as strokes, and grown', async () => {
@@ -355,8 +380,8 @@ test('an example of pictures is opened as strokes, and grown', async () => {
   const { store, opener } = new Studio()
   const urls = { front: '/page/f.png', side: '/page/s.png', leaf: undefined, fruit: undefined }
   await opener.openSketches({ name: 'imagined', ...urls, settings: { height: 6 } })
-  await vi.waitFor(() => expect(store.state.model?.status).toBe('queued'))
-  expect(store.state).toMatchObject({ name: 'Imagined tree', side: { width: 100, height: 100 } })
+  await vi.waitFor(() => expect(store.state.model?.info.status).toBe('queued'))
+  expect(store.state).toMatchObject({ name: 'Imagined tree', sheets: { side: { width: 100, height: 100 } } })
   const { sketches } = calls.find(({ path }) => path === '/v1/models')!.body
   expect(sketches.front).toEqual({ canvas: [100, 100], branches: READ.branches })
   expect(sketches.side).toEqual(sketches.front)
@@ -366,12 +391,12 @@ test('a model and a project of pictures are opened as strokes to draw on', async
   const settings = strToU8('{"height": 6}')
   const project = zipSync({ 'front.png': PNG, 'side.png': PNG, 'settings.json': settings })
   service(call => (call.path === '/project' ? new Response(new Uint8Array(project)) : reads(call)))
-  const { store, opener, sketchbook } = new Studio()
+  const { store, opener, strokes } = new Studio()
   await opener.openModel('mdl_1')
-  expect(store.state).toMatchObject({ source: 'sketch', model: { id: 'mdl_1' } })
-  expect(store.state.modelOf).toBe(store.strokes)
+  expect(store.state).toMatchObject({ sheets: { source: 'sketch' }, model: { info: { id: 'mdl_1' } } })
+  expect(store.state.model?.strokes).toBe(store.strokes)
   expect(store.strokes).toEqual({ ...NO_STROKES, ...READ, side: READ })
-  sketchbook.draw('branch', LIMB, 'side')
+  strokes.draw('branch', LIMB, 'side')
   expect(store.strokes.side?.branches).toHaveLength(3)
   await opener.openFile(new File([new Uint8Array(project)], 'Imagined.treestroke'))
   expect(store.state).toMatchObject({ name: 'Imagined', model: null, settings: { height: 6 } })

@@ -25,7 +25,7 @@ function zip(members: Record<string, string>): Blob {
 test('a project is read as it was written', async () => {
   const project = { photo: jpeg, strokes: STROKES, settings: { ...DEFAULT_SETTINGS, height: 14 }, seed: 8, leaf: null }
   const read = await opened(await writeProject(project))
-  expect({ ...read, photo: null }).toEqual({ fruit: null, sheets: {}, ...project, photo: null })
+  expect({ ...read, photo: null }).toEqual({ fruit: null, sizes: {}, ...project, photo: null })
   expect(read.photo?.type).toBe('image/jpeg')
   expect(Buffer.from(await read.photo!.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
 })
@@ -80,8 +80,8 @@ test('a leaf of one’s own goes with the project', async () => {
 test('sketches on paper are read as they were written, with a fruit and without a photo', async () => {
   const front = { ...NO_STROKES, crown: CROWN, branches: [{ points: TRUNK, width: 7 }] }
   const strokes = withSheet(front, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
-  const sheets = { front: { width: 900, height: 1200 }, side: { width: 450, height: 600 } }
-  const written = { photo: null, strokes, sheets, settings: DEFAULT_SETTINGS, seed: 2, leaf: null }
+  const sizes = { front: { width: 900, height: 1200 }, side: { width: 450, height: 600 } }
+  const written = { photo: null, strokes, sizes, settings: DEFAULT_SETTINGS, seed: 2, leaf: null }
   const read = await opened(await writeProject({ ...written, fruit: new Blob(['a pear']) }))
   expect(read).toMatchObject(written)
   expect(await read.fruit?.text()).toBe('a pear')
@@ -89,10 +89,10 @@ test('sketches on paper are read as they were written, with a fruit and without 
 
 test('a side that goes with a photo’s strokes is kept with them', async () => {
   const strokes = withSheet(STROKES, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
-  const sheets = { side: { width: 450, height: 600 } }
-  const project = { photo: jpeg, strokes, sheets, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }
+  const sizes = { side: { width: 450, height: 600 } }
+  const project = { photo: jpeg, strokes, sizes, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }
   const read = await opened(await writeProject(project))
-  expect([read.strokes, read.sheets]).toEqual([strokes, sheets])
+  expect([read.strokes, read.sizes]).toEqual([strokes, sizes])
   expect(read.photo?.size).toBe(jpeg.size)
 })
 
@@ -103,9 +103,9 @@ test('a sketch that is a picture is read as strokes, and what was mended in it i
   const project = await readProject(picture, async file => {
     const [held, strokes] = [await file.text(), { ...NO_STROKES }]
     const branches = [{ points: ways[held]!, width: 7 }]
-    return { strokes: { ...strokes, branches }, size, ...(held === 'left' && { remark: 'a gap was bridged.' }) }
+    return { strokes: { ...strokes, branches }, size, ...(held === 'left' && { corrections: 'a gap was bridged.' }) }
   })
-  expect(project).toMatchObject({ sheets: { front: size, side: size }, remark: 'Left side: a gap was bridged.' })
+  expect(project).toMatchObject({ sizes: { front: size, side: size }, corrections: 'Left side: a gap was bridged.' })
   expect(project.strokes.branches).toEqual([{ points: TRUNK, width: 7 }])
   expect(project.strokes.side?.branches).toEqual([{ points: LIMB, width: 7 }])
 })

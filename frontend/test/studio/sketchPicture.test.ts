@@ -48,9 +48,9 @@ test('a crown that was drawn is the crown, one that was assumed is none', () => 
 
 test('of more branches than can be drawn the shortest are left out, those that bear others last, and it is said', () => {
   const size: [number, number] = [1000, 1000]
-  const { strokes, remark } = sketchIn({ ...SHOWN, skeleton: bearing(210), size })
+  const { strokes, corrections } = sketchIn({ ...SHOWN, skeleton: bearing(210), size })
   expect(strokes.branches).toHaveLength(199)
-  expect(remark).toContain('13 shortest branches were left out')
+  expect(corrections).toContain('13 shortest branches were left out')
   expect(strokes.branches[0]!.points[0]).toEqual([500, 1000])
   expect(strokes.branches.at(-1)!.points).toEqual([
     [510, 100],
@@ -62,7 +62,7 @@ test('of more branches than can be drawn the shortest are left out, those that b
 test('what was mended is said once for each kind', () => {
   const told = (code: string, detail = '') => ({ code, stroke: 'front/picture', detail })
   const warnings = [told('loop_cut'), told('branch_joined'), told('loop_cut'), told('new_one', 'a dot was dropped')]
-  const { remark } = sketchIn(SHOWN, warnings)
-  expect(remark).toMatch(/^2 rings of branches were cut open\. a gap was bridged\. A dot was dropped\.$/)
-  expect(sketchIn(SHOWN).remark).toBeUndefined()
+  const { corrections } = sketchIn(SHOWN, warnings)
+  expect(corrections).toMatch(/^2 rings of branches were cut open\. a gap was bridged\. A dot was dropped\.$/)
+  expect(sketchIn(SHOWN).corrections).toBeUndefined()
 })

@@ -1,20 +1,20 @@
 import { afterEach, expect, test, vi } from 'vitest'
 import { Client } from '../../src/api/client'
 import { Store } from '../../src/state'
-import { Sketchbook } from '../../src/studio/strokeActions'
+import { StrokeActions } from '../../src/studio/strokeActions'
 import { Tracer } from '../../src/studio/tracer'
-import { answer, CROWN, grown, LIMB, photo, TRUNK } from '../builders'
+import { answer, CROWN, grown, LIMB, photoSheets, shownModel, TRUNK } from '../builders'
 import { type Call, problem, service, settle } from '../service'
 
 afterEach(() => vi.unstubAllGlobals())
 
 async function begin() {
   const store = new Store()
-  store.set({ photo: photo() })
+  store.set({ sheets: photoSheets() })
   const wait = vi.fn(async () => {})
   new Tracer(store, new Client(), wait)
   await settle()
-  return { store, wait, sketchbook: new Sketchbook(store) }
+  return { store, wait, strokes: new StrokeActions(store) }
 }
 
 function traced({ body }: Call): Response {
@@ -23,26 +23,26 @@ function traced({ body }: Call): Response {
 
 test('a crown alone is traced and not grown', async () => {
   const calls = service(traced)
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
   await settle()
   expect(calls.map(call => call.body.grow)).toEqual([false])
   expect(store.state.traced?.of).toBe(store.strokes)
-  expect(store.state.grown).toBeNull()
+  expect(store.state.liveTree).toBeNull()
 })
 
 test('with a trunk the tracing comes first, the live tree after it', async () => {
   const calls = service(traced)
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   await settle()
   expect(calls.map(call => [call.body.branches.length, call.body.grow])).toEqual([
     [0, false],
     [1, false],
     [1, true],
   ])
-  expect(store.state.grown).toEqual(grown(2))
+  expect(store.state.liveTree).toEqual(grown(2))
   expect(store.state.tracing).toBe(false)
 })
 
@@ -54,10 +54,10 @@ test('no more than one request is under way, and what was drawn meanwhile is tra
     underway--
     return traced(call)
   })
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  for (const line of [TRUNK, LIMB, LIMB]) sketchbook.draw('branch', line)
-  await vi.waitFor(() => expect(store.state.grown).not.toBeNull())
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  for (const line of [TRUNK, LIMB, LIMB]) strokes.draw('branch', line)
+  await vi.waitFor(() => expect(store.state.liveTree).not.toBeNull())
   expect(calls.map(call => call.body.branches.length)).toEqual([0, 3, 3])
 })
 
@@ -67,11 +67,11 @@ test('an answer for strokes that have changed since is dropped', async () => {
     if (!call.body.branches.length) await new Promise<void>(done => (release = done))
     return traced(call)
   })
-  const { store, sketchbook } = await begin()
+  const { store, strokes } = await begin()
   const seen = vi.fn()
   store.watch(state => state.traced, seen)
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   release()
   await settle()
   expect(seen.mock.calls.map(([one]) => one?.of.branches.length)).toEqual([undefined, 1])
@@ -81,18 +81,18 @@ test('refused strokes stay, say what is wrong with which, and are not sent again
   const calls = service(({ body }) =>
     body.branches.length ? problem(422, 'trunk_outside_crown', 'no', '/branches/0') : traced({ body } as Call),
   )
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   await settle()
   expect(store.state.faults.strokes?.stroke).toEqual({ kind: 'branch', index: 0 })
   expect(store.state.faults.strokes?.text).toContain('Draw it from the ground up')
   expect(store.strokes.branches).toHaveLength(1)
   expect(calls).toHaveLength(2)
-  sketchbook.undo()
+  strokes.undo()
   await settle()
   expect(store.state.faults.strokes).toBeUndefined()
-  sketchbook.redo()
+  strokes.redo()
   await settle()
   expect(store.state.faults.strokes?.stroke).toEqual({ kind: 'branch', index: 0 })
 })
@@ -100,10 +100,10 @@ test('refused strokes stay, say what is wrong with which, and are not sent again
 test('while the service is away it is asked again, and the strokes are traced when it is back', async () => {
   let tries = 0
   service(call => (++tries < 4 ? 'down' : traced(call)))
-  const { store, wait, sketchbook } = await begin()
+  const { store, wait, strokes } = await begin()
   const online = vi.fn()
   store.watch(state => state.online, online)
-  sketchbook.draw('crown', CROWN)
+  strokes.draw('crown', CROWN)
   await settle()
   expect(online.mock.calls.flat()).toEqual([true, false, true])
   expect(wait).toHaveBeenCalledTimes(3)
@@ -115,78 +115,78 @@ test('a photo that the service has forgotten is sent again', async () => {
     if (call.path === '/v1/photos') return Response.json({ id: 'pho_2', width: 100, height: 100 })
     return call.path.includes('pho_2') ? traced(call) : problem(404, 'not_found', 'no such photo')
   })
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
   await settle()
-  expect(store.state.photo?.id).toBe('pho_2')
+  expect(store.state.sheets?.front?.id).toBe('pho_2')
   expect(store.state.traced).not.toBeNull()
 })
 
 test('without a trunk there is no live tree any more', async () => {
   service(traced)
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   await settle()
-  sketchbook.undo()
+  strokes.undo()
   await settle()
-  expect(store.state.grown).toBeNull()
-  sketchbook.clear()
+  expect(store.state.liveTree).toBeNull()
+  strokes.clear()
   await settle()
   expect(store.state.traced).toBeNull()
 })
 
 test('the live tree comes back with its strokes: after a trunk that was deleted, and after all was cleared', async () => {
   service(traced)
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   await settle()
-  for (const takeAway of [() => sketchbook.clear(), () => removeTrunk()]) {
+  for (const takeAway of [() => strokes.clear(), () => removeTrunk()]) {
     takeAway()
     await settle()
-    expect(store.state.grown).toBeNull()
-    sketchbook.undo()
+    expect(store.state.liveTree).toBeNull()
+    strokes.undo()
     await settle()
-    expect(store.state.grown).toEqual(grown(2))
+    expect(store.state.liveTree).toEqual(grown(2))
   }
 
   function removeTrunk() {
-    sketchbook.select({ kind: 'branch', index: 0 })
-    sketchbook.remove()
+    strokes.select({ kind: 'branch', index: 0 })
+    strokes.remove()
   }
 })
 
 test('a traced branch that was selected is let go when its joints are numbered anew', async () => {
   service(traced)
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.select({ kind: 'traced', joint: 7 })
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.select({ kind: 'traced', joint: 7 })
   await settle()
   expect(store.state.selection).toBeNull()
 })
 
 test('where nothing can be grown, it is asked for once', async () => {
   const calls = service(() => Response.json(answer()))
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   await settle()
   expect(calls.filter(call => call.body.grow)).toHaveLength(1)
-  expect(store.state.grown).toBeNull()
+  expect(store.state.liveTree).toBeNull()
 })
 
 test('strokes that a model was grown of show the model again', async () => {
   service(traced)
-  const { store, sketchbook } = await begin()
-  sketchbook.draw('crown', CROWN)
-  sketchbook.draw('branch', TRUNK)
+  const { store, strokes } = await begin()
+  strokes.draw('crown', CROWN)
+  strokes.draw('branch', TRUNK)
   await settle()
-  store.set({ modelOf: store.strokes, shows: 'model' })
-  sketchbook.draw('branch', LIMB)
+  store.set({ model: shownModel({}, { strokes: store.strokes }), shows: 'model' })
+  strokes.draw('branch', LIMB)
   await settle()
   expect(store.state.shows).toBe('live')
-  sketchbook.undo()
+  strokes.undo()
   await settle()
   expect(store.state.shows).toBe('model')
 })
