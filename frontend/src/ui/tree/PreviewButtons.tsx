@@ -1,4 +1,5 @@
-import type { Preview, PreviewStatus, View } from '../../preview/preview'
+import type { Preview } from '../../preview/preview'
+import type { PreviewStatus, View } from '../../preview/status'
 import type { State } from '../../state'
 import { variantsOf } from '../../studio/variants'
 import { text } from '../../text'

@@ -1,6 +1,7 @@
 import type { RefObject } from 'preact'
 import { useLayoutEffect, useRef, useState } from 'preact/hooks'
-import { NOTHING_SHOWN, Preview, type PreviewStatus } from '../../preview/preview'
+import { Preview } from '../../preview/preview'
+import { NOTHING_SHOWN, type PreviewStatus } from '../../preview/status'
 import type { State } from '../../state'
 import { text } from '../../text'
 import { Sapling } from '../parts/Sapling'
@@ -58,6 +59,7 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
     const ends = [followState(store, made), announceGrowth(store)]
     return () => {
       for (const end of ends) end()
+      made.end()
     }
   }, [store, scene])
   return { preview: () => preview.current!, status }

@@ -48,13 +48,17 @@ export function followState(store: Store, stage: Stage): () => void {
 /** Lay over the tree what it was made of: the photo, or the front as it was drawn. */
 function followPicture(store: Store, stage: Stage): () => void {
   let drawn: string | null = null
-  return store.watch(pictureIn, picture => {
+  const end = store.watch(pictureIn, picture => {
     const before = drawn
     const isDrawing = picture !== null && typeof picture !== 'string'
     drawn = isDrawing ? paperUrl(store.state.sheets!.front, onSheet(picture, 'front')) : null
     stage.showPhoto(isDrawing ? drawn : picture)
     if (before) URL.revokeObjectURL(before)
   })
+  return () => {
+    end()
+    if (drawn) URL.revokeObjectURL(drawn)
+  }
 }
 
 /** Return where the photo is shown from; on bare paper the strokes. */

@@ -2,7 +2,7 @@
 import 'fake-indexeddb/auto'
 import { act } from 'preact/test-utils'
 import { beforeEach, expect, test, vi } from 'vitest'
-import { NOTHING_SHOWN, type PreviewStatus } from '../../../src/preview/preview'
+import { NOTHING_SHOWN, type PreviewStatus } from '../../../src/preview/status'
 import { Studio } from '../../../src/studio/studio'
 import { VariantChoice, WindSwitch } from '../../../src/ui/tree/PreviewButtons'
 import { shownModel } from '../../builders'
