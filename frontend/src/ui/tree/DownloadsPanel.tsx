@@ -109,7 +109,7 @@ function TreeDownloads({ model, variant }: { readonly model: Model; readonly var
       {groups.map(name => (
         <DownloadGroup
           key={name}
-          title={name === 'tree' && count > 1 ? text.files.variant(variant, count) : text.files.groups[name]}
+          title={name === 'tree' && count > 1 ? text.preview.variants.oneOf(variant, count) : text.files.groups[name]}
         >
           {downloads
             .filter(({ group }) => group === name)
@@ -135,7 +135,7 @@ function FileLink({ group, label, about, size, url, saved }: Download) {
   return (
     <a class={group === 'tree' ? 'download first' : 'download'} href={url} download={saved}>
       <Icon path={GROUP_ICONS[group]} />
-      <DownloadText label={size ? `${label} · ${size}` : label} about={about} />
+      <DownloadText label={size ? text.files.sized(label, size) : label} about={about} />
     </a>
   )
 }

@@ -10,11 +10,11 @@ export function OwnPicture({ kind }: { readonly kind: keyof OwnPictures }) {
   const fault = useStore(state => state.faults[kind])
   const url = useObjectUrl(picture)
   const pick = useRef<HTMLButtonElement>(null)
-  const words = { ...text.settings.leaf, ...(kind === 'fruit' && text.sheets.fruit) }
+  const words = text.settings.ownPictures[kind]
   const id = `setting-${kind}`
   const take = async (file: File) => {
     await ownPictures.take(file, kind)
-    if (!store.state.faults[kind]) store.announce(words.taken)
+    if (!store.state.faults[kind]) store.announce(words.added)
   }
   const remove = () => {
     pick.current?.focus()
@@ -27,7 +27,7 @@ export function OwnPicture({ kind }: { readonly kind: keyof OwnPictures }) {
         {words.label}
       </span>
       <div class="setting-entry">
-        <img class="leaf-picture" alt={words.shown} src={url} hidden={picture === null} />
+        <img class="own-picture" alt={words.shown} src={url} hidden={picture === null} />
         <button
           type="button"
           class="button outlined"
@@ -35,10 +35,10 @@ export function OwnPicture({ kind }: { readonly kind: keyof OwnPictures }) {
           ref={pick}
           onClick={() => choosePng(file => void take(file))}
         >
-          {picture ? words.replace : words.choose}
+          {picture ? text.settings.ownPictures.replace : words.choose}
         </button>
         <button type="button" class="button outlined" hidden={picture === null} onClick={remove}>
-          {words.remove}
+          {text.settings.ownPictures.remove}
         </button>
       </div>
       <p class="setting-why" id={`${id}-why`}>

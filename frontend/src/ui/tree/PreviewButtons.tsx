@@ -52,7 +52,7 @@ interface ViewProps {
 /** The views as buttons, and as a list for where there is no room for buttons. */
 function ViewButtons({ hidden, view, choose }: ViewProps) {
   const isDrawing = useStore(isBareDrawing)
-  const labels = { ...text.preview.view, ...(isDrawing && { photo: text.sheets.drawing }) }
+  const labels = { ...text.preview.view, ...(isDrawing && { photo: text.preview.drawing }) }
   return (
     <>
       <div class="overlay views" role="group" aria-label={text.preview.views} hidden={hidden}>
@@ -70,7 +70,7 @@ function ViewButtons({ hidden, view, choose }: ViewProps) {
         onChange={event => choose(event.currentTarget.value as View)}
       >
         <option value="free" hidden>
-          {text.preview.freely}
+          {text.preview.free}
         </option>
         {VIEWS.map(name => (
           <option value={name} key={name}>
@@ -97,10 +97,8 @@ export function ShowsSwitch() {
           aria-pressed={shows === choice}
           onClick={() => store.set({ shows: choice })}
         >
-          <span>
-            {text.preview.showing[choice][0]}
-            <span class="roomy">{text.preview.showing[choice][1]}</span>
-          </span>
+          <span class="roomy">{text.preview.showing[choice].long}</span>
+          <span class="short">{text.preview.showing[choice].short}</span>
         </button>
       ))}
     </div>
@@ -183,9 +181,9 @@ export function WindSwitch({ status, preview, toSettings }: Props & { toSettings
         ))}
       </select>
       <div class="overlay no-wind" hidden={!isTree || hasWind}>
-        <button type="button" class="button" title={words.noneWhy} aria-label={words.none} onClick={toSettings}>
+        <button type="button" class="button" title={words.addHow} aria-label={words.add} onClick={toSettings}>
           <Icon path={ICONS.wind} />
-          <span class="roomy">{words.none}</span>
+          <span class="roomy">{words.add}</span>
         </button>
       </div>
     </div>

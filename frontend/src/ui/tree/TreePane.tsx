@@ -96,7 +96,7 @@ function AssumedNote() {
   const isShown = useStore(isAssumed)
   return (
     <p class="overlay assumed" role="status" hidden={!isShown}>
-      {isShown ? text.sheets.assumed : ''}
+      {isShown ? text.preview.assumed : ''}
     </p>
   )
 }

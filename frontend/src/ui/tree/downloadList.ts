@@ -2,7 +2,8 @@ import type { Model } from '../../api/types'
 import { fileName } from '../../studio/project'
 import { treeFiles, variantsOf } from '../../studio/variants'
 import { text } from '../../text'
-import { figuresOfModel, sizeOf } from './figures'
+import { bytes } from '../../text/numbers'
+import { figuresOfModel } from './figures'
 
 const GROUPS = ['tree', 'levels', 'formats', 'skeleton'] as const
 
@@ -57,6 +58,6 @@ function groupOf(what: string): DownloadGroup {
 function bytesOf(model: Model, variant: number, what: string): string | undefined {
   const name = variant === 1 ? `tree.${what}` : `tree.v${variant}.${what}`
   const listed = (model.report?.files as Readonly<Record<string, unknown>> | undefined)?.[name]
-  if (typeof listed === 'number') return sizeOf(listed)
+  if (typeof listed === 'number') return bytes(listed)
   return what === 'glb' ? figuresOfModel(model).find(({ row }) => row === 'size')?.value : undefined
 }

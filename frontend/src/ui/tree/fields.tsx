@@ -1,6 +1,7 @@
 import type { ComponentChildren } from 'preact'
 import { useState } from 'preact/hooks'
 import { text } from '../../text'
+import { typed } from '../../text/numbers'
 import { numberAt, numberIn, placeOf, type Span } from '../parts/spans'
 
 /** What is said of a setting. */
@@ -192,5 +193,5 @@ function idOf(name: string): string {
 }
 
 function rangeText({ min, max, whole }: Span): string {
-  return text.settings.range(String(min), String(max), whole)
+  return text.settings[whole ? 'wholeRange' : 'range'](typed(min), typed(max))
 }

@@ -2,6 +2,7 @@ import type { Model } from '../../api/types'
 import type { State } from '../../state'
 import { aloneOf } from '../../studio/variants'
 import { text } from '../../text'
+import { percent } from '../../text/numbers'
 import { judgementOf, makingOf, matchOf } from './figures'
 import { type GrowthStatus, growthStatusOf, isBusy } from './growthStatus'
 
@@ -35,36 +36,27 @@ export function endOf(state: State): string {
   const { faults, model } = state
   if (faults.grow) return faults.grow.text
   if (growthStatusOf(state) === 'canceled') return text.grow.status.canceled
-  return model?.info.status === 'succeeded'
-    ? text.progress.done(`${matchOf(model.info)}. ${judgementOf(model.info)}`)
-    : ''
+  if (model?.info.status !== 'succeeded') return ''
+  const { score } = model.info
+  return score ? text.progress.done(matchOf(model.info), judgementOf(model.info)) : text.grow.status.grown
 }
 
 /** Return how far a tree is: per cent, and the time that is left where it is known. */
 export function progressOf({ progress, eta_s: left }: Model): string {
-  const percent = text.progress.percent(Math.floor(progress * 100))
-  return left === null || left < 1 ? percent : `${percent} · ${text.progress.left(timeOf(left))}`
+  const share = Math.floor(progress * 100) / 100
+  return left === null || left < 1 ? percent(share) : text.progress.percentAndTime(share, left)
 }
 
 function stepIn(status: GrowthStatus, model: Model | null): string {
   if (status === 'asking' || !model) return text.grow.status.asking
   const step = status === 'queued' ? placeOf(model.queue_position) : phaseOf(model.phase)
-  return model.attempt > 1 ? text.progress.takenUpAgain(step) : step
+  return model.attempt > 1 ? text.progress.attempt(step, model.attempt) : step
 }
 
 function placeOf(place: number | null): string {
-  return place === null || place <= 1 ? text.progress.next : text.progress.queued(ordinal(place))
+  return place === null || place <= 1 ? text.progress.next : text.progress.queued(place - 1)
 }
 
 function phaseOf(phase: string | null): string {
   return phase === null ? text.progress.starting : (text.progress.phases[phase] ?? phase)
-}
-
-function ordinal(place: number): string {
-  const endings: Readonly<Record<string, string>> = { one: 'st', two: 'nd', few: 'rd' }
-  return `${place}${endings[new Intl.PluralRules('en', { type: 'ordinal' }).select(place)] ?? 'th'}`
-}
-
-function timeOf(seconds: number): string {
-  return seconds < 90 ? `${Math.round(seconds)} s` : `${Math.round(seconds / 60)} min`
 }

@@ -1,5 +1,6 @@
 import type { Model } from '../../api/types'
 import { text } from '../../text'
+import { measured, whole } from '../../text/numbers'
 import { readable } from './settingGroups'
 
 /** A measure of the tree, as people write it. */
@@ -15,7 +16,7 @@ export interface Measure {
 }
 
 /** What the service says of a measure. */
-interface Said {
+interface Reported {
   readonly value?: number | readonly number[] | null
   readonly unit?: string
   readonly low?: number | null
@@ -24,34 +25,32 @@ interface Said {
   readonly meaning?: string
 }
 
-const whole = new Intl.NumberFormat('en', { maximumFractionDigits: 0 })
-const short = new Intl.NumberFormat('en', { minimumSignificantDigits: 2, maximumSignificantDigits: 3 })
 const { measures: words } = text.score
 
-/** List a model's measures in the service's order; none where it gives none. */
+/** List a model's measures in the service's order; empty where it gives none. */
 export function measuresOf({ report }: Model): Measure[] {
-  const said = (report?.measures ?? {}) as Readonly<Record<string, Said>>
-  return Object.entries(said).map(([name, measure]) => measureOf(name, measure))
+  const reported = (report?.measures ?? {}) as Readonly<Record<string, Reported>>
+  return Object.entries(reported).map(([name, measure]) => measureOf(name, measure))
 }
 
-function measureOf(name: string, { value, unit = '', low, high, basis, meaning }: Said): Measure {
+function measureOf(name: string, { value, unit = '', low, high, basis, meaning }: Reported): Measure {
   const [label, why] = words.known[name] ?? [readable(name), meaning ?? '']
   return { name, label, value: valueAs(name, value, unit), range: rangeOf(low, high, unit), basis: basisOf(basis), why }
 }
 
-function valueAs(name: string, value: Said['value'], unit: string): string {
+function valueAs(name: string, value: Reported['value'], unit: string): string {
   if (value === null || value === undefined) return words.unknown
-  if (typeof value !== 'number') return value.map(count => whole.format(count)).join(' · ')
-  if (!unit) return whole.format(value)
-  return name === 'scale' ? `${quantity(value, 'm')} ${words.perPixel}` : quantity(value, unit)
+  if (typeof value !== 'number') return value.map(count => whole(count)).join(' · ')
+  if (!unit) return whole(value)
+  return name === 'scale' ? words.perPixel(quantity(value, 'm')) : quantity(value, unit)
 }
 
-function rangeOf(low: Said['low'], high: Said['high'], unit: string): string {
+function rangeOf(low: Reported['low'], high: Reported['high'], unit: string): string {
   if (typeof low !== 'number' || typeof high !== 'number' || low === high) return ''
   // Both in the one unit, that of the larger.
   const small = unit === 'm' && high < 1
-  const write = (number: number) => short.format(small ? number * 100 : number)
-  return `${words.range(write(low), write(high))} ${small ? 'cm' : unit}`
+  const write = (number: number) => measured(small ? number * 100 : number)
+  return words.range(write(low), write(high), small ? 'cm' : unit)
 }
 
 function basisOf(basis: string | undefined): Measure['basis'] {
@@ -61,6 +60,5 @@ function basisOf(basis: string | undefined): Measure['basis'] {
 /** Write a number with its unit; lengths below a metre in centimetres. */
 function quantity(value: number, unit: string): string {
   const small = unit === 'm' && Math.abs(value) < 1
-  const number = small ? value * 100 : value
-  return `${number >= 100 ? whole.format(number) : short.format(number)} ${small ? 'cm' : unit}`
+  return words.quantity(measured(small ? value * 100 : value), small ? 'cm' : unit)
 }

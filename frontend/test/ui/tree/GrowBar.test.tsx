@@ -65,12 +65,12 @@ test('the bar shows how far a tree is, and no figure while it waits', () => {
   draw()
   set({ model: shownModel({ queue_position: 2 }) })
   expect([words(), progress().hidden, progress().hasAttribute('aria-valuenow')]).toEqual([
-    '2nd in the queue',
+    '1 tree is ahead in the queue',
     false,
     false,
   ])
   set({ model: shownModel({ status: 'running', phase: 'leaf', progress: 0.427 }) })
-  expect([words(), progress().getAttribute('aria-valuenow')]).toEqual(['Putting on leaves', '42'])
+  expect([words(), progress().getAttribute('aria-valuenow')]).toEqual(['Adding leaves', '42'])
   set({ online: false })
   expect(words()).toContain('connection is lost')
 })

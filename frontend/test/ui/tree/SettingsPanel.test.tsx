@@ -74,11 +74,11 @@ test('a setting that the page does not know is explained in the words of the ser
 test('what a setting does not take is said beside it and not chosen', () => {
   write('height', '25')
   write('height', '900')
-  expect(said('height')).toBe('Give a number from 0.1 to 150.')
+  expect(said('height')).toBe('Enter a number from 0.1 to 150.')
   expect(field('height').getAttribute('aria-invalid')).toBe('true')
   expect(studio.store.state.settings.height).toBe(25)
   write('iterations', '2.5')
-  expect(said('iterations')).toBe('Give a whole number from 0 to 2000.')
+  expect(said('iterations')).toBe('Enter a whole number from 0 to 2000.')
 })
 
 test('half a number is no fault yet', () => {
@@ -106,7 +106,7 @@ test('the seed is a whole number from 0', () => {
   write('seed', '-1')
   expect([studio.store.state.seed, said('seed')]).toEqual([
     0,
-    `Give a whole number from 0 to ${Number.MAX_SAFE_INTEGER}.`,
+    `Enter a whole number from 0 to ${Number.MAX_SAFE_INTEGER}.`,
   ])
   write('seed', '42')
   expect([studio.store.state.seed, said('seed')]).toEqual([42, ''])
@@ -153,7 +153,7 @@ test('what only makes files of a grown tree says so', () => {
   set({ model: shownModel(info, { strokes: studio.store.strokes, glb: new ArrayBuffer(4) }) })
   expect(said()).toBe('')
   void act(() => field<HTMLInputElement>('compress').click())
-  expect(said()).toContain('the tree stays the same')
+  expect(said()).toContain('The tree stays the same')
   write('height', '25')
   expect(said()).toBe('')
 })
@@ -168,7 +168,7 @@ test('a leaf of one’s own is chosen, seen, refused with a reason, and removed'
       .map(one => one.textContent)
   expect(shown()).toEqual(['Choose a picture'])
   set({ leaf })
-  expect([shown(), panel.querySelector<HTMLImageElement>('.leaf-picture')!.hidden]).toEqual([
+  expect([shown(), panel.querySelector<HTMLImageElement>('.own-picture')!.hidden]).toEqual([
     ['Replace', 'Remove'],
     false,
   ])

@@ -46,7 +46,7 @@ test('the end is always said, once', () => {
   at(300, { online: true })
   expect(said).toEqual([
     'Growing branches',
-    'The tree is grown. 93% match with the foliage and branches as they were read. A very close likeness.',
+    'The tree is grown. 93% match with the foliage and branches found in the photo. A very close match.',
   ])
 })
 
@@ -56,7 +56,7 @@ test('a failure is said in its own words, and a cancel as such', () => {
   at(100, { faults: { grow: { text: 'The disk is full.' } }, model: shownModel({ status: 'failed' }) })
   step(9000, 'grow')
   at(9100, { faults: {}, model: shownModel({ status: 'canceled' }, { strokes: drawn }) })
-  expect([said[1], said[3]]).toEqual(['The disk is full.', 'Growing was canceled. Your strokes are as they were.'])
+  expect([said[1], said[3]]).toEqual(['The disk is full.', 'Growing was canceled. Your strokes are unchanged.'])
 })
 
 test('a tree that is opened finished is not announced as grown', () => {

@@ -78,26 +78,27 @@ test('Grow works where a trunk is drawn and nothing is under way', () => {
   expect([isBusy('queued'), isBusy('loading')]).toEqual([true, false])
 })
 
-test('places in the queue are counted as people do', () => {
+test('a queued tree says how many are ahead', () => {
   const said = (queue_position: number) => stepOf(state({ model: shownModel({ queue_position }) }))
   expect([1, 2, 3, 4, 11, 22].map(said)).toEqual([
     'Next in the queue',
-    ...['2nd', '3rd', '4th', '11th', '22nd'].map(place => `${place} in the queue`),
+    '1 tree is ahead in the queue',
+    ...[2, 3, 10, 21].map(ahead => `${ahead} trees are ahead in the queue`),
   ])
 })
 
-test('phases have friendly words, an unknown one its own, and a second attempt is told', () => {
+test('phases have plain words, an unknown one its own, and a second attempt is told', () => {
   const said = (phase: string | null, attempt = 1) =>
     stepOf(state({ model: shownModel({ status: 'running', phase, attempt }) }))
   expect(said('grow')).toBe('Growing branches')
   expect(said('rain')).toBe('rain')
   expect(said(null)).toBe('Starting')
-  expect(said('leaf', 2)).toBe('Putting on leaves, taken up again')
+  expect(said('leaf', 2)).toBe('Adding leaves (attempt 2)')
 })
 
 test('per cent are never ahead, and the time that is left is said where it is known', () => {
   expect(progressOf(model({ progress: 0.999 }))).toBe('99%')
-  expect(progressOf(model({ progress: 0.4, eta_s: 3.6 }))).toBe('40% · about 4 s left')
+  expect(progressOf(model({ progress: 0.4, eta_s: 3.6 }))).toBe('40% · about 4 sec left')
   expect(progressOf(model({ progress: 0.1, eta_s: 200 }))).toBe('10% · about 3 min left')
 })
 
