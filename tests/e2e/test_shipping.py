@@ -152,8 +152,8 @@ def test_further_files_are_listed_by_what_they_are_and_taken_home(visitor: Visit
         panel.get_by_label(name).check()
     grow_again(visitor, service)
     page.locator(".downloads-opener").click()
-    downloads = page.get_by_role("dialog", name="Take it away")
-    shelves = downloads.locator(".takings h3").all_inner_texts()
+    downloads = page.get_by_role("dialog", name="Downloads")
+    shelves = downloads.locator(".tree-downloads h3").all_inner_texts()
     assert shelves == ["This tree", "Levels of detail", "Other formats", "Skeleton"]
     visitor.shot("downloads")
     for label, ending in (("Middle distance", ".lod1.glb"), ("Wavefront OBJ", ".obj.zip"), ("Skeleton, SWC", ".swc")):
