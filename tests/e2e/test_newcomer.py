@@ -113,8 +113,8 @@ def test_a_tree_that_is_slow_to_come_does_not_keep_the_welcome_away(visitor: Vis
     page = visitor.page
     held: list[Route] = []
     page.route("**/v1/models/mdl_*", lambda route: held.append(route))
+    page.goto("about:blank")
     page.goto(f"{visitor.url}/#mdl_{'0' * 24}")
-    page.reload()
     page.get_by_role("button", name="Choose a photo").wait_for()
     visitor.until(lambda: len(held) == 1)
     assert page.locator("[data-ready]").count() == 0
