@@ -102,7 +102,7 @@ def test_a_leaf_of_ones_own_is_seen_sent_and_kept(visitor: Visitor, service: Ser
     panel = settings(visitor, "Leaves")
     photo = {"name": "leaf.jpg", "mimeType": "image/jpeg", "buffer": b"\xff\xd8 no PNG"}
     visitor.choose(panel.get_by_role("button", name="Choose a picture"), photo)
-    expect(panel.get_by_text("This is no PNG.")).to_be_visible()
+    expect(panel.get_by_text("This is not a PNG.")).to_be_visible()
     cut_out = {"name": "leaf.png", "mimeType": "image/png", "buffer": leaf()}
     visitor.choose(panel.get_by_role("button", name="Choose a picture"), cut_out)
     expect(panel.get_by_role("img", name="Your leaf")).to_be_visible()
@@ -152,8 +152,8 @@ def test_further_files_are_listed_by_what_they_are_and_taken_home(visitor: Visit
         panel.get_by_label(name).check()
     grow_again(visitor, service)
     page.locator(".downloads-opener").click()
-    downloads = page.get_by_role("dialog", name="Take it away")
-    shelves = downloads.locator(".takings h3").all_inner_texts()
+    downloads = page.get_by_role("dialog", name="Downloads")
+    shelves = downloads.locator(".tree-downloads h3").all_inner_texts()
     assert shelves == ["This tree", "Levels of detail", "Other formats", "Skeleton"]
     visitor.shot("downloads")
     for label, ending in (("Middle distance", ".lod1.glb"), ("Wavefront OBJ", ".obj.zip"), ("Skeleton, SWC", ".swc")):

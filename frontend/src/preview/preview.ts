@@ -89,6 +89,12 @@ export class Preview {
     return this.viewer.png()
   }
 
+  /** Leave the page, and free what the preview holds on the GPU. */
+  end(): void {
+    this.viewer?.end()
+    this.host.replaceChildren()
+  }
+
   private opened(options: ConstructorParameters<typeof Viewer>[2], { labels }: PreviewOptions): Viewer | null {
     const { canvas, host } = this
     canvas.className = 'preview-canvas'

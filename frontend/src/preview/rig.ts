@@ -51,6 +51,11 @@ export class Rig {
     this.place(EMPTY)
   }
 
+  /** Listen to the pointer no more. */
+  end(): void {
+    this.controls.dispose()
+  }
+
   /** Where the camera stands now. */
   get pose(): Pose {
     const { target } = this.controls

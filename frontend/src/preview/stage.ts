@@ -100,6 +100,13 @@ export class Stage {
     return this.renderer.info.render.calls
   }
 
+  /** Free everything; the canvas can be drawn on no more. */
+  end(): void {
+    this.show(null)
+    this.renderer.dispose()
+    this.renderer.forceContextLoss()
+  }
+
   /** Wait until the frame is drawn. */
   finish(): void {
     const gl = this.renderer.getContext()

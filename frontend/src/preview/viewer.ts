@@ -119,6 +119,18 @@ export class Viewer {
     this.ask()
   }
 
+  /** Stop, and free what is held on the GPU; nothing can be shown from now on. */
+  end(): void {
+    this.clear()
+    cancelAnimationFrame(this.pending)
+    clearTimeout(this.resting)
+    this.watch.disconnect()
+    this.dusk.removeEventListener('change', this.onDusk)
+    this.canvas.removeEventListener('webglcontextlost', this.onLost)
+    this.rig.end()
+    this.stage.end()
+  }
+
   view(name: View): void {
     if (!this.content) return
     this.seen = name

@@ -11,13 +11,13 @@ export async function readLeaf(
   mostBytes: number,
   alphaOf: (file: Blob) => Promise<Uint8Array> = decodedAlpha,
 ): Promise<Blob> {
-  if (!(await isPng(file))) throw new Unusable(text.faults.leaf.noPng)
-  if (file.size > mostBytes) throw new Unusable(text.faults.leaf.tooLarge(file.size / 1e6, mostBytes / 1e6))
+  if (!(await isPng(file))) throw new Unusable(text.faults.ownPicture.notPng)
+  if (file.size > mostBytes) throw new Unusable(text.faults.fileTooLarge(file.size / 1e6, mostBytes / 1e6))
   const alpha = await alphaOf(file).catch(() => {
-    throw new Unusable(text.faults.leaf.unreadable)
+    throw new Unusable(text.faults.ownPicture.unreadable)
   })
-  if (alpha.every(opacity => opacity === 255)) throw new Unusable(text.faults.leaf.opaque)
-  if (alpha.every(opacity => opacity === 0)) throw new Unusable(text.faults.leaf.empty)
+  if (alpha.every(opacity => opacity === 255)) throw new Unusable(text.faults.ownPicture.opaque)
+  if (alpha.every(opacity => opacity === 0)) throw new Unusable(text.faults.ownPicture.empty)
   return file.slice(0, file.size, 'image/png')
 }
 

@@ -17,7 +17,7 @@ const APART = 0.0004
 export async function readSketch(file: Blob, client: Client, limits: Limits | null): Promise<SketchFile> {
   if (!(await isPng(file))) return fromJson(file)
   const most = limits?.sketch_bytes ?? Number.POSITIVE_INFINITY
-  if (file.size > most) throw new Unusable(text.faults.photoTooLarge(file.size / 1e6, most / 1e6))
+  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size / 1e6, most / 1e6))
   const { front, warnings } = await client.traceDrawing(file)
   return sketchIn(
     front,
@@ -42,7 +42,7 @@ async function fromJson(file: Blob): Promise<SketchFile> {
   try {
     return sketchFrom(JSON.parse(await file.text()))
   } catch {
-    throw new Unusable(text.faults.noSketch)
+    throw new Unusable(text.faults.sketchUnreadable)
   }
 }
 

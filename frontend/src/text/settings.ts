@@ -1,4 +1,4 @@
-/** How a setting is spoken of. */
+/** What is said of a setting. */
 export interface SettingText {
   readonly label: string
   readonly unit?: string
@@ -15,38 +15,48 @@ export const settingsText = {
   groupsLabel: 'Settings of',
   /** What stands at the head of a group. */
   leads: {
-    leaves: 'What one photo cannot tell of leaves and bark.',
-    file: 'What you get with the tree. These change no branch: with the same seed the tree stays the same.',
+    leaves: 'What a photo cannot show of leaves and bark.',
+    file: 'What you get with the tree. The branches stay the same.',
   } as Readonly<Record<string, string>>,
-  fileAgain: 'Press Grow to make these files: the tree stays the same.',
+  fileAgain: 'Grow again to make these files. The tree stays the same.',
   seed: 'Seed',
-  seedWhy: 'The same seed gives the same tree. Any other number gives another one.',
-  heightMeasured: (length: string) =>
-    `The measured line (${length}) sets how large the tree is, in place of the height.`,
-  range: (low: string, high: string, whole: boolean) => `Give a ${whole ? 'whole ' : ''}number from ${low} to ${high}.`,
-  leaf: {
-    label: 'Leaf of your own',
-    why: 'A PNG of one leaf with a transparent background, its stalk at the bottom. It takes the place of the leaves as they come.',
-    choose: 'Choose a picture',
+  seedWhy: 'The same seed gives the same tree. Another seed gives another tree.',
+  heightMeasured: (length: string) => `The measured line (${length}) sets the tree’s size instead.`,
+  range: (low: string, high: string) => `Enter a number from ${low} to ${high}.`,
+  wholeRange: (low: string, high: string) => `Enter a whole number from ${low} to ${high}.`,
+  ownPictures: {
     replace: 'Replace',
     remove: 'Remove',
-    shown: 'Your leaf',
-    taken: 'Your leaf is taken.',
-    removed: 'Your leaf is removed.',
+    leaf: {
+      label: 'Your own leaf',
+      why: 'A PNG of one leaf: transparent background, stalk at the bottom. It replaces the tree’s leaves.',
+      choose: 'Choose a picture',
+      shown: 'Your leaf',
+      added: 'Your leaf is added.',
+      removed: 'Your leaf is removed.',
+    },
+    fruit: {
+      label: 'Your own fruit',
+      why: 'A PNG of one fruit: transparent background, stalk at the top. Fruits hang among the leaves.',
+      choose: 'Choose a fruit',
+      shown: 'Your fruit',
+      added: 'Your fruit is added.',
+      removed: 'Your fruit is removed.',
+    },
   },
   /** By the service's names; one that is missing here shows the service's own words. */
   known: {
     height: {
       label: 'Height',
       unit: 'm',
-      why: 'From the foot of the trunk to the highest leaf, in metres. It sets the scale of the file.',
+      why: 'From the ground to the highest leaf. It sets the scale of the file.',
     },
     library: {
       label: 'Branch patterns',
       why: 'How branches divide inside the crown.',
       names: {
         auto: 'Choose for me',
-        visible: 'Those of the photo',
+        visible: 'As in the photo',
         type1: 'Forks at the tips',
         type2: 'Side shoots along the branch',
         both: 'Forks and side shoots',
@@ -55,18 +65,18 @@ export const settingsText = {
     iterations: {
       label: 'Growth',
       unit: 'rounds',
-      why: 'More rounds give finer twigs; 0 keeps only what is seen in the photo.',
+      why: 'More rounds give finer twigs. 0 keeps only what the photo shows.',
     },
     variants: {
       label: 'Trees',
       unit: 'trees',
-      why: 'So many different trees of the one photo, for a row or a wood. Each takes as long as the first.',
+      why: 'How many different trees to grow. Each needs as long as the first.',
     },
     species: {
       label: 'Species',
-      why: 'Gives the shape of the leaves, how they sit, and the relief of the bark.',
+      why: 'Sets the shape and arrangement of the leaves, and the bark.',
       names: {
-        auto: 'Not said',
+        auto: 'Not specified',
         ash: 'Ash',
         beech: 'Beech',
         birch: 'Birch',
@@ -88,7 +98,7 @@ export const settingsText = {
     },
     season: {
       label: 'Season',
-      why: 'Colours the leaves and thins them out, whatever the photo’s own season.',
+      why: 'Colours and thins the leaves, whatever season the photo shows.',
       names: {
         photo: 'As in the photo',
         spring: 'Spring: fresh and light',
@@ -99,32 +109,32 @@ export const settingsText = {
     },
     foliage: {
       label: 'Foliage',
-      why: 'What the twigs bear.',
+      why: 'What grows on the twigs.',
       names: { auto: 'As in the photo', leaves: 'Leaves', needles: 'Needles', bare: 'Nothing (winter)' },
     },
     leaf_size: { label: 'Leaf size', unit: '×', why: '1 is the size that suits the tree.' },
     leaf_density: {
       label: 'Leaf density',
       unit: '×',
-      why: '1 is as dense as in the photo; 0 leaves the twigs bare.',
+      why: '1 is as dense as in the photo. 0 leaves the twigs bare.',
     },
     wind: {
       label: 'Wind',
-      why: 'Movements inside the file, as animations with bones; they can be played here, too.',
-      names: { none: 'None', breeze: 'A breeze', all: 'A breeze and a gust' },
+      why: 'Animations in the file that move the tree. They also play here.',
+      names: { none: 'No wind', breeze: 'A breeze', all: 'A breeze and a gust' },
     },
     lod: {
       label: 'Levels of detail',
-      why: 'Lighter trees for the distance, down to a picture on crossed cards.',
-      names: { none: 'Only the full tree', files: 'Each in a file of its own', one: 'All in the one file' },
+      why: 'Lighter versions of the tree, to be seen from far away.',
+      names: { none: 'Only the full tree', files: 'Each in its own file', one: 'All in one file' },
     },
     compress: {
       label: 'Compress the GLB',
-      why: 'About a third of the size, for the web. Needs a reader of meshopt and WebP; some programs have none.',
+      why: 'About a third of the size. Some programs cannot read meshopt and WebP.',
     },
     files: {
       label: 'More formats',
-      why: 'Files beside the GLB, all of the same tree.',
+      why: 'Files of the same tree in addition to the GLB.',
       names: {
         gltf: 'glTF',
         obj: 'Wavefront OBJ',

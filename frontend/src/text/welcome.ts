@@ -1,3 +1,8 @@
+import { LANGUAGE } from './plural'
+
+const percent = new Intl.NumberFormat(LANGUAGE, { style: 'percent', maximumFractionDigits: 0 })
+const inMegabytes = new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit: 'megabyte', maximumFractionDigits: 1 })
+
 /** What is said around the drawing: the start, the header, the gallery, notices and faults. */
 export const welcomeText = {
   app: 'treestroke',
@@ -5,35 +10,32 @@ export const welcomeText = {
   welcome: {
     /** By phrases: lines end between them. */
     title: ['One photo,', 'two strokes,', 'a whole tree'],
-    /** `leaves` and `trunk` are shown in the colours of the two strokes. */
-    lead: {
-      before: 'Draw one loose line ',
-      leaves: 'around the leaves',
-      between: ' and one ',
-      trunk: 'up the trunk',
-      after: '. treestroke finds the branches and grows the whole tree in 3D.',
-    },
+    /** `{leaves}` and `{trunk}` are underlined in the colours of the two strokes. */
+    lead: 'Draw a loose line {leaves} and one {trunk}. treestroke finds the branches and grows the whole tree in 3D.',
+    leadStrokes: { leaves: 'around the leaves', trunk: 'up the trunk' },
     choose: 'Choose a photo',
-    otherWays: 'or drop one anywhere, or paste it',
-    takes:
-      'JPEG, PNG, WebP, HEIC, AVIF or TIFF of one tree, or a saved .treestroke project. It goes to this treestroke only.',
-    illustration: 'A line around a tree’s leaves and a line up its trunk; between them its branches grow.',
-    examples: 'Or begin with one of these',
-    examplesHint: 'Already drawn: one click grows the tree.',
+    otherWays: 'Or drop one on the page, or paste it.',
+    formats: 'JPEG, PNG, WebP, HEIC, AVIF or TIFF, or a .treestroke project. Your files go to this server only.',
+    illustration: 'A tree with a line around its leaves and a line up its trunk',
+    examples: 'Or start with an example',
+    examplesHint: {
+      mouse: 'The strokes are already drawn. Click one to grow its tree.',
+      touch: 'The strokes are already drawn. Tap one to grow its tree.',
+    },
     credit: (author: string, licence: string) => `${author}, ${licence}`,
     drafts: 'Your drawings',
-    draftsHint: 'Kept in this browser as you left them.',
+    draftsHint: 'Saved in this browser as you left them.',
     deleteDraft: (name: string) => `Delete “${name}”`,
     draftDeleted: (name: string) => `“${name}” is deleted.`,
     undo: 'Undo',
     grown: 'Trees you have grown',
-    drop: 'Let go to open it',
-    notThis: 'Drop a photo (JPEG, PNG, WebP, HEIC, AVIF or TIFF) or a .treestroke project.',
+    drop: 'Drop to open',
+    unknownFile: 'This file cannot be opened. Drop a photo, a drawing or a .treestroke project.',
     pasted: 'Pasted photo',
-    reading: 'Reading the picture …',
+    opening: 'Opening …',
   },
   header: {
-    home: 'treestroke: all drawings',
+    home: 'treestroke: back to the start',
     name: 'Name of the drawing',
     untitled: 'Untitled tree',
     menu: 'Menu',
@@ -45,8 +47,8 @@ export const welcomeText = {
     skip: 'Skip to the content',
     saved: (name: string) => `Saved as ${name}.`,
     title: (name: string) => `${name} – treestroke`,
-    growing: (percent: number, name: string) => `${percent} % – ${name}`,
-    leave: 'This browser cannot keep the drawing: it will be lost. Go on all the same?',
+    growing: (share: number, name: string) => `${percent.format(share)} – ${name}`,
+    leave: 'This drawing could not be saved in the browser. Leave and lose it?',
   },
   examples: {
     burr_oak_dusk: 'Bur oak at dusk',
@@ -69,8 +71,8 @@ export const welcomeText = {
   gallery: {
     title: 'Your trees',
     unnamed: 'Unnamed tree',
-    loading: 'Looking for your trees',
-    empty: 'No trees yet. Draw two strokes on a photo and press Grow: every tree that you grow is kept here.',
+    loading: 'Loading your trees …',
+    empty: 'No trees yet. Draw two strokes on a photo, then press Grow. Your trees are saved here.',
     more: 'Show more',
     again: 'Try again',
     open: (name: string) => `Open ${name}`,
@@ -81,37 +83,37 @@ export const welcomeText = {
     removed: (name: string) => `${name} is deleted.`,
     restored: (name: string) => `${name} is back.`,
     undo: 'Undo',
-    status: { queued: 'In the queue', running: 'Growing', failed: 'Failed', canceled: 'Canceled' },
+    status: { queued: 'In the queue', failed: 'Failed', canceled: 'Canceled' },
+    growing: (share: number) => `Growing · ${percent.format(share)}`,
     justNow: 'just now',
   },
   notices: {
     close: 'Close this message',
   },
   faults: {
-    unreachable: 'treestroke does not answer. Your drawing is safe; it goes on as soon as the service is back.',
-    modelGone: 'This tree is no longer there. It was deleted; the strokes are still yours to grow again.',
-    draftGone: 'This drawing is no longer kept in this browser.',
-    projectIncomplete: 'This project has no photo or no strokes. Save it anew from where it came.',
-    noSketch:
-      'This is no drawing that can be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',
-    projectUnreadable: 'This project file is damaged and cannot be read. Save it anew from where it came.',
-    photoTooLarge: (megabytes: number, most: number) =>
-      `This file has ${megabytes.toFixed(1)} MB; at most ${most.toFixed(0)} MB are taken. Make the picture smaller.`,
+    unreachable: 'The service does not answer. Your drawing is safe. Try again in a moment.',
+    modelGone: 'This tree is no longer there: it was deleted. Grow it again from its strokes.',
+    draftGone: 'This drawing is no longer saved in this browser.',
+    projectIncomplete: 'This project has no photo or no strokes. Save it again where you made it.',
+    projectUnreadable: 'This project file is damaged. Save it again where you made it.',
+    sketchUnreadable:
+      'This drawing cannot be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',
+    fileTooLarge: (megabytes: number, most: number) =>
+      `This file has ${inMegabytes.format(megabytes)}, but at most ${inMegabytes.format(most)} are allowed. Make the picture smaller.`,
     /** In place of the service's own words, by its codes. */
     codes: {
       trunk_outside_crown: 'The trunk does not reach the crown. Draw it from the ground up into the leaves.',
-      crown_too_small: 'The crown is very small. Draw it around all of the leaves.',
+      crown_too_small: 'The crown is too small. Draw it around all of the leaves.',
       stroke_too_short: 'This stroke is too short. Draw it longer.',
-      too_many_strokes: 'There are more strokes than the service takes. Delete some.',
-      scale_unlikely: 'By the measured line the tree would be no tree: check the length and both ends of the line.',
+      too_many_strokes: 'There are too many strokes. Delete some.',
+      scale_unlikely: 'The measured line makes the tree impossibly large or small. Check its length and its ends.',
     },
-    leaf: {
-      noPng: 'This is no PNG. Save the leaf as a PNG whose background is transparent.',
-      tooLarge: (megabytes: number, most: number) =>
-        `This picture has ${megabytes.toFixed(1)} MB; at most ${most.toFixed(0)} MB are taken. Make it smaller.`,
-      unreadable: 'This picture is damaged and cannot be read. Save it anew.',
-      opaque: 'Nothing of this picture is transparent. Cut the leaf out, so that its background is.',
-      empty: 'There is nothing to be seen in this picture: all of it is transparent.',
+    /** What is wrong with one's own picture of a leaf or a fruit. */
+    ownPicture: {
+      notPng: 'This is not a PNG. Choose a PNG with a transparent background.',
+      unreadable: 'This picture is damaged. Save it again as a PNG.',
+      opaque: 'This picture has no transparent background. Cut out what it shows.',
+      empty: 'This picture is fully transparent. Choose one that shows something.',
     },
   },
 } as const

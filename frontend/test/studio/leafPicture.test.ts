@@ -14,11 +14,11 @@ test('a PNG of which some is transparent is taken as it is', async () => {
 })
 
 test.each([
-  ['another file', new Blob(['a photo of a leaf']), alpha(255, 0), 'no PNG'],
-  ['an empty file', new Blob([]), alpha(255, 0), 'no PNG'],
+  ['another file', new Blob(['a photo of a leaf']), alpha(255, 0), 'not a PNG'],
+  ['an empty file', new Blob([]), alpha(255, 0), 'not a PNG'],
   ['a picture that is too large', png(4_000_000), alpha(255, 0), 'at most 4 MB'],
-  ['a picture without a transparent pixel', png(), alpha(255, 255), 'Nothing of this picture is transparent'],
-  ['a picture of nothing', png(), alpha(0, 0), 'nothing to be seen'],
+  ['a picture without a transparent pixel', png(), alpha(255, 255), 'no transparent background'],
+  ['a picture of nothing', png(), alpha(0, 0), 'fully transparent'],
   ['a damaged picture', png(), () => Promise.reject(new Error('broken')), 'damaged'],
 ])('%s is refused with a reason', async (_, file, alphaOf, reason) => {
   await expect(readLeaf(file, 4e6, alphaOf)).rejects.toThrow(reason)

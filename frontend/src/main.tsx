@@ -1,0 +1,18 @@
+import './ui/parts/base.css'
+import { render } from 'preact'
+import { Studio } from './studio/studio'
+import { App } from './ui/App'
+import { followTitle } from './ui/start/title'
+import { warnUnkept, warnUnopened } from './ui/start/warnings'
+
+const studio = new Studio()
+const { store, client } = studio
+
+render(<App studio={studio} />, document.body)
+followTitle(store)
+warnUnkept(studio)
+warnUnopened(studio)
+client.getLimits().then(
+  limits => store.set({ limits }),
+  () => {}, // the service tells its limits again when one is passed
+)

@@ -1,0 +1,54 @@
+import { LANGUAGE } from './plural'
+
+const wholes = new Intl.NumberFormat(LANGUAGE, { maximumFractionDigits: 0 })
+const hundredths = new Intl.NumberFormat(LANGUAGE, { minimumFractionDigits: 2, maximumFractionDigits: 2 })
+const rounded = new Intl.NumberFormat(LANGUAGE, { minimumSignificantDigits: 2, maximumSignificantDigits: 3 })
+const written = new Intl.NumberFormat(LANGUAGE, { useGrouping: false, maximumSignificantDigits: 17 })
+const shares = new Intl.NumberFormat(LANGUAGE, { style: 'percent', maximumFractionDigits: 0 })
+const unit = (name: string, digits = 0) =>
+  new Intl.NumberFormat(LANGUAGE, {
+    ...{ style: 'unit', unit: name, unitDisplay: 'short' },
+    ...{ minimumFractionDigits: digits, maximumFractionDigits: digits },
+  } as Intl.NumberFormatOptions)
+const [wholeSeconds, tenthSeconds, minutes] = [unit('second'), unit('second', 1), unit('minute')]
+const [kilobytes, megabytes] = [unit('kilobyte'), unit('megabyte', 1)]
+
+/** Write a whole number. */
+export function whole(number: number): string {
+  return wholes.format(number)
+}
+
+/** Write a number with two digits after the point. */
+export function hundredth(number: number): string {
+  return hundredths.format(number)
+}
+
+/** Write a measured number with two or three digits that count; larger ones as whole numbers. */
+export function measured(number: number): string {
+  return number >= 100 ? wholes.format(number) : rounded.format(number)
+}
+
+/** Write a number as it can be typed into a field. */
+export function typed(number: number): string {
+  return written.format(number)
+}
+
+/** Write a share, 0 to 1, as per cent. */
+export function percent(share: number): string {
+  return shares.format(share)
+}
+
+/** Write a duration that is left: whole seconds or minutes. */
+export function duration(seconds: number): string {
+  return seconds < 90 ? wholeSeconds.format(seconds) : minutes.format(seconds / 60)
+}
+
+/** Write a duration that was measured, in tenths of a second. */
+export function seconds(number: number): string {
+  return tenthSeconds.format(number)
+}
+
+/** Write a number of bytes. */
+export function bytes(number: number): string {
+  return number < 1e6 ? kilobytes.format(number / 1e3) : megabytes.format(number / 1e6)
+}

@@ -1,0 +1,34 @@
+import { projectName, writeProject } from '../../studio/project'
+import type { Studio } from '../../studio/studio'
+import { text } from '../../text'
+
+const KEPT_MS = 60_000
+
+/** Have the browser save a file. */
+export function saveFile(file: Blob, name: string): void {
+  const href = URL.createObjectURL(file)
+  Object.assign(document.createElement('a'), { href, download: name }).click()
+  setTimeout(() => URL.revokeObjectURL(href), KEPT_MS) // the browser may still be reading it
+}
+
+/** Copy a text; false where the browser refuses it. */
+export async function copyText(text: string): Promise<boolean> {
+  try {
+    await navigator.clipboard.writeText(text)
+    return true
+  } catch {
+    return false
+  }
+}
+
+/** Save the drawing as a project file among the browser's downloads. */
+export async function saveProject({ store }: Studio): Promise<void> {
+  const { sheets, name, settings, seed, leaf, fruit } = store.state
+  if (!sheets) return
+  const { source, front, side } = sheets
+  const sizes = { ...(source === 'sketch' && { front }), ...(side && { side }) }
+  const project = { photo: front.file, strokes: store.strokes, sizes, settings, seed, leaf, fruit }
+  const file = projectName(name)
+  saveFile(await writeProject(project), file)
+  store.notify({ text: text.header.saved(file) })
+}

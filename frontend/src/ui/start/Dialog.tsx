@@ -1,0 +1,39 @@
+import type { ComponentChildren } from 'preact'
+import { useId, useLayoutEffect, useRef } from 'preact/hooks'
+import { DialogHead } from '../parts/DialogHead'
+import { useStudio } from '../parts/useStore'
+import { Notices } from './Notices'
+import './dialog.css'
+
+interface Props {
+  readonly title: string
+  readonly class?: string
+  readonly children: ComponentChildren
+}
+
+/** A modal dialog; Escape, its cross and a click beside it close it, and focus goes back to where it was. */
+export function Dialog({ title, class: name = '', children }: Props) {
+  const { store } = useStudio()
+  const id = useId()
+  const dialog = useRef<HTMLDialogElement>(null)
+  const close = () => dialog.current?.close()
+  useLayoutEffect(() => {
+    const shown = dialog.current!
+    shown.showModal()
+    return () => shown.close() // which gives the focus back
+  }, [])
+  return (
+    // biome-ignore lint/a11y/useKeyWithClickEvents: Escape closes a dialog by itself
+    <dialog
+      ref={dialog}
+      class={`dialog ${name}`.trim()}
+      aria-labelledby={id}
+      onClick={event => event.target === event.currentTarget && close()}
+      onClose={() => store.set({ dialog: null })}
+    >
+      <DialogHead id={id} title={title} close={close} />
+      {children}
+      <Notices />
+    </dialog>
+  )
+}

@@ -1,0 +1,148 @@
+import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
+import { isOver } from '../../api/follow'
+import type { Model } from '../../api/types'
+import { Gallery } from '../../studio/gallery'
+import { text } from '../../text'
+import { Sapling } from '../parts/Sapling'
+import { useStore, useStudio } from '../parts/useStore'
+import { Dialog } from './Dialog'
+import { ModelCard, nameOf } from './ModelCard'
+import './gallery.css'
+
+const LOOK_MS = 2000
+
+/** A model in the gallery; a deleted one leaves its place to an undo. */
+interface Entry {
+  readonly model: Model
+  readonly deleted: boolean
+}
+
+type Change = (id: string, changed: Partial<Entry>) => void
+
+/** One's trees: to open, rename, download and delete. */
+export function GalleryDialog() {
+  return (
+    <Dialog title={text.gallery.title} class="gallery-dialog">
+      <Trees />
+    </Dialog>
+  )
+}
+
+function Trees() {
+  const { store, client, grower } = useStudio()
+  const [gallery] = useState(() => new Gallery(store, client, grower))
+  const { entries, page, load, change } = usePages(gallery)
+  const [focused, setFocused] = useState<string | null>(null)
+  const list = useRef<HTMLUListElement>(null)
+  const fault = useStore(({ faults }) => faults.gallery)
+  /** The button that was pressed may vanish: the focus goes on to what it brought. */
+  const loadAndFocus = async () => {
+    const models = await load()
+    if (models?.[0]) setFocused(models[0].id)
+    else if (models) list.current?.closest('dialog')?.querySelector('button')?.focus()
+  }
+  return (
+    <div class="gallery">
+      <div class="fault gallery-fault" hidden={!fault}>
+        <p role="alert">{fault?.text}</p>
+        <button type="button" class="button outlined" hidden={page === 'loaded'} onClick={loadAndFocus}>
+          {text.gallery.again}
+        </button>
+      </div>
+      <ul class="cards" ref={list}>
+        {entries.map(({ model, deleted }) => {
+          const one = { key: model.id, model, gallery, change }
+          return deleted ? <Deleted {...one} focus={setFocused} /> : <Tree {...one} focused={focused === model.id} />
+        })}
+      </ul>
+      <p class="gallery-empty" hidden={page !== 'loaded' || entries.length > 0}>
+        <Sapling />
+        {text.gallery.empty}
+      </p>
+      <p class="gallery-loading" role="status" hidden={page !== 'loading'}>
+        {text.gallery.loading}
+      </p>
+      <button type="button" class="button outlined gallery-more" hidden={!gallery.hasMore} onClick={loadAndFocus}>
+        {text.gallery.more}
+      </button>
+    </div>
+  )
+}
+
+/** Load the models page by page, and look again and again how those under way are. */
+function usePages(gallery: Gallery) {
+  const { store } = useStudio()
+  const [entries, setEntries] = useState<readonly Entry[]>([])
+  const [page, setPage] = useState<'loading' | 'loaded' | 'failed'>('loading')
+  const load = async () => {
+    setPage('loading')
+    const models = await gallery.more()
+    setPage(models ? 'loaded' : 'failed')
+    setEntries(now => [...now, ...(models ?? []).map(model => ({ model, deleted: false }))])
+    return models
+  }
+  useEffect(() => {
+    store.fault('gallery', null)
+    void load()
+  }, [])
+  useEffect(() => {
+    const growing = entries.filter(({ model, deleted }) => !deleted && !isOver(model))
+    if (!growing.length) return
+    const look = async () => {
+      const found = await Promise.all(growing.map(({ model }) => gallery.look(model)))
+      const latest = new Map(found.map(model => [model?.id, model]))
+      setEntries(now => now.map(entry => ({ ...entry, model: latest.get(entry.model.id) ?? entry.model })))
+    }
+    const timer = setTimeout(look, LOOK_MS)
+    return () => clearTimeout(timer)
+  }, [entries])
+  const change: Change = (id, changed) =>
+    setEntries(now => now.map(entry => (entry.model.id === id ? { ...entry, ...changed } : entry)))
+  return { entries, page, load, change }
+}
+
+interface EntryProps {
+  readonly model: Model
+  readonly gallery: Gallery
+  readonly change: Change
+}
+
+function Tree({ model, gallery, change, focused }: EntryProps & { readonly focused: boolean }) {
+  const { store, opener } = useStudio()
+  const open = () => {
+    store.set({ dialog: null })
+    void opener.openModel(model.id)
+  }
+  const rename = async (name: string) => {
+    const renamed = await gallery.rename(model.id, name)
+    if (renamed) change(model.id, { model: renamed })
+  }
+  const remove = async () => {
+    if (!(await gallery.remove(model.id))) return
+    change(model.id, { deleted: true })
+    store.announce(text.gallery.removed(nameOf(model)))
+  }
+  return <ModelCard model={model} focused={focused} open={open} rename={rename} remove={remove} />
+}
+
+/** The place of a deleted model, with the button that brings it back. */
+function Deleted({ model, gallery, change, focus }: EntryProps & { focus(id: string): void }) {
+  const { store } = useStudio()
+  const undo = useRef<HTMLButtonElement>(null)
+  useLayoutEffect(() => undo.current!.focus(), [])
+  const restore = async () => {
+    const restored = await gallery.restore(model.id)
+    if (!restored) return
+    focus(model.id)
+    change(model.id, { model: restored, deleted: false })
+    store.announce(text.gallery.restored(nameOf(model)))
+  }
+  return (
+    <li class="card gone">
+      <p>{text.gallery.removed(nameOf(model))}</p>
+      <button type="button" class="button outlined" ref={undo} onClick={restore}>
+        {text.gallery.undo}
+      </button>
+    </li>
+  )
+}

@@ -1,0 +1,132 @@
+import type { ButtonHTMLAttributes, ComponentChildren, RefObject } from 'preact'
+import { useLayoutEffect, useRef } from 'preact/hooks'
+import type { State } from '../../state'
+import { text } from '../../text'
+import { Icon } from '../parts/Icon'
+import { ICONS } from '../parts/icons'
+import { useStore, useStudio } from '../parts/useStore'
+import { DownloadsPanel, hasDownloads, TreeLink } from './DownloadsPanel'
+import { AnotherButton, GrowButton } from './growButtons'
+import { canGrow, growthStatusOf, isBusy } from './growthStatus'
+import { detailsOf, sentenceOf } from './growthText'
+import { opening } from './Panel'
+import { ScorePanel } from './ScorePanel'
+import { SettingsPanel, type SettingsView } from './SettingsPanel'
+import './growBar.css'
+
+/** The id of the words that say where growing stands. */
+const STATUS = 'growth-status'
+
+interface Props {
+  readonly settings: SettingsView
+  /** Makes a picture of what the preview shows. */
+  picture(): Promise<Blob>
+}
+
+/** The bar below the preview: where growing stands, Grow with its settings, and the downloads. */
+export function GrowBar({ settings, picture }: Props) {
+  const canDownload = useStore(hasDownloads)
+  const grow = useRef<HTMLButtonElement>(null)
+  return (
+    <div class="growbar">
+      <ProgressBar />
+      <StatusLine grow={grow} />
+      <div class="grow-actions">
+        <GrowButton describedBy={STATUS} buttonRef={grow} />
+        <AnotherButton />
+        <Opener panel="settings" label={text.grow.settings}>
+          <Icon path={ICONS.sliders} />
+        </Opener>
+        <TreeLink />
+        <Opener panel="downloads" label={text.files.more} hidden={!canDownload}>
+          <Icon path={ICONS.download} />
+          <Icon path={ICONS.down} />
+        </Opener>
+      </div>
+      <SettingsPanel {...settings} />
+      <ScorePanel />
+      <DownloadsPanel picture={picture} moreFormats={() => settings.open('file')} />
+    </div>
+  )
+}
+
+interface OpenerProps {
+  readonly panel: 'settings' | 'downloads'
+  readonly label: string
+  readonly hidden?: boolean
+  readonly children: ComponentChildren
+}
+
+function Opener({ panel, label, hidden = false, children }: OpenerProps) {
+  return (
+    <button type="button" class={`button outlined ${panel}-opener`} title={label} hidden={hidden} {...opening(panel)}>
+      {children}
+      <span class="opener-words">{label}</span>
+    </button>
+  )
+}
+
+/** The bar that shows how far a tree is; it takes no room of its own. */
+function ProgressBar() {
+  const status = useStore(growthStatusOf)
+  const percent = useStore(percentOf)
+  const isKnown = status === 'growing' || status === 'loading'
+  return (
+    <div
+      class={isKnown ? 'progress' : 'progress unknown'}
+      role="progressbar"
+      aria-label={text.progress.label}
+      aria-valuenow={isKnown ? percent : undefined}
+      hidden={!isBusy(status) && status !== 'loading'}
+    >
+      <div class="progress-done" style={{ '--done': String(percent / 100) }} />
+    </div>
+  )
+}
+
+function percentOf(state: State): number {
+  return growthStatusOf(state) === 'loading' ? 100 : Math.floor((state.model?.info.progress ?? 0) * 100)
+}
+
+/** The line that says where growing stands, what is wrong, and what can be done about it. */
+function StatusLine({ grow }: { readonly grow: RefObject<HTMLButtonElement | null> }) {
+  const { grower } = useStudio()
+  const status = useStore(growthStatusOf)
+  const sentence = useStore(sentenceOf)
+  const details = useStore(detailsOf)
+  const isFault = useStore(({ faults, sheets }) => Boolean(faults.grow && sheets))
+  const isGrown = useStore(({ model }) => model?.info.status === 'succeeded')
+  return (
+    <div class="growth-status">
+      <div class="status-text">
+        <p class={isFault ? 'status-words fault' : 'status-words'} id={STATUS}>
+          {sentence}
+        </p>
+        <span class="status-details">{details}</span>
+      </div>
+      <LineButton shown={status === 'queued' || status === 'growing'} next={grow} onClick={() => void grower.cancel()}>
+        {text.grow.cancel}
+      </LineButton>
+      <LineButton shown={isFault && canGrow(status)} next={grow} onClick={() => void grower.grow()}>
+        {text.grow.tryAgain}
+      </LineButton>
+      <LineButton shown={isGrown && !isBusy(status) && !isFault} next={grow} {...opening('score')}>
+        {text.score.details}
+      </LineButton>
+    </div>
+  )
+}
+
+interface LineButtonProps extends ButtonHTMLAttributes {
+  readonly shown: boolean
+  /** What gets the focus when the button is hidden under it. */
+  readonly next: RefObject<HTMLButtonElement | null>
+}
+
+function LineButton({ shown, next, ...attributes }: LineButtonProps) {
+  const own = useRef<HTMLButtonElement>(null)
+  useLayoutEffect(() => {
+    if (!shown && own.current === document.activeElement) next.current?.focus()
+  }, [shown, next])
+  return <button type="button" class="button outlined" ref={own} hidden={!shown} {...attributes} />
+}

@@ -1,0 +1,195 @@
+import type { Preview } from '../../preview/preview'
+import type { PreviewStatus, View } from '../../preview/status'
+import type { State } from '../../state'
+import { variantsOf } from '../../studio/variants'
+import { text } from '../../text'
+import { Icon } from '../parts/Icon'
+import { IconButton } from '../parts/IconButton'
+import { ICONS } from '../parts/icons'
+import { useStore, useStudio } from '../parts/useStore'
+import { isBareDrawing } from './previewContent'
+import { readable } from './settingGroups'
+
+const VIEWS: readonly View[] = ['photo', 'front', 'side', 'back', 'top']
+const STEP = 1.25
+const STILL = 'still'
+/** More trees than these are chosen from a list. */
+const MOST_BUTTONS = 6
+
+interface Props {
+  readonly status: PreviewStatus
+  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'blow'>
+}
+
+/** The buttons that turn the tree to its views, hide its leaves and zoom; hidden while there is no tree. */
+export function PreviewButtons({ status, preview }: Props) {
+  const hidden = status.shows === 'empty' || status.webgl === 'absent'
+  const { leaves } = status
+  return (
+    <>
+      <ViewButtons hidden={hidden} view={status.view} choose={name => preview().view(name)} />
+      <div class="overlay view-tools" hidden={hidden}>
+        <IconButton
+          label={text.preview.leaves}
+          icon={ICONS.leaf}
+          hidden={status.shows !== 'model'}
+          aria-pressed={leaves}
+          onClick={() => preview().setLeaves(!leaves)}
+        />
+        <IconButton label={text.preview.nearer} icon={ICONS.plus} onClick={() => preview().zoom(STEP)} />
+        <IconButton label={text.preview.farther} icon={ICONS.minus} onClick={() => preview().zoom(1 / STEP)} />
+      </div>
+    </>
+  )
+}
+
+interface ViewProps {
+  readonly hidden: boolean
+  readonly view: PreviewStatus['view']
+  choose(name: View): void
+}
+
+/** The views as buttons, and as a list for where there is no room for buttons. */
+function ViewButtons({ hidden, view, choose }: ViewProps) {
+  const isDrawing = useStore(isBareDrawing)
+  const labels = { ...text.preview.view, ...(isDrawing && { photo: text.preview.drawing }) }
+  return (
+    <>
+      <div class="overlay views" role="group" aria-label={text.preview.views} hidden={hidden}>
+        {VIEWS.map(name => (
+          <button type="button" class="button" key={name} aria-pressed={view === name} onClick={() => choose(name)}>
+            {labels[name]}
+          </button>
+        ))}
+      </div>
+      <select
+        class="overlay view-choice"
+        aria-label={text.preview.views}
+        hidden={hidden}
+        value={view}
+        onChange={event => choose(event.currentTarget.value as View)}
+      >
+        <option value="free" hidden>
+          {text.preview.free}
+        </option>
+        {VIEWS.map(name => (
+          <option value={name} key={name}>
+            {labels[name]}
+          </option>
+        ))}
+      </select>
+    </>
+  )
+}
+
+/** The switch between the live skeleton and the grown tree; shown where there are both. */
+export function ShowsSwitch() {
+  const { store } = useStudio()
+  const shows = useStore(state => state.shows)
+  const hasBoth = useStore(({ liveTree, model }) => liveTree !== null && Boolean(model?.glb))
+  return (
+    <div class="overlay shows" role="group" aria-label={text.preview.shows} hidden={!hasBoth}>
+      {(['live', 'model'] as const).map(choice => (
+        <button
+          type="button"
+          class="button"
+          key={choice}
+          aria-pressed={shows === choice}
+          onClick={() => store.set({ shows: choice })}
+        >
+          <span class="roomy">{text.preview.showing[choice].long}</span>
+          <span class="short">{text.preview.showing[choice].short}</span>
+        </button>
+      ))}
+    </div>
+  )
+}
+
+/** The choice between the trees of a model; hidden where it has only one. */
+export function VariantChoice() {
+  const { grower } = useStudio()
+  const count = useStore(countOf)
+  const chosen = useStore(state => state.model?.variant ?? 1)
+  const { group, oneOf } = text.preview.variants
+  const numbers = Array.from({ length: count }, (_, at) => at + 1)
+  return (
+    <div class={`overlay variants ${count > MOST_BUTTONS ? 'many' : ''}`.trim()} hidden={count < 2}>
+      <div class="variant-buttons" role="group" aria-label={group}>
+        {numbers.map(number => (
+          <button
+            type="button"
+            class="button square"
+            key={number}
+            aria-label={oneOf(number, count)}
+            title={oneOf(number, count)}
+            aria-pressed={number === chosen}
+            onClick={() => void grower.choose(number)}
+          >
+            {number}
+          </button>
+        ))}
+      </div>
+      <select
+        class="variant-list"
+        aria-label={group}
+        value={chosen}
+        onChange={event => void grower.choose(Number(event.currentTarget.value))}
+      >
+        {numbers.map(number => (
+          <option value={number} key={number}>
+            {oneOf(number, count)}
+          </option>
+        ))}
+      </select>
+    </div>
+  )
+}
+
+function countOf({ model }: State): number {
+  return model?.glb ? variantsOf(model.info) : 0
+}
+
+/** The choice between no wind and the winds of the file; where it has none, the way to where they are chosen. */
+export function WindSwitch({ status, preview, toSettings }: Props & { toSettings(): void }) {
+  const { wind: words } = text.preview
+  const isTree = status.shows === 'model' && status.webgl !== 'absent'
+  const hasWind = isTree && status.winds.length > 0
+  const names = [STILL, ...status.winds]
+  const blowing = status.wind ?? STILL
+  const blow = (name: string) => preview().blow(name === STILL ? null : name)
+  return (
+    <div class="wind">
+      <div class="overlay winds" role="group" aria-label={words.group} hidden={!hasWind}>
+        <Icon path={ICONS.wind} />
+        {names.map(name => (
+          <button type="button" class="button" key={name} aria-pressed={name === blowing} onClick={() => blow(name)}>
+            {windName(name)}
+          </button>
+        ))}
+      </div>
+      <select
+        class="overlay wind-choice"
+        aria-label={words.group}
+        hidden={!hasWind}
+        value={blowing}
+        onChange={event => blow(event.currentTarget.value)}
+      >
+        {names.map(name => (
+          <option value={name} key={name}>
+            {windName(name)}
+          </option>
+        ))}
+      </select>
+      <div class="overlay no-wind" hidden={!isTree || hasWind}>
+        <button type="button" class="button" title={words.addHow} aria-label={words.add} onClick={toSettings}>
+          <Icon path={ICONS.wind} />
+          <span class="roomy">{words.add}</span>
+        </button>
+      </div>
+    </div>
+  )
+}
+
+function windName(wind: string): string {
+  return text.preview.wind.names[wind] ?? readable(wind)
+}

@@ -1,0 +1,67 @@
+import { isOver } from '../../api/follow'
+import type { ShownModel, State } from '../../state'
+import { isOfFile, sameValue } from './settingGroups'
+
+/** Where growing stands, as the page says it. */
+export type GrowthStatus =
+  | 'noPhoto'
+  | 'noCrown'
+  | 'noTrunk'
+  | 'noFront'
+  | 'badStroke'
+  | 'ready'
+  | 'asking'
+  | 'queued'
+  | 'growing'
+  | 'loading'
+  | 'grown'
+  | 'strokesChanged'
+  | 'settingsChanged'
+  | 'filesChanged'
+  | 'failed'
+  | 'canceled'
+
+const BUSY: readonly GrowthStatus[] = ['asking', 'queued', 'growing']
+const INCOMPLETE: readonly GrowthStatus[] = ['noPhoto', 'noCrown', 'noTrunk', 'noFront', 'badStroke']
+
+/** Return where growing stands. */
+export function growthStatusOf(state: State): GrowthStatus {
+  const { asking, model, sheets, faults } = state
+  if (asking) return 'asking'
+  if (model && !isOver(model.info)) return model.info.status === 'queued' ? 'queued' : 'growing'
+  if (!sheets) return 'noPhoto'
+  const { crown, branches } = state.history.present
+  if (sheets.source === 'sketch' && !branches.length) return 'noFront'
+  if (sheets.source === 'photo' && !crown) return 'noCrown'
+  if (!branches.length) return 'noTrunk'
+  if (faults.strokes?.stroke) return 'badStroke'
+  return model ? statusOfEnded(state, model) : 'ready'
+}
+
+/** Whether a tree is being made, so that no other can be asked for. */
+export function isBusy(status: GrowthStatus): boolean {
+  return BUSY.includes(status)
+}
+
+/** Whether Grow would do something. */
+export function canGrow(status: GrowthStatus): boolean {
+  return !isBusy(status) && !INCOMPLETE.includes(status)
+}
+
+function statusOfEnded(state: State, model: ShownModel): GrowthStatus {
+  const { info, strokes, glb } = model
+  const sameStrokes = strokes === state.history.present
+  if (info.status !== 'succeeded') return sameStrokes ? (info.status as 'failed' | 'canceled') : 'ready'
+  if (!glb && !state.faults.grow) return 'loading'
+  return sameStrokes ? statusOfSettings(state, model) : 'strokesChanged'
+}
+
+/** Compare what is chosen now with what the model was made with. */
+function statusOfSettings({ limits, seed, leaf, fruit, ...state }: State, model: ShownModel): GrowthStatus {
+  const { settings, seed: grownSeed } = model.info
+  const chosen: Readonly<Record<string, unknown>> = state.settings
+  const changed = Object.keys(chosen).filter(name => !sameValue(chosen[name], settings[name] ?? chosen[name]))
+  if (seed !== grownSeed || leaf !== model.leaf || fruit !== model.fruit) return 'settingsChanged'
+  if (!changed.length) return 'grown'
+  return changed.every(name => isOfFile(limits, name)) ? 'filesChanged' : 'settingsChanged'
+}

@@ -1,0 +1,92 @@
+// @vitest-environment jsdom
+import { render } from 'preact'
+import { act } from 'preact/test-utils'
+import { beforeAll, beforeEach, expect, test, vi } from 'vitest'
+import { paper } from '../../../src/sheets'
+import { Store } from '../../../src/state'
+import type { Studio } from '../../../src/studio/studio'
+import { text } from '../../../src/text'
+import { StudioProvider } from '../../../src/ui/parts/useStore'
+import { DropArea } from '../../../src/ui/start/DropArea'
+import { sketchSheets } from '../../builders'
+
+const store = new Store()
+const [openFile, openSketch, openOn, addPicture] = [vi.fn(), vi.fn(), vi.fn(), vi.fn()]
+const studio = { store, opener: { openFile, openSketch, openOn }, sheets: { addPicture } } as unknown as Studio
+const png = new File(['dots'], 'oak.png', { type: 'image/png' })
+const jpeg = new File(['dots'], 'oak.jpg', { type: 'image/jpeg' })
+const side = document.createElement('div')
+
+beforeAll(() => {
+  const page = document.createElement('div')
+  side.dataset.of = 'side'
+  document.body.append(page, side)
+  side.getBoundingClientRect = () => new DOMRect(500, 100, 400, 600)
+  vi.stubGlobal('innerHeight', 800)
+  act(() =>
+    render(
+      <StudioProvider value={studio}>
+        <DropArea />
+      </StudioProvider>,
+      page,
+    ),
+  )
+})
+beforeEach(() => {
+  vi.clearAllMocks()
+  store.set({ sheets: null })
+})
+
+/** Drag a file over a part of the page, and drop it there; gives what was chosen meanwhile. */
+function drop(file: File, target: Element, clientY: number): string[] {
+  const items = [{ kind: 'file', type: file.type }]
+  const send = (name: string) => {
+    const event = new MouseEvent(name, { bubbles: true, cancelable: true, clientY })
+    Object.defineProperty(event, 'dataTransfer', { value: { types: ['Files'], items, files: [file] } })
+    act(() => void target.dispatchEvent(event))
+  }
+  send('dragover')
+  const said = [...document.querySelectorAll('.drop-field.chosen strong')].map(({ textContent }) => textContent)
+  send('drop')
+  expect(document.querySelector('.drop-area')).toBeNull()
+  return said
+}
+
+test('a PNG that is dropped on the page is a photo above and a drawing below, as it says', () => {
+  expect(drop(png, document.body, 100)).toEqual([text.sheets.drop.photo[0]])
+  expect([openFile.mock.calls, openSketch.mock.calls]).toEqual([[[png]], []])
+  expect(drop(png, document.body, 700)).toEqual([text.sheets.drop.drawing[0]])
+  expect([openFile.mock.calls.length, openSketch.mock.calls]).toEqual([1, [[png]]])
+})
+
+test('a PNG that is dropped on a sheet is laid under it above, and opened on it below', () => {
+  store.set({ sheets: sketchSheets(paper(), paper()) })
+  expect(drop(png, side, 390)).toEqual([text.sheets.drop.lay[0]])
+  expect(addPicture.mock.calls).toEqual([['side', png]])
+  drop(png, side, 410)
+  expect(openOn.mock.calls).toEqual([['side', png]])
+  expect([openFile.mock.calls, openSketch.mock.calls]).toEqual([[], []])
+})
+
+test('a picture that can be no drawing is a photo wherever it is dropped', () => {
+  drop(jpeg, document.body, 790)
+  store.set({ sheets: sketchSheets(paper(), paper()) })
+  drop(jpeg, side, 690)
+  expect([openFile.mock.calls, addPicture.mock.calls]).toEqual([[[jpeg]], [['side', jpeg]]])
+})
+
+test('a photo that the browser has no type for is laid under the sheet that it is dropped on', () => {
+  const heic = new File(['dots'], 'oak.HEIC')
+  drop(heic, document.body, 10)
+  store.set({ sheets: sketchSheets(paper(), paper()) })
+  drop(heic, side, 390)
+  expect([openFile.mock.calls, addPicture.mock.calls]).toEqual([[[heic]], [['side', heic]]])
+})
+
+test('strokes are a drawing wherever they are dropped, and what is neither is said', () => {
+  const strokes = new File(['{}'], 'oak.json', { type: 'application/json' })
+  drop(strokes, document.body, 10)
+  expect(openSketch.mock.calls).toEqual([[strokes]])
+  drop(new File(['x'], 'notes.txt', { type: 'text/plain' }), document.body, 10)
+  expect(store.state.faults.photo?.text).toBe(text.welcome.unknownFile)
+})

@@ -1,0 +1,94 @@
+// @vitest-environment jsdom
+import 'fake-indexeddb/auto'
+import { act } from 'preact/test-utils'
+import { beforeEach, expect, test, vi } from 'vitest'
+import { NOTHING_SHOWN, type PreviewStatus } from '../../../src/preview/status'
+import { Studio } from '../../../src/studio/studio'
+import { VariantChoice, WindSwitch } from '../../../src/ui/tree/PreviewButtons'
+import { shownModel } from '../../builders'
+import { mount, redraw } from './mount'
+
+function choiceOf(count: number) {
+  const names = Array.from({ length: count }, (_, at) => (at ? `tree.v${at + 1}.glb` : 'tree.glb'))
+  const studio = new Studio()
+  const choose = vi.spyOn(studio.grower, 'choose').mockResolvedValue()
+  const files = Object.fromEntries(names.map(name => [name, `/${name}`]))
+  studio.store.set({ model: shownModel({ status: 'succeeded', files }, { glb: new ArrayBuffer(4) }) })
+  const element = mount(studio, <VariantChoice />).querySelector<HTMLElement>('.variants')!
+  return { element, choose, studio, buttons: [...element.querySelectorAll('button')] }
+}
+
+test('a single tree leaves nothing to choose', () => {
+  expect(choiceOf(1).element.hidden).toBe(true)
+})
+
+test('each of several trees has a number, the one that is looked at is marked', () => {
+  const { element, buttons, choose, studio } = choiceOf(3)
+  expect([element.hidden, buttons.map(one => one.textContent)]).toEqual([false, ['1', '2', '3']])
+  buttons[1]!.click()
+  expect(choose).toHaveBeenCalledWith(2)
+  void act(() => studio.store.setModel('mdl_1', { variant: 2 }))
+  expect(buttons.map(one => one.getAttribute('aria-pressed'))).toEqual(['false', 'true', 'false'])
+})
+
+test('many trees are chosen from a list', () => {
+  const { element, choose } = choiceOf(9)
+  expect(element.classList.contains('many')).toBe(true)
+  const list = element.querySelector('select')!
+  list.value = '7'
+  list.dispatchEvent(new Event('change'))
+  expect([list.options.length, choose.mock.calls]).toEqual([9, [[7]]])
+})
+
+const TREE = { ...NOTHING_SHOWN, shows: 'model', winds: ['breeze', 'gust'], wind: null } as const
+let blown: (string | null)[]
+let settings: number
+let host: HTMLElement
+const studio = new Studio()
+const winds = () => [...host.querySelectorAll<HTMLElement>('.winds button')]
+const pressed = () =>
+  winds()
+    .filter(one => one.getAttribute('aria-pressed') === 'true')
+    .map(one => one.textContent)
+const hidden = () => ['.winds', '.no-wind'].map(name => host.querySelector<HTMLElement>(name)!.hidden)
+
+function show(status: PreviewStatus): void {
+  const preview = {
+    view: () => {},
+    setLeaves: () => {},
+    zoom: () => {},
+    blow: (wind: string | null) => blown.push(wind),
+  }
+  redraw(host, studio, <WindSwitch status={status} preview={() => preview} toSettings={() => settings++} />)
+}
+
+beforeEach(() => {
+  blown = []
+  settings = 0
+  host = mount(studio, null)
+})
+
+test('a file with wind has a button for each, and one for none', () => {
+  show(TREE)
+  expect([winds().map(one => one.textContent), pressed(), hidden()]).toEqual([
+    ['Still', 'Breeze', 'Gust'],
+    ['Still'],
+    [false, true],
+  ])
+  for (const one of winds()) one.click()
+  expect(blown).toEqual([null, 'breeze', 'gust'])
+  show({ ...TREE, wind: 'gust' })
+  expect(pressed()).toEqual(['Gust'])
+})
+
+test('a file without wind shows the way to the settings instead', () => {
+  show({ ...TREE, winds: [] })
+  expect(hidden()).toEqual([true, false])
+  host.querySelector<HTMLElement>('.no-wind button')!.click()
+  expect(settings).toBe(1)
+})
+
+test('where no tree is shown there is neither', () => {
+  show({ ...TREE, shows: 'live', winds: [] })
+  expect(hidden()).toEqual([true, true])
+})
