@@ -73,9 +73,6 @@ export const sheetsText = {
       pen: 'Draw with the pen, each branch outward.',
     },
   },
-  assumed: 'Only the front is drawn. The tree’s depth is guessed.',
-  noFront: 'First draw the trunk on the front sheet.',
-  drawing: 'Drawing',
   welcome: {
     draw: 'Draw it yourself',
     drawHint: 'Draw two sides on white paper, or open a PNG of dark strokes.',
@@ -84,33 +81,4 @@ export const sheetsText = {
   },
   tabs: { front: 'Front', side: 'Left side', tree: 'Tree' },
   keys: { other: 'Go to the other sheet', thinner: 'Thinner or wider brush' },
-  fruit: {
-    label: 'Your own fruit',
-    why: 'A PNG of one fruit, stalk up, on a transparent background. Fruits hang among the leaves.',
-    choose: 'Choose a fruit',
-    shown: 'Your fruit',
-    taken: 'Your fruit is added.',
-    removed: 'Your fruit is removed.',
-  },
-  score: {
-    match: (percent: string) => `${percent} of the front’s strokes are in the tree`,
-    matchBoth: (front: string, side: string) =>
-      front === side
-        ? `${front} of the strokes of both sides are in the tree`
-        : `${front} of the front’s strokes and ${side} of the side’s are in the tree`,
-    /** By the least share of strokes that each needs, the best first. */
-    words: [
-      [0.98, 'The tree follows your strokes.'],
-      [0.9, 'The tree follows nearly all of your strokes.'],
-      [0, 'Some strokes are not in the tree. Begin each branch on its parent branch.'],
-    ] as readonly (readonly [number, string])[],
-    rows: {
-      frontCovered: ['Front strokes covered', 'How many of them the tree covers, seen from the front.'],
-      sideCovered: ['Side strokes covered', 'How many of them the tree covers, seen from its left.'],
-      frontTrue: ['Drawn on the front', 'How much of its main branches you drew there.'],
-      sideTrue: ['Drawn on the side', 'How much of its main branches you drew there.'],
-      paired: ['Found on both sheets', 'Front branches that match a branch of the side.'],
-      inPlanes: ['Flat branches', 'Main branches that lie in the plane of a sheet. Fewer is better.'],
-    },
-  },
 } as const
