@@ -1,3 +1,4 @@
+import { whole } from './numbers'
 import { plural } from './plural'
 
 /** What is said of the two sheets, the front's and the left side's. */
@@ -41,8 +42,8 @@ export const sheetsText = {
   },
   leftOut: (count: number, most: number) =>
     plural(count, {
-      one: `The shortest branch was left out. At most ${most} can be drawn.`,
-      other: `The # shortest branches were left out. At most ${most} can be drawn.`,
+      one: `The shortest branch was left out. At most ${whole(most)} can be drawn.`,
+      other: `The # shortest branches were left out. At most ${whole(most)} can be drawn.`,
     }),
   hide: 'Hide the photo',
   show: 'Show the photo',
@@ -76,7 +77,7 @@ export const sheetsText = {
   welcome: {
     draw: 'Draw it yourself',
     drawHint: 'Draw two sides on white paper, or open a PNG of dark strokes.',
-    examples: 'Or drawn from two sides',
+    examples: 'Or draw a tree from two sides',
     examplesHint: 'Two sketches make one tree, without a photo.',
   },
   tabs: { front: 'Front', side: 'Left side', tree: 'Tree' },
