@@ -70,7 +70,7 @@ export const sheetsText = {
     mixedGrow: 'Draw more, or grow the tree. This side replaces the guessed depth.',
     how: {
       mouse: 'Drag along each branch outward, or drop a drawing here.',
-      touch: 'Draw with your finger. Use two fingers to move and zoom.',
+      touch: 'Draw with your finger. Two fingers move and zoom.',
       pen: 'Draw with the pen, each branch outward.',
     },
   },
