@@ -11,6 +11,7 @@ const unit = (name: string, digits = 0) =>
     ...{ minimumFractionDigits: digits, maximumFractionDigits: digits },
   } as Intl.NumberFormatOptions)
 const [wholeSeconds, tenthSeconds, minutes] = [unit('second'), unit('second', 1), unit('minute')]
+const lengths = new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit: 'meter', maximumSignificantDigits: 3 })
 const [kilobytes, megabytes] = [unit('kilobyte'), unit('megabyte', 1)]
 
 /** Write a whole number. */
@@ -46,6 +47,11 @@ export function duration(seconds: number): string {
 /** Write a duration that was measured, in tenths of a second. */
 export function seconds(number: number): string {
   return tenthSeconds.format(number)
+}
+
+/** Write a length in metres, with three digits that count. */
+export function metres(number: number): string {
+  return lengths.format(number)
 }
 
 /** Write a number of bytes. */
