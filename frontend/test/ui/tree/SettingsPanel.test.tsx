@@ -173,7 +173,7 @@ test('a leaf of one’s own is chosen, seen, refused with a reason, and removed'
     false,
   ])
   await act(() => studio.ownPictures.take(new File(['no'], 'leaf.png')))
-  expect(panel.querySelector('[aria-labelledby=setting-leaf] .setting-wrong')!.textContent).toContain('no PNG')
+  expect(panel.querySelector('[aria-labelledby=setting-leaf] .setting-wrong')!.textContent).toContain('not a PNG')
   expect(studio.store.state.leaf).toBe(leaf)
   void act(() => buttons()[1]!.click())
   expect([studio.store.state.leaf, shown()]).toEqual([null, ['Choose a picture']])
