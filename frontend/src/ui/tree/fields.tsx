@@ -42,7 +42,7 @@ export type Choice = readonly [name: string, label: string]
 
 const PLACES = 1000
 
-/** A field for a number, with a slider unless `slides` is false; it says what is wrong with a number that it refuses. */
+/** A field for a number, with a slider unless `slides` is false; it says what is wrong with a number it refuses. */
 export function NumberField({ span, chosen, choose, since, slides = true, disabled = false, ...props }: NumberProps) {
   const { children, note, ...words } = props
   const [draft, setDraft] = useState({ written: '', since: {} as unknown, isDone: false })
