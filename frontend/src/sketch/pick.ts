@@ -4,12 +4,12 @@ import type { Selection } from '../state'
 import { lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { firstJoint, pieceTo } from '../tracedBranch'
 
-/** What lies within `reach` photo px of a place: the nearest stroke, else the nearest branch that was traced. */
+/** Return what lies within `reach` sheet px of a point: the nearest stroke, else the nearest traced branch. */
 export function pick(strokes: Strokes, skeleton: TracedSkeleton | null, at: Point, reach: number): Selection | null {
   return pickStroke(strokes, at, reach) ?? (skeleton && pickTraced(strokes, skeleton, at, reach))
 }
 
-/** The end of the measured line that stays where the one within `reach` photo px of a place is moved. */
+/** Return the other end of the measured line where one end lies within `reach` sheet px of a point; else null. */
 export function otherEnd({ scale }: Strokes, at: Point, reach: number): Point | null {
   const [from, to] = scale?.points ?? []
   if (!from || !to || Math.min(distance(from, at), distance(to, at)) > reach) return null
@@ -38,7 +38,7 @@ function pickTraced(strokes: Strokes, skeleton: TracedSkeleton, at: Point, reach
   return index < strokes.branches.length ? { kind: 'branch', index } : null
 }
 
-/** How far outside the wood between a joint and its parent a place lies; negative inside. */
+/** Return how far a point lies outside the wood between a joint and its parent, sheet px; negative inside. */
 function distanceToWood(skeleton: TracedSkeleton, joint: number, at: Point): number {
   const piece = pieceTo(skeleton, joint)
   return distance(along(piece, nearestShare(piece, at)), at) - skeleton.radii[joint]!
