@@ -74,7 +74,7 @@ export function woodPath(skeleton: TracedSkeleton, joints: Iterable<number>, min
   return path
 }
 
-/** A skeleton's wood at a scale, CSS px per sheet px: a rim around all of it, the branches with a stroke, and those without. */
+/** A skeleton's wood at a scale, CSS px per sheet px: a rim around all, the branches with strokes, and those without. */
 export interface Wood {
   readonly scale: number
   readonly rim: Path2D

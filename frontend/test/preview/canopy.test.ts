@@ -15,7 +15,7 @@ describe('the light in a ball of leaves', () => {
   const canopy = canopyOf(ball(), SUN)
   const lit = (...place: number[]) => lightAt(canopy, place)
 
-  it('comes more to its rim than to its middle', () => {
+  it('reaches its rim more than its middle', () => {
     const [sky, sun] = lit(0, 2, 0)
     const [skyAbove] = lit(0, 2.95, 0)
     const [, sunTowards] = lit(SUN[0] * 0.9, 2 + SUN[1] * 0.9, SUN[2] * 0.9)
@@ -23,18 +23,18 @@ describe('the light in a ball of leaves', () => {
     expect(sunTowards!).toBeGreaterThan(sun! * 2.5)
   })
 
-  it('comes to the side of the sun and hardly to the other', () => {
+  it('reaches the side of the sun and hardly the other', () => {
     const [, towards] = lit(SUN[0] * 0.9, 2 + SUN[1] * 0.9, SUN[2] * 0.9)
     const [, away] = lit(-SUN[0] * 0.9, 2 - SUN[1] * 0.9, -SUN[2] * 0.9)
     expect(away!).toBeLessThan(towards! / 2.5)
   })
 
-  it('gives two bytes a vertex', () => {
+  it('has two bytes a vertex', () => {
     expect(lightAt(canopy, [0, 2, 0, 1, 2, 0])).toHaveLength(4)
   })
 })
 
-it('takes a single leaf', () => {
+it('lights a single leaf', () => {
   const light = lightAt(canopyOf([0, 1, 0], SUN), [0, 1, 0])
   expect(Math.min(...light)).toBeGreaterThan(150)
 })
