@@ -5,7 +5,7 @@ import type { Line, Point } from './strokes'
 /** Where a branch's first step may be cut, as shares of the step; of equally free places the first is used. */
 const CUTS = [0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.9]
 /** Half an erase stroke's length, as a share of the distance to the nearest other branch; the service's lines differ a bit. */
-const REACH = 0.5
+const HALF_LENGTH = 0.5
 
 const continuations = new WeakMap<TracedSkeleton, readonly boolean[]>()
 
@@ -49,7 +49,7 @@ export function eraseLine(skeleton: TracedSkeleton, joint: number): Line {
   const room = (point: Point) => Math.min(distance(...piece), ...pieces.map(other => distanceToPiece(other, point)))
   const step = firstStep(skeleton, joint)
   const [cut] = CUTS.map(share => along(piece, share * step)).toSorted((one, other) => room(other) - room(one))
-  return shrunk(cut!, piece, REACH * room(cut!), pieces)
+  return shrunk(cut!, piece, HALF_LENGTH * room(cut!), pieces)
 }
 
 /**
@@ -63,15 +63,17 @@ function firstStep(skeleton: TracedSkeleton, joint: number): number {
   return Math.min(distance(...pieceTo(skeleton, root)) / distance(...pieceTo(skeleton, joint)), 1) || 1
 }
 
-/** Return a line across a segment, `reach` to either side, halved until it crosses no other segment. */
-function shrunk(middle: Point, piece: Piece, reach: number, others: readonly Piece[]): Line {
-  const line = across(middle, piece, reach)
-  return reach > 1e-3 && others.some(other => cross(line, other)) ? shrunk(middle, piece, reach / 2, others) : line
+/** Return a line across a segment, `halfLength` to either side, halved until it crosses no other segment. */
+function shrunk(middle: Point, piece: Piece, halfLength: number, others: readonly Piece[]): Line {
+  const line = across(middle, piece, halfLength)
+  return halfLength > 1e-3 && others.some(other => cross(line, other))
+    ? shrunk(middle, piece, halfLength / 2, others)
+    : line
 }
 
-function across([x, y]: Point, [from, to]: Piece, reach: number): Piece {
+function across([x, y]: Point, [from, to]: Piece, halfLength: number): Piece {
   const length = distance(from, to) || 1
-  const [right, down] = [(-(to[1] - from[1]) / length) * reach, ((to[0] - from[0]) / length) * reach]
+  const [right, down] = [(-(to[1] - from[1]) / length) * halfLength, ((to[0] - from[0]) / length) * halfLength]
   return [
     [x - right, y - down],
     [x + right, y + down],

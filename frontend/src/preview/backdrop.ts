@@ -144,10 +144,10 @@ export class Ground {
   }
 
   /** Set the centre [x, z] and radius, world units; the tree's root is at the origin. */
-  place({ centre, reach }: { centre: readonly [number, number]; reach: number }): void {
+  place({ centre, radius }: { centre: readonly [number, number]; radius: number }): void {
     this.mesh.position.set(centre[0], -0.001, centre[1])
-    this.mesh.scale.setScalar(reach)
-    this.uniforms.root.value.set(-centre[0] / reach, centre[1] / reach)
+    this.mesh.scale.setScalar(radius)
+    this.uniforms.root.value.set(-centre[0] / radius, centre[1] / radius)
   }
 
   /** Show a baked shadow, `side` x `side` bytes, in place of a shadow map. */

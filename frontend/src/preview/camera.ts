@@ -57,8 +57,8 @@ export function photoPose(photo: PhotoFrame, aspect: number): Pose {
 export function treePose(box: Box, azimuth: number, polar: number, aspect: number): Pose {
   const half = ([0, 1, 2] as const).map(axis => (box.max[axis] - box.min[axis]) / 2)
   const { right, up } = axes(azimuth, polar)
-  const reach = (along: Vec3) => Math.hypot(half[0]! * along[0], half[1]! * along[1], half[2]! * along[2])
-  const size = 2 * MARGIN * Math.max(reach(up), reach(right) / aspect)
+  const halfExtent = (along: Vec3) => Math.hypot(half[0]! * along[0], half[1]! * along[1], half[2]! * along[2])
+  const size = 2 * MARGIN * Math.max(halfExtent(up), halfExtent(right) / aspect)
   const target: Vec3 = [(box.min[0] + box.max[0]) / 2, (box.min[1] + box.max[1]) / 2, (box.min[2] + box.max[2]) / 2]
   return { target, azimuth, polar, size, slope: VIEW_SLOPE }
 }
@@ -77,16 +77,16 @@ export function axes(azimuth: number, polar: number): { right: Vec3; up: Vec3; b
 /** Return the camera's position in the world. */
 export function eyeOf(pose: Pose): Vec3 {
   const { back } = axes(pose.azimuth, pose.polar)
-  const far = distanceOf(pose)
-  return [pose.target[0] + back[0] * far, pose.target[1] + back[1] * far, pose.target[2] + back[2] * far]
+  const distance = distanceOf(pose)
+  return [pose.target[0] + back[0] * distance, pose.target[1] + back[1] * distance, pose.target[2] + back[2] * distance]
 }
 
 /** Return where the camera shows a world point, CSS px from the viewport's top left corner, y down. */
 export function screenOf(pose: Pose, point: Vec3, viewport: Viewport): [number, number] {
   const { right, up, back } = axes(pose.azimuth, pose.polar)
   const offset: Vec3 = [point[0] - pose.target[0], point[1] - pose.target[1], point[2] - pose.target[2]]
-  const far = distanceOf(pose)
-  const scale = ((viewport.height / pose.size) * far) / (far - dot(back, offset))
+  const distance = distanceOf(pose)
+  const scale = ((viewport.height / pose.size) * distance) / (distance - dot(back, offset))
   return [viewport.width / 2 + scale * dot(right, offset), viewport.height / 2 - scale * dot(up, offset)]
 }
 
@@ -97,10 +97,10 @@ export function photoRect(pose: Pose, photo: PhotoFrame, viewport: Viewport): Re
   return { x, y, width: (height * photo.width) / photo.height, height }
 }
 
-/** Return distances of the near and far planes that include all within `reach` world units of the target. */
-export function depthRange(pose: Pose, reach: number): [number, number] {
-  const far = distanceOf(pose)
-  return [Math.max(far - reach, 0.02), far + reach]
+/** Return distances of the near and far planes that include all within `radius` world units of the target. */
+export function depthRange(pose: Pose, radius: number): [number, number] {
+  const distance = distanceOf(pose)
+  return [Math.max(distance - radius, 0.02), distance + radius]
 }
 
 /** Return the pose at `t` (0..1) of a flight: it turns the shorter way, and its lens changes evenly. */

@@ -52,31 +52,31 @@ export function canopyOf(leaves: ArrayLike<number>, sun: Vec3): Canopy {
 /** Return the light at each vertex (x, y, z each) as two bytes: the sky's and the sun's share. */
 export function lightAt(canopy: Canopy, vertices: ArrayLike<number>): Uint8Array {
   const lit = new Uint8Array((vertices.length / 3) * 2)
-  const place = new Float64Array(3)
+  const point = new Float64Array(3)
   for (let vertex = 0; vertex * 3 < vertices.length; vertex++) {
     for (let axis = 0; axis < 3; axis++)
-      place[axis] = (vertices[vertex * 3 + axis]! - canopy.origin[axis]!) / canopy.cell - 0.5
-    lit[vertex * 2] = Math.round(255 * interpolated(canopy, place, 0))
-    lit[vertex * 2 + 1] = Math.round(255 * interpolated(canopy, place, 1))
+      point[axis] = (vertices[vertex * 3 + axis]! - canopy.origin[axis]!) / canopy.cell - 0.5
+    lit[vertex * 2] = Math.round(255 * interpolated(canopy, point, 0))
+    lit[vertex * 2 + 1] = Math.round(255 * interpolated(canopy, point, 1))
   }
   return lit
 }
 
 /**
  * Return the shadow that vertices throw on the ground: `side` x `side` bytes (255 is darkest) over a square of half-width
- * `reach` around `centre` [x, z]; row 0 is at -z.
+ * `radius` around `centre` [x, z]; row 0 is at -z.
  */
 export function groundShadow(
   vertices: ArrayLike<number>,
   sun: Vec3,
-  ground: { centre: readonly [number, number]; reach: number; side: number },
+  ground: { centre: readonly [number, number]; radius: number; side: number },
 ): Uint8Array {
-  const { centre, reach, side } = ground
+  const { centre, radius, side } = ground
   const counts = new Float32Array(side * side)
   for (let at = 0; at < vertices.length; at += 3) {
     const height = vertices[at + 1]! / sun[1]
-    const column = ((vertices[at]! - sun[0] * height - centre[0]) / reach + 1) * 0.5 * side
-    const row = ((vertices[at + 2]! - sun[2] * height - centre[1]) / reach + 1) * 0.5 * side
+    const column = ((vertices[at]! - sun[0] * height - centre[0]) / radius + 1) * 0.5 * side
+    const row = ((vertices[at + 2]! - sun[2] * height - centre[1]) / radius + 1) * 0.5 * side
     if (column >= 0 && row >= 0 && column < side && row < side) counts[Math.floor(row) * side + Math.floor(column)]!++
   }
   const blurred = blur(blur(counts, side), side)
@@ -136,16 +136,16 @@ function transmitted(foliage: Float32Array, cells: Canopy['cells'], from: Vec3, 
 }
 
 /** Return the interpolated light at a point (in cells, from the first one's centre); outside the grid, the nearest cell's. */
-function interpolated({ cells, light }: Canopy, place: Float64Array, kind: number): number {
+function interpolated({ cells, light }: Canopy, point: Float64Array, kind: number): number {
   let sum = 0
   for (let corner = 0; corner < 8; corner++) {
     let at = 0
     let weight = 1
     let stride = 1
     for (let axis = 0; axis < 3; axis++) {
-      const low = Math.floor(place[axis]!)
+      const low = Math.floor(point[axis]!)
       const upper = (corner >> axis) & 1
-      const part = place[axis]! - low
+      const part = point[axis]! - low
       weight *= upper ? part : 1 - part
       at += stride * Math.min(Math.max(low + upper, 0), cells[axis]! - 1)
       stride *= cells[axis]!

@@ -54,10 +54,10 @@ export function trianglesOf(geometry: BufferGeometry): number {
 }
 
 /** Return the disc of ground under a tree that holds its shadow: centre [x, z] and radius. */
-export function groundUnder({ min, max }: Box): { centre: readonly [number, number]; reach: number } {
+export function groundUnder({ min, max }: Box): { centre: readonly [number, number]; radius: number } {
   const fall = max[1] / SUN[1] / 2
   const centre = [(min[0] + max[0]) / 2 - SUN[0] * fall, (min[2] + max[2]) / 2 - SUN[2] * fall] as const
-  return { centre, reach: Math.max(max[0] - min[0], max[2] - min[2]) * 0.75 + fall * 0.8 }
+  return { centre, radius: Math.max(max[0] - min[0], max[2] - min[2]) * 0.75 + fall * 0.8 }
 }
 
 /** Return a tree's shadow on its ground as a picture of `side` x `side` bytes, for where no shadow map is drawn. */

@@ -5,7 +5,7 @@ import { depthRange, eyeOf, interpolate, PHOTO_SLOPE, type Pose, refit, VIEW_SLO
 /** The smallest and largest height that may be seen at the target, world units. */
 const SIZES = [0.06, 5] as const
 /** How far from the target anything is drawn, world units. */
-const REACH = 6
+const DRAWN_RADIUS = 6
 /** How fast the lens changes after turning away from the photo's view, per second. */
 const LENS_RATE = 5
 /** Radians from the photo's view that count as turned away. */
@@ -33,7 +33,7 @@ export class Rig {
   private flight: { from: Pose; to: Pose; seconds: number; spent: number } | null = null
   private slope = VIEW_SLOPE
   private aspect = 1
-  /** Whether the pointer has moved the camera since the last flight. */
+  /** Whether the pointer has grabbed the camera since the last flight. */
   private grabbed = false
   private moved = false
 
@@ -155,7 +155,7 @@ export class Rig {
 
   /** Set the near and far planes close around what can be seen. */
   setDepthRange(): void {
-    const [near, far] = depthRange(this.pose, REACH)
+    const [near, far] = depthRange(this.pose, DRAWN_RADIUS)
     this.camera.near = near
     this.camera.far = far
     this.camera.updateProjectionMatrix()

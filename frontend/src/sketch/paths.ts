@@ -84,19 +84,19 @@ export interface Wood {
 
 /** Return a skeleton's wood at a scale, CSS px per sheet px; cached until the scale changes. */
 export function woodAt(skeleton: TracedSkeleton, scale: number): Wood {
-  const known = woods.get(skeleton)
-  if (known?.scale === scale) return known
+  const before = woods.get(skeleton)
+  if (before?.scale === scale) return before
   const joints = [...skeleton.points.keys()]
   const minRadius = WIDTH.thinnestWood / scale
   const of = (stroked: boolean) => joints.filter(joint => skeleton.stroke[joint]! >= 0 === stroked)
-  const made = {
+  const wood = {
     scale,
     rim: woodPath(skeleton, joints, minRadius, WIDTH.rim / scale),
     stroked: woodPath(skeleton, of(true), minRadius, 0),
     found: woodPath(skeleton, of(false), minRadius, 0),
   }
-  woods.set(skeleton, made)
-  return made
+  woods.set(skeleton, wood)
+  return wood
 }
 
 /** Add a tapering segment. All have the same winding, so that they are filled as one; a root's has a level foot. */

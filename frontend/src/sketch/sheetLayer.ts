@@ -13,7 +13,7 @@ export class SheetLayer {
   /** The picture, and smaller copies of it, each half as large as the one before. */
   #levels: CanvasImageSource[] = []
 
-  /** `onLoad` is called when a picture can be resized. */
+  /** `onLoad` is called when a picture can be drawn. */
   constructor(private readonly onLoad: () => void) {}
 
   /** Show another sheet, or none. */

@@ -17,9 +17,9 @@ import { toScreen, toSheet, type View, within } from './viewport'
 /** The least distance between a stroke's points, CSS px. */
 const POINT_SPACING = 0.7
 /** How far from a click something may lie to be selected, CSS px. */
-const CLICK_REACH: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
+const CLICK_TOLERANCE: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
 /** How far from an end of the measured line a press may lie to move it, CSS px. */
-const END_REACH = 14
+const END_TOLERANCE = 14
 
 /** The canvas on which a person draws over a photo or on paper. */
 export class Sketch {
@@ -194,7 +194,7 @@ export class Sketch {
     const { type } = intent
     if (type === 'pan') this.#camera.pan(intent.by)
     else if (type === 'pinch') this.#pinch(intent)
-    else if (type === 'click') this.#selectAt(intent.at, CLICK_REACH[intent.pointer])
+    else if (type === 'click') this.#selectAt(intent.at, CLICK_TOLERANCE[intent.pointer])
     else if (type === 'begin') this.#beginStroke(intent.kind, intent.at)
     else if (type === 'extend') this.#extendStroke(intent.path)
     else if (type === 'end') this.#finishStroke()
@@ -232,20 +232,20 @@ export class Sketch {
     this.#scene.layers.invalidate('pen')
   }
 
-  #selectAt(at: Point, reach: number): void {
-    this.events.selected(toPageSelection(this.#pickAt(at, reach), this.#name))
+  #selectAt(at: Point, tolerance: number): void {
+    this.events.selected(toPageSelection(this.#pickAt(at, tolerance), this.#name))
   }
 
-  #pickAt(at: Point, reach: number): Selection | null {
+  #pickAt(at: Point, tolerance: number): Selection | null {
     const { view } = this.#camera
     const skeleton = this.#traced?.skeleton ?? null
-    return pick(this.#shown.strokes, skeleton, toSheet(view, at), reach / view.scale)
+    return pick(this.#shown.strokes, skeleton, toSheet(view, at), tolerance / view.scale)
   }
 
   /** Return the other end of the measured line where one end lies at a point of the window (CSS px); else null. */
   #otherEndAt(at: Point): Point | null {
     const { view } = this.#camera
-    return otherEnd(this.#shown.strokes, toSheet(view, at), END_REACH / view.scale)
+    return otherEnd(this.#shown.strokes, toSheet(view, at), END_TOLERANCE / view.scale)
   }
 
   #onHover(at: Point | null): void {
@@ -253,7 +253,7 @@ export class Sketch {
     const free = sheet && this.#gesture.mode.name === 'idle' ? at : null
     this.#overLineEnd = Boolean(free && (tool === 'select' || tool === 'scale') && this.#otherEndAt(free))
     this.#updatePointer()
-    const hovered = free && tool === 'select' ? this.#pickAt(free, CLICK_REACH.mouse) : null
+    const hovered = free && tool === 'select' ? this.#pickAt(free, CLICK_TOLERANCE.mouse) : null
     if (JSON.stringify(hovered) === JSON.stringify(this.#hovered)) return
     this.#hovered = hovered
     this.#scene.layers.invalidate('strokes')
@@ -300,7 +300,7 @@ export class Sketch {
     this.#cursor = at
     this.#scene.layers.invalidate('pen')
     const { tool } = this.#shown
-    if (tool === 'select') this.#selectAt(toScreen(this.#camera.view, at), CLICK_REACH.mouse)
+    if (tool === 'select') this.#selectAt(toScreen(this.#camera.view, at), CLICK_TOLERANCE.mouse)
     else this.#togglePen(tool, sheet, at)
   }
 

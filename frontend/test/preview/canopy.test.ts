@@ -13,7 +13,7 @@ function ball(): number[] {
 
 describe('the light in a ball of leaves', () => {
   const canopy = canopyOf(ball(), SUN)
-  const lit = (...place: number[]) => lightAt(canopy, place)
+  const lit = (...point: number[]) => lightAt(canopy, point)
 
   it('reaches its rim more than its middle', () => {
     const [sky, sun] = lit(0, 2, 0)
@@ -41,7 +41,7 @@ it('lights a single leaf', () => {
 
 it('throws the shadow away from the sun, and nowhere else', () => {
   const side = 32
-  const shadow = groundShadow(ball(), SUN, { centre: [0, 0], reach: 4, side })
+  const shadow = groundShadow(ball(), SUN, { centre: [0, 0], radius: 4, side })
   const fall = 2 / SUN[1]
   const byte = (x: number, z: number) =>
     shadow[Math.floor(((z / 4 + 1) / 2) * side) * side + Math.floor(((x / 4 + 1) / 2) * side)]!
