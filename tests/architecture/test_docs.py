@@ -4,16 +4,18 @@ import ast
 import json
 import re
 from dataclasses import fields
+from inspect import signature
 
 import pytest
-from tests.architecture.documents import FENCE, PAGES, fences, named, rows, section, text_of
+from tests.architecture.documents import FENCE, PAGES, cells, fences, named, rows, section, tables, text_of
 from tests.architecture.names import PACKAGE, ROOT, routes
 
 import treestroke
 from treestroke.api.errors import _STATUS
 from treestroke.cli import main
+from treestroke.client import Client
 from treestroke.core.pipeline.settings import Choice, ModelSettings, Several
-from treestroke.schemas import Problem
+from treestroke.schemas import ModelInfo, PhotoInfo, Problem
 from treestroke.service.failures import _DETAILS, problem_of_input
 from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import ModelRequest
@@ -119,6 +121,27 @@ def test_the_calls_are_the_service_s_routes() -> None:
     calls = [token for token in tokens if re.match(r"[A-Z]+ /", token)]
     assert len(calls) == len(set(calls))
     assert set(calls) == routes()
+
+
+@pytest.mark.parametrize(("heading", "kind"), [("Photos", PhotoInfo), ("Models", ModelInfo)])
+def test_the_fields_of_an_answer_are_those_of_its_schema(heading: str, kind: type[PhotoInfo | ModelInfo]) -> None:
+    (table,) = (t for t in tables(section("docs/http.md", heading)) if t[0].startswith("| field"))
+    assert sorted(name for row in table[2:] for name in named(cells(row)[0])) == sorted(kind.model_fields)
+
+
+def test_the_library_s_arguments_are_documented() -> None:
+    page = text_of("docs/library.md")
+    arguments = {name for function in (treestroke.model, treestroke.sketch) for name in signature(function).parameters}
+    calls = {name for call in re.findall(r"`treestroke\.(?:model|sketch)\((.*?)\)`", page) for name in call.split(", ")}
+    (table,) = (t for t in tables(page) if t[0].startswith("| argument"))
+    assert calls | {name for row in table[2:] for name in named(cells(row)[0])} == arguments
+
+
+def test_the_client_s_methods_are_documented() -> None:
+    methods = {name for name in vars(Client) if not name.startswith("_")} - {"close"}
+    with_python = text_of("docs/http.md").split("## With Python\n")[1].split("\n## ")[0]
+    shown = set(re.findall(r"`(?:client\.)?([a-z_]+)(?:\(.*?\))?`|client\.([a-z_]+)\(", with_python))
+    assert {name for pair in shown for name in pair if name} == methods
 
 
 def test_the_codes_of_problems_are_those_of_the_service() -> None:

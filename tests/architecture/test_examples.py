@@ -12,6 +12,7 @@ import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import httpx
 import pytest
 from tests.architecture.documents import PAGES, fences, named, rows, section, text_of
 from tests.architecture.names import ROOT
@@ -106,6 +107,14 @@ def test_the_python_examples_of_a_page_run(
 
 def test_every_page_with_python_is_known() -> None:
     assert set(PYTHON) == {page for page in PAGES if fences(page, "python")}
+
+
+def test_the_documented_problem_is_what_the_service_answers(address: str) -> None:
+    order, problem = (json.loads(fence.text) for fence in fences("docs/http.md", "json"))
+    del order["strokes"]["branches"]
+    answer = httpx.post(f"{address}/v1/models", json=order, trust_env=False)
+    assert answer.headers["Content-Type"] == "application/problem+json"
+    assert {**answer.json(), "title": problem["title"]} == problem  # the title is Python's name of the status
 
 
 def test_a_report_has_the_keys_that_are_documented(place: Path) -> None:
