@@ -36,7 +36,7 @@ Example = Callable[[str, str], str]
 @pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     data = tmp_path_factory.mktemp("service") / "data"
-    with serving(data, trace_seconds=600, model_seconds=3600) as address:  # however busy the machine is
+    with serving(data, tracers=1, trace_seconds=600, model_seconds=3600) as address:  # however busy the machine is
         yield address
 
 
