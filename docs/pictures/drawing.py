@@ -11,7 +11,7 @@ PHOTO = ROOT / "examples" / "sugar_maple_autumn.jpg"
 LIMB = [[347.0, 430.0], [366.0, 385.0], [398.0, 325.0], [436.0, 268.0]]
 """A branch that the photo shows, px."""
 SIZE, SCALE = (1080, 620), 1.0
-QUALITY = 38
+QUALITY = 36
 
 
 def film_drawing(browser: Browser, url: str, path: Path) -> None:
@@ -75,7 +75,7 @@ def grow(film: Film) -> None:
 
 def turn(film: Film) -> None:
     """Turn the tree by the pointer, nearly half round."""
-    film.drag(turning_way(film), frames=34)
+    film.drag(turning_way(film), frames=30)
     film.shoot(4)
     film.hold(1.3)
 

@@ -20,6 +20,8 @@ STEP_MS = 120
 FRAME_MS = 66
 """How long a frame is shown: the film runs faster than the page."""
 WIDTH = 900
+KEY_FRAMES = 24, 32
+"""A whole frame comes at least and at most so many frames after another; what encoding has left behind goes with it."""
 _DOT, _PRESSED_DOT, _RIM = 7.5, 5.5, 1.7
 """Radii of the pointer, and the width of its rim, px of the film."""
 _FINENESS = 4
@@ -118,7 +120,8 @@ class Film:
             duration=self.shown_ms,
             loop=0,
             quality=quality,
-            minimize_size=True,
+            kmin=KEY_FRAMES[0],
+            kmax=KEY_FRAMES[1],
         )
 
     def _go(self, to: Sequence[float] | Floats) -> None:
