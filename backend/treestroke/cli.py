@@ -131,7 +131,7 @@ def _add_sketch(commands: "Commands") -> None:
 def _add_trace(commands: "Commands") -> None:
     command = _add_command(commands, "trace", _trace, "find foliage and branches")
     command.add_argument("photo", metavar="PHOTO", help=ACCEPTED_FORMATS)
-    command.add_argument("--strokes", metavar="STROKES.json", required=True)
+    command.add_argument("--strokes", metavar="STROKES.json", required=True, help="the strokes drawn over it")
     command.add_argument("--out", metavar="TRACE.json", type=Path, help="standard output where absent")
     command.add_argument(
         "--overlay", metavar="OVERLAY.png", type=Path, help="the photo with what was found drawn over it"
@@ -172,7 +172,7 @@ def _add_inputs(command: argparse.ArgumentParser, source: Source, by_position: S
 
 
 def _add_outputs(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--out", metavar="TREE.glb", type=Path, required=True)
+    command.add_argument("--out", metavar="TREE.glb", type=Path, required=True, help="the tree")
     command.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts, score and warnings")
     command.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
 

@@ -1,5 +1,6 @@
 """What the service sends in its responses, for its documents and its clients."""
 
+from http import HTTPStatus
 from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -193,7 +194,7 @@ class Problem(BaseModel):
         json_schema_extra={
             "example": {
                 "type": "about:blank",
-                "title": "Unprocessable Content",
+                "title": HTTPStatus.UNPROCESSABLE_ENTITY.phrase,
                 "status": 422,
                 "detail": "branches/0: the trunk neither touches nor points into the crown; draw it from the root up",
                 "code": "trunk_outside_crown",

@@ -28,9 +28,7 @@ class Settings(BaseSettings):
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
     workers: Annotated[
         int,
-        _setting(
-            1, "models that one worker grows at once; 0: `treestroke serve` runs none, they run elsewhere", ge=0, le=256
-        ),
+        _setting(1, "models that a worker grows at once; 0: `treestroke serve` starts no worker", ge=0, le=256),
     ]
     tracers: Annotated[int, _setting(2, "processes that decode photos and trace", ge=1, le=64)]
     trace_seconds: Annotated[
