@@ -12,7 +12,7 @@ export async function readLeaf(
   alphaOf: (file: Blob) => Promise<Uint8Array> = decodedAlpha,
 ): Promise<Blob> {
   if (!(await isPng(file))) throw new Unusable(text.faults.ownPicture.notPng)
-  if (file.size > mostBytes) throw new Unusable(text.faults.fileTooLarge(file.size / 1e6, mostBytes / 1e6))
+  if (file.size > mostBytes) throw new Unusable(text.faults.fileTooLarge(file.size, mostBytes))
   const alpha = await alphaOf(file).catch(() => {
     throw new Unusable(text.faults.ownPicture.unreadable)
   })

@@ -56,7 +56,7 @@ export async function pictureOf(file: Blob, size: { width: number; height: numbe
 
 async function sent(file: Blob, client: Client, limits: Limits | null) {
   const most = limits?.photo_bytes ?? Number.POSITIVE_INFINITY
-  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size / 1e6, most / 1e6))
+  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size, most))
   return client.addPhoto(file)
 }
 

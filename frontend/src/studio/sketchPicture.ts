@@ -17,7 +17,7 @@ const APART = 0.0004
 export async function readSketch(file: Blob, client: Client, limits: Limits | null): Promise<SketchFile> {
   if (!(await isPng(file))) return fromJson(file)
   const most = limits?.sketch_bytes ?? Number.POSITIVE_INFINITY
-  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size / 1e6, most / 1e6))
+  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size, most))
   const { front, warnings } = await client.traceDrawing(file)
   return sketchIn(
     front,

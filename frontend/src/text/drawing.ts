@@ -1,8 +1,5 @@
-import { LANGUAGE, plural } from './plural'
-
-const number = new Intl.NumberFormat(LANGUAGE).format
-const percent = new Intl.NumberFormat(LANGUAGE, { style: 'percent' }).format
-const metres = new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit: 'meter', maximumSignificantDigits: 3 }).format
+import { metres, percent, whole } from './numbers'
+import { plural } from './plural'
 
 /** What is said where strokes are drawn. */
 export const drawingText = {
@@ -43,13 +40,13 @@ export const drawingText = {
     withKey: (label: string, key: string) => `${label} (${key})`,
   },
   strokes: {
-    button: (count: number) => `Strokes (${number(count)})`,
+    button: (count: number) => `Strokes (${whole(count)})`,
     title: 'Strokes',
     none: 'Nothing is drawn yet.',
     crown: 'Crown',
     trunk: 'Trunk',
-    branch: (place: number) => `Branch ${number(place)}`,
-    erase: (place: number) => `Removed branch ${number(place)}`,
+    branch: (place: number) => `Branch ${whole(place)}`,
+    erase: (place: number) => `Removed branch ${whole(place)}`,
     traced: 'Traced branch',
     scale: 'Measured line',
     scaleOf: (length: string) => `Measured line, ${length}`,
@@ -89,13 +86,13 @@ export const drawingText = {
         select: 'Click it. Click an empty place to deselect.',
       },
       touch: {
-        crown: 'Draw with your finger. Use two fingers to move and zoom.',
-        branch: 'Draw with your finger. Use two fingers to move and zoom.',
+        crown: 'Draw with your finger. Two fingers move and zoom.',
+        branch: 'Draw with your finger. Two fingers move and zoom.',
         select: 'Tap it. Tap an empty place to deselect.',
       },
       pen: {
-        crown: 'Draw with the pen. Use your fingers to move and zoom.',
-        branch: 'Draw with the pen. Use your fingers to move and zoom.',
+        crown: 'Draw with the pen. Your fingers move and zoom.',
+        branch: 'Draw with the pen. Your fingers move and zoom.',
         select: 'Tap it with the pen. Tap an empty place to deselect.',
       },
     },
@@ -129,7 +126,7 @@ export const drawingText = {
       draw: 'Draw',
       edit: 'Edit',
       view: 'View and project',
-      canvas: 'Draw with the keyboard, when the sheet has the focus',
+      canvas: 'Sheet, when it has the focus',
       tree: '3D tree, when it has the focus',
     },
     rightDrag: 'Branch, with any tool',

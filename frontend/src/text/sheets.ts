@@ -1,3 +1,4 @@
+import { whole } from './numbers'
 import { plural } from './plural'
 
 /** What is said of the two sheets, the front's and the left side's. */
@@ -41,8 +42,8 @@ export const sheetsText = {
   },
   leftOut: (count: number, most: number) =>
     plural(count, {
-      one: `The shortest branch was left out. At most ${most} can be drawn.`,
-      other: `The # shortest branches were left out. At most ${most} can be drawn.`,
+      one: `The shortest branch was left out. At most ${whole(most)} can be drawn.`,
+      other: `The # shortest branches were left out. At most ${whole(most)} can be drawn.`,
     }),
   hide: 'Hide the photo',
   show: 'Show the photo',
@@ -69,48 +70,16 @@ export const sheetsText = {
     mixedGrow: 'Draw more, or grow the tree. This side replaces the guessed depth.',
     how: {
       mouse: 'Drag along each branch outward, or drop a drawing here.',
-      touch: 'Draw with your finger. Use two fingers to move and zoom.',
+      touch: 'Draw with your finger. Two fingers move and zoom.',
       pen: 'Draw with the pen, each branch outward.',
     },
   },
-  assumed: 'Only the front is drawn. The tree’s depth is guessed.',
-  noFront: 'First draw the trunk on the front sheet.',
-  drawing: 'Drawing',
   welcome: {
     draw: 'Draw it yourself',
     drawHint: 'Draw two sides on white paper, or open a PNG of dark strokes.',
-    examples: 'Or drawn from two sides',
+    examples: 'Or draw a tree from two sides',
     examplesHint: 'Two sketches make one tree, without a photo.',
   },
   tabs: { front: 'Front', side: 'Left side', tree: 'Tree' },
   keys: { other: 'Go to the other sheet', thinner: 'Thinner or wider brush' },
-  fruit: {
-    label: 'Your own fruit',
-    why: 'A PNG of one fruit, stalk up, on a transparent background. Fruits hang among the leaves.',
-    choose: 'Choose a fruit',
-    shown: 'Your fruit',
-    taken: 'Your fruit is added.',
-    removed: 'Your fruit is removed.',
-  },
-  score: {
-    match: (percent: string) => `${percent} of the front’s strokes are in the tree`,
-    matchBoth: (front: string, side: string) =>
-      front === side
-        ? `${front} of the strokes of both sides are in the tree`
-        : `${front} of the front’s strokes and ${side} of the side’s are in the tree`,
-    /** By the least share of strokes that each needs, the best first. */
-    words: [
-      [0.98, 'The tree follows your strokes.'],
-      [0.9, 'The tree follows nearly all of your strokes.'],
-      [0, 'Some strokes are not in the tree. Begin each branch on its parent branch.'],
-    ] as readonly (readonly [number, string])[],
-    rows: {
-      frontCovered: ['Front strokes covered', 'How many of them the tree covers, seen from the front.'],
-      sideCovered: ['Side strokes covered', 'How many of them the tree covers, seen from its left.'],
-      frontTrue: ['Drawn on the front', 'How much of its main branches you drew there.'],
-      sideTrue: ['Drawn on the side', 'How much of its main branches you drew there.'],
-      paired: ['Found on both sheets', 'Front branches that match a branch of the side.'],
-      inPlanes: ['Flat branches', 'Main branches that lie in the plane of a sheet. Fewer is better.'],
-    },
-  },
 } as const
