@@ -8,11 +8,11 @@ export const welcomeText = {
     /** By phrases: lines end between them. */
     title: ['One photo,', 'two strokes,', 'a whole tree'],
     /** `{leaves}` and `{trunk}` are underlined in the colours of the two strokes. */
-    lead: 'Draw a loose line {leaves} and one {trunk}. treestroke finds the branches and grows the whole tree in 3D.',
+    lead: 'Draw a loose line {leaves} and one {trunk}. treestroke finds the branches and grows the tree in 3D.',
     leadStrokes: { leaves: 'around the leaves', trunk: 'up the trunk' },
     choose: 'Choose a photo',
     otherWays: 'Or drop one on the page, or paste it.',
-    formats: 'JPEG, PNG, WebP, HEIC, AVIF or TIFF, or a .treestroke project. Your files go to this server only.',
+    formats: 'JPEG, PNG, WebP, HEIC, AVIF or TIFF, or a .treestroke project. Your files stay on this server.',
     illustration: 'A tree with a line around its leaves and a line up its trunk',
     examples: 'Or start with an example',
     examplesHint: {

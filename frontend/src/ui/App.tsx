@@ -9,7 +9,7 @@ import { DropArea } from './start/DropArea'
 import { GalleryDialog } from './start/GalleryDialog'
 import { Header } from './start/Header'
 import { Notices } from './start/Notices'
-import { followSession, isToResume, resume } from './start/session'
+import { followSession, hasSession, resume } from './start/session'
 import { Welcome } from './start/Welcome'
 import './app.css'
 import './start/opening.css'
@@ -58,7 +58,7 @@ function Page() {
 /** Open again what was open and load the workspace, both after the first paint; the page is ready when both are there. */
 function useStart(closed: boolean) {
   const studio = useStudio()
-  const [resuming, setResuming] = useState(isToResume)
+  const [resuming, setResuming] = useState(hasSession)
   const [Workspace, setWorkspace] = useState<ComponentType | null>(null)
   const [ready, setReady] = useState(false)
   useEffect(() => {

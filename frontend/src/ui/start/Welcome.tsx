@@ -92,7 +92,7 @@ function StartButtons() {
   return (
     <>
       <div class="hero-start">
-        <button type="button" class="button chief hero-choose" onClick={() => choose(studio)}>
+        <button type="button" class="button primary hero-choose" onClick={() => choose(studio)}>
           <Icon path={ICONS.photo} />
           {welcome.choose}
         </button>

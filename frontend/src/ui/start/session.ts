@@ -4,8 +4,8 @@ import type { Studio } from '../../studio/studio'
 const MODEL = /^#(mdl_[0-9a-f]{24})$/
 const DRAFT = 'draft'
 
-/** Whether something was open before, which `resume` opens again. */
-export function isToResume(): boolean {
+/** Whether the address or the tab names something to open again. */
+export function hasSession(): boolean {
   return modelInAddress() !== null || remembered() !== null
 }
 

@@ -18,7 +18,7 @@ export function GrowButton({ describedBy, buttonRef }: GrowProps) {
   const label = useStore(labelOf)
   return (
     <GrowingButton
-      class="button chief grow"
+      class="button primary grow"
       aria-describedby={describedBy}
       buttonRef={buttonRef}
       ask={() => grower.grow()}

@@ -3,7 +3,7 @@ import 'fake-indexeddb/auto'
 import { afterEach, expect, test, vi } from 'vitest'
 import type { Draft } from '../../../src/studio/draftStore'
 import { Studio } from '../../../src/studio/studio'
-import { followSession, isToResume, resume } from '../../../src/ui/start/session'
+import { followSession, hasSession, resume } from '../../../src/ui/start/session'
 import { photoSheets, shownModel } from '../../builders'
 
 const MODEL = `mdl_${'a'.repeat(24)}`
@@ -27,7 +27,7 @@ afterEach(() => {
 
 test('a fresh tab opens nothing', async () => {
   const { studio, openDraft, openModel } = studioWith([{ id: 'one' }])
-  expect(isToResume()).toBe(false)
+  expect(hasSession()).toBe(false)
   await resume(studio)
   expect(openDraft).not.toHaveBeenCalled()
   expect(openModel).not.toHaveBeenCalled()
@@ -36,7 +36,7 @@ test('a fresh tab opens nothing', async () => {
 test('a reload opens the drawing of this tab', async () => {
   sessionStorage.setItem('draft', 'two')
   const { studio, openDraft } = studioWith([{ id: 'one' }, { id: 'two' }])
-  expect(isToResume()).toBe(true)
+  expect(hasSession()).toBe(true)
   await resume(studio)
   expect(openDraft).toHaveBeenCalledWith('two')
 })
@@ -51,7 +51,7 @@ test('a drawing that is no longer kept is not asked for', async () => {
 test('a link to a model opens the model', async () => {
   history.replaceState(null, '', `#${MODEL}`)
   const { studio, openModel } = studioWith([{ id: 'one' }])
-  expect(isToResume()).toBe(true)
+  expect(hasSession()).toBe(true)
   await resume(studio)
   expect(openModel).toHaveBeenCalledWith(MODEL)
 })
