@@ -71,7 +71,7 @@ export class Sketch {
     )
   }
 
-  /** Leave the page. */
+  /** Remove the canvas, and stop listening. */
   end(): void {
     this.#unwatch()
     this.#resizing.disconnect()

@@ -1,9 +1,9 @@
 import { text } from '../../text'
 
-/** As the stylesheet has it, per cent, until it is moved. */
-const FIRST = 55
-const FEWEST = 30
-const MOST = 75
+/** Per cent; the first is also in the stylesheet. */
+const INITIAL = 55
+const MIN = 30
+const MAX = 75
 const STEP = 5
 
 interface Props {
@@ -12,10 +12,10 @@ interface Props {
   move(split: number): void
 }
 
-/** The handle between the two panes. */
+/** The handle that sets the width of the two panes. */
 export function Divider({ split, move }: Props) {
-  const now = split ?? FIRST
-  const moveTo = (wanted: number) => move(Math.min(MOST, Math.max(FEWEST, wanted)))
+  const now = split ?? INITIAL
+  const moveTo = (wanted: number) => move(Math.min(MAX, Math.max(MIN, wanted)))
   const drag = (event: PointerEvent) => {
     const handle = event.currentTarget as HTMLElement
     const { left, width } = handle.parentElement!.getBoundingClientRect()
@@ -32,8 +32,8 @@ export function Divider({ split, move }: Props) {
       tabIndex={0}
       aria-orientation="vertical"
       aria-label={text.workspace.divider}
-      aria-valuemin={FEWEST}
-      aria-valuemax={MOST}
+      aria-valuemin={MIN}
+      aria-valuemax={MAX}
       aria-valuenow={Math.round(now)}
       onPointerDown={event => event.currentTarget.setPointerCapture(event.pointerId)}
       onPointerMove={drag}

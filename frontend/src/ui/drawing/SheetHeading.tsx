@@ -12,7 +12,7 @@ interface Props {
   readonly name: SheetName
 }
 
-/** A sheet's heading: which side it shows, from where it is seen, and the picture that lies under its strokes. */
+/** A sheet's heading: its name, the direction of view, and the buttons for its picture. */
 export function SheetHeading({ name }: Props) {
   const isShown = useStore(({ sheets }) => sheets?.source === 'sketch' || Boolean(sheets?.side))
   const isActive = useStore(({ active }) => active === name)
@@ -66,7 +66,7 @@ function SheetTools({ name }: Props) {
   )
 }
 
-/** The tree from above, and the eye that looks at it: from below in front, from the left at the side. */
+/** A plan of the tree with the viewer: below it for the front, left of it for the side. */
 function Compass({ name }: Props) {
   const eye = name === 'front' ? 'M12 22.5 9 18h6zM12 18v-2.5' : 'M1.5 12 6 9v6zM6 12h2.5'
   return (

@@ -24,7 +24,7 @@ export function Sheets({ sketches, views }: Props) {
   )
 }
 
-/** One sheet under its heading; lengths are measured on the front's alone. */
+/** One sheet under its heading; lengths are measured on the front only. */
 function SheetPart({ name, sketches, views }: Props & { readonly name: SheetName }) {
   const isClosed = useStore(state => sheetOf(state, name) === null)
   const onPaper = useStore(state => isPaper(state, name))

@@ -7,7 +7,7 @@ const OR = new Intl.ListFormat(LANGUAGE, { type: 'disjunction' })
 
 type Row = readonly [what: string, ...keys: string[]]
 
-/** Every shortcut, by what it is about. */
+/** All shortcuts, in groups. */
 export function ShortcutsDialog() {
   return (
     <div class="shortcuts">

@@ -24,7 +24,7 @@ export function StrokeList() {
   )
 }
 
-/** One row for each stroke; the focus stays near where it was when the rows change beneath it. */
+/** One row for each stroke; the focus moves to a neighbour when its row is removed. */
 function StrokeRows({ refs }: { readonly refs: readonly StrokeRef[] }) {
   const strokes = useStore(({ history }) => history.present)
   const list = useRef<HTMLUListElement>(null)

@@ -10,7 +10,7 @@ import { DrawingPane } from './DrawingPane'
 import './workspace.css'
 
 type Shown = 'drawing' | 'both' | 'tree'
-/** What the switch gives the whole height of a phone: with one sheet, and with two. */
+/** What the switch on a phone offers, with one sheet and with two. */
 type Choice = Shown | SheetName
 const ONE_SHEET: readonly Choice[] = ['drawing', 'both', 'tree']
 const TWO_SHEETS: readonly Choice[] = ['front', 'side', 'tree']
@@ -20,7 +20,7 @@ const LABELS: Readonly<Record<Choice, string>> = {
   ...text.sheets.tabs,
 }
 
-/** The drawing and the tree beside each other; both stay while the page does, hidden while nothing is open. */
+/** The drawing beside the tree; hidden, not removed, while nothing is open. */
 export function Workspace() {
   const { store } = useStudio()
   const isOpen = useStore(({ sheets }) => sheets !== null)
@@ -50,7 +50,7 @@ export function Workspace() {
   )
 }
 
-/** Keep what a phone shows: two sheets leave no room for the tree beside them, until it is asked for. */
+/** Return what a phone shows, and how to set it: two sheets leave no room for the tree until one is grown. */
 function useShown(hasSide: boolean): [Shown, (shown: Shown) => void] {
   const [shown, show] = useState<Shown>('both')
   const isAsked = useStore(({ asking }) => asking) && hasSide
@@ -61,7 +61,7 @@ function useShown(hasSide: boolean): [Shown, (shown: Shown) => void] {
   return [shown, show]
 }
 
-/** Move the focus to where the work goes on when a drawing is opened or closed, as what was clicked is gone. */
+/** Move the focus to the sheet or back to the page when a drawing is opened or closed, as what was clicked is gone. */
 function useFocusOnOpening(workspace: RefObject<HTMLElement | null>, isOpen: boolean): void {
   const wasOpen = useRef(isOpen)
   useLayoutEffect(() => {
@@ -78,7 +78,7 @@ interface ChooserProps {
   show(shown: Shown): void
 }
 
-/** The switch that gives a sheet or the tree the whole height of a phone. */
+/** The switch for what a phone shows. */
 function PaneChooser({ shown, hasSide, show }: ChooserProps) {
   const { sheets } = useStudio()
   const active = useStore(state => state.active)
