@@ -1,8 +1,10 @@
 import { isPaper } from '../../sheets'
 import { text } from '../../text'
 import { Icon } from '../parts/Icon'
+import { IconButton } from '../parts/IconButton'
 import { ICONS } from '../parts/icons'
 import { useStore, useStudio } from '../parts/useStore'
+import type { Zoom } from './sheetSketches'
 
 const { brushes: words } = text.sheets
 
@@ -15,6 +17,7 @@ export const BRUSHES = [
 ] as const
 /** The diameter of a brush's dot as a factor of its width, CSS px. */
 const DOT_SCALE = 480
+const ZOOM_FACTOR = 1.25
 
 /** Return the brush some steps wider than another, between the thinnest and the widest. */
 export function nextBrush(brush: number | null, steps: number): number | null {
@@ -69,5 +72,44 @@ function BrushButton({ brush, label }: { readonly brush: number | null; readonly
         <span class="brush-dot" style={{ '--dot': `${brush * DOT_SCALE}px` }} />
       )}
     </button>
+  )
+}
+
+interface ZoomProps {
+  readonly zoom: Zoom
+  /** CSS px per px of the active sheet. */
+  readonly scale: number
+}
+
+/** The bar that zooms the active sheet. */
+export function ZoomBar({ zoom, scale }: ZoomProps) {
+  const { tools: words } = text
+  return (
+    <div class="zoombar" role="group" aria-label={words.zoom}>
+      <IconButton
+        label={words.withKey(words.zoomOut, '−')}
+        icon={ICONS.minus}
+        onClick={() => zoom.zoom(1 / ZOOM_FACTOR)}
+      />
+      <button
+        type="button"
+        class="button zoom-percent"
+        title={words.toActual}
+        aria-label={words.actual(scale)}
+        onClick={() => zoom.actual()}
+      >
+        {words.percent(scale)}
+      </button>
+      <IconButton label={words.withKey(words.zoomIn, '+')} icon={ICONS.plus} onClick={() => zoom.zoom(ZOOM_FACTOR)} />
+      <button
+        type="button"
+        class="button zoom-fit"
+        title={words.withKey(words.fitWhole, 'F')}
+        onClick={() => zoom.fit()}
+      >
+        <Icon path={ICONS.fit} />
+        <span class="tool-label">{words.fit}</span>
+      </button>
+    </div>
   )
 }

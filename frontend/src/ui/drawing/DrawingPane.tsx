@@ -1,12 +1,11 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks'
 import { useStore, useStudio } from '../parts/useStore'
-import { DrawingFoot } from './DrawingFoot'
+import { DrawingFoot, ZoomBar } from './DrawingFoot'
 import { HintLine } from './HintLine'
 import { Sheets } from './Sheets'
 import { SheetSketches, type Views } from './sheetSketches'
 import { listenToShortcuts } from './shortcuts'
 import { Toolbar } from './Toolbar'
-import { ZoomBar } from './ZoomBar'
 
 /** The sheets, the tools to draw on them, and the hint. */
 export function DrawingPane() {

@@ -1,3 +1,4 @@
+import type { ComponentChildren } from 'preact'
 import { useLayoutEffect, useRef, useState } from 'preact/hooks'
 import { labelPlace } from '../../sketch/lengthLabel'
 import { type View, within } from '../../sketch/viewport'
@@ -39,15 +40,11 @@ function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Sca
   const { strokes } = useStudio()
   const [written, write] = useState(String(scale.metres))
   const [isWrong, setWrong] = useState(false)
-  const element = useRef<HTMLDivElement>(null)
   const field = useRef<HTMLInputElement>(null)
   useLayoutEffect(() => {
     write(String(scale.metres))
     setWrong(false)
   }, [scale])
-  useLayoutEffect(() => {
-    if (view) placeAt(element.current!, scale, view)
-  }, [scale, view])
   useLayoutEffect(() => {
     if (asks) field.current!.focus({ preventScroll: true })
     if (asks) field.current!.select()
@@ -67,7 +64,7 @@ function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Sca
     leave()
   }
   return (
-    <div class="length-field" ref={element}>
+    <BesideLine scale={scale} view={view}>
       <div>
         <input
           type="text"
@@ -87,6 +84,25 @@ function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Sca
       <p class="length-wrong" role="alert">
         {isWrong && text.length.wrong(SPAN.min, SPAN.max)}
       </p>
+    </BesideLine>
+  )
+}
+
+interface BesideProps {
+  readonly scale: Scale
+  readonly view: View | null
+  readonly children: ComponentChildren
+}
+
+/** A box that stays beside the measured line when the sheet is moved. */
+function BesideLine({ scale, view, children }: BesideProps) {
+  const element = useRef<HTMLDivElement>(null)
+  useLayoutEffect(() => {
+    if (view) placeAt(element.current!, scale, view)
+  }, [scale, view])
+  return (
+    <div class="length-field" ref={element}>
+      {children}
     </div>
   )
 }

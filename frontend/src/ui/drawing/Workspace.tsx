@@ -5,7 +5,6 @@ import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
 import { TreePane } from '../tree/TreePane'
 import { announceDrawing } from './announcements'
-import { Divider } from './Divider'
 import { DrawingPane } from './DrawingPane'
 import './workspace.css'
 
@@ -19,6 +18,12 @@ const LABELS: Readonly<Record<Choice, string>> = {
   both: text.workspace.both,
   ...text.sheets.tabs,
 }
+
+/** The drawing's share of the width, per cent; the first is also in the stylesheet. */
+const SPLIT = 55
+const MIN_SPLIT = 30
+const MAX_SPLIT = 75
+const SPLIT_STEP = 5
 
 /** The drawing beside the tree; hidden, not removed, while nothing is open. */
 export function Workspace() {
@@ -103,5 +108,41 @@ function PaneChooser({ shown, hasSide, show }: ChooserProps) {
         </button>
       ))}
     </div>
+  )
+}
+
+interface DividerProps {
+  /** The share of the first pane, per cent; null until it is moved. */
+  readonly split: number | null
+  move(split: number): void
+}
+
+/** The handle that sets the width of the two panes. */
+function Divider({ split, move }: DividerProps) {
+  const now = split ?? SPLIT
+  const moveTo = (wanted: number) => move(Math.min(MAX_SPLIT, Math.max(MIN_SPLIT, wanted)))
+  const drag = (event: PointerEvent) => {
+    const handle = event.currentTarget as HTMLElement
+    const { left, width } = handle.parentElement!.getBoundingClientRect()
+    if (handle.hasPointerCapture(event.pointerId)) moveTo(((event.clientX - left) / width) * 100)
+  }
+  const press = ({ key }: KeyboardEvent) => {
+    const step = { ArrowLeft: -SPLIT_STEP, ArrowRight: SPLIT_STEP }[key]
+    if (step) moveTo(now + step)
+  }
+  return (
+    <div
+      class="divider"
+      role="separator"
+      tabIndex={0}
+      aria-orientation="vertical"
+      aria-label={text.workspace.divider}
+      aria-valuemin={MIN_SPLIT}
+      aria-valuemax={MAX_SPLIT}
+      aria-valuenow={Math.round(now)}
+      onPointerDown={event => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={drag}
+      onKeyDown={press}
+    />
   )
 }
