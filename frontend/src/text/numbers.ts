@@ -5,14 +5,10 @@ const hundredths = new Intl.NumberFormat(LANGUAGE, { minimumFractionDigits: 2, m
 const rounded = new Intl.NumberFormat(LANGUAGE, { minimumSignificantDigits: 2, maximumSignificantDigits: 3 })
 const written = new Intl.NumberFormat(LANGUAGE, { useGrouping: false, maximumSignificantDigits: 17 })
 const shares = new Intl.NumberFormat(LANGUAGE, { style: 'percent', maximumFractionDigits: 0 })
-const unit = (name: string, digits = 0) =>
-  new Intl.NumberFormat(LANGUAGE, {
-    ...{ style: 'unit', unit: name, unitDisplay: 'short' },
-    ...{ minimumFractionDigits: digits, maximumFractionDigits: digits },
-  } as Intl.NumberFormatOptions)
-const [wholeSeconds, tenthSeconds, minutes] = [unit('second'), unit('second', 1), unit('minute')]
+const [wholeSeconds, tenthSeconds] = [inUnits('second', 0), inUnits('second', 1)]
+const minutes = inUnits('minute', 0)
 const lengths = new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit: 'meter', maximumSignificantDigits: 3 })
-const [kilobytes, megabytes] = [unit('kilobyte'), unit('megabyte', 1)]
+const [kilobytes, megabytes] = [inUnits('kilobyte', 0), inUnits('megabyte', 1)]
 
 /** Write a whole number. */
 export function whole(number: number): string {
@@ -57,4 +53,8 @@ export function metres(number: number): string {
 /** Write a number of bytes. */
 export function bytes(number: number): string {
   return number < 1e6 ? kilobytes.format(number / 1e3) : megabytes.format(number / 1e6)
+}
+
+function inUnits(unit: string, maximumFractionDigits: number): Intl.NumberFormat {
+  return new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit, unitDisplay: 'short', maximumFractionDigits })
 }

@@ -15,7 +15,7 @@ export const scoreText = {
     trunk_level: 'The trunk stroke does not go up.',
     outside_photo: 'Strokes lie outside the photo.',
     crown_unclear: 'The crown looks much like what is around it.',
-    kind_unsure: 'It is unclear whether the tree has leaves. Choose it under Foliage in Settings.',
+    kind_unsure: 'It is unclear whether the tree has leaves. Choose Foliage in Settings.',
   } as Readonly<Record<string, string>>,
   /** By the least silhouette fit that each needs, the best first. */
   words: [
@@ -28,7 +28,7 @@ export const scoreText = {
   sketchWords: [
     [0.98, 'The tree follows your strokes.'],
     [0.9, 'The tree follows nearly all of your strokes.'],
-    [0, 'Some strokes are not in the tree. Begin each branch on its parent branch.'],
+    [0, 'Some strokes are missing. Begin each branch on its parent branch.'],
   ] as readonly (readonly [number, string])[],
   rows: {
     frontCovered: ['Front strokes covered', 'How many of them the tree covers, seen from the front.'],
@@ -36,10 +36,10 @@ export const scoreText = {
     frontTrue: ['Drawn on the front', 'How much of its main branches you drew there.'],
     sideTrue: ['Drawn on the side', 'How much of its main branches you drew there.'],
     paired: ['Found on both sheets', 'Front branches that match a branch of the side.'],
-    inPlanes: ['Flat branches', 'Main branches that lie in the plane of a sheet. Fewer is better.'],
+    inPlanes: ['Flat branches', 'Main branches that lie flat in a sheet. Fewer is better.'],
     silhouette: ['Silhouette', 'How much of the outline agrees with the photo or the sketch.'],
     reached: ['Leaves reached', 'How many leafy places of the photo a twig reaches.'],
-    depth: ['Depth', 'Depth over width. It is near 1 for a tree that stands alone.'],
+    depth: ['Depth', 'Depth over width: near 1 for a tree that stands alone.'],
     branches: ['Branches', 'All of them, down to the finest twigs.'],
     leaves: ['Leaves', 'Or tufts of needles.'],
     triangles: ['Triangles', 'What a game or a renderer has to draw.'],

@@ -29,7 +29,7 @@ export const settingsText = {
     remove: 'Remove',
     leaf: {
       label: 'Your own leaf',
-      why: 'A PNG of one leaf: transparent background, stalk at the bottom. It replaces the tree’s leaves.',
+      why: 'One leaf, stalk down, as a PNG with a transparent background.',
       choose: 'Choose a picture',
       shown: 'Your leaf',
       added: 'Your leaf is added.',
@@ -37,7 +37,7 @@ export const settingsText = {
     },
     fruit: {
       label: 'Your own fruit',
-      why: 'A PNG of one fruit: transparent background, stalk at the top. Fruits hang among the leaves.',
+      why: 'One fruit, stalk up, as a PNG with a transparent background.',
       choose: 'Choose a fruit',
       shown: 'Your fruit',
       added: 'Your fruit is added.',
@@ -49,7 +49,7 @@ export const settingsText = {
     height: {
       label: 'Height',
       unit: 'm',
-      why: 'From the ground to the highest leaf. It sets the scale of the file.',
+      why: 'From the ground to the highest leaf. Sets the file’s scale.',
     },
     library: {
       label: 'Branch patterns',
@@ -70,7 +70,7 @@ export const settingsText = {
     variants: {
       label: 'Trees',
       unit: 'trees',
-      why: 'How many different trees to grow. Each needs as long as the first.',
+      why: 'How many different trees to grow. Each needs the same time.',
     },
     species: {
       label: 'Species',
@@ -116,7 +116,7 @@ export const settingsText = {
     leaf_density: {
       label: 'Leaf density',
       unit: '×',
-      why: '1 is as dense as in the photo. 0 leaves the twigs bare.',
+      why: '1 is as in the photo. 0 leaves the twigs bare.',
     },
     wind: {
       label: 'Wind',
@@ -130,7 +130,7 @@ export const settingsText = {
     },
     compress: {
       label: 'Compress the GLB',
-      why: 'About a third of the size. Some programs cannot read meshopt and WebP.',
+      why: 'A third of the size. Some programs cannot read meshopt or WebP.',
     },
     files: {
       label: 'More formats',

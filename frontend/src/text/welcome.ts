@@ -1,7 +1,4 @@
-import { LANGUAGE } from './plural'
-
-const percent = new Intl.NumberFormat(LANGUAGE, { style: 'percent', maximumFractionDigits: 0 })
-const inMegabytes = new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit: 'megabyte', maximumFractionDigits: 1 })
+import { bytes, percent } from './numbers'
 
 /** What is said around the drawing: the start, the header, the gallery, notices and faults. */
 export const welcomeText = {
@@ -47,7 +44,7 @@ export const welcomeText = {
     skip: 'Skip to the content',
     saved: (name: string) => `Saved as ${name}.`,
     title: (name: string) => `${name} – treestroke`,
-    growing: (share: number, name: string) => `${percent.format(share)} – ${name}`,
+    growing: (share: number, name: string) => `${percent(share)} – ${name}`,
     leave: 'This drawing could not be saved in the browser. Leave and lose it?',
   },
   examples: {
@@ -84,7 +81,7 @@ export const welcomeText = {
     restored: (name: string) => `${name} is back.`,
     undo: 'Undo',
     status: { queued: 'In the queue', failed: 'Failed', canceled: 'Canceled' },
-    growing: (share: number) => `Growing · ${percent.format(share)}`,
+    growing: (share: number) => `Growing · ${percent(share)}`,
     justNow: 'just now',
   },
   notices: {
@@ -98,8 +95,8 @@ export const welcomeText = {
     projectUnreadable: 'This project file is damaged. Save it again where you made it.',
     sketchUnreadable:
       'This drawing cannot be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',
-    fileTooLarge: (megabytes: number, most: number) =>
-      `This file has ${inMegabytes.format(megabytes)}, but at most ${inMegabytes.format(most)} are allowed. Make the picture smaller.`,
+    fileTooLarge: (size: number, most: number) =>
+      `This file has ${bytes(size)}, but at most ${bytes(most)} are allowed. Make the picture smaller.`,
     /** In place of the service's own words, by its codes. */
     codes: {
       trunk_outside_crown: 'The trunk does not reach the crown. Draw it from the ground up into the leaves.',

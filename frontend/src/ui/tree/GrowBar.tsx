@@ -9,7 +9,7 @@ import { DownloadsPanel, hasDownloads, TreeLink } from './DownloadsPanel'
 import { AnotherButton, GrowButton } from './growButtons'
 import { canGrow, growthStatusOf, isBusy } from './growthStatus'
 import { detailsOf, sentenceOf } from './growthText'
-import { opening } from './Panel'
+import { openerAttributes } from './Panel'
 import { ScorePanel } from './ScorePanel'
 import { SettingsPanel, type SettingsView } from './SettingsPanel'
 import './growBar.css'
@@ -59,7 +59,13 @@ interface OpenerProps {
 
 function Opener({ panel, label, hidden = false, children }: OpenerProps) {
   return (
-    <button type="button" class={`button outlined ${panel}-opener`} title={label} hidden={hidden} {...opening(panel)}>
+    <button
+      type="button"
+      class={`button outlined ${panel}-opener`}
+      title={label}
+      hidden={hidden}
+      {...openerAttributes(panel)}
+    >
       {children}
       <span class="opener-words">{label}</span>
     </button>
@@ -110,7 +116,7 @@ function StatusLine({ grow }: { readonly grow: RefObject<HTMLButtonElement | nul
       <LineButton shown={isFault && canGrow(status)} next={grow} onClick={() => void grower.grow()}>
         {text.grow.tryAgain}
       </LineButton>
-      <LineButton shown={isGrown && !isBusy(status) && !isFault} next={grow} {...opening('score')}>
+      <LineButton shown={isGrown && !isBusy(status) && !isFault} next={grow} {...openerAttributes('score')}>
         {text.score.details}
       </LineButton>
     </div>

@@ -46,7 +46,7 @@ export function Panel({ id, title, panelRef, closed, children }: Props) {
 }
 
 /** Return the attributes of a button that opens and closes the panel with this id. */
-export function opening(id: string): ButtonHTMLAttributes {
+export function openerAttributes(id: string): ButtonHTMLAttributes {
   return { popovertarget: id, 'aria-haspopup': 'dialog' }
 }
 

@@ -149,7 +149,7 @@ function countOf({ model }: State): number {
   return model?.glb ? variantsOf(model.info) : 0
 }
 
-/** The choice between no wind and the winds of the file; where it has none, the way to where they are chosen. */
+/** The choice between no wind and the winds of the file; where it has none, a button that leads to their settings. */
 export function WindSwitch({ status, preview, toSettings }: Props & { toSettings(): void }) {
   const { wind: words } = text.preview
   const isTree = status.shows === 'model' && status.webgl !== 'absent'

@@ -4,7 +4,7 @@ import { endOf, stepOf } from './growthText'
 
 const PAUSE_MS = 2500
 
-/** Have screen readers say a tree's steps, not more often than one can listen to, and always its end; the call ends it. */
+/** Have screen readers say a tree's steps, no oftener than one can listen to, and always its end; the call ends it. */
 export function announceGrowth(store: Store, now = () => performance.now()): () => void {
   let spoken = Number.NEGATIVE_INFINITY
   let awaited = false

@@ -20,6 +20,7 @@ interface Frame extends FieldText {
   readonly children: ComponentChildren
 }
 
+/** What is chosen now, and how to choose something else. */
 interface Chosen<T> {
   readonly chosen: T
   choose(value: T): void
@@ -27,7 +28,7 @@ interface Chosen<T> {
 
 interface NumberProps extends FieldText, Chosen<number> {
   readonly span: Span
-  /** While this stays the same, so does what was written, though it may not be a number that can be chosen. */
+  /** As long as this is the same, a half-written number stays in the field. */
   readonly since: unknown
   readonly slides?: boolean
   readonly disabled?: boolean
@@ -41,7 +42,7 @@ export type Choice = readonly [name: string, label: string]
 
 const PLACES = 1000
 
-/** A field for a number, mostly with a slider; what cannot be chosen is said there and not chosen. */
+/** A field for a number, with a slider unless `slides` is false; it says what is wrong with a number it refuses. */
 export function NumberField({ span, chosen, choose, since, slides = true, disabled = false, ...props }: NumberProps) {
   const { children, note, ...words } = props
   const [draft, setDraft] = useState({ written: '', since: {} as unknown, isDone: false })
@@ -88,6 +89,10 @@ export function NumberField({ span, chosen, choose, since, slides = true, disabl
   )
 }
 
+interface SelectProps extends FieldText, Chosen<string> {
+  readonly choices: readonly Choice[]
+}
+
 /** A field for one of a few names. */
 export function SelectField({ choices, chosen, choose, ...words }: SelectProps) {
   return (
@@ -101,10 +106,6 @@ export function SelectField({ choices, chosen, choose, ...words }: SelectProps) 
       </select>
     </FieldFrame>
   )
-}
-
-interface SelectProps extends FieldText, Chosen<string> {
-  readonly choices: readonly Choice[]
 }
 
 /** A field for yes and no. */

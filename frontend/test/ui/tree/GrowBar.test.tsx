@@ -94,7 +94,7 @@ test('a failure says why and can be tried again', () => {
   expect(asked).toHaveBeenCalledOnce()
 })
 
-test('every file of a tree can be taken away, those of a later service too, under the name of the drawing', () => {
+test('every file of a tree can be downloaded, those of a later service too, under the name of the drawing', () => {
   draw()
   set({ model: shownModel({ status: 'succeeded', name: 'Old oak', files }) })
   const links = [...bar.querySelectorAll<HTMLAnchorElement>('.panel a')]
@@ -105,7 +105,7 @@ test('every file of a tree can be taken away, those of a later service too, unde
   ])
 })
 
-test('without anything drawn there is nothing to take away', () => {
+test('without anything drawn there is nothing to download', () => {
   const opener = bar.querySelector<HTMLElement>('.downloads-opener')!
   expect(opener.hidden).toBe(true)
   draw()
@@ -122,7 +122,7 @@ test('downloads follow the tree that was chosen, and say which it is', () => {
   expect(bar.querySelector<HTMLAnchorElement>('.tree-link')!.getAttribute('href')).toBe('/m/tree.v2.glb')
 })
 
-test('the way to more formats leads to the settings of files', () => {
+test('More formats leads to the settings of files', () => {
   draw()
   set({ model: shownModel({ status: 'succeeded', files }) })
   bar.querySelector<HTMLElement>('.more-formats')!.click()

@@ -3,9 +3,10 @@ import 'fake-indexeddb/auto'
 import { act } from 'preact/test-utils'
 import { beforeEach, expect, test, vi } from 'vitest'
 import { NOTHING_SHOWN, type PreviewStatus } from '../../../src/preview/status'
+import { paper } from '../../../src/sheets'
 import { Studio } from '../../../src/studio/studio'
-import { VariantChoice, WindSwitch } from '../../../src/ui/tree/PreviewButtons'
-import { shownModel } from '../../builders'
+import { PreviewButtons, ShowsSwitch, VariantChoice, WindSwitch } from '../../../src/ui/tree/PreviewButtons'
+import { grown, shownModel, sketchSheets } from '../../builders'
 import { mount, redraw } from './mount'
 
 function choiceOf(count: number) {
@@ -42,6 +43,7 @@ test('many trees are chosen from a list', () => {
 
 const TREE = { ...NOTHING_SHOWN, shows: 'model', winds: ['breeze', 'gust'], wind: null } as const
 let blown: (string | null)[]
+const preview = { view: () => {}, setLeaves: () => {}, zoom: () => {}, blow: (wind: string | null) => blown.push(wind) }
 let settings: number
 let host: HTMLElement
 const studio = new Studio()
@@ -81,7 +83,7 @@ test('a file with wind has a button for each, and one for none', () => {
   expect(pressed()).toEqual(['Gust'])
 })
 
-test('a file without wind shows the way to the settings instead', () => {
+test('a file without wind leads to the settings instead', () => {
   show({ ...TREE, winds: [] })
   expect(hidden()).toEqual([true, false])
   host.querySelector<HTMLElement>('.no-wind button')!.click()
@@ -91,4 +93,48 @@ test('a file without wind shows the way to the settings instead', () => {
 test('where no tree is shown there is neither', () => {
   show({ ...TREE, shows: 'live', winds: [] })
   expect(hidden()).toEqual([true, true])
+})
+
+test('live skeleton and grown tree can be switched where there are both', () => {
+  const both = new Studio()
+  const shows = () => mount(both, <ShowsSwitch />).querySelector<HTMLElement>('.shows')!
+  both.store.set({ liveTree: grown() })
+  expect(shows().hidden).toBe(true)
+  both.store.set({ model: shownModel({ status: 'succeeded' }, { glb: new ArrayBuffer(4) }), shows: 'model' })
+  const buttons = [...shows().querySelectorAll('button')]
+  expect(buttons.map(one => one.getAttribute('aria-pressed'))).toEqual(['false', 'true'])
+  void act(() => buttons[0]!.click())
+  expect([both.store.state.shows, buttons.map(one => one.getAttribute('aria-pressed'))]).toEqual([
+    'live',
+    ['true', 'false'],
+  ])
+})
+
+test('views and tools are hidden without a tree; the first view is named after what lies under it', () => {
+  const status = { ...NOTHING_SHOWN, shows: 'live', view: 'side' } as const
+  const tools = (shown: PreviewStatus) =>
+    redraw(
+      host,
+      studio,
+      <PreviewButtons status={shown} preview={() => ({ ...preview, view: name => seen.push(name) })} />,
+    )
+  const seen: string[] = []
+  tools(NOTHING_SHOWN)
+  expect([...host.querySelectorAll<HTMLElement>('.overlay')].map(one => one.hidden)).toEqual([true, true, true])
+  tools(status)
+  const views = [...host.querySelectorAll<HTMLElement>('.views button')]
+  expect(views.map(one => [one.textContent, one.getAttribute('aria-pressed')])).toEqual([
+    ...[
+      ['Photo', 'false'],
+      ['Front', 'false'],
+      ['Side', 'true'],
+      ['Back', 'false'],
+      ['Top', 'false'],
+    ],
+  ])
+  expect(host.querySelector('select')!.value).toBe('side')
+  views[4]!.click()
+  expect(seen).toEqual(['top'])
+  void act(() => studio.store.set({ sheets: sketchSheets(paper()) }))
+  expect(views[0]!.textContent).toBe('Drawing')
 })

@@ -13,7 +13,7 @@ const FILES = ['obj', 'usdz', 'moss']
 const settings: Limits['settings'] = {
   height: { default: 12, meaning: 'metres', min: 0.1, max: 150, whole: false },
   iterations: { default: 300, meaning: 'rounds of growth', min: 0, max: 2000, whole: true },
-  foliage: { default: 'auto', meaning: 'what the twigs bear', names: ['auto', 'leaves', 'moss'] },
+  foliage: { default: 'auto', meaning: 'what grows on the twigs', names: ['auto', 'leaves', 'moss'] },
   wind_speed: { default: 0, meaning: 'how hard it blows', min: 0, max: 1, whole: false },
   species: { default: 'auto', meaning: 'shape of leaves', names: ['auto', 'oak'], group: 'leaves' },
   season: { default: 'photo', meaning: 'colour of leaves', names: ['photo', 'autumn'], group: 'leaves' },
@@ -100,6 +100,19 @@ test('reset gives the defaults of the service', () => {
   void act(() => panel.querySelector<HTMLButtonElement>('.settings-foot button')!.click())
   expect(studio.store.state.settings).toMatchObject({ height: 12, iterations: 300, foliage: 'auto', wind_speed: 0 })
   expect([field('height').value, said('height')]).toEqual(['12', ''])
+})
+
+test('what was written and not chosen is gone after a reset, and after the panel was closed', () => {
+  const fill = () => {
+    write('height', '900')
+    expect([field('height').value, said('height')]).toEqual(['900', 'Enter a number from 0.1 to 150.'])
+  }
+  fill()
+  void act(() => studio.store.set({ settings: { ...studio.store.state.settings } }))
+  expect([field('height').value, said('height')]).toEqual(['10', ''])
+  fill()
+  fire(panel.querySelector('#settings')!, Object.assign(new Event('toggle'), { newState: 'closed' }))
+  expect([field('height').value, said('height')]).toEqual(['10', ''])
 })
 
 test('the seed is a whole number from 0', () => {

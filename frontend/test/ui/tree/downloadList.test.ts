@@ -9,7 +9,7 @@ const grown = model({ name: 'Oak', files, report: { counts: { bytes: 5_000_000 }
 test('every file has a name, what it is good for, and its size where it is known', () => {
   const downloads = downloadsOf(grown, 1)
   expect(downloads.map(({ group, label, size }) => [group, label, size])).toEqual([
-    ['tree', '3D tree', '5.0 MB'],
+    ['tree', '3D tree', '5 MB'],
     ['levels', 'Far away', undefined],
     ['formats', 'Wavefront OBJ', undefined],
     ['formats', 'moss', undefined],

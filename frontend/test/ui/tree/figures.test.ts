@@ -58,6 +58,6 @@ test('a sketched tree is told by how much of the strokes is in it', () => {
   ])
   const both = { ...alone, score: { ...score, side_covered: 0.85 } }
   expect(matchOf(both)).toBe('98% of the front strokes and 85% of the side strokes are in the tree')
-  expect(judgementOf(both)).toContain('strokes are not in the tree')
+  expect(judgementOf(both)).toContain('strokes are missing')
   expect(matchOf({ ...both, score: { ...score, side_covered: 0.98 } })).toContain('98% of the strokes of both sides')
 })
