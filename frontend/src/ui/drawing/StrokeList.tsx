@@ -28,6 +28,7 @@ export function StrokeList() {
 function StrokeRows({ refs }: { readonly refs: readonly StrokeRef[] }) {
   const strokes = useStore(({ history }) => history.present)
   const list = useRef<HTMLUListElement>(null)
+  // Found before the rows change: a row that is removed loses the focus.
   const focused = [...(list.current?.children ?? [])].findIndex(row => row.contains(document.activeElement))
   useLayoutEffect(() => {
     if (focused < 0 || list.current!.contains(document.activeElement)) return
