@@ -190,7 +190,8 @@ export class Store {
 
   /** Have screen readers say a sentence. */
   announce(announcement: string): void {
-    this.set({ announcement })
+    // A region whose text stays the same is not read again.
+    this.set({ announcement: announcement === this.#state.announcement ? `${announcement}\u00a0` : announcement })
   }
 
   /** Show a notice; returns a function that dismisses it. */

@@ -27,3 +27,11 @@ test('removing a fault that is not there calls no watcher', () => {
   store.fault('photo', null)
   expect(listener).toHaveBeenCalledTimes(1)
 })
+
+test('a sentence that is announced again changes the announcement, so that it is read again', () => {
+  const store = new Store()
+  const told = vi.fn()
+  store.watch(state => state.announcement, told)
+  for (let times = 0; times < 3; times++) store.announce('Undone.')
+  expect(told.mock.calls.flat().map(said => said.trim())).toEqual(['', 'Undone.', 'Undone.', 'Undone.'])
+})

@@ -1,7 +1,7 @@
 import { metres, percent, whole } from './numbers'
 import { plural } from './plural'
 
-/** What is said where strokes are drawn. */
+/** Texts of the drawing pane. */
 export const drawingText = {
   workspace: {
     drawing: 'Drawing',

@@ -1,11 +1,11 @@
 import { whole } from './numbers'
 import { plural } from './plural'
 
-/** What is said of the two sheets, the front's and the left side's. */
+/** Texts about the two sheets, the front and the left side. */
 export const sheetsText = {
   front: 'Front',
   side: 'Left side',
-  /** In which direction each is seen. */
+  /** The direction of view. */
   seen: {
     front: 'Seen from the front',
     side: 'Seen from its left, front at the right',
@@ -18,17 +18,17 @@ export const sheetsText = {
   canvasKeys:
     'Arrow keys move the pen. Hold Shift for small steps. Enter puts the pen down or lifts it. B chooses Branch, C Crown. Square brackets change the brush. S goes to the other sheet. Escape cancels the stroke.',
   activated: { front: 'Front sheet.', side: 'Left side sheet.' },
-  /** At the lines that run through both sheets. */
+  /** At the lines that cross both sheets. */
   levels: { root: 'ground', top: 'treetop' },
-  /** Beside the dotted lines of a side that was drawn with another height. */
+  /** At the dotted lines of a side that was drawn larger or smaller. */
   stray: 'drawn to here, will be scaled',
   on: (stroke: string) => `${stroke} (left side)`,
   addPicture: 'Add a photo to draw over',
   openDrawing: 'Open a drawing',
   opened: 'Drawing opened.',
-  /** Where a picture is dropped: what comes of it, and what for. */
+  /** What a dropped picture becomes, and what follows. */
   drop: {
-    lay: ['Add it to this sheet', 'You draw over the photo.'],
+    picture: ['Add it to this sheet', 'You draw over the photo.'],
     photo: ['Open it as a photo', 'You draw over its tree.'],
     drawing: ['Open it as a drawing', 'You add to its strokes.'],
   },

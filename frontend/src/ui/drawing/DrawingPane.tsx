@@ -1,14 +1,13 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks'
 import { useStore, useStudio } from '../parts/useStore'
-import { DrawingFoot } from './DrawingFoot'
+import { DrawingFoot, ZoomBar } from './DrawingFoot'
 import { HintLine } from './HintLine'
 import { Sheets } from './Sheets'
 import { SheetSketches, type Views } from './sheetSketches'
 import { listenToShortcuts } from './shortcuts'
 import { Toolbar } from './Toolbar'
-import { ZoomBar } from './ZoomBar'
 
-/** The sheets, the tools to draw on them, and what comes next. */
+/** The sheets, the tools to draw on them, and the hint. */
 export function DrawingPane() {
   const studio = useStudio()
   const active = useStore(state => state.active)
@@ -22,7 +21,7 @@ export function DrawingPane() {
     turned.current = Boolean(studio.store.state.sheets?.side)
     studio.sheets.activate(studio.store.state.active === 'front' ? 'side' : 'front')
   }
-  // A phone shows the other sheet only now: it could not take the focus before.
+  // A small screen shows the other sheet only after this render: before, it cannot have the focus.
   useLayoutEffect(() => {
     if (turned.current) sketches.focus(active)
     turned.current = false

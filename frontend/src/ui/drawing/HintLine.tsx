@@ -5,7 +5,7 @@ import { useStore, useStudio } from '../parts/useStore'
 import { type Hint, hintOf } from './hint'
 import './hintLine.css'
 
-/** The one line that says what comes next, with what can be done about it at once. */
+/** The hint, with buttons for what can be done about it. */
 export function HintLine() {
   const pointer = usePointer()
   const hint = hintOf(
@@ -17,7 +17,7 @@ export function HintLine() {
     <div class={isTracing ? 'hint-row is-tracing' : 'hint-row'}>
       <div class="hint-over">
         <div class="hint" data-tone={hint.tone}>
-          {/* An alert is heard when it comes into the page. */}
+          {/* A screen reader reads an alert when it is added to the page. */}
           <p key={hint.tone} class="hint-text" role={hint.tone === 'fault' ? 'alert' : undefined}>
             <strong>{hint.text}</strong>
             {hint.how && <span class="hint-how"> {hint.how}</span>}
@@ -32,7 +32,7 @@ export function HintLine() {
   )
 }
 
-/** Return the kind of pointer that was used last; before that, the one that the device is made for. */
+/** Return the kind of pointer that was used last; before that, the device's main one. */
 function usePointer(): PointerKind {
   const [pointer, setPointer] = useState<PointerKind>(matchMedia('(pointer: coarse)').matches ? 'touch' : 'mouse')
   useLayoutEffect(() => {
@@ -43,7 +43,7 @@ function usePointer(): PointerKind {
   return pointer
 }
 
-/** Return the kind of a pointer; what a phone takes for a mouse, or does not know, is a finger. */
+/** Return the kind of a pointer; without a mouse, one that is reported as a mouse is a finger. */
 function kindOf(pointerType: string): PointerKind {
   if (pointerType === 'touch' || pointerType === 'pen') return pointerType
   return matchMedia('(any-pointer: fine)').matches ? 'mouse' : 'touch'

@@ -1,3 +1,4 @@
+import type { ComponentChildren } from 'preact'
 import { useLayoutEffect, useRef, useState } from 'preact/hooks'
 import { labelPlace } from '../../sketch/lengthLabel'
 import { type View, within } from '../../sketch/viewport'
@@ -10,19 +11,19 @@ import { numberIn } from '../parts/spans'
 import { useStore, useStudio } from '../parts/useStore'
 import './lengthField.css'
 
-/** Metres that a line may be said to have; what makes no tree of it is for the service to refuse. */
+/** The lengths that can be entered, metres. */
 const SPAN = { min: 0.001, max: 1000, whole: false }
-/** The field stays as far inside the window, CSS px. */
+/** The least distance between the field and the edge of its sheet, CSS px. */
 const MARGIN = 6
 
 interface Props {
-  /** Where the sheet lies; null before it is seen. */
+  /** The view of its sheet; null before there is one. */
   readonly view: View | null
-  /** Give the focus back to the sheet. */
+  /** Move the focus back to the sheet. */
   leave(): void
 }
 
-/** The length of the measured line, at the line while it is selected. */
+/** The field for the length of the measured line, beside the line while that is selected. */
 export function LengthField(props: Props) {
   const { store } = useStudio()
   const scale = useStore(selectedScale)
@@ -34,20 +35,16 @@ export function LengthField(props: Props) {
   return scale && <LengthInput key={scale.points} {...props} scale={scale} asks={asks} />
 }
 
-/** The field itself; it takes the focus where it `asks` for the length of a new line. */
+/** The field itself; where it `asks` for the length of a new line it gets the focus. */
 function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Scale; readonly asks: boolean }) {
   const { strokes } = useStudio()
   const [written, write] = useState(String(scale.metres))
   const [isWrong, setWrong] = useState(false)
-  const element = useRef<HTMLDivElement>(null)
   const field = useRef<HTMLInputElement>(null)
   useLayoutEffect(() => {
     write(String(scale.metres))
     setWrong(false)
   }, [scale])
-  useLayoutEffect(() => {
-    if (view) placeAt(element.current!, scale, view)
-  }, [scale, view])
   useLayoutEffect(() => {
     if (asks) field.current!.focus({ preventScroll: true })
     if (asks) field.current!.select()
@@ -62,12 +59,12 @@ function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Sca
     if (event.key !== 'Enter' && event.key !== 'Escape') return
     event.preventDefault()
     if (event.key === 'Enter' && !commit()) return
-    field.current!.value = String(scale.metres) // what was written and is not meant would count as a change
+    field.current!.value = String(scale.metres) // else leaving the field would commit what was typed
     strokes.select(null)
     leave()
   }
   return (
-    <div class="length-field" ref={element}>
+    <BesideLine scale={scale} view={view}>
       <div>
         <input
           type="text"
@@ -87,6 +84,25 @@ function LengthInput({ view, leave, scale, asks }: Props & { readonly scale: Sca
       <p class="length-wrong" role="alert">
         {isWrong && text.length.wrong(SPAN.min, SPAN.max)}
       </p>
+    </BesideLine>
+  )
+}
+
+interface BesideProps {
+  readonly scale: Scale
+  readonly view: View | null
+  readonly children: ComponentChildren
+}
+
+/** A box that stays beside the measured line when the sheet is moved. */
+function BesideLine({ scale, view, children }: BesideProps) {
+  const element = useRef<HTMLDivElement>(null)
+  useLayoutEffect(() => {
+    if (view) placeAt(element.current!, scale, view)
+  }, [scale, view])
+  return (
+    <div class="length-field" ref={element}>
+      {children}
     </div>
   )
 }
@@ -95,7 +111,7 @@ function selectedScale({ selection, history }: State): Scale | null {
   return selection?.kind === 'scale' ? history.present.scale : null
 }
 
-/** Whether the measured line is what was drawn last, so that its length is what comes next. */
+/** Whether the measured line was drawn last, so that its length is asked for. */
 function isLatest({ history }: State): boolean {
   const before = history.past.at(-1)
   return before !== undefined && before.scale?.points !== history.present.scale?.points

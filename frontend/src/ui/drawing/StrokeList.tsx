@@ -24,10 +24,11 @@ export function StrokeList() {
   )
 }
 
-/** One row for each stroke; the focus stays near where it was when the rows change beneath it. */
+/** One row for each stroke; the focus moves to a neighbour when its row is removed. */
 function StrokeRows({ refs }: { readonly refs: readonly StrokeRef[] }) {
   const strokes = useStore(({ history }) => history.present)
   const list = useRef<HTMLUListElement>(null)
+  // Found before the rows change: a row that is removed loses the focus.
   const focused = [...(list.current?.children ?? [])].findIndex(row => row.contains(document.activeElement))
   useLayoutEffect(() => {
     if (focused < 0 || list.current!.contains(document.activeElement)) return

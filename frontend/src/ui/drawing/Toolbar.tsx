@@ -11,7 +11,7 @@ import './toolbar.css'
 const TOOLS = ['crown', 'branch', 'scale', 'select'] as const
 const KEYS: Readonly<Record<Tool, string>> = { crown: 'C', branch: 'B', scale: 'M', select: 'V' }
 
-/** The bar of the drawing tools, and of what can be done with strokes. */
+/** The drawing tools, and the buttons that edit strokes. */
 export function Toolbar() {
   const { strokes } = useStudio()
   const { tools: words } = text
@@ -52,7 +52,7 @@ export function Toolbar() {
 
 function ToolButton({ tool }: { readonly tool: Tool }) {
   const { strokes } = useStudio()
-  const isHeld = useStore(state => state.tool === tool)
+  const isChosen = useStore(state => state.tool === tool)
   const isSketch = useStore(({ sheets }) => sheets?.source === 'sketch')
   return (
     <button
@@ -61,8 +61,8 @@ function ToolButton({ tool }: { readonly tool: Tool }) {
       data-tool={tool}
       title={text.tools.withKey(text.tools[tool], KEYS[tool])}
       aria-keyshortcuts={KEYS[tool]}
-      aria-pressed={isHeld}
-      hidden={tool === 'scale' && isSketch} // paper has no measure
+      aria-pressed={isChosen}
+      hidden={tool === 'scale' && isSketch} // lengths are measured on photos only
       onClick={() => strokes.hold(tool)}
     >
       <Icon path={ICONS[tool]} />
@@ -78,7 +78,7 @@ interface EditProps {
   edit(): void
 }
 
-/** A button that is dimmed while it can do nothing, but stays where the focus can rest on it. */
+/** A button that is dimmed while it can do nothing, but keeps the focus. */
 function EditButton({ label, icon, canEdit, edit }: EditProps) {
   const isPossible = useStore(canEdit)
   return (

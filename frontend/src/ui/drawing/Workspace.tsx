@@ -5,12 +5,11 @@ import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
 import { TreePane } from '../tree/TreePane'
 import { announceDrawing } from './announcements'
-import { Divider } from './Divider'
 import { DrawingPane } from './DrawingPane'
 import './workspace.css'
 
 type Shown = 'drawing' | 'both' | 'tree'
-/** What the switch gives the whole height of a phone: with one sheet, and with two. */
+/** What the switch on a phone offers, with one sheet and with two. */
 type Choice = Shown | SheetName
 const ONE_SHEET: readonly Choice[] = ['drawing', 'both', 'tree']
 const TWO_SHEETS: readonly Choice[] = ['front', 'side', 'tree']
@@ -20,7 +19,13 @@ const LABELS: Readonly<Record<Choice, string>> = {
   ...text.sheets.tabs,
 }
 
-/** The drawing and the tree beside each other; both stay while the page does, hidden while nothing is open. */
+/** The drawing's share of the width, per cent; the first is also in the stylesheet. */
+const SPLIT = 55
+const MIN_SPLIT = 30
+const MAX_SPLIT = 75
+const SPLIT_STEP = 5
+
+/** The drawing beside the tree; hidden, not removed, while nothing is open. */
 export function Workspace() {
   const { store } = useStudio()
   const isOpen = useStore(({ sheets }) => sheets !== null)
@@ -50,7 +55,7 @@ export function Workspace() {
   )
 }
 
-/** Keep what a phone shows: two sheets leave no room for the tree beside them, until it is asked for. */
+/** Return what a phone shows, and how to set it: two sheets leave no room for the tree until one is grown. */
 function useShown(hasSide: boolean): [Shown, (shown: Shown) => void] {
   const [shown, show] = useState<Shown>('both')
   const isAsked = useStore(({ asking }) => asking) && hasSide
@@ -61,7 +66,7 @@ function useShown(hasSide: boolean): [Shown, (shown: Shown) => void] {
   return [shown, show]
 }
 
-/** Move the focus to where the work goes on when a drawing is opened or closed, as what was clicked is gone. */
+/** Move the focus to the sheet or back to the page when a drawing is opened or closed, as what was clicked is gone. */
 function useFocusOnOpening(workspace: RefObject<HTMLElement | null>, isOpen: boolean): void {
   const wasOpen = useRef(isOpen)
   useLayoutEffect(() => {
@@ -78,7 +83,7 @@ interface ChooserProps {
   show(shown: Shown): void
 }
 
-/** The switch that gives a sheet or the tree the whole height of a phone. */
+/** The switch for what a phone shows. */
 function PaneChooser({ shown, hasSide, show }: ChooserProps) {
   const { sheets } = useStudio()
   const active = useStore(state => state.active)
@@ -103,5 +108,41 @@ function PaneChooser({ shown, hasSide, show }: ChooserProps) {
         </button>
       ))}
     </div>
+  )
+}
+
+interface DividerProps {
+  /** The share of the first pane, per cent; null until it is moved. */
+  readonly split: number | null
+  move(split: number): void
+}
+
+/** The handle that sets the width of the two panes. */
+function Divider({ split, move }: DividerProps) {
+  const now = split ?? SPLIT
+  const moveTo = (wanted: number) => move(Math.min(MAX_SPLIT, Math.max(MIN_SPLIT, wanted)))
+  const drag = (event: PointerEvent) => {
+    const handle = event.currentTarget as HTMLElement
+    const { left, width } = handle.parentElement!.getBoundingClientRect()
+    if (handle.hasPointerCapture(event.pointerId)) moveTo(((event.clientX - left) / width) * 100)
+  }
+  const press = ({ key }: KeyboardEvent) => {
+    const step = { ArrowLeft: -SPLIT_STEP, ArrowRight: SPLIT_STEP }[key]
+    if (step) moveTo(now + step)
+  }
+  return (
+    <div
+      class="divider"
+      role="separator"
+      tabIndex={0}
+      aria-orientation="vertical"
+      aria-label={text.workspace.divider}
+      aria-valuemin={MIN_SPLIT}
+      aria-valuemax={MAX_SPLIT}
+      aria-valuenow={Math.round(now)}
+      onPointerDown={event => event.currentTarget.setPointerCapture(event.pointerId)}
+      onPointerMove={drag}
+      onKeyDown={press}
+    />
   )
 }

@@ -11,15 +11,15 @@ import { remarkText, strokeName } from './strokeTexts'
 export interface Hint {
   readonly tone: 'step' | 'note' | 'fault'
   readonly text: string
-  /** How the pointer does it. */
+  /** How to do it with the pointer in use. */
   readonly how?: string
-  /** The stroke that can be deleted to be rid of a fault. */
+  /** The stroke at fault, which can be deleted. */
   readonly stroke?: StrokeRef
-  /** What is selected can be deleted. */
+  /** Set where a selection can be deleted. */
   readonly deletes?: true
 }
 
-/** Say what comes next, and how the pointer in use does it. */
+/** Return the next step and how to do it with the pointer in use, or what is wrong. */
 export function hintOf(state: State, pointer: PointerKind): Hint {
   const fault = state.faults.strokes
   if (fault) return { tone: 'fault', text: fault.text, ...(fault.stroke && { stroke: fault.stroke }) }
@@ -29,7 +29,7 @@ export function hintOf(state: State, pointer: PointerKind): Hint {
   return note && !next.deletes ? { tone: 'note', text: note, how: next.text } : next
 }
 
-/** Say what was corrected in what is drawn, as it was read or in the stroke that was drawn last, and what is in doubt. */
+/** Return what was corrected in the drawing or its last stroke, or what is in doubt. */
 function noteOf(state: State): string | null {
   const { corrections, history } = state
   if (corrections?.of === history.present) return corrections.text
@@ -37,7 +37,7 @@ function noteOf(state: State): string | null {
   return said ? remarkText(said) : null
 }
 
-/** Find a remark on the stroke that was drawn last; older ones have been read. */
+/** Find a remark on the stroke that was drawn last; older remarks have been shown. */
 function newRemark(state: State): StrokeRemark | undefined {
   const { present, past } = state.history
   const before = past.at(-1)
@@ -58,7 +58,7 @@ function step(state: State, pointer: PointerKind): Hint {
   return laterStep(state, pointer)
 }
 
-/** Say what comes next on paper; null where nothing is missing any more. */
+/** Return the next step on paper; null once trunk and branches are drawn. */
 function sketchStep(state: State, pointer: PointerKind): Hint | null {
   const { hints } = text.sheets
   const { branches, side } = state.history.present
@@ -67,8 +67,8 @@ function sketchStep(state: State, pointer: PointerKind): Hint | null {
     return stepTo(hints.chooseBranch)
   if (onSide) return sideStep(state, hints.how[pointer])
   if (!branches.length) return stepTo(hints.trunk, hints.how[pointer])
-  const goesOn = branches.length > 1 && !side?.branches.length && !state.model
-  return goesOn ? stepTo(hints.side, hints.sideHow) : null
+  const lacksSide = branches.length > 1 && !side?.branches.length && !state.model
+  return lacksSide ? stepTo(hints.side, hints.sideHow) : null
 }
 
 function sideStep({ sheets, history }: State, how: string): Hint | null {

@@ -7,23 +7,23 @@ import type { Studio } from '../../studio/studio'
 import { text } from '../../text'
 import { announcePen } from './announcements'
 
-/** Where each sheet lies in its window. */
+/** The view of each sheet. */
 export type Views = Readonly<Partial<Record<SheetName, View>>>
 
-/** What can be done to the view of the sheets. */
+/** How the view of the active sheet can be changed. */
 export interface Zoom {
   fit(): void
   actual(): void
   zoom(factor: number): void
 }
 
-/** The sketches on both sheets: each looks where the other does, and the zoom is that of the active one. */
+/** The sketches of both sheets: when one is moved or zoomed, the other follows. */
 export class SheetSketches implements Zoom {
   readonly #sketches: Partial<Record<SheetName, Sketch>> = {}
 
   constructor(
     private readonly studio: Studio,
-    private readonly looked: (name: SheetName, view: View) => void,
+    private readonly viewed: (name: SheetName, view: View) => void,
   ) {}
 
   /** Make the sketch of a sheet in `host`; the call ends it. */
@@ -36,7 +36,7 @@ export class SheetSketches implements Zoom {
     }
   }
 
-  /** Name a sheet by what it is now: a photo or paper. */
+  /** Label a sheet for screen readers by what it is now: a photo or paper. */
   label(name: SheetName): void {
     const { workspace, sheets } = text
     const onPaper = isPaper(this.studio.store.state, name)
@@ -73,13 +73,13 @@ export class SheetSketches implements Zoom {
       drew: (kind, points) => strokes.draw(kind, points, name),
       selected: selection => strokes.select(selection),
       remove: () => strokes.remove(),
-      looked: (view, whole) => this.#look(name, view, whole),
+      looked: (view, whole) => this.#view(name, view, whole),
       said: ({ pen, at }) => announcePen(store, pen, at, sheetOf(store.state, name)!),
     }
   }
 
-  #look(name: SheetName, view: View, whole: boolean): void {
-    this.looked(name, view)
+  #view(name: SheetName, view: View, whole: boolean): void {
+    this.viewed(name, view)
     const { state } = this.studio.store
     const other = name === 'front' ? 'side' : 'front'
     const [own, its] = [sheetOf(state, name), sheetOf(state, other)]

@@ -6,10 +6,10 @@ import { type Command, commandOf } from '../parts/shortcutKeys'
 import { nextBrush } from './DrawingFoot'
 import type { Zoom } from './sheetSketches'
 
-/** Where keys write or have a meaning of their own. */
+/** Elements that use keys themselves. */
 const TYPING = 'input, select, textarea, [contenteditable]'
 
-/** Act on the page's keys, unless they are written into a field, or a dialog is open; the call ends it. */
+/** Run the commands of the page's keys, but not in fields or under a dialog; the call ends it. */
 export function listenToShortcuts(studio: Studio, zoom: Zoom, turnToOther: () => void): () => void {
   const commands = commandsOf(studio, zoom, turnToOther)
   const press = (event: KeyboardEvent) => {
@@ -50,6 +50,6 @@ function commandsOf(studio: Studio, zoom: Zoom, turnToOther: () => void): Readon
 function isFree(event: KeyboardEvent, command: Command): boolean {
   if (event.defaultPrevented || document.querySelector('dialog[open]')) return false
   const target = event.target instanceof Element ? event.target : document.body
-  // The browser's own saving and opening would only be in the way.
+  // The browser would save or open the page itself.
   return ['save', 'open'].includes(command) || !target.closest(TYPING)
 }

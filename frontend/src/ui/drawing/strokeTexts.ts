@@ -2,7 +2,7 @@ import type { StrokeRemark } from '../../doubts'
 import type { Selection } from '../../state'
 import { text } from '../../text'
 
-/** Name a stroke as a person would; the first branch is the trunk. */
+/** Return the name of a stroke; the first branch is the trunk. */
 export function strokeName(selection: Selection): string {
   if ('sheet' in selection) return text.sheets.on(strokeName({ kind: selection.kind, index: selection.index }))
   const { kind } = selection
@@ -13,7 +13,7 @@ export function strokeName(selection: Selection): string {
   return selection.index === 0 ? text.strokes.trunk : text.strokes.branch(selection.index + 1)
 }
 
-/** Put a remark of the service into the page's words. */
+/** Return a remark of the service as a sentence of the page. */
 export function remarkText({ warning: { code, stroke: place, detail }, stroke }: StrokeRemark): string {
   const words: Readonly<Record<string, string | ((stroke: string) => string)>> = {
     ...text.hints.warnings,

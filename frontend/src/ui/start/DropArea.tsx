@@ -111,7 +111,7 @@ function usesOnPage(studio: Studio, types: readonly string[]): readonly Use[] {
 /** What can be done with files dropped on a sheet of paper. */
 function usesOnSheet({ sheets, opener }: Studio, sheet: SheetName, types: readonly string[]): readonly Use[] {
   const { drop } = text.sheets
-  const photo: Use = { words: drop.lay, take: file => void sheets.addPicture(sheet, file) }
+  const photo: Use = { words: drop.picture, take: file => void sheets.addPicture(sheet, file) }
   const drawing: Use = { words: drop.drawing, take: file => void opener.openOn(sheet, file) }
   const isImage = types.some(type => type.startsWith('image/'))
   return usesOf(types, photo, drawing) ?? [isImage ? photo : { words: [text.welcome.drop] }]

@@ -52,7 +52,7 @@ test('a line that is selected shows its length, and Escape leaves it as it was',
   expect([studio.store.strokes.scale?.metres, studio.store.state.selection]).toEqual([2.5, null])
 })
 
-test('what is no length is said there and not taken', async () => {
+test('what is not a length is refused with a message and stays in the field', async () => {
   await draw()
   const before = studio.store.strokes.scale
   for (const written of ['0', 'two', '']) {

@@ -25,7 +25,7 @@ beforeEach(async () => {
   await mount(studio, <Toolbar />)
 })
 
-test('one tool is held, and a click takes another', async () => {
+test('one tool is chosen, and a click chooses another', async () => {
   const held = () => [...document.querySelectorAll<HTMLElement>('[aria-pressed="true"]')].map(one => one.dataset.tool)
   expect(held()).toEqual(['crown'])
   await click(named('Select'))
@@ -33,7 +33,7 @@ test('one tool is held, and a click takes another', async () => {
   expect(studio.store.state.tool).toBe('select')
 })
 
-test('what cannot be done is said to be disabled and does nothing, but keeps the focus', async () => {
+test('a button that can do nothing is marked as disabled, but can have the focus', async () => {
   const undo = named('Undo')
   expect(undo.getAttribute('aria-disabled')).toBe('true')
   expect(undo.disabled).toBe(false)

@@ -27,7 +27,7 @@ test('what was drawn is named', () => {
   expect(editText(trunked, branched)).toBe('Drawn: Branch 2.')
 })
 
-test('a crown drawn anew is a drawn crown, not a deleted one', () => {
+test('a crown drawn again is a drawn crown, not a deleted one', () => {
   expect(editText(crowned, advance(crowned, withStroke(crowned.present, 'crown', [...LOOP])))).toBe('Drawn: Crown.')
 })
 
@@ -47,7 +47,7 @@ test('nothing is said of another drawing', () => {
   expect(editText(branched, begin(withStroke(NO_STROKES, 'crown', LOOP)))).toBeNull()
 })
 
-test('a measured line is named, and its length when that is said', () => {
+test('a measured line is named, and its length when it is entered', () => {
   const lined = advance(trunked, withScale(trunked.present, [...TRUNK], 1))
   const measured = advance(lined, withScale(lined.present, lined.present.scale!.points, 1.8))
   expect([editText(trunked, lined), editText(lined, measured)]).toEqual([
@@ -56,7 +56,7 @@ test('a measured line is named, and its length when that is said', () => {
   ])
 })
 
-test('what is drawn on the other sheet is told as such', () => {
+test('a stroke on the other sheet is named with its sheet', () => {
   const side = withSheet(trunked.present, 'side', withStroke(NO_STROKES, 'branch', [...TRUNK]))
   expect(editText(trunked, advance(trunked, side))).toBe('Drawn: Trunk (left side).')
 })
@@ -65,7 +65,7 @@ test('strokes that come all at once were opened, not drawn', () => {
   expect(editText(empty, advance(empty, branched.present))).toBe('Drawing opened.')
 })
 
-test('tools, sheets and what is selected are said, until the call', () => {
+test('tools, sheets and what is selected are said, until it is ended', () => {
   const store = new Store()
   store.set({ sheets: sketchSheets(paper(), paper()) })
   const end = announceDrawing(store)
@@ -82,7 +82,7 @@ test('tools, sheets and what is selected are said, until the call', () => {
   expect(saidOf({ tool: 'crown' })).toBe('Drawn: Crown.')
 })
 
-test('as many branches are found as the traced skeleton has ends', () => {
+test('the traced branches are counted by the skeleton’s tips', () => {
   const store = new Store()
   const end = announceDrawing(store)
   const { skeleton } = drawnAnswer().front
@@ -91,7 +91,7 @@ test('as many branches are found as the traced skeleton has ends', () => {
   end()
 })
 
-test('the keyboard’s pen is told by shares of the sheet', () => {
+test('the place of the keyboard’s pen is announced as shares of the sheet', () => {
   const store = new Store()
   const said = (pen: 'down' | 'up' | 'move') => {
     announcePen(store, pen, [225, 900], paper())

@@ -23,7 +23,7 @@ const traced = (of: typeof two, ...warnings: StrokeWarning[]) => ({
 })
 const JOINED = { code: 'branch_joined', stroke: 'branches/1', detail: 'it starts 80 px away' }
 
-test('a newcomer is led from the crown to the trunk to the tree', () => {
+test('the hints lead from the crown to the trunk to the tree', () => {
   expect(said({})).toBe(text.hints.crown)
   expect(said({ tool: 'branch', history: begin(crown) })).toBe(text.hints.trunk)
   expect(said({ tool: 'branch', history: begin(trunk) })).toBe(text.hints.waiting)
@@ -40,7 +40,7 @@ test('the finished tree is announced until the strokes change', () => {
   expect(said({ ...done, history: begin(two) })).toBe(text.hints.refine)
 })
 
-test('with the wrong tool in hand the right one is named', () => {
+test('with another tool chosen the right one is named', () => {
   expect(said({ tool: 'branch' })).toBe(text.hints.chooseCrown)
   expect(said({ tool: 'select', history: begin(crown) })).toBe(text.hints.chooseBranch)
 })
@@ -78,7 +78,7 @@ test('a warning that the page does not know is said in the service’s words', (
   expect(said({ tool: 'branch', history, traced: traced(two, unknown) })).toBe('Branch 2: it is odd')
 })
 
-test('a doubt about a stroke is said until it is drawn anew, whatever was drawn since', () => {
+test('a doubt about a stroke is said until it is drawn again, whatever was drawn since', () => {
   const level = { code: 'trunk_level', stroke: 'branches/0', detail: 'it lies level' }
   const outside = { code: 'outside_photo', stroke: 'crown', detail: '40% of it lies outside' }
   const history = advance(begin(trunk), two)
@@ -127,7 +127,7 @@ test('beside a photo the side’s sheet says what it is for', () => {
   expect(beside(withSheet(two, 'side', two))).toBe(hints.mixedGrow)
 })
 
-test('what was mended in reading a drawing is said until it is drawn on', () => {
+test('what was corrected while a drawing was read is said until it is drawn on', () => {
   const corrections = { of: trunk, text: 'Front: 1 gap was closed.' }
   expect(hintOf(state({ tool: 'branch', history: begin(trunk), corrections }), 'mouse')).toEqual({
     tone: 'note',

@@ -61,7 +61,7 @@ test('a PNG that is dropped on the page is a photo above and a drawing below, as
 
 test('a PNG that is dropped on a sheet is laid under it above, and opened on it below', () => {
   store.set({ sheets: sketchSheets(paper(), paper()) })
-  expect(drop(png, side, 390)).toEqual([text.sheets.drop.lay[0]])
+  expect(drop(png, side, 390)).toEqual([text.sheets.drop.picture[0]])
   expect(addPicture.mock.calls).toEqual([['side', png]])
   drop(png, side, 410)
   expect(openOn.mock.calls).toEqual([['side', png]])
