@@ -19,7 +19,7 @@ PORT ?= 8000
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/bytecode
 
-.PHONY: run page test redis chromium check types bench golden readers usd chaos setup
+.PHONY: run page test redis chromium check types pictures bench golden readers usd chaos setup
 .DEFAULT_GOAL := run
 
 # Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
@@ -67,6 +67,10 @@ types: $(STAMP) $(NODE_STAMP)
 
 schema = $(BIN)/python frontend/openapi.py | $(NODE)/.bin/openapi-typescript
 defaults = $(BIN)/python frontend/openapi.py defaults
+
+# The pictures in docs/images that show the page, and the README's first one, by the page as it is.
+pictures: $(STAMP) page chromium
+	$(BIN)/python -m docs.pictures
 
 bench: $(STAMP) page
 	$(BIN)/python -m pytest -q tests/benchmarks --benchmark-only --benchmark-columns=min,median,max,rounds \

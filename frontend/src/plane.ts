@@ -1,56 +1,58 @@
 import type { Line, Point } from './strokes'
 
-/** Two ends of a straight piece. */
+/** A straight segment, by its two ends. */
 export type Piece = readonly [from: Point, to: Point]
 
 export function distance([x, y]: Point, [otherX, otherY]: Point): number {
   return Math.hypot(otherX - x, otherY - y)
 }
 
-/** The point a share of the way along a piece. */
+/** Return the point at a share (0..1) of the way along a segment. */
 export function along([[x, y], [toX, toY]]: Piece, share: number): Point {
   return [x + share * (toX - x), y + share * (toY - y)]
 }
 
-/** The share of a piece's length at which it comes nearest to a place. */
+/** Return the share (0..1) of a segment's length at which it is nearest to a point. */
 export function nearestShare([[x, y], [toX, toY]]: Piece, [across, down]: Point): number {
   const square = (toX - x) ** 2 + (toY - y) ** 2
   if (square === 0) return 0
   return Math.min(Math.max(((across - x) * (toX - x) + (down - y) * (toY - y)) / square, 0), 1)
 }
 
-export function distanceToPiece(piece: Piece, place: Point): number {
-  return distance(along(piece, nearestShare(piece, place)), place)
+export function distanceToPiece(piece: Piece, point: Point): number {
+  return distance(along(piece, nearestShare(piece, point)), point)
 }
 
-/** Distance of a place from a line; a closed one goes back to its start. Infinite where there is no line. */
-export function distanceToLine(line: Line, place: Point, closed = false): number {
+/** Return a point's distance from a line; a closed line returns to its start. Infinite for an empty line. */
+export function distanceToLine(line: Line, point: Point, closed = false): number {
   let least = Number.POSITIVE_INFINITY
   for (let end = closed || line.length === 1 ? 0 : 1; end < line.length; end++) {
     const from = line[end === 0 ? line.length - 1 : end - 1]!
-    least = Math.min(least, distanceToPiece([from, line[end]!], place))
+    least = Math.min(least, distanceToPiece([from, line[end]!], point))
   }
   return least
 }
 
-/** Leave out of a line what lies no further than `apart` from the rest of it; its ends stay. */
-export function simplified(line: Line, apart: number): Line {
+/** Return a line with fewer points, none of the others further than `tolerance` from it (Douglas and Peucker, 1973). */
+export function simplified(line: Line, tolerance: number): Line {
   const [first, last] = [line[0]!, line.at(-1)!]
-  const gaps = line.map(place => distanceToPiece([first, last], place))
+  const gaps = line.map(point => distanceToPiece([first, last], point))
   const bend = gaps.indexOf(gaps.reduce((most, gap) => Math.max(most, gap)))
-  if (gaps[bend]! <= apart) return [first, last]
-  return [...simplified(line.slice(0, bend + 1), apart), ...simplified(line.slice(bend), apart).slice(1)]
+  if (gaps[bend]! <= tolerance) return [first, last]
+  return [...simplified(line.slice(0, bend + 1), tolerance), ...simplified(line.slice(bend), tolerance).slice(1)]
 }
 
-/** Whether two pieces have a point in common. */
+/** Return whether two segments have a point in common. */
 export function cross(one: Piece, other: Piece): boolean {
   return straddles(one, other) && straddles(other, one)
 }
 
+/** Return whether the second segment's ends lie on different sides of the first one's line, or on it. */
 function straddles([from, to]: Piece, [first, last]: Piece): boolean {
   return side(from, to, first) * side(from, to, last) <= 0
 }
 
+/** Return on which side of a line through two points a third one lies: positive, negative, or 0 on the line. */
 function side([x, y]: Point, [toX, toY]: Point, [across, down]: Point): number {
   return (toX - x) * (down - y) - (toY - y) * (across - x)
 }

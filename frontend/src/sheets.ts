@@ -5,24 +5,24 @@ type Open = Pick<State, 'sheets'>
 
 export const SHEET_NAMES = ['front', 'side'] as const
 
-/** Where a tree stands and where it ends, px down its sheet. */
+/** The heights of a tree's root and top on its sheet, px from the sheet's top. */
 export interface Levels {
   readonly root: number
   readonly top: number
 }
 
-/** How wide and high a sheet is, px. */
+/** A sheet's size, px. */
 export interface Extent {
   readonly width: number
   readonly height: number
 }
 
-/** A new sheet of paper, px. */
+/** The size of a new sheet of paper, px. */
 const PAPER: Extent = { width: 900, height: 1200 }
-/** Where a tree is expected on an empty sheet, as shares of its height. */
+/** Where a tree is expected on an empty sheet, as shares of the sheet's height. */
 const EXPECTED: Levels = { root: 0.92, top: 0.08 }
-/** Lines of the side that lie as near to the front's need no mention, as a share of the tree's height. */
-const ALIKE = 0.04
+/** How far the side's levels may differ from the front's unmentioned, as a share of the tree's height. */
+const TOLERANCE = 0.04
 
 /** Return a sheet of white paper, as high as another one where a height is given. */
 export function paper(height = PAPER.height): Sheet {
@@ -34,7 +34,7 @@ export function sheetOfSize({ width, height }: Extent): Sheet {
   return { id: null, width, height, file: null, url: null }
 }
 
-/** Whether the service has the picture that lies under a sheet's strokes. */
+/** Return whether a sheet has a photo that the service has. */
 export function hasPhoto(sheet: Sheet): sheet is PhotoSheet {
   return sheet.id !== null && sheet.file !== null && sheet.url !== null
 }
@@ -44,29 +44,29 @@ export function sheetOf({ sheets }: Open, name: SheetName): Sheet | null {
   return sheets?.[name] ?? null
 }
 
-/** Whether a sheet is paper to sketch on; the photo of a tree that is traced is not. */
+/** Return whether a sheet is paper to sketch on; a photo whose tree is traced is not. */
 export function isPaper({ sheets }: Open, name: SheetName): boolean {
   return sheets?.source === 'sketch' || name === 'side'
 }
 
-/** Put another sheet in the place of the one with this name. */
+/** Return the sheets with one of them replaced; a photo's front is only replaced by another photo. */
 export function replaceSheet(sheets: Sheets, name: SheetName, sheet: Sheet): Sheets {
   if (name === 'side') return { ...sheets, side: sheet }
   if (sheets.source === 'sketch') return { ...sheets, front: sheet }
   return hasPhoto(sheet) ? { ...sheets, front: sheet } : sheets
 }
 
-/** How wide the brush is on a sheet, px; null for a pencil. */
+/** Return the brush's width on a sheet, px; null for a pencil. */
 export function brushWidth({ brush }: Pick<State, 'brush'>, { height }: Extent): number | null {
   return brush === null ? null : Math.round(brush * height * 10) / 10
 }
 
-/** List the names of the sheets that are open. */
+/** Return the names of the open sheets. */
 export function openSheets({ sheets }: Open): readonly SheetName[] {
   return SHEET_NAMES.filter(name => sheets?.[name])
 }
 
-/** Return where a sketched tree stands and ends; null before its first branch. */
+/** Return the heights of a sketched tree's root and top; null before its first branch. */
 export function levelsOf({ branches }: Side): Levels | null {
   const [trunk] = branches
   if (!trunk) return null
@@ -74,7 +74,7 @@ export function levelsOf({ branches }: Side): Levels | null {
   return { root: Math.max(...down(trunk.points)), top: Math.min(...branches.flatMap(({ points }) => down(points))) }
 }
 
-/** Return the lines that run through all sheets, on one of them: those of the front's tree, or where one is expected. */
+/** Return the front's levels, or those of an expected tree, converted to px of one of the sheets. */
 export function commonLevels(state: Open & Pick<State, 'history'>, sheet: SheetName): Levels | null {
   const [front, shown] = [sheetOf(state, 'front'), sheetOf(state, sheet)]
   if (!front || !shown) return null
@@ -82,16 +82,16 @@ export function commonLevels(state: Open & Pick<State, 'history'>, sheet: SheetN
   return scaled({ root, top }, shown.height / front.height)
 }
 
-/** Return the side's own lines where they lie elsewhere: its drawing will be scaled to the front's height. */
+/** Return the side's own levels if they differ from the front's, to which its drawing will be scaled; else null. */
 export function strayLevels(state: Open & Pick<State, 'history'>): Levels | null {
   const common = commonLevels(state, 'side')
   const own = levelsOf(onSheet(state.history.present, 'side'))
   if (!common || !own) return null
   const apart = Math.max(Math.abs(own.root - common.root), Math.abs(own.top - common.top))
-  return apart > ALIKE * (common.root - common.top) ? own : null
+  return apart > TOLERANCE * (common.root - common.top) ? own : null
 }
 
-/** Move a drawing to a sheet of another size: as large as it fits there, in its middle. */
+/** Return a drawing fitted to a sheet of another size: as large as fits there, in the middle. */
 export function fittedTo<S extends Side>(drawn: S, from: Extent, to: Extent): S {
   const factor = Math.min(to.width / from.width, to.height / from.height)
   const [left, above] = [(to.width - factor * from.width) / 2, (to.height - factor * from.height) / 2]
@@ -103,7 +103,7 @@ export function fittedTo<S extends Side>(drawn: S, from: Extent, to: Extent): S 
   return { ...drawn, crown: drawn.crown?.map(move) ?? null, branches }
 }
 
-/** Whether there are strokes on a sheet. */
+/** Return whether there are strokes on a sheet. */
 export function isDrawn(strokes: Strokes, sheet: SheetName): boolean {
   const own = onSheet(strokes, sheet)
   return strokeRefs(own).some(ref => lineOf(own, ref).length > 0)

@@ -3,20 +3,20 @@ import type { Grown, Limits, Model, Settings, TraceAnswer } from './api/types'
 import { begin, type History } from './history'
 import { type Line, NO_STROKES, type SheetName, type StrokeRef, type Strokes } from './strokes'
 
-/** White paper, perhaps with a picture under the strokes. */
+/** A surface that is drawn on: a photo, or white paper with or without a picture under the strokes. */
 export interface Sheet {
-  /** Of the photo that the service has; null where it has none. */
+  /** The photo's id on the service; null where the service has none. */
   readonly id: string | null
-  /** Pixels, upright. */
+  /** Size of the sheet, px; a picture is upright. */
   readonly width: number
   readonly height: number
-  /** The picture as it was chosen: kept so that a drawing outlives the service's copy. */
+  /** The picture as it was chosen; kept so that a drawing outlives the service's copy. */
   readonly file: Blob | null
-  /** Where the upright picture can be shown from. */
+  /** The address of the upright picture. */
   readonly url: string | null
-  /** What was corrected while the picture was read, in words for the user. */
+  /** What was corrected while the picture was read, as sentences for the user. */
   readonly corrections?: string
-  /** The picture is hidden for now. */
+  /** Set while the picture is hidden. */
   readonly hidden?: true
 }
 
@@ -27,20 +27,20 @@ export interface PhotoSheet extends Sheet {
   readonly url: string
 }
 
-/** The sheets that are open, by what the tree is made of: strokes over a photo, or sketches of its sides. */
+/** The open sheets, by the tree's source: a photo with strokes, or sketches. */
 export type Sheets =
   | { readonly source: 'photo'; readonly front: PhotoSheet; readonly side: Sheet | null }
   | { readonly source: 'sketch'; readonly front: Sheet; readonly side: Sheet | null }
 
 export type Source = Sheets['source']
 
-/** What the pointer does on the photo. */
+/** What the pointer does on a sheet. */
 export type Tool = 'crown' | 'branch' | 'scale' | 'select'
 
-/** A stroke, or a traced branch by the first of its joints. */
+/** A stroke, or a traced branch by its first joint. */
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
-/** Where an error stands on the page. */
+/** Where a fault is shown on the page. */
 export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
 
 /** A sentence that says what is wrong and what to do. */
@@ -50,25 +50,25 @@ export interface Fault {
   readonly stroke?: StrokeRef
 }
 
-/** A message that has no place of its own on the page; it goes by itself unless it `stays`. */
+/** A message that has no place of its own on the page; it disappears after a while unless it `stays`. */
 export interface Notice {
   readonly text: string
-  /** What can be done about it. */
+  /** A button in the notice. */
   readonly action?: { readonly label: string; run(): void }
   readonly stays?: true
-  /** Called when it has gone. */
+  /** Called when it has disappeared. */
   gone?(): void
 }
 
-/** What was traced, and of which strokes. */
+/** What was traced, and from which strokes. */
 export interface Traced {
   readonly of: Strokes
   readonly answer: TraceAnswer
-  /** The crowns that were taken on each sheet, where sketches were traced. */
+  /** The crown on each sheet, drawn or assumed, where sketches were traced; sheet px. */
   readonly crowns?: Readonly<Partial<Record<SheetName, Line>>>
 }
 
-/** A person's own pictures, PNGs. */
+/** A person's own pictures of a leaf and a fruit, PNGs. */
 export interface OwnPictures {
   readonly leaf: Blob | null
   readonly fruit: Blob | null
@@ -77,11 +77,11 @@ export interface OwnPictures {
 /** A model that was asked for or opened, and what it was made of. */
 export interface ShownModel extends OwnPictures {
   readonly info: Model
-  /** What it was made of. */
+  /** The strokes that it was made of. */
   readonly strokes: Strokes
-  /** Which of its trees is shown, from 1. */
+  /** The number of its tree that is shown, from 1. */
   readonly variant: number
-  /** Its skeleton, when it has just been grown. */
+  /** Its grown skeleton, once the service has sent it. */
   readonly growth: Grown | null
   /** The GLB of the tree that is shown. */
   readonly glb: ArrayBuffer | null
@@ -97,33 +97,33 @@ export interface State extends OwnPictures {
   readonly settings: Settings
   readonly seed: number
   readonly tool: Tool
-  /** How wide branches are drawn on paper, as a share of its height; null for a pencil, which sets no width. */
+  /** The brush's width on paper, as a share of the paper's height; null for a pencil, which sets no width. */
   readonly brush: number | null
   readonly selection: Selection | null
-  /** A photo, a sketch or a project is being read. */
+  /** Whether a photo, a sketch, a project or a model is being opened. */
   readonly opening: boolean
   readonly tracing: boolean
   readonly traced: Traced | null
-  /** What was corrected while pictures of sketches were read, and the strokes that were read from them. */
+  /** What was corrected while pictures were read, as sentences, and the strokes that these are about. */
   readonly corrections: { readonly of: Strokes; readonly text: string } | null
   /** The live tree. */
   readonly liveTree: Grown | null
-  /** A model is being asked for. */
+  /** Whether a model is being requested. */
   readonly asking: boolean
   readonly model: ShownModel | null
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
   /** The dialog that is open. */
   readonly dialog: 'gallery' | 'shortcuts' | null
-  /** What the service takes, once it has said so. */
+  /** The service's limits, once it has told them. */
   readonly limits: Limits | null
-  /** False while the browser cannot keep the drawing. */
+  /** False while the browser cannot save the drawing. */
   readonly kept: boolean
   /** False while the service cannot be reached. */
   readonly online: boolean
   readonly faults: Readonly<Partial<Record<Place, Fault>>>
   readonly notices: readonly Notice[]
-  /** What screen readers say. */
+  /** The last sentence for screen readers. */
   readonly announcement: string
 }
 
@@ -156,12 +156,12 @@ export const EMPTY: State = {
   announcement: '',
 }
 
-/** Return the state with nothing open; what is not about the drawing stays. */
+/** Return the state with nothing open; what does not belong to the drawing stays. */
 export function closed({ limits, online, notices, announcement }: State): State {
   return { ...EMPTY, limits, online, notices, announcement }
 }
 
-/** Holds the one state of the page and tells who listens what changed. */
+/** Holds the page's one state, and calls listeners when it changes. */
 export class Store {
   #state = EMPTY
   readonly #listeners = new Set<(now: State, before: State) => void>()
@@ -170,17 +170,19 @@ export class Store {
     return this.#state
   }
 
+  /** The present strokes. */
   get strokes(): Strokes {
     return this.#state.history.present
   }
 
+  /** Change parts of the state. */
   set(change: Partial<State>): void {
     const before = this.#state
     this.#state = { ...before, ...change }
     for (const listener of this.#listeners) listener(this.#state, before)
   }
 
-  /** Change the model that is shown, where it still is the one with this id. */
+  /** Change the shown model if it still is the one with this id. */
   setModel(id: string, change: Partial<ShownModel>): void {
     const { model } = this.#state
     if (model?.info.id === id) this.set({ model: { ...model, ...change } })
@@ -191,33 +193,34 @@ export class Store {
     this.set({ announcement })
   }
 
-  /** Show a notice; the call ends it. */
+  /** Show a notice; returns a function that dismisses it. */
   notify(notice: Notice): () => void {
     this.set({ notices: [...this.#state.notices, notice] })
     return () => this.dismiss(notice)
   }
 
+  /** Remove a notice; does nothing where it has gone. */
   dismiss(notice: Notice): void {
     if (!this.#state.notices.includes(notice)) return
     this.set({ notices: this.#state.notices.filter(other => other !== notice) })
     notice.gone?.()
   }
 
-  /** Put a fault in its place, or take it away. */
+  /** Set the fault of a place, or remove it (null). */
   fault(place: Place, fault: Fault | null): void {
     if (!fault && !this.#state.faults[place]) return
     const { [place]: _, ...others } = this.#state.faults
     this.set({ faults: fault ? { ...others, [place]: fault } : others })
   }
 
-  /** Call `listener` with what `select` gives, now and whenever it gives something else; the call ends it. */
+  /** Call `listener` with what `select` returns, now and whenever that changes; returns a function that ends this. */
   watch<T>(select: (state: State) => T, listener: (value: T) => void): () => void {
-    const told = (now: State, before: State) => {
+    const onChange = (now: State, before: State) => {
       const value = select(now)
       if (value !== select(before)) listener(value)
     }
-    this.#listeners.add(told)
+    this.#listeners.add(onChange)
     listener(select(this.#state))
-    return () => this.#listeners.delete(told)
+    return () => this.#listeners.delete(onChange)
   }
 }

@@ -1,66 +1,66 @@
 import type { WireStrokes } from './api/types'
 
-/** A place on a sheet, the upright photo or paper, pixels from the outer corner of its top-left one: x right, y down. */
+/** A point of a sheet, px from its top left corner, x right, y down; a pixel's centre is at .5. */
 export type Point = readonly [x: number, y: number]
 export type Line = readonly Point[]
 
 /** A stroke along a branch, from its parent outward; the first runs from the root up the trunk. */
 export interface Branch {
   readonly points: Line
-  /** Pixels. */
+  /** The brush's width, px. */
   readonly width?: number
 }
 
-/** A straight line over something of known length: its two ends, and its metres. */
+/** A measured line: the two ends of something in the photo, and its length in metres. */
 export interface Scale {
   readonly points: Line
   readonly metres: number
 }
 
-/** What any side of a tree is drawn of. */
+/** What is drawn on one sheet: the parts that both sheets have. */
 export interface Side {
   readonly crown: Line | null
   readonly branches: readonly Branch[]
 }
 
-/** What is drawn of a tree, seen from the front. Never changed in place: every edit gives a new value. */
+/** All strokes of a tree: those of the front, and its `side`. Never changed in place: every edit returns a new value. */
 export interface Strokes extends Side {
-  /** Each crosses one traced branch that is to go. */
+  /** Each crosses one traced branch, which is removed. */
   readonly erase: readonly Line[]
-  /** What sets the tree's scale in place of its height. */
+  /** The measured line, which sets the tree's scale in place of its height. */
   readonly scale: Scale | null
-  /** What is drawn of it seen from its left, where anything is. */
+  /** The strokes of the side's sheet. */
   readonly side?: Side
 }
 
-/** A sheet to draw on: the tree from the front, or from its left. */
+/** A sheet's name: the tree from the front, or from its left. */
 export type SheetName = 'front' | 'side'
 export type StrokeKind = 'crown' | 'branch' | 'erase' | 'scale'
 
-/** One stroke: the crown or the measured line, or a branch or an erase stroke by its place. */
+/** Refers to one stroke: by its kind, and for branches and erase strokes its index. */
 export interface StrokeRef {
   readonly kind: StrokeKind
   readonly index: number
-  /** Absent: it is on the front's sheet. */
+  /** Absent for the front's sheet. */
   readonly sheet?: 'side'
 }
 
 export const NO_STROKES: Strokes = { crown: null, branches: [], erase: [], scale: null }
 
-/** The strokes of one sheet, as if there were no other. */
+/** Return the strokes of one sheet alone. */
 export function onSheet(strokes: Strokes, sheet: SheetName): Strokes {
   const { side, ...front } = strokes
   if (sheet === 'side') return { ...NO_STROKES, ...side }
   return side ? front : strokes
 }
 
-/** Put strokes in the place of those of one sheet. */
+/** Return the strokes with those of one sheet replaced. */
 export function withSheet(strokes: Strokes, sheet: SheetName, { crown, branches, ...others }: Strokes): Strokes {
   if (sheet === 'side') return { ...strokes, side: { crown, branches } }
   return { ...others, crown, branches, ...(strokes.side && { side: strokes.side }) }
 }
 
-/** Add a stroke, a branch perhaps of a brush's width (px); a second crown takes the first one's place. */
+/** Return the strokes with one more, a branch perhaps with a brush's width (px); a second crown replaces the first. */
 export function withStroke(
   strokes: Strokes,
   kind: Exclude<StrokeKind, 'scale'>,
@@ -73,12 +73,12 @@ export function withStroke(
   return { ...strokes, erase: [...strokes.erase, points] }
 }
 
-/** Set the scale by a line of so many metres, in the place of another. */
+/** Return the strokes with a measured line of this length, in place of another. */
 export function withScale(strokes: Strokes, points: Line, metres: number): Strokes {
   return { ...strokes, scale: { points, metres } }
 }
 
-/** Leave a stroke out. */
+/** Return the strokes without one of them. */
 export function withoutStroke(strokes: Strokes, { kind, index, sheet }: StrokeRef): Strokes {
   if (sheet) return withSheet(strokes, sheet, withoutStroke(onSheet(strokes, sheet), { kind, index }))
   if (kind === 'crown') return { ...strokes, crown: null }
@@ -87,7 +87,7 @@ export function withoutStroke(strokes: Strokes, { kind, index, sheet }: StrokeRe
   return { ...strokes, erase: strokes.erase.toSpliced(index, 1) }
 }
 
-/** Name every stroke, in the order of drawing within its kind; the front's come first. */
+/** Return references to all strokes, by kind, in the order in which they were drawn; the front's come first. */
 export function strokeRefs(strokes: Strokes): StrokeRef[] {
   const of = (kind: StrokeKind, count: number) => Array.from({ length: count }, (_, index) => ({ kind, index }))
   return [
@@ -103,7 +103,7 @@ function onSide(ref: StrokeRef): StrokeRef {
   return { ...ref, sheet: 'side' }
 }
 
-/** Give a stroke's points; none where there is no such stroke. */
+/** Return a stroke's points; empty where there is no such stroke. */
 export function lineOf(strokes: Strokes, { kind, index, sheet }: StrokeRef): Line {
   if (sheet) return lineOf(onSheet(strokes, sheet), { kind, index })
   if (kind === 'crown') return strokes.crown ?? []
@@ -112,11 +112,12 @@ export function lineOf(strokes: Strokes, { kind, index, sheet }: StrokeRef): Lin
   return strokes.erase[index] ?? []
 }
 
+/** Return whether there is no stroke on any sheet. */
 export function isEmpty(strokes: Strokes): boolean {
   return strokeRefs(strokes).length === 0
 }
 
-/** Write strokes as stroke files and the service have them; the service takes none without a crown. */
+/** Return the front's strokes in the form of stroke files and requests; the service needs a crown among them. */
 export function toWire({ crown, branches, erase, scale }: Strokes): Partial<WireStrokes> {
   return {
     ...(crown && { crown: { points: crown.map(toPair) } }),
@@ -126,7 +127,7 @@ export function toWire({ crown, branches, erase, scale }: Strokes): Partial<Wire
   }
 }
 
-/** Read strokes from a stroke file, or throw a TypeError where they have another form. */
+/** Return the strokes in a stroke file; throws a TypeError where it has another form. */
 export function fromWire(value: unknown): Strokes {
   const { crown, branches, erase, scale } = fields(value)
   return {
@@ -140,11 +141,11 @@ export function fromWire(value: unknown): Strokes {
   }
 }
 
-/** Read a measured line; there is none without its length. */
+/** Return a measured line; throws a TypeError without a length. */
 function scaleFrom({ points, metres }: Record<string, unknown>): Scale {
-  if (typeof metres !== 'number' || !(metres > 0)) throw new TypeError('no length')
+  if (typeof metres !== 'number' || !(metres > 0)) throw new TypeError('metres must be a positive number')
   const ends = line(points)
-  if (ends.length !== 2) throw new TypeError('no straight line')
+  if (ends.length !== 2) throw new TypeError('a measured line must have two points')
   return { points: ends, metres }
 }
 
@@ -153,24 +154,25 @@ function toPair([x, y]: Point): [number, number] {
 }
 
 function fields(value: unknown): Record<string, unknown> {
-  if (typeof value !== 'object' || value === null || Array.isArray(value)) throw new TypeError('no object')
+  if (typeof value !== 'object' || value === null || Array.isArray(value)) throw new TypeError('not an object')
   return value as Record<string, unknown>
 }
 
 function list(value: unknown): unknown[] {
-  if (!Array.isArray(value)) throw new TypeError('no list')
+  if (!Array.isArray(value)) throw new TypeError('not a list')
   return value
 }
 
 function line(value: unknown): Line {
   return list(value).map(pair => {
     const [x, y, more] = list(pair)
-    if (!Number.isFinite(x) || !Number.isFinite(y) || more !== undefined) throw new TypeError('no point')
+    if (!Number.isFinite(x) || !Number.isFinite(y) || more !== undefined)
+      throw new TypeError('not a point: two numbers are needed')
     return [x, y] as Point
   })
 }
 
-/** Find the stroke that a JSON pointer leads to: /crown, /strokes/erase/0, /branches/2/points, /sketches/side/crown. */
+/** Return the stroke that a JSON pointer refers to: /crown, /strokes/erase/0, /branches/2/points, /sketches/side/crown. */
 export function strokeAt(pointer: string | null): StrokeRef | null {
   const found = pointer?.match(
     /^(?:\/(?:strokes|sketches))?(?:\/(front|side))?\/(crown|branches|erase|scale)(?:\/(\d+))?/,

@@ -2,75 +2,78 @@ import type { TracedSkeleton } from './api/types'
 import { along, cross, distance, distanceToPiece, type Piece } from './plane'
 import type { Line, Point } from './strokes'
 
-/** Places where a branch's first step may be cut, as shares of the step. */
+/** Where a branch's first step may be cut, as shares of the step; of equally free places the first is used. */
 const CUTS = [0.5, 0.6, 0.4, 0.7, 0.3, 0.8, 0.9]
-/** Of the way to the nearest other branch: as far again to either, since the service cuts a less simplified line. */
-const REACH = 0.5
+/** Half an erase stroke's length, as a share of the distance to the nearest other branch; the service's lines differ a bit. */
+const HALF_LENGTH = 0.5
 
 const continuations = new WeakMap<TracedSkeleton, readonly boolean[]>()
 
-/** Tell which joints carry their parent's branch on; the others begin a branch of their own. */
+/** Return which joints continue their parent's branch; the others begin a new one. */
 export function continues(skeleton: TracedSkeleton): readonly boolean[] {
-  const known = continuations.get(skeleton)
-  if (known) return known
+  const cached = continuations.get(skeleton)
+  if (cached) return cached
   const found = findContinuations(skeleton)
   continuations.set(skeleton, found)
   return found
 }
 
-/** The first joint of the traced branch (stroke -1) that a joint lies on: the one after the fork that it leaves from. */
+/** Return the first joint of a joint's traced branch (stroke -1): the one after the fork where the branch starts. */
 export function firstJoint(skeleton: TracedSkeleton, joint: number): number {
-  const further = continues(skeleton)
+  const continued = continues(skeleton)
   let first = joint
-  while (further[first]) first = skeleton.parents[first]!
+  while (continued[first]) first = skeleton.parents[first]!
   return first
 }
 
-/** The joints of the traced branch that a joint lies on, its first one first, with all that it bears. */
+/** Return the joints of a joint's traced branch, the first one first, with those of all branches that leave it. */
 export function branchAt(skeleton: TracedSkeleton, joint: number): number[] {
   const first = firstJoint(skeleton, joint)
-  const borne = new Set([first])
+  const joints = new Set([first])
   for (let next = first + 1; next < skeleton.parents.length; next++) {
-    if (borne.has(skeleton.parents[next]!)) borne.add(next)
+    if (joints.has(skeleton.parents[next]!)) joints.add(next)
   }
-  return [...borne]
+  return [...joints]
 }
 
-/** The piece from a joint's parent to the joint; a root's is the root alone. */
+/** Return the segment from a joint's parent to the joint; a root's has no length. */
 export function pieceTo({ points, parents }: TracedSkeleton, joint: number): Piece {
   const end = points[joint]!
   return [points[parents[joint]!] ?? end, end]
 }
 
-/** A short line across the piece from a joint's parent to the joint and across no other: `erase` drops what it crosses. */
+/** Return an erase stroke that removes a joint's branch: a short line across the joint's segment and no other. */
 export function eraseLine(skeleton: TracedSkeleton, joint: number): Line {
   const piece = pieceTo(skeleton, joint)
   const pieces = [...skeleton.points.keys()].filter(other => other !== joint).map(other => pieceTo(skeleton, other))
-  const room = (place: Point) => Math.min(distance(...piece), ...pieces.map(other => distanceToPiece(other, place)))
-  const step = stepFrom(skeleton, joint)
-  const places = CUTS.map(share => along(piece, share * step)).toSorted((one, other) => room(other) - room(one))
-  return shrunk(places[0]!, piece, REACH * room(places[0]!), pieces)
+  const room = (point: Point) => Math.min(distance(...piece), ...pieces.map(other => distanceToPiece(other, point)))
+  const step = firstStep(skeleton, joint)
+  const [cut] = CUTS.map(share => along(piece, share * step)).toSorted((one, other) => room(other) - room(one))
+  return shrunk(cut!, piece, HALF_LENGTH * room(cut!), pieces)
 }
 
 /**
- * The share of a joint's piece that was one step before the service simplified the line. Steps are alike, and the first
- * that leaves a stroke is left as it was; a cut further out would leave a stump of some steps.
+ * Return which share of a joint's segment was its first step before the service simplified the line; a cut beyond it would
+ * leave a stump. Steps are about equally long, and the first one from a stroke is never simplified.
  */
-function stepFrom(skeleton: TracedSkeleton, joint: number): number {
+function firstStep(skeleton: TracedSkeleton, joint: number): number {
   const { parents, stroke } = skeleton
   let root = joint
   while (stroke[parents[root]!] === -1) root = parents[root]!
   return Math.min(distance(...pieceTo(skeleton, root)) / distance(...pieceTo(skeleton, joint)), 1) || 1
 }
 
-function shrunk(middle: Point, piece: Piece, reach: number, others: readonly Piece[]): Line {
-  const line = across(middle, piece, reach)
-  return reach > 1e-3 && others.some(other => cross(line, other)) ? shrunk(middle, piece, reach / 2, others) : line
+/** Return a line across a segment, `halfLength` to either side, halved until it crosses no other segment. */
+function shrunk(middle: Point, piece: Piece, halfLength: number, others: readonly Piece[]): Line {
+  const line = across(middle, piece, halfLength)
+  return halfLength > 1e-3 && others.some(other => cross(line, other))
+    ? shrunk(middle, piece, halfLength / 2, others)
+    : line
 }
 
-function across([x, y]: Point, [from, to]: Piece, reach: number): Piece {
+function across([x, y]: Point, [from, to]: Piece, halfLength: number): Piece {
   const length = distance(from, to) || 1
-  const [right, down] = [(-(to[1] - from[1]) / length) * reach, ((to[0] - from[0]) / length) * reach]
+  const [right, down] = [(-(to[1] - from[1]) / length) * halfLength, ((to[0] - from[0]) / length) * halfLength]
   return [
     [x - right, y - down],
     [x + right, y + down],
@@ -90,7 +93,7 @@ function findContinuations(skeleton: TracedSkeleton): boolean[] {
   return parents.map((parent, joint) => best.get(parent) === joint)
 }
 
-/** The longest way from each joint's parent outward through the joint. */
+/** Return the longest path from each joint's parent outward through the joint. */
 function lengthsBeyond(skeleton: TracedSkeleton): number[] {
   const { parents } = skeleton
   const lengths = parents.map((_, joint) => distance(...pieceTo(skeleton, joint)))

@@ -2,7 +2,7 @@ import type { Grown, Model, SketchTraceAnswer, TraceAnswer } from '../src/api/ty
 import type { PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
 import { type Line, NO_STROKES } from '../src/strokes'
 
-/** The beginning of a PNG: as much of one as the page itself looks at. */
+/** The first bytes of a PNG: all that the page itself reads of one. */
 export const PNG = new Uint8Array([137, 80, 78, 71, 13, 10, 26, 10])
 
 export const CROWN: Line = [
@@ -45,7 +45,7 @@ export function answer(grown: Grown | null = null): TraceAnswer {
   return { rev: null, foliage: [], skeleton, warnings: [], grown, photo: null }
 }
 
-/** What sketches show, the front alone where there is no other. */
+/** An answer about a traced sketch of the front. */
 export function sketchAnswer(changes: Partial<SketchTraceAnswer> = {}): SketchTraceAnswer {
   const { skeleton } = answer()
   const front = {
@@ -57,7 +57,7 @@ export function sketchAnswer(changes: Partial<SketchTraceAnswer> = {}): SketchTr
   return { rev: null, front, side: null, warnings: [], ...changes }
 }
 
-/** What the picture of a sketch shows: a trunk, and one limb that leaves it halfway. */
+/** An answer about a picture of a sketch: a trunk, and one limb that leaves it halfway. */
 export function drawnAnswer(changes: Partial<SketchTraceAnswer['front']> = {}): SketchTraceAnswer {
   const skeleton = {
     points: [

@@ -1,6 +1,6 @@
 import { vi } from 'vitest'
 
-/** A call as the service sees it. */
+/** A request as the service sees it. */
 export interface Call {
   readonly method: string
   readonly path: string
@@ -10,7 +10,7 @@ export interface Call {
 
 type Answer = Response | 'down'
 
-/** Stand in for the service behind `fetch`: `answer` says what it answers to each call; gives the calls that came. */
+/** Replace the service behind `fetch`: `answer` returns the response to each call. Returns the list of calls. */
 export function service(answer: (call: Call) => Answer | Promise<Answer>): Call[] {
   const calls: Call[] = []
   vi.stubGlobal('FileReader', Reader)
@@ -35,19 +35,19 @@ class Reader {
   }
 }
 
-/** A problem as the service words it. */
+/** Return a problem as the service answers it. */
 export function problem(status: number, code: string, detail: string, pointer?: string): Response {
   const errors = pointer === undefined ? [] : [{ pointer, code, detail }]
   return Response.json({ type: 'about:blank', title: '', status, code, detail, errors }, { status })
 }
 
-/** Let everything that waits for promises go on. */
+/** Wait until all pending promises have been handled. */
 export async function settle(): Promise<void> {
   for (let i = 0; i < 30; i++) await Promise.resolve()
   await new Promise(done => setTimeout(done))
 }
 
-/** Stands in for the browser's event stream; a test says what it tells. */
+/** Stands in for the browser's event stream; a test sends its events by `tell`. */
 export class Events extends EventTarget {
   static readonly CLOSED = 2
   static all: Events[] = []

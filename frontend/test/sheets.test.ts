@@ -28,14 +28,14 @@ test('every sheet is paper but the photo whose tree is traced', () => {
   expect(isPaper({ sheets: sketchSheets(paper()) }, 'front')).toBe(true)
 })
 
-test('a tree stands where its trunk does and ends at its topmost stroke, whichever way the trunk was drawn', () => {
+test('a tree’s levels are the foot of its trunk and its topmost stroke, whichever way the trunk was drawn', () => {
   const limb = withStroke(trunk(1100, 300), 'branch', up(500, 120))
   expect(levelsOf(limb)).toEqual({ root: 1100, top: 120 })
   expect(levelsOf(trunk(300, 1100))).toEqual({ root: 1100, top: 300 })
   expect(levelsOf(NO_STROKES)).toBeNull()
 })
 
-test('the lines run through both sheets at one height: where a tree is expected, then where the front’s is', () => {
+test('both sheets have the same levels: where a tree is expected, then those of the front’s tree', () => {
   expect(commonLevels(state(NO_STROKES), 'side')).toEqual({ root: 1104, top: 96 })
   const drawn = state(trunk(1000, 200), { sheets: sketchSheets(paper(), paper(600)) })
   expect(commonLevels(drawn, 'front')).toEqual({ root: 1000, top: 200 })
@@ -43,13 +43,13 @@ test('the lines run through both sheets at one height: where a tree is expected,
   expect(commonLevels({ ...drawn, sheets: sketchSheets(paper()) }, 'side')).toBeNull()
 })
 
-test('a side of another height shows its own lines, one of the same height none', () => {
+test('a side of another height has levels of its own, one of the same height none', () => {
   expect(strayLevels(state(both(trunk(1100, 100), trunk(1110, 90))))).toBeNull()
   expect(strayLevels(state(both(trunk(1100, 100), trunk(1100, 300))))).toEqual({ root: 1100, top: 300 })
   expect(strayLevels(state(trunk(1100, 100)))).toBeNull()
 })
 
-test('a drawing that is moved to another sheet fills it and keeps its form, and its brushes their share', () => {
+test('a drawing that is fitted to another sheet keeps its shape, and its brushes are scaled with it', () => {
   const drawn = withStroke(NO_STROKES, 'branch', up(1200, 0), 12)
   const { branches } = fittedTo(drawn, paper(), { width: 800, height: 600 })
   expect(branches).toEqual([
@@ -63,12 +63,12 @@ test('a drawing that is moved to another sheet fills it and keeps its form, and 
   ])
 })
 
-test('a brush is so wide a share of its paper, a pencil has no width', () => {
+test('a brush’s width is a share of the paper’s height, a pencil has no width', () => {
   expect(brushWidth({ brush: 0.018 }, { width: 900, height: 1200 })).toBe(21.6)
   expect(brushWidth({ brush: null }, photo())).toBeNull()
 })
 
-test('each sheet knows whether anything is drawn on it', () => {
+test('a sheet is drawn on once it has a stroke', () => {
   const drawn = both(NO_STROKES, trunk(9, 1))
   expect([isDrawn(drawn, 'front'), isDrawn(drawn, 'side')]).toEqual([false, true])
 })

@@ -1,18 +1,18 @@
 import { expect, test, vi } from 'vitest'
 import { Store } from '../src/state'
 
-test('who watches is told at once and whenever what it watches changes, not otherwise', () => {
+test('a watcher is called at once and whenever its value changes, not otherwise', () => {
   const store = new Store()
-  const told = vi.fn()
-  const end = store.watch(state => state.name, told)
+  const listener = vi.fn()
+  const stop = store.watch(state => state.name, listener)
   store.set({ name: 'Oak' })
   store.set({ seed: 4 })
-  end()
+  stop()
   store.set({ name: 'Elm' })
-  expect(told.mock.calls.flat()).toEqual(['', 'Oak'])
+  expect(listener.mock.calls.flat()).toEqual(['', 'Oak'])
 })
 
-test('a fault stands in its place until it is taken away', () => {
+test('a fault stays in its place until it is removed', () => {
   const store = new Store()
   store.fault('photo', { text: 'Too large.' })
   store.fault('grow', { text: 'No trunk.' })
@@ -20,10 +20,10 @@ test('a fault stands in its place until it is taken away', () => {
   expect(store.state.faults).toEqual({ grow: { text: 'No trunk.' } })
 })
 
-test('taking away a fault that is not there tells nobody', () => {
+test('removing a fault that is not there calls no watcher', () => {
   const store = new Store()
-  const told = vi.fn()
-  store.watch(state => state.faults, told)
+  const listener = vi.fn()
+  store.watch(state => state.faults, listener)
   store.fault('photo', null)
-  expect(told).toHaveBeenCalledTimes(1)
+  expect(listener).toHaveBeenCalledTimes(1)
 })

@@ -24,12 +24,12 @@ const UP = [
   [5, 9.25],
 ] as const
 
-test('a second crown takes the place of the first', () => {
+test('a second crown replaces the first', () => {
   const once = withStroke(NO_STROKES, 'crown', RING)
   expect(withStroke(once, 'crown', UP)).toEqual({ crown: UP, branches: [], erase: [], scale: null })
 })
 
-test('branches and erase strokes are added behind those that are there', () => {
+test('branches and erase strokes are added after those that are there', () => {
   const drawn = withStroke(withStroke(withStroke(NO_STROKES, 'branch', UP), 'branch', RING), 'erase', UP)
   expect(drawn).toEqual({ crown: null, branches: [{ points: UP }, { points: RING }], erase: [UP], scale: null })
 })
@@ -42,7 +42,7 @@ test('an edit leaves the value before it as it was', () => {
   expect(isEmpty(NO_STROKES)).toBe(true)
 })
 
-test('every stroke that is named can be left out, and only it goes', () => {
+test('every stroke can be removed by its reference, and only that one', () => {
   const drawn = {
     crown: RING,
     branches: [{ points: UP }, { points: RING }],
@@ -59,19 +59,19 @@ test('every stroke that is named can be left out, and only it goes', () => {
   expect(withoutStroke(drawn, { kind: 'branch', index: 0 }).branches).toEqual([{ points: RING }])
 })
 
-test('a stroke that is not there has no points', () => {
+test('a stroke that does not exist has no points', () => {
   expect(lineOf(NO_STROKES, { kind: 'crown', index: 0 })).toEqual([])
   expect(lineOf(NO_STROKES, { kind: 'branch', index: 3 })).toEqual([])
   expect(lineOf({ ...NO_STROKES, erase: [UP] }, { kind: 'erase', index: 0 })).toBe(UP)
 })
 
-test('without a crown none is written, and the rest is read back the same', () => {
+test('without a crown none is written, and the rest is read back unchanged', () => {
   const drawn = withStroke(NO_STROKES, 'branch', UP)
   expect(toWire(drawn)).not.toHaveProperty('crown')
   expect(fromWire(JSON.parse(JSON.stringify(toWire(drawn))))).toEqual(drawn)
 })
 
-test('what is written for the service is read back the same', () => {
+test('what is written for the service is read back unchanged', () => {
   const drawn = {
     crown: RING,
     branches: [{ points: UP, width: 12.5 }, { points: RING }],
@@ -130,7 +130,7 @@ test.each(
   expect(() => fromWire(value)).toThrow(TypeError)
 })
 
-test('a side’s strokes are named, found, and left out by themselves', () => {
+test('strokes of the side are referred to, found and removed apart from the front’s', () => {
   const front = withStroke(NO_STROKES, 'branch', LIMB)
   const both = withSheet(front, 'side', withStroke(withStroke(NO_STROKES, 'crown', CROWN), 'branch', TRUNK, 5))
   const ref = { kind: 'branch', index: 0, sheet: 'side' } as const
@@ -153,6 +153,6 @@ test.each([
   ['/sketches/side/branches/1/points/3', { kind: 'branch', index: 1, sheet: 'side' }],
   ['/settings/height', null],
   [null, null],
-])('the pointer %s leads to %o', (pointer, stroke) => {
+])('the pointer %s refers to %o', (pointer, stroke) => {
   expect(strokeAt(pointer)).toEqual(stroke)
 })

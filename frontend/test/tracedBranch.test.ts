@@ -6,7 +6,7 @@ import { TREE } from './sketch/tree'
 
 const traced = (skeleton: TracedSkeleton) => [...skeleton.points.keys()].filter(joint => skeleton.stroke[joint]! < 0)
 
-/** A traced bush off a short trunk: each joint bears up to three more in narrow angles. */
+/** A traced bush on a short trunk: each joint has up to three children at narrow angles. */
 function bush(count: number): TracedSkeleton {
   const points: [number, number][] = [
     [0, 1000],
@@ -28,14 +28,14 @@ test('a branch begins after its fork from a stroke or from a thicker branch', ()
   expect(traced(TREE).map(joint => firstJoint(TREE, joint))).toEqual([3, 3, 3, 6, 6, 8])
 })
 
-test('the thickest child carries a branch on, and of equally thick ones the longest', () => {
+test('the thickest child continues a branch, and of equally thick ones the longest', () => {
   expect(continues(TREE)).toEqual([false, true, true, false, true, true, false, true, false])
   const even = { ...TREE, radii: TREE.radii.map(() => 2) }
   expect(firstJoint(even, 7)).toBe(3)
   expect(firstJoint(even, 5)).toBe(5)
 })
 
-test('a branch has all that it bears and nothing else', () => {
+test('a branch includes all branches that leave it and nothing else', () => {
   expect(branchAt(TREE, 5)).toEqual([3, 4, 5, 6, 7])
   expect(branchAt(TREE, 7)).toEqual([6, 7])
   expect(branchAt(TREE, 8)).toEqual([8])
@@ -44,7 +44,7 @@ test('a branch has all that it bears and nothing else', () => {
 test.each([
   { name: 'a small tree', skeleton: TREE },
   { name: 'a dense bush', skeleton: bush(120) },
-])('in $name an erase line crosses the piece to its joint and no other', ({ skeleton }) => {
+])('in $name an erase stroke crosses the segment to its joint and no other', ({ skeleton }) => {
   const pieces = [...skeleton.points.keys()].map(joint => pieceTo(skeleton, joint))
   for (const joint of traced(skeleton)) {
     const own = pieces[joint]!
@@ -63,7 +63,7 @@ test.each([
   }
 })
 
-test('an erase line lies within the first step, so that no stump is left', () => {
+test('an erase stroke lies within the first step, so that no stump is left', () => {
   const long = { ...TREE, points: TREE.points.with(5, [340, 150]) }
   for (const joint of [4, 5, 6, 7]) {
     const [from, to] = eraseLine(long, joint)

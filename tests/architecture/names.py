@@ -7,6 +7,9 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from treestroke.api.app import make_app
+from treestroke.settings import Settings
+
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "backend" / "treestroke"
 DOCUMENTS = [
@@ -63,6 +66,14 @@ def members() -> dict[str, frozenset[str]]:
     own = {node.name: frozenset(_members(node)) for node in named}
     bases = {node.name: [ast.unparse(base).rpartition(".")[2] for base in node.bases] for node in named}
     return {name: own[name].union(*(own.get(base, frozenset()) for base in bases[name])) for name in own}
+
+
+@cache
+def routes() -> frozenset[str]:
+    """Return "METHOD /path" of every route, those that the API's document leaves out included."""
+    described = make_app(Settings()).openapi()["paths"]
+    named = {f"{method.upper()} {path}" for path, methods in described.items() for method in methods}
+    return frozenset(named | {"GET /metrics", "GET /openapi.json", "GET /"})
 
 
 def exists(dotted: str) -> bool:

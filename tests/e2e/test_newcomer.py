@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 from tests.e2e.conftest import OpenPage, Service
 from tests.e2e.visitor import ROOT, Visitor, strokes_of
 
@@ -36,6 +36,18 @@ def follow_the_hints(visitor: Visitor) -> None:
     visitor.shot("crown")
     visitor.draw(strokes["branches"][0]["points"], button="right")
     visitor.wait_for_preview("live")
+
+
+def test_the_welcome_is_there_before_the_code_that_draws(visitor: Visitor) -> None:
+    page = visitor.page
+    held: list[Route] = []
+    page.route("**/assets/Workspace-*.js", lambda route: held.append(route))
+    page.reload()
+    page.get_by_role("button", name="Choose a photo").wait_for()
+    assert page.locator("[data-ready]").count() == 0
+    visitor.until(lambda: len(held) == 1)
+    held[0].continue_()
+    visitor.wait_until_ready()
 
 
 def test_a_newcomer_gets_from_a_photo_to_a_tree_and_takes_it_home(
@@ -95,6 +107,21 @@ def test_with_shadows_a_tree_takes_no_more_than_six_calls(open_page: OpenPage) -
         visitor.wait_for_rest(timeout_ms=150_000)
     visitor.shot("shadows")
     assert visitor.page.evaluate("mostCalls") == MOST_CALLS
+
+
+def test_a_tree_that_is_slow_to_come_does_not_keep_the_welcome_away(visitor: Visitor) -> None:
+    page = visitor.page
+    held: list[Route] = []
+    page.route("**/v1/models/mdl_*", lambda route: held.append(route))
+    page.goto("about:blank")
+    page.goto(f"{visitor.url}/#mdl_{'0' * 24}")
+    page.get_by_role("button", name="Choose a photo").wait_for()
+    visitor.until(lambda: len(held) == 1)
+    assert page.locator("[data-ready]").count() == 0
+    visitor.expect_complaint("404")
+    held[0].continue_()
+    visitor.wait_until_ready()
+    expect(page.get_by_role("alert").filter(has_text="This tree is no longer there")).to_be_visible()
 
 
 def test_a_link_opens_the_tree_for_somebody_else(open_page: OpenPage, service: Service) -> None:

@@ -17,8 +17,9 @@ import pytest
 
 from treestroke.cli import main
 from treestroke.service.dispatch import Dispatcher, record_heartbeat
-from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation, readiness
+from treestroke.service.doctor import Finding, examine, examine_deployment, examine_installation
 from treestroke.service.photos import Resources
+from treestroke.service.readiness import readiness
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database

@@ -18,8 +18,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke import __version__
 from treestroke.schemas import Health
-from treestroke.service.dispatch import Dispatcher
-from treestroke.service.photos import Resources
+from treestroke.service.readiness import MIN_FREE_BYTES
 from treestroke.service.tracing_pool import CannotStart, Crashed, TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs, Damaged
@@ -28,7 +27,6 @@ from treestroke.store.database import Database
 from treestroke.store.queries import referenced
 from treestroke.store.tables import ModelRow, Worker
 
-_MIN_FREE_BYTES = 500_000_000
 _BROKER_SECONDS = 2
 _WEB_SECONDS = 5.0
 _WATCH_SECONDS = 3.0
@@ -51,28 +49,6 @@ class Finding:
     ok: bool
     found: str
     mend: str = ""
-
-
-def readiness(resources: Resources, dispatcher: Dispatcher) -> Health:
-    """Return whether the service accepts requests, by checks that are cheap enough for every second."""
-    failure = resources.tracers.failure
-    checks = {
-        "broker": "ok" if dispatcher.broker_accepts else "does not accept messages; jobs wait",
-        "dispatcher": dispatcher.state,
-        "tracers": "ok" if failure is None else f"the last start failed ({failure}); the next request tries again",
-    }
-    try:
-        with resources.database.reading() as session:
-            workers = session.scalars(select(Worker.id)).all()
-        checks["database"] = "ok"
-        checks["workers"] = "ok" if workers else "none; jobs wait"
-    except SQLAlchemyError:
-        checks["database"] = "unavailable"
-    free = shutil.disk_usage(resources.blobs.folder.parent).free
-    checks["storage"] = "ok" if free > _MIN_FREE_BYTES else f"only {free // 10**6} MB free"
-    down = checks["database"] != "ok"
-    ok = all(check == "ok" for check in checks.values())
-    return Health(status="down" if down else "ok" if ok else "degraded", checks=checks)
 
 
 def examine(settings: Settings) -> Iterator[Finding]:
@@ -147,8 +123,8 @@ def _nearest(folder: Path) -> Path:
 
 def _disk(settings: Settings) -> Finding:
     free = shutil.disk_usage(_nearest(settings.folder)).free
-    ok = free > _MIN_FREE_BYTES
-    mend = "" if ok else f"free space until {_MIN_FREE_BYTES // 10**6} MB are free, or move the data folder"
+    ok = free > MIN_FREE_BYTES
+    mend = "" if ok else f"free space until {MIN_FREE_BYTES // 10**6} MB are free, or move the data folder"
     return Finding("disk", ok, f"{free // 10**6} MB free", mend)
 
 

@@ -5,17 +5,16 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from alembic import command
-from alembic.config import Config
-from alembic.runtime.migration import MigrationContext
-from alembic.script import ScriptDirectory
-from sqlalchemy import URL, Connection, Engine, create_engine, event
+from sqlalchemy import URL, Connection, Engine, create_engine, event, inspect
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
-from treestroke.store.data_folder import DATABASE
+from treestroke.store.data_folder import DATABASE, known_revisions
+
+if TYPE_CHECKING:
+    from alembic.config import Config
 
 _WRITE, _AUTOCOMMIT = "treestroke_write", "treestroke_autocommit"
 """Execution options of connections: a transaction that writes, or one for each statement."""
@@ -96,8 +95,12 @@ class Database:
         """Create the tables, or migrate them from any older revision, in one transaction.
 
         Foreign keys are not enforced meanwhile: a table that changes is dropped and created again, and the rows that
-        refer to it must stay.
+        refer to it must stay. Alembic, which takes long to import, is imported only where there is something to do.
         """
+        if self.path.exists() and self.current():
+            return
+        from alembic import command
+
         engine = _engine(URL.create("sqlite", database=str(self.path)), 1, foreign_keys=False)
         try:
             with engine.connect().execution_options(**{_WRITE: True}) as connection, connection.begin():
@@ -110,8 +113,10 @@ class Database:
     def current(self) -> bool:
         """Tell whether the tables have the revision that this program needs."""
         with self._readers.connect() as connection:
-            found = MigrationContext.configure(connection).get_current_revision()
-        return found == ScriptDirectory.from_config(_migrations()).get_current_head()
+            if not inspect(connection).has_table("alembic_version"):
+                return False
+            found = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
+        return found == [max(known_revisions())]
 
     def close(self) -> None:
         """Close all connections."""
@@ -120,7 +125,9 @@ class Database:
         self._opened = None
 
 
-def _migrations() -> Config:
+def _migrations() -> "Config":
+    from alembic.config import Config
+
     settings = Config()
     settings.set_main_option("script_location", "treestroke.store:migrations")
     return settings

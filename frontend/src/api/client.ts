@@ -4,10 +4,10 @@ import type { Limits, Model, Settings, SketchTraceAnswer, TraceAnswer } from './
 
 type Schemas = components['schemas']
 
-/** Refusals that only ask to come again. */
+/** Codes of problems that pass by themselves, so that the request can be sent again. */
 const BUSY = ['overloaded', 'database_busy', 'database_unavailable', 'too_many_files']
 
-/** The service refused: `detail` is a sentence for the user, `pointer` the field at fault, such as /branches/0. */
+/** A problem that the service answered: the message says what is wrong, `pointer` where, such as /branches/0. */
 export class Refused extends Error {
   constructor(
     readonly status: number,
@@ -19,12 +19,12 @@ export class Refused extends Error {
   }
 }
 
-/** The service cannot be reached, or is not able to answer just now. */
+/** The service cannot be reached, or cannot answer at present. */
 export class Unreachable extends Error {}
 
 type Sketches = Schemas['Sketches']
 
-/** What a tree is made of: strokes over a photo, sketches of its sides, or both. */
+/** What a tree is made of: strokes over a photo, sketches, or both. */
 export interface Inputs {
   readonly photo?: string
   readonly strokes?: Strokes
@@ -37,91 +37,91 @@ export interface ModelRequest {
   readonly settings: Settings
   readonly seed: number
   readonly name: string
-  /** The person's own picture of a leaf. */
+  /** The own pictures of a leaf and a fruit. */
   readonly leaf: Blob | null
-  /** And of a fruit. */
   readonly fruit: Blob | null
 }
 
-/** The service's calls that the page makes; each throws `Refused` or `Unreachable`. */
+/** The page's calls to the service; each may throw `Refused` or `Unreachable`. */
 export class Client {
   getLimits(): Promise<Limits> {
-    return ask('GET', '/v1/limits')
+    return request('GET', '/v1/limits')
   }
 
   addPhoto(file: Blob): Promise<Schemas['PhotoInfo']> {
     const form = new FormData()
     form.append('file', file)
-    return ask('POST', '/v1/photos', { body: form })
+    return request('POST', '/v1/photos', { body: form })
   }
 
   getPhoto(id: string): Promise<Schemas['PhotoInfo']> {
-    return ask('GET', `/v1/photos/${id}`)
+    return request('GET', `/v1/photos/${id}`)
   }
 
   deletePhoto(id: string): Promise<void> {
-    return ask('DELETE', `/v1/photos/${id}`)
+    return request('DELETE', `/v1/photos/${id}`)
   }
 
-  /** Find foliage and visible branches; with `grow` the whole tree's skeleton too, as deep as its left side. */
+  /** Trace foliage and visible branches; with `grow` the live tree too, whose depth a sketch of the side may set. */
   trace(photo: string, strokes: Strokes, grow: boolean, side?: Sketches['side']): Promise<TraceAnswer> {
-    return ask('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow, ...(side && { side }) }))
+    return request('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow, ...(side && { side }) }))
   }
 
-  /** Find what sketches show; with `grow` the whole tree's skeleton too. */
+  /** Trace sketches; with `grow` the live tree too. */
   traceSketches(sketches: Sketches, grow: boolean): Promise<SketchTraceAnswer> {
-    return ask('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
+    return request('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
   }
 
-  /** Find what a sketch shows that is a picture, a PNG. */
+  /** Trace a sketch that is a PNG. */
   async traceDrawing(picture: Blob): Promise<SketchTraceAnswer> {
     return this.traceSketches({ front: { picture: await base64(picture) } }, false)
   }
 
-  /** Ask for a model; the same `key` asks for the same one, however often it is sent. */
-  async grow({ inputs: { strokes, ...inputs }, leaf, fruit, ...order }: ModelRequest, key: string): Promise<Model> {
-    const drawn = { ...inputs, ...(strokes && { strokes: toWire(strokes) }) }
+  /** Request a model; requests with the same `key` lead to one model. */
+  async grow({ inputs: { strokes, ...inputs }, leaf, fruit, ...rest }: ModelRequest, key: string): Promise<Model> {
+    const wireInputs = { ...inputs, ...(strokes && { strokes: toWire(strokes) }) }
     const pictures = { ...(leaf && { leaf: await base64(leaf) }), ...(fruit && { fruit: await base64(fruit) }) }
-    return ask('POST', '/v1/models', json({ ...drawn, ...order, ...pictures }, { 'Idempotency-Key': key }))
+    return request('POST', '/v1/models', json({ ...wireInputs, ...rest, ...pictures }, { 'Idempotency-Key': key }))
   }
 
   getModel(id: string): Promise<Model> {
-    return ask('GET', `/v1/models/${id}`)
+    return request('GET', `/v1/models/${id}`)
   }
 
   listModels(cursor: string | null): Promise<Schemas['ModelPage']> {
-    return ask('GET', `/v1/models?limit=24${cursor ? `&cursor=${cursor}` : ''}`)
+    return request('GET', `/v1/models?limit=24${cursor ? `&cursor=${cursor}` : ''}`)
   }
 
   renameModel(id: string, name: string): Promise<Model> {
-    return ask('PATCH', `/v1/models/${id}`, json({ name }))
+    return request('PATCH', `/v1/models/${id}`, json({ name }))
   }
 
   async removeModel(id: string): Promise<void> {
-    await ask('DELETE', `/v1/models/${id}`)
+    await request('DELETE', `/v1/models/${id}`)
   }
 
   restoreModel(id: string): Promise<Model> {
-    return ask('POST', `/v1/models/${id}/restore`)
+    return request('POST', `/v1/models/${id}/restore`)
   }
 
   cancelModel(id: string): Promise<Model> {
-    return ask('POST', `/v1/models/${id}/cancel`)
+    return request('POST', `/v1/models/${id}/cancel`)
   }
 
-  /** Read a file, such as a model's GLB or a photo's picture. */
+  /** Fetch a file, such as a model's GLB or a photo's picture. */
   async getFile(url: string): Promise<Blob> {
-    return (await answer('GET', url)).blob()
+    return (await send('GET', url)).blob()
   }
 }
 
-async function ask<T>(method: string, url: string, request: RequestInit = {}): Promise<T> {
-  const response = await answer(method, url, request)
+async function request<T>(method: string, url: string, init: RequestInit = {}): Promise<T> {
+  const response = await send(method, url, init)
   return (response.status === 204 ? null : await response.json()) as T
 }
 
-async function answer(method: string, url: string, request: RequestInit = {}): Promise<Response> {
-  const response = await fetch(url, { ...request, method }).catch(() => {
+/** Return a successful response, or throw `Refused` or `Unreachable`. */
+async function send(method: string, url: string, init: RequestInit = {}): Promise<Response> {
+  const response = await fetch(url, { ...init, method }).catch(() => {
     throw new Unreachable()
   })
   if (response.ok) return response
@@ -134,12 +134,12 @@ function json(body: unknown, headers: Record<string, string> = {}): RequestInit 
   return { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json', ...headers } }
 }
 
-/** The browser reads by itself: the page goes on meanwhile, however large the file is. */
+/** Return a file in base64; the browser's reader does not block the page, however large the file is. */
 function base64(file: Blob): Promise<string> {
-  return new Promise((done, failed) => {
+  return new Promise((resolve, reject) => {
     const reader = new FileReader()
-    reader.onload = () => done(String(reader.result).split(',')[1] ?? '')
-    reader.onerror = () => failed(reader.error)
+    reader.onload = () => resolve(String(reader.result).split(',')[1] ?? '')
+    reader.onerror = () => reject(reader.error)
     reader.readAsDataURL(file)
   })
 }

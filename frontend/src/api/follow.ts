@@ -1,40 +1,41 @@
 import type { Grown, Model } from './types'
 
-/** What happens to a model that is followed. */
+/** Receives the events of a model. */
 export interface Following {
   changed(model: Model): void
-  /** Its skeleton is grown; leaves and mesh are still to come. */
+  /** Its skeleton is grown; leaves and mesh are not finished yet. */
   grew(grown: Grown): void
-  /** Whether its events arrive; the browser connects again by itself. */
+  /** The connection was made, or was lost; then the browser connects again by itself. */
   connected(yes: boolean): void
-  /** There are no events any more: the model is gone. */
+  /** The model is gone, and so are its events. */
   gone(): void
 }
 
-const ENDS = ['succeeded', 'failed', 'canceled'] as const
+/** The statuses of finished models, and the names of the events that tell them. */
+const FINISHED = ['succeeded', 'failed', 'canceled'] as const
 
-/** Follow a model by its events until it is finished; the call ends it sooner. */
-export function follow(id: string, told: Following): () => void {
+/** Follow a model's events until it is finished; returns a function that stops this earlier. */
+export function follow(id: string, listener: Following): () => void {
   const events = new EventSource(`/v1/models/${id}/events`)
-  const end = () => events.close()
-  const on = (name: string, tell: (value: never) => void) =>
-    events.addEventListener(name, event => tell(JSON.parse((event as MessageEvent<string>).data) as never))
-  events.onopen = () => told.connected(true)
-  // A browser gives up by itself only where the answer is no event stream, which is the case for a model that is gone.
-  events.onerror = () => (events.readyState === EventSource.CLOSED ? told.gone() : told.connected(false))
-  on('snapshot', told.changed)
-  on('progress', told.changed)
-  on('preview', told.grew)
-  for (const name of ENDS) {
+  const stop = () => events.close()
+  const on = (name: string, receive: (value: never) => void) =>
+    events.addEventListener(name, event => receive(JSON.parse((event as MessageEvent<string>).data) as never))
+  events.onopen = () => listener.connected(true)
+  // A browser closes the stream by itself only where the response is not one, as for a model that is gone.
+  events.onerror = () => (events.readyState === EventSource.CLOSED ? listener.gone() : listener.connected(false))
+  on('snapshot', listener.changed)
+  on('progress', listener.changed)
+  on('preview', listener.grew)
+  for (const name of FINISHED) {
     on(name, model => {
-      end()
-      told.changed(model)
+      stop()
+      listener.changed(model)
     })
   }
-  return end
+  return stop
 }
 
-/** Tell whether nothing more will happen to a model. */
+/** Return whether a model is finished: it succeeded, failed or was canceled. */
 export function isOver(model: Model): boolean {
-  return ENDS.some(end => end === model.status)
+  return FINISHED.some(status => status === model.status)
 }

@@ -12,12 +12,12 @@ import {
   Vector2,
 } from 'three'
 
-/** Colours of sky and ground, and the strength of the light, for one scheme. */
+/** Colours of sky, ground and light, and the light's strength, for one colour scheme of the page. */
 export interface Scheme {
   zenith: string
   horizon: string
   floor: string
-  meadow: string
+  grass: string
   shadow: string
   sun: string
   sky: string
@@ -25,24 +25,22 @@ export interface Scheme {
   skylight: number
 }
 
-/** A bright morning on paper. */
 export const LIGHT: Scheme = {
   zenith: '#c3d6dc',
   horizon: '#f7f1e3',
   floor: '#e4dfcb',
-  meadow: '#a9ae7c',
+  grass: '#a9ae7c',
   shadow: '#3b4232',
   sun: '#fff5e8',
   sky: '#e1ebf0',
   sunlight: 4,
   skylight: 2.3,
 }
-/** Late light on a dark desk. */
 export const DARK: Scheme = {
   zenith: '#10171b',
   horizon: '#424d49',
   floor: '#1e2621',
-  meadow: '#4f5c3a',
+  grass: '#4f5c3a',
   shadow: '#0a0e0b',
   sun: '#ffeacd',
   sky: '#bccbd6',
@@ -50,9 +48,10 @@ export const DARK: Scheme = {
   skylight: 2.1,
 }
 
+/** Noise of one level, which hides the bands of a smooth gradient. */
 const DITHER = 'fract(sin(dot(gl_FragCoord.xy, vec2(12.9898, 78.233))) * 43758.5453) / 255.0'
 
-/** The sky above and the floor below the horizon, drawn behind all else. */
+/** The sky above the horizon and the floor below it, drawn behind everything else. */
 export class Backdrop {
   readonly mesh: Mesh
   private readonly material: ShaderMaterial
@@ -64,20 +63,20 @@ export class Backdrop {
         zenith: colour(),
         haze: colour(),
         floor: colour(),
-        meadow: colour(),
+        grass: colour(),
         horizon: { value: 0 },
-        level: { value: 0 },
+        grassShare: { value: 0 },
       },
       vertexShader: 'varying vec2 at;\nvoid main() { at = position.xy; gl_Position = vec4(position.xy, 1.0, 1.0); }',
       fragmentShader: `varying vec2 at;
-        uniform vec3 zenith, haze, floor, meadow;
-        uniform float horizon, level;
+        uniform vec3 zenith, haze, floor, grass;
+        uniform float horizon, grassShare;
         void main() {
           float above = at.y - horizon;
           vec3 sky = mix(haze, zenith, smoothstep(0.0, 2.0, above - 0.12 * at.x));
           vec3 ground = mix(haze, floor, smoothstep(0.0, 0.55, -above));
           float near = exp(-at.x * at.x * 1.6) * smoothstep(0.45, 0.0, -above);
-          ground = mix(ground, meadow, level * near * 0.75);
+          ground = mix(ground, grass, grassShare * near * 0.75);
           vec3 colour = mix(ground, sky, smoothstep(-0.012, 0.012, above));
           colour *= 1.0 - 0.05 * dot(at, at);
           gl_FragColor = vec4(colour + ${DITHER}, 1.0);
@@ -85,17 +84,17 @@ export class Backdrop {
       depthTest: false,
       depthWrite: false,
     })
-    const whole = new BufferGeometry()
-    whole.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3))
-    this.mesh = new Mesh(whole, this.material)
+    const triangle = new BufferGeometry()
+    triangle.setAttribute('position', new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3))
+    this.mesh = new Mesh(triangle, this.material)
     this.mesh.frustumCulled = false
     this.mesh.renderOrder = -2
   }
 
-  /** Where the horizon is, and how far (0..1) one sees the ground from its edge, so that it hides its meadow. */
-  set(horizon: number, level: number): void {
+  /** Set the horizon's height (-1 bottom to 1 top), and how much grass to paint, 0..1: 1 where the disc is seen edge-on. */
+  set(horizon: number, grassShare: number): void {
     this.material.uniforms.horizon!.value = horizon
-    this.material.uniforms.level!.value = level
+    this.material.uniforms.grassShare!.value = grassShare
   }
 
   paint(scheme: Scheme): void {
@@ -103,21 +102,21 @@ export class Backdrop {
       ['zenith', scheme.zenith],
       ['haze', scheme.horizon],
       ['floor', scheme.floor],
-      ['meadow', scheme.meadow],
+      ['grass', scheme.grass],
     ] as const)
-      asShown(this.material.uniforms[name]!.value as Color, colour)
+      setUnconverted(this.material.uniforms[name]!.value as Color, colour)
   }
 }
 
-/** A round of meadow under the tree that takes its shadow and fades into the floor like the edge of a wash. */
-export class Meadow {
+/** A disc of grass under the tree that shows its shadow; its uneven edge fades into the floor. */
+export class Ground {
   readonly mesh: Mesh
   private readonly uniforms = {
-    meadow: { value: new Color() },
-    dark: { value: new Color() },
-    fallen: { value: pictureOf(new Uint8Array(1), 1) },
+    grass: { value: new Color() },
+    shadowColour: { value: new Color() },
+    bakedShadow: { value: textureOf(new Uint8Array(1), 1) },
     baked: { value: 0 },
-    middle: { value: new Vector2() },
+    root: { value: new Vector2() },
   }
 
   constructor() {
@@ -125,8 +124,8 @@ export class Meadow {
     material.onBeforeCompile = shader => {
       Object.assign(shader.uniforms, this.uniforms)
       shader.vertexShader = shader.vertexShader
-        .replace('#include <common>', '#include <common>\nvarying vec2 vRound;')
-        .replace('#include <begin_vertex>', '#include <begin_vertex>\nvRound = position.xy;')
+        .replace('#include <common>', '#include <common>\nvarying vec2 vDisc;')
+        .replace('#include <begin_vertex>', '#include <begin_vertex>\nvDisc = position.xy;')
       shader.fragmentShader = shader.fragmentShader
         .replace('#include <common>', `#include <common>\n${GROUND_HEAD}`)
         .replace('gl_FragColor = vec4( color, opacity * ( 1.0 - getShadowMask() ) );', GROUND_COLOUR)
@@ -140,44 +139,44 @@ export class Meadow {
   }
 
   paint(scheme: Scheme): void {
-    asShown(this.uniforms.meadow.value, scheme.meadow)
-    asShown(this.uniforms.dark.value, scheme.shadow)
+    setUnconverted(this.uniforms.grass.value, scheme.grass)
+    setUnconverted(this.uniforms.shadowColour.value, scheme.shadow)
   }
 
-  /** Lie under a tree whose root stands at the origin. */
-  lie({ centre, reach }: { centre: readonly [number, number]; reach: number }): void {
+  /** Set the centre [x, z] and radius, world units; the tree's root is at the origin. */
+  place({ centre, radius }: { centre: readonly [number, number]; radius: number }): void {
     this.mesh.position.set(centre[0], -0.001, centre[1])
-    this.mesh.scale.setScalar(reach)
-    this.uniforms.middle.value.set(-centre[0] / reach, centre[1] / reach)
+    this.mesh.scale.setScalar(radius)
+    this.uniforms.root.value.set(-centre[0] / radius, centre[1] / radius)
   }
 
-  /** Take a painted shadow, `side` x `side` bytes, in the place of a shadow map. */
-  shade(picture: Uint8Array, side: number): void {
-    this.uniforms.fallen.value.dispose()
-    this.uniforms.fallen.value = pictureOf(picture, side)
+  /** Show a baked shadow, `side` x `side` bytes, in place of a shadow map. */
+  setBakedShadow(picture: Uint8Array, side: number): void {
+    this.uniforms.bakedShadow.value.dispose()
+    this.uniforms.bakedShadow.value = textureOf(picture, side)
     this.uniforms.baked.value = 1
   }
 }
 
-const GROUND_HEAD = `varying vec2 vRound;
-  uniform vec3 meadow, dark;
-  uniform sampler2D fallen;
+const GROUND_HEAD = `varying vec2 vDisc;
+  uniform vec3 grass, shadowColour;
+  uniform sampler2D bakedShadow;
   uniform float baked;
-  uniform vec2 middle;
+  uniform vec2 root;
   float ripple(vec2 p) {
     float a = atan(p.y, p.x);
     return 0.05 * sin(3.0 * a + 0.6) + 0.03 * sin(7.0 * a + 2.1) + 0.012 * sin(17.0 * a);
   }`
 const GROUND_COLOUR = `
-  float away = length(vRound) * (1.0 + ripple(vRound));
-  float wash = 0.75 * (1.0 - smoothstep(0.15, 0.97, away));
-  float shaded = mix((1.0 - getShadowMask()) / 0.6, texture2D(fallen, vec2(vRound.x, -vRound.y) * 0.5 + 0.5).r, baked);
-  float foot = 0.5 * exp(-dot(vRound - middle, vRound - middle) * 220.0);
+  float away = length(vDisc) * (1.0 + ripple(vDisc));
+  float grassAlpha = 0.75 * (1.0 - smoothstep(0.15, 0.97, away));
+  float shaded = mix((1.0 - getShadowMask()) / 0.6, texture2D(bakedShadow, vec2(vDisc.x, -vDisc.y) * 0.5 + 0.5).r, baked);
+  float foot = 0.5 * exp(-dot(vDisc - root, vDisc - root) * 220.0);
   float shade = max(0.52 * shaded, foot) * (1.0 - smoothstep(0.6, 0.98, away));
-  float cover = 1.0 - (1.0 - wash) * (1.0 - shade);
-  gl_FragColor = vec4((meadow * wash * (1.0 - shade) + dark * shade) / max(cover, 1e-3), cover);`
+  float cover = 1.0 - (1.0 - grassAlpha) * (1.0 - shade);
+  gl_FragColor = vec4((grass * grassAlpha * (1.0 - shade) + shadowColour * shade) / max(cover, 1e-3), cover);`
 
-function pictureOf(bytes: Uint8Array, side: number): DataTexture {
+function textureOf(bytes: Uint8Array, side: number): DataTexture {
   const texture = new DataTexture(bytes as Uint8Array<ArrayBuffer>, side, side, RedFormat)
   texture.magFilter = LinearFilter
   texture.unpackAlignment = 1
@@ -185,7 +184,7 @@ function pictureOf(bytes: Uint8Array, side: number): DataTexture {
   return texture
 }
 
-/** A colour to be written as it is, past three's conversion to linear light. */
-function asShown(colour: Color, css: string): void {
+/** Set a colour that a shader writes as it is: without three's conversion to linear light. */
+function setUnconverted(colour: Color, css: string): void {
   colour.set(css).convertLinearToSRGB()
 }

@@ -16,24 +16,25 @@ import { restMatrix } from './resting'
 import { SUN } from './sun'
 import type { Sway } from './sway'
 
-/** Something the preview shows: a tree in the preview's world, where 1 unit is the photo's height. */
+/** A tree that the preview shows, in the preview's world, where 1 unit is the photo's height. */
 export interface Content {
   readonly kind: 'live' | 'model'
   readonly group: Group
   readonly photo: PhotoFrame
   readonly box: Box
   readonly triangles: number
-  /** Where it has leaves of its own. */
+  /** Its leaves; null where it has none. */
   readonly leaves: Mesh | null
-  /** Where its file has wind. */
+  /** Its animations by wind; null where its file has none. */
   readonly sway: Sway | null
-  /** How old it is, as a share of its growth: branches for the skeleton, leaves for the model. */
-  age(share: number): void
+  /** Show it at a share of its growth, 0..1: the branches of the live tree, the leaves of a model. */
+  showGrowth(share: number): void
+  /** Free what it holds on the GPU. */
   dispose(): void
 }
 
-/** Metres to the preview's world. */
-export function placed(photo: PhotoFrame, ...meshes: Object3D[]): Group {
+/** Return a group that scales meshes from metres to the preview's world. */
+export function placeInWorld(photo: PhotoFrame, ...meshes: Object3D[]): Group {
   const group = new Group()
   group.scale.setScalar(unitsPerMetre(photo))
   group.add(...meshes)
@@ -41,27 +42,27 @@ export function placed(photo: PhotoFrame, ...meshes: Object3D[]): Group {
   return group
 }
 
-/** The tree's box in the preview's world. */
+/** Return a tree's box in the preview's world. */
 export function boxOf(group: Group): Box {
   const { min, max } = new Box3().setFromObject(group)
   return { min: [min.x, min.y, min.z], max: [max.x, max.y, max.z] }
 }
 
-/** Triangles of a geometry. */
+/** Return how many triangles a geometry has. */
 export function trianglesOf(geometry: BufferGeometry): number {
   return (geometry.index?.count ?? geometry.getAttribute('position').count) / 3
 }
 
-/** The round of ground under a tree that takes in its shadow: centre [x, z] and radius. */
-export function groundUnder({ min, max }: Box): { centre: readonly [number, number]; reach: number } {
+/** Return the disc of ground under a tree that holds its shadow: centre [x, z] and radius. */
+export function groundUnder({ min, max }: Box): { centre: readonly [number, number]; radius: number } {
   const fall = max[1] / SUN[1] / 2
   const centre = [(min[0] + max[0]) / 2 - SUN[0] * fall, (min[2] + max[2]) / 2 - SUN[2] * fall] as const
-  return { centre, reach: Math.max(max[0] - min[0], max[2] - min[2]) * 0.75 + fall * 0.8 }
+  return { centre, radius: Math.max(max[0] - min[0], max[2] - min[2]) * 0.75 + fall * 0.8 }
 }
 
-/** The content's shadow on its ground as a picture, for where no shadow map is drawn. */
+/** Return a tree's shadow on its ground as a picture of `side` x `side` bytes, for where no shadow map is drawn. */
 export function shadowOf(content: Content, side: number): Uint8Array {
-  const fallen: number[] = []
+  const vertices: number[] = []
   const vertex = new Vector3()
   content.group.traverseVisible(part => {
     if (!(part instanceof Mesh)) return
@@ -69,10 +70,10 @@ export function shadowOf(content: Content, side: number): Uint8Array {
     const rest = restMatrix(part)
     for (let at = 0; at < position.count; at += 2) {
       vertex.fromBufferAttribute(position, at).applyMatrix4(rest)
-      fallen.push(vertex.x, vertex.y, vertex.z)
+      vertices.push(vertex.x, vertex.y, vertex.z)
     }
   })
-  return groundShadow(fallen, SUN, { ...groundUnder(content.box), side })
+  return groundShadow(vertices, SUN, { ...groundUnder(content.box), side })
 }
 
 /** Free what a mesh holds on the GPU. */

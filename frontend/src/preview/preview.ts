@@ -1,21 +1,22 @@
 import './preview.css'
 import type { Grown } from '../api/types'
-import { press } from './keys'
+import { pressKey } from './keys'
 import { probeWebgl } from './software'
 import { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
-import { Viewer } from './viewer'
+import { Viewer, type ViewerOptions } from './viewer'
 
 export { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
 
-/** The preview's labels, and who is told its status. `software`: whether WebGL is drawn by the processor; found out where absent. */
 export interface PreviewOptions {
+  /** Names of the wipe and of the canvas, for screen readers. */
   labels: { wipe: string; canvas: string }
   reducedMotion: () => boolean
   onStatus: (status: PreviewStatus) => void
+  /** Whether the processor draws WebGL; found out where absent. */
   software?: boolean
 }
 
-/** The 3D preview in an element of the page. Where there is no WebGL it shows nothing and says so in its status. */
+/** The 3D preview in an element of the page. Without WebGL it shows nothing, and its status says so. */
 export class Preview {
   private readonly viewer: Viewer | null
   private readonly canvas = document.createElement('canvas')
@@ -28,28 +29,28 @@ export class Preview {
     host.dataset.state = 'empty'
     const webgl = probeWebgl()
     const software = options.software ?? webgl === 'software'
-    const certain = options.software !== undefined
-    this.viewer =
-      webgl === 'absent' ? null : this.opened({ ...options, software, certain, label: options.labels.wipe }, options)
+    const softwareIsKnown = options.software !== undefined
+    const viewerOptions = { ...options, software, softwareIsKnown, label: options.labels.wipe }
+    this.viewer = webgl === 'absent' ? null : this.createViewer(viewerOptions, options.labels.canvas)
     if (!this.viewer) options.onStatus({ ...NOTHING_SHOWN, webgl: 'absent', view: 'free' })
   }
 
-  /** The picture for the wipe, of the upright photo; null takes it away. */
+  /** Show the upright photo at this address in the wipe; null removes it. */
   showPhoto(url: string | null): void {
     this.viewer?.showPhoto(url)
   }
 
-  /** Show the live skeleton; the camera stays where it is, the first tree opens on a view from the side. */
+  /** Show the live tree; the camera stays where it is, but the first tree of all is shown from the side. */
   showLive(grown: Grown): void {
     this.viewer?.showLive(grown)
   }
 
-  /** Play the growth of a skeleton; ends showing all of it. */
+  /** Animate the growth of a live tree; the promise resolves when it is fully grown. */
   async playGrowth(grown: Grown): Promise<void> {
     await this.viewer?.playGrowth(grown)
   }
 
-  /** Replace what is shown by a GLB of the service; its leaves come in. The first one is flown to the photo's view. */
+  /** Show a GLB of the service; its leaves appear gradually. After a live tree the camera flies to the photo's view. */
   async showModel(glb: ArrayBuffer): Promise<void> {
     await this.viewer?.showModel(glb)
   }
@@ -64,47 +65,48 @@ export class Preview {
     this.viewer?.view(name)
   }
 
+  /** Show or hide the leaves. */
   setLeaves(on: boolean): void {
-    this.viewer?.turnLeaves(on)
+    this.viewer?.setLeaves(on)
   }
 
-  /** Let a wind of the file blow, by its name; null for none. */
+  /** Play a wind of the file, by its name; null for none. */
   blow(wind: string | null): void {
     this.viewer?.blow(wind)
   }
 
-  /** Turn by radians: `azimuth` to the right, `polar` downwards. */
+  /** Turn the camera by radians: `azimuth` to the right, `polar` downwards. */
   orbit(azimuth: number, polar: number): void {
     this.viewer?.orbit(azimuth, polar)
   }
 
-  /** Come closer by a factor. */
+  /** Move the camera closer by a factor. */
   zoom(factor: number): void {
     this.viewer?.zoom(factor)
   }
 
-  /** The picture as it is seen, as a PNG of twice its CSS pixels or more. */
+  /** Return what is shown as a PNG, with at least two pixels per CSS px. */
   async png(): Promise<Blob> {
-    if (!this.viewer) throw new Error('There is no WebGL to draw a picture with.')
+    if (!this.viewer) throw new Error('A picture needs WebGL, which this browser does not have.')
     return this.viewer.png()
   }
 
-  /** Leave the page, and free what the preview holds on the GPU. */
+  /** Remove the preview from the page, and free what it holds on the GPU. */
   end(): void {
     this.viewer?.end()
     this.host.replaceChildren()
   }
 
-  private opened(options: ConstructorParameters<typeof Viewer>[2], { labels }: PreviewOptions): Viewer | null {
+  private createViewer(options: ViewerOptions, label: string): Viewer {
     const { canvas, host } = this
     canvas.className = 'preview-canvas'
-    for (const [name, value] of Object.entries({ tabindex: '0', role: 'application', 'aria-label': labels.canvas }))
+    for (const [name, value] of Object.entries({ tabindex: '0', role: 'application', 'aria-label': label }))
       canvas.setAttribute(name, value)
     host.prepend(canvas)
     const viewer = new Viewer(host, canvas, options)
     canvas.addEventListener('keydown', event => {
-      const bare = !event.ctrlKey && !event.metaKey && !event.altKey
-      if (bare && press(event.key, viewer)) event.preventDefault()
+      const plain = !event.ctrlKey && !event.metaKey && !event.altKey
+      if (plain && pressKey(event.key, viewer)) event.preventDefault()
     })
     return viewer
   }

@@ -1,44 +1,45 @@
 import { PerspectiveCamera, Spherical, Vector3 } from 'three'
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js'
-import { between, depthRange, eyeOf, PHOTO_SLOPE, type Pose, refit, VIEW_SLOPE } from './camera'
+import { depthRange, eyeOf, interpolate, PHOTO_SLOPE, type Pose, refit, VIEW_SLOPE } from './camera'
 
-/** The smallest and largest height, in world units, that may be seen at the target. */
+/** The smallest and largest height that may be seen at the target, world units. */
 const SIZES = [0.06, 5] as const
-/** How far, in world units, things reach from the target. */
-const REACH = 6
-/** How fast the lens eases when one turns away from the photo, per second. */
-const EASE = 5
-/** Radians off the photo's view that count as turning away. */
-const AWAY = 0.002
+/** How far from the target anything is drawn, world units. */
+const DRAWN_RADIUS = 6
+/** How fast the lens changes after turning away from the photo's view, per second. */
+const LENS_RATE = 5
+/** Radians from the photo's view that count as turned away. */
+const TURNED_AWAY = 0.002
 
-/** Where one stands before there is a tree. */
+/** The pose before there is a tree. */
 const EMPTY: Pose = { target: [0, 0.4, 0], azimuth: 0, polar: 1.4, size: 1.2, slope: VIEW_SLOPE }
 
-/** How the rig moves and whom it tells. */
-export interface Motion {
-  /** Whether flights are left out. */
-  still: () => boolean
-  /** Whether turning runs on after the pointer let go. */
+/** How the rig moves, and its listeners. */
+export interface RigOptions {
+  /** Whether the camera jumps instead of flying. */
+  reducedMotion: () => boolean
+  /** Whether turning slows down gradually after the pointer is released. */
   damped: () => boolean
-  /** The user turns away from the view that was flown to. */
+  /** Called when the user turns away from a view. */
   onTurn: () => void
-  /** The pointer moved the camera, so that a frame is wanted. */
-  onShift: () => void
+  /** Called when the pointer has moved the camera, so that a frame is needed. */
+  onMove: () => void
 }
 
-/** The one camera: orbited by the pointer, flown between views, with a lens that eases. */
+/** The one camera: the pointer orbits it, it flies between views, and its lens changes with them. */
 export class Rig {
   readonly camera = new PerspectiveCamera()
   private readonly controls: OrbitControls
   private flight: { from: Pose; to: Pose; seconds: number; spent: number } | null = null
   private slope = VIEW_SLOPE
   private aspect = 1
-  private held = false
-  private shifted = false
+  /** Whether the pointer has grabbed the camera since the last flight. */
+  private grabbed = false
+  private moved = false
 
   constructor(
     canvas: HTMLElement,
-    private readonly motion: Motion,
+    private readonly options: RigOptions,
   ) {
     this.controls = new OrbitControls(this.camera, canvas)
     this.controls.minPolarAngle = 0.03
@@ -46,99 +47,99 @@ export class Rig {
     this.controls.maxTargetRadius = 4
     this.controls.dampingFactor = 0.09
     this.controls.zoomSpeed = 1.4
-    this.controls.addEventListener('start', () => this.grabbed())
-    this.controls.addEventListener('change', () => this.shift())
+    this.controls.addEventListener('start', () => this.onGrab())
+    this.controls.addEventListener('change', () => this.onChange())
     this.place(EMPTY)
   }
 
-  /** Listen to the pointer no more. */
+  /** Stop listening to the pointer. */
   end(): void {
     this.controls.dispose()
   }
 
-  /** Where the camera stands now. */
+  /** The camera's pose now. */
   get pose(): Pose {
     const { target } = this.controls
-    const seen = new Spherical().setFromVector3(new Vector3().subVectors(this.camera.position, target))
-    const size = 2 * seen.radius * this.slope
-    return { target: [target.x, target.y, target.z], azimuth: seen.theta, polar: seen.phi, size, slope: this.slope }
+    const offset = new Spherical().setFromVector3(new Vector3().subVectors(this.camera.position, target))
+    const size = 2 * offset.radius * this.slope
+    return { target: [target.x, target.y, target.z], azimuth: offset.theta, polar: offset.phi, size, slope: this.slope }
   }
 
-  /** Where the camera is going, or stands. */
+  /** The pose that the camera flies to, or its pose now. */
   get goal(): Pose {
     return this.flight?.to ?? this.pose
   }
 
-  /** Whether it rests on the photo's parallel view, from straight ahead. */
+  /** Whether the camera is at rest in the photo's view, straight ahead. */
   get facesPhoto(): boolean {
     const { azimuth, polar } = this.pose
-    return !this.flight && this.slope === PHOTO_SLOPE && Math.hypot(azimuth, polar - Math.PI / 2) < AWAY
+    return !this.flight && this.slope === PHOTO_SLOPE && Math.hypot(azimuth, polar - Math.PI / 2) < TURNED_AWAY
   }
 
-  /** Stand here at once. */
-  stand(pose: Pose): void {
+  /** Move to a pose at once. */
+  moveTo(pose: Pose): void {
     this.flight = null
-    this.held = false
+    this.grabbed = false
     this.place(pose)
   }
 
-  /** Go there in so many seconds; at once with reduced motion. */
+  /** Fly to a pose over some seconds; at once with reduced motion. */
   fly(to: Pose, seconds: number): void {
-    this.halt()
-    this.held = false
-    if (this.motion.still()) this.stand(to)
+    this.endDamping()
+    this.grabbed = false
+    if (this.options.reducedMotion()) this.moveTo(to)
     else this.flight = { from: this.pose, to, seconds, spent: 0 }
   }
 
-  /** Let time pass; says whether anything moves still. */
+  /** Advance by a time, seconds; returns whether anything moves. */
   step(seconds: number): boolean {
-    if (this.flight) return this.flown(this.flight, seconds)
-    this.controls.enableDamping = this.motion.damped()
+    if (this.flight) return this.advanceFlight(this.flight, seconds)
+    this.controls.enableDamping = this.options.damped()
     this.controls.update()
-    const moved = this.shifted
-    this.shifted = false
-    if (moved && this.held && !this.facesPhoto) this.motion.onTurn()
-    return this.easedLens(seconds) || moved
+    const { moved } = this
+    this.moved = false
+    if (moved && this.grabbed && !this.facesPhoto) this.options.onTurn()
+    return this.changeLens(seconds) || moved
   }
 
-  /** Fit a viewport of this aspect. */
+  /** Fit a viewport of this aspect, width / height. */
   resize(aspect: number): void {
     const pose = refit(this.pose, this.aspect, aspect)
     this.aspect = aspect
     this.place(pose)
   }
 
-  private flown(flight: NonNullable<Rig['flight']>, seconds: number): boolean {
+  private advanceFlight(flight: NonNullable<Rig['flight']>, seconds: number): boolean {
     flight.spent = Math.min(flight.spent + seconds, flight.seconds)
     const t = flight.spent / flight.seconds
-    this.place(between(flight.from, flight.to, t < 0.5 ? 4 * t ** 3 : 1 - (2 - 2 * t) ** 3 / 2))
-    if (t === 1) this.stand(flight.to)
+    this.place(interpolate(flight.from, flight.to, t < 0.5 ? 4 * t ** 3 : 1 - (2 - 2 * t) ** 3 / 2))
+    if (t === 1) this.moveTo(flight.to)
     return true
   }
 
-  /** Away from the photo, the long lens gives way to the one of free views. */
-  private easedLens(seconds: number): boolean {
+  /** Away from the photo's view, bring its long lens closer to that of the other views; returns whether it changed. */
+  private changeLens(seconds: number): boolean {
     if (this.slope === VIEW_SLOPE || this.facesPhoto) return false
-    const left = this.motion.still() ? 0 : Math.exp(-EASE * seconds)
-    const slope = VIEW_SLOPE + (this.slope - VIEW_SLOPE) * left
+    const remaining = this.options.reducedMotion() ? 0 : Math.exp(-LENS_RATE * seconds)
+    const slope = VIEW_SLOPE + (this.slope - VIEW_SLOPE) * remaining
     this.place({ ...this.pose, slope: VIEW_SLOPE - slope < 1e-3 ? VIEW_SLOPE : slope })
     return true
   }
 
-  private shift(): void {
-    this.shifted = true
-    this.motion.onShift()
+  private onChange(): void {
+    this.moved = true
+    this.options.onMove()
   }
 
-  private grabbed(): void {
-    this.held = true
+  private onGrab(): void {
+    this.grabbed = true
     if (!this.flight) return
     this.flight = null
-    this.motion.onTurn()
+    this.options.onTurn()
   }
 
-  /** End what damping would still move. */
-  private halt(): void {
+  /** End a movement that damping would continue. */
+  private endDamping(): void {
     if (this.flight) return
     this.controls.enableDamping = false
     this.controls.update()
@@ -154,12 +155,12 @@ export class Rig {
     camera.lookAt(controls.target)
     camera.fov = (Math.atan(pose.slope) * 360) / Math.PI
     camera.aspect = this.aspect
-    this.focus()
+    this.setDepthRange()
   }
 
-  /** Near and far planes close around what can be seen. */
-  focus(): void {
-    const [near, far] = depthRange(this.pose, REACH)
+  /** Set the near and far planes close around what can be seen. */
+  setDepthRange(): void {
+    const [near, far] = depthRange(this.pose, DRAWN_RADIUS)
     this.camera.near = near
     this.camera.far = far
     this.camera.updateProjectionMatrix()

@@ -1,25 +1,31 @@
 import { DirectionalLight, HemisphereLight, NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three'
-import { Backdrop, DARK, LIGHT, Meadow, type Scheme } from './backdrop'
+import { Backdrop, DARK, Ground, LIGHT, type Scheme } from './backdrop'
 import { type Box, horizonOf, VIEW_SLOPE, type Viewport } from './camera'
 import { type Content, groundUnder, shadowOf } from './content'
 import type { Rig } from './rig'
-import type { Shades } from './shading'
+import type { TreeUniforms } from './shading'
 import { SUN } from './sun'
 
-const SHADOW_SIDE = 2048
-const PAINTED_SIDE = 96
-/** From here on (0..1) the ground is seen from its edge and would only be a line. */
-const LEVEL = 0.99
+/** Sides of the shadow map and of the baked shadow, px. */
+const SHADOW_MAP_SIDE = 2048
+const BAKED_SIDE = 96
+/** From this share on (0..1) the ground is seen edge-on and would only be a line. */
+const EDGE_ON = 0.99
 
-/** Renderer, light, ground and sky; draws the one content that stands on it. */
+/** Renderer, light, ground and sky; draws one content at a time. */
 export class Stage {
-  readonly shades: Shades = { baked: { value: 0 }, canopy: { value: 1 }, leafed: { value: 1 }, age: { value: 0 } }
+  readonly uniforms: TreeUniforms = {
+    baked: { value: 0 },
+    canopy: { value: 1 },
+    leafShare: { value: 1 },
+    iteration: { value: 0 },
+  }
   readonly renderer: WebGLRenderer
   private readonly scene = new Scene()
   private readonly sun = new DirectionalLight()
   private readonly sky = new HemisphereLight()
   private readonly backdrop = new Backdrop()
-  private readonly ground = new Meadow()
+  private readonly ground = new Ground()
   private content: Content | null = null
 
   constructor(
@@ -32,27 +38,27 @@ export class Stage {
     this.renderer.shadowMap.enabled = true
     this.renderer.shadowMap.type = PCFShadowMap
     this.renderer.shadowMap.autoUpdate = false
-    this.sun.shadow.mapSize.setScalar(SHADOW_SIDE)
+    this.sun.shadow.mapSize.setScalar(SHADOW_MAP_SIDE)
     this.sun.shadow.intensity = 0.6
     this.sun.shadow.radius = 2.5
     this.scene.add(this.sun, this.sun.target, this.sky, this.backdrop.mesh, this.ground.mesh)
     this.setSoftware(software)
   }
 
-  /** Whether edges are smoothed by the canvas itself. */
-  get edges(): boolean {
+  /** Whether the canvas itself is antialiased. */
+  get antialiased(): boolean {
     return this.renderer.getContextAttributes().antialias === true
   }
 
-  /** Draw with less: no shadow map, a painted shadow in its place. */
+  /** Set whether the processor draws: then a baked shadow takes the place of the shadow map. */
   setSoftware(software: boolean): void {
     this.software = software
     this.sun.castShadow = !software
-    this.shades.baked.value = software ? 1 : 0
-    this.relight()
+    this.uniforms.baked.value = software ? 1 : 0
+    this.updateShadow()
   }
 
-  /** Put on the light and the colours of day or dusk. */
+  /** Set light and colours for the page's light or dark scheme. */
   paint(dark: boolean): void {
     const scheme: Scheme = dark ? DARK : LIGHT
     this.backdrop.paint(scheme)
@@ -60,11 +66,11 @@ export class Stage {
     this.sun.color.set(scheme.sun)
     this.sun.intensity = scheme.sunlight
     this.sky.color.set(scheme.sky)
-    this.sky.groundColor.set(scheme.meadow)
+    this.sky.groundColor.set(scheme.grass)
     this.sky.intensity = scheme.skylight
   }
 
-  /** Let a tree stand here in the place of the last, which is freed. */
+  /** Show a tree in place of the last one, which is disposed of. */
   show(content: Content | null): void {
     if (this.content) this.scene.remove(this.content.group)
     this.content?.dispose()
@@ -72,47 +78,49 @@ export class Stage {
     if (content) {
       this.scene.add(content.group)
       this.fitSun(content.box)
-      this.ground.lie(groundUnder(content.box))
+      this.ground.place(groundUnder(content.box))
     }
-    this.relight()
+    this.updateShadow()
   }
 
-  /** What throws the shadow has changed. */
-  relight(): void {
+  /** Make the shadow again, because the tree has changed. */
+  updateShadow(): void {
     this.renderer.shadowMap.needsUpdate = !this.software
-    if (this.software && this.content) this.ground.shade(shadowOf(this.content, PAINTED_SIDE), PAINTED_SIDE)
+    if (this.software && this.content) this.ground.setBakedShadow(shadowOf(this.content, BAKED_SIDE), BAKED_SIDE)
   }
 
-  /** Set the canvas's pixels: `ratio` for each CSS pixel. */
+  /** Set the canvas's size (CSS px) and its pixels per CSS px. */
   size({ width, height }: Viewport, ratio: number): void {
     this.renderer.setPixelRatio(ratio)
     this.renderer.setSize(width, height, false)
   }
 
-  /** Draw one frame; gives the number of draw calls. */
+  /** Draw one frame; returns the number of draw calls. */
   draw(rig: Rig): number {
-    rig.focus()
-    const level = 1 - rig.pose.slope / VIEW_SLOPE
-    this.backdrop.set(horizonOf(rig.pose), level)
-    this.ground.mesh.visible = this.content !== null && level < LEVEL
+    rig.setDepthRange()
+    // The photo's long lens looks at the ground edge-on.
+    const edgeOn = 1 - rig.pose.slope / VIEW_SLOPE
+    this.backdrop.set(horizonOf(rig.pose), edgeOn)
+    this.ground.mesh.visible = this.content !== null && edgeOn < EDGE_ON
     this.renderer.info.reset()
     this.renderer.render(this.scene, rig.camera)
     return this.renderer.info.render.calls
   }
 
-  /** Free everything; the canvas can be drawn on no more. */
+  /** Free everything: nothing can be drawn any more. */
   end(): void {
     this.show(null)
     this.renderer.dispose()
     this.renderer.forceContextLoss()
   }
 
-  /** Wait until the frame is drawn. */
+  /** Wait until the frame is drawn: reading a pixel waits for the GPU. */
   finish(): void {
     const gl = this.renderer.getContext()
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4))
   }
 
+  /** Make the sun's shadow cover a box. */
   private fitSun({ min, max }: Box): void {
     const radius = Math.hypot(max[0] - min[0], max[1] - min[1], max[2] - min[2]) / 2
     const { target, shadow } = this.sun

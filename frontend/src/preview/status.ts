@@ -1,20 +1,20 @@
-/** The views that have a name; the photo's own is parallel and lies exactly over the photo. */
+/** The named views; `photo` lies exactly over the photo. */
 export type View = 'photo' | 'front' | 'side' | 'back' | 'top'
 
-/** What the preview shows and what it draws with. */
+/** What the preview shows, and how. */
 export interface PreviewStatus {
   webgl: 'ok' | 'software' | 'lost' | 'absent'
   view: View | 'free'
   shows: 'empty' | 'live' | 'growing' | 'model'
   leaves: boolean
   triangles: number
-  /** What winds there are; none where the file has none. */
+  /** The names of the file's winds. */
   winds: readonly string[]
-  /** The one that blows. */
+  /** The wind that is played. */
   wind: string | null
 }
 
-/** Nothing is shown yet. */
+/** The status before anything is shown. */
 export const NOTHING_SHOWN: PreviewStatus = {
   webgl: 'ok',
   view: 'photo',

@@ -1,9 +1,9 @@
 import { type AnimationAction, type AnimationClip, AnimationMixer, type Object3D } from 'three'
 
-/** Seconds over which one wind gives way to another. */
-const TURN = 0.6
+/** Seconds of the change from one wind to another. */
+const CROSS_FADE = 0.6
 
-/** Winds that can be played on a tree: the clips that its file has. */
+/** Plays a tree's winds, which are the animation clips of its file. */
 export class Sway {
   readonly winds: readonly string[]
   private readonly mixer: AnimationMixer
@@ -16,7 +16,7 @@ export class Sway {
     this.winds = [...this.actions.keys()]
   }
 
-  /** Let a wind blow, by its name; another one gives way to it, and without one the tree comes to rest at once. */
+  /** Play a wind, by its name, in place of another; without one the tree stands still at once. */
   blow(wind: string | null): void {
     const next = (wind === null ? null : this.actions.get(wind)) ?? null
     if (next === this.playing) return
@@ -24,10 +24,10 @@ export class Sway {
     this.playing = next
     if (!next) this.mixer.stopAllAction()
     else if (!before) next.reset().play()
-    else next.reset().crossFadeFrom(before, TURN, false).play()
+    else next.reset().crossFadeFrom(before, CROSS_FADE, false).play()
   }
 
-  /** Let time pass, seconds; says whether anything moves. */
+  /** Advance by a time, seconds; returns whether anything moves. */
   step(seconds: number): boolean {
     if (!this.playing) return false
     this.mixer.update(seconds)

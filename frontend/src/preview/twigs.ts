@@ -8,32 +8,32 @@ import {
 
 type Attribute = BufferAttribute | InterleavedBufferAttribute
 
-/** Join twigs, whose file has no relief for them, to the bark: what is drawn at once costs half the calls. */
+/** Join the twigs' mesh to the bark's, which halves the draw calls; returns the meshes that are left. */
 export function joinTwigs(meshes: readonly Mesh[]): Mesh[] {
   const bark = meshes.find(mesh => nameOf(mesh) === 'bark')
   const twigs = meshes.find(mesh => nameOf(mesh) === 'bark_twigs')
   if (!bark || !twigs) return [...meshes]
-  bark.geometry = joined(bark.geometry, twigs.geometry)
+  bark.geometry = concatenated(bark.geometry, twigs.geometry)
   twigs.removeFromParent()
   return meshes.filter(mesh => mesh !== twigs)
 }
 
-/** Put one geometry behind another, with the first one's attributes. */
-function joined(first: BufferGeometry, second: BufferGeometry): BufferGeometry {
-  const whole = new BufferGeometry()
+/** Return one geometry with the second one's vertices after the first one's, and the first one's attributes. */
+function concatenated(first: BufferGeometry, second: BufferGeometry): BufferGeometry {
+  const joined = new BufferGeometry()
   for (const [name, values] of Object.entries(first.attributes)) {
-    const more = second.getAttribute(name) ?? acrossNormals(second)
-    whole.setAttribute(name, behind(values, more))
+    const more = second.getAttribute(name) ?? tangentsOf(second)
+    joined.setAttribute(name, concatenatedValues(values, more))
   }
   const { count } = first.getAttribute('position')
-  const [ahead, after] = [first.index!, second.index!]
-  const corners = new Uint32Array(ahead.count + after.count)
-  corners.set(ahead.array)
-  for (let at = 0; at < after.count; at++) corners[ahead.count + at] = count + after.getX(at)
-  return whole.setIndex(new BufferAttribute(corners, 1))
+  const [firstIndex, secondIndex] = [first.index!, second.index!]
+  const indices = new Uint32Array(firstIndex.count + secondIndex.count)
+  indices.set(firstIndex.array)
+  for (let at = 0; at < secondIndex.count; at++) indices[firstIndex.count + at] = count + secondIndex.getX(at)
+  return joined.setIndex(new BufferAttribute(indices, 1))
 }
 
-function behind(first: Attribute, second: Attribute): BufferAttribute {
+function concatenatedValues(first: Attribute, second: Attribute): BufferAttribute {
   const { itemSize } = first
   const all = new Float32Array((first.count + second.count) * itemSize)
   let place = 0
@@ -43,8 +43,8 @@ function behind(first: Attribute, second: Attribute): BufferAttribute {
   return new BufferAttribute(all, itemSize)
 }
 
-/** Tangents at right angles to the normals: on twigs nobody sees how relief runs. */
-function acrossNormals(geometry: BufferGeometry): BufferAttribute {
+/** Return some tangents at right angles to the normals: on twigs the direction of the normal map is not visible. */
+function tangentsOf(geometry: BufferGeometry): BufferAttribute {
   const normal = geometry.getAttribute('normal')
   const all = new Float32Array(normal.count * 4)
   for (let at = 0; at < normal.count; at++) {

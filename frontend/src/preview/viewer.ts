@@ -1,61 +1,64 @@
 import type { Grown } from '../api/types'
-import { Ageing } from './ageing'
 import { photoRect, type Viewport } from './camera'
 import type { Content } from './content'
+import { GrowthAnimation } from './growthAnimation'
+import { liveTreeContent } from './liveTree'
 import { modelContent } from './model'
 import { Rig } from './rig'
-import { skeletonContent } from './skeletons'
-import { thriftyRatio } from './software'
+import { softwarePixelRatio } from './software'
 import { Stage } from './stage'
 import type { PreviewStatus, View } from './status'
 import { aspectOf, openingPose, poseOf } from './views'
 import { Wipe } from './wipe'
 
-/** What the viewer is told from outside. */
 export interface ViewerOptions {
+  /** Whether the processor draws WebGL. */
   software: boolean
-  /** Whether the first frames are not to be asked what they say of it. */
-  certain: boolean
+  /** Whether `software` was set by the page; otherwise the first frames are timed to check it. */
+  softwareIsKnown: boolean
+  /** The wipe's name, for screen readers. */
   label: string
   reducedMotion: () => boolean
   onStatus: (status: PreviewStatus) => void
 }
 
+/** Durations in seconds: a flight between views, one by a key, the growth of branches, that of leaves. */
 const FLIGHT = 0.9
-const NUDGE = 0.16
+const KEY_FLIGHT = 0.16
 const GROWTH = 2.5
-const LEAFING = 0.6
-/** What blows in a tree that has wind until something else is chosen, where frames are quick and motion is welcome. */
+const LEAF_GROWTH = 0.6
+/** The wind that is played first, unless the processor draws or the user wants reduced motion. */
 const FIRST_WIND = 'breeze'
-/** A frame that takes longer than this, in milliseconds, is drawn by a processor, whatever it calls itself. */
-const SLOW = 150
-/** Frames with a tree in them that are timed; the first compiles the shaders. */
-const TIMED = 3
-/** Rest, in milliseconds, before the picture is drawn with all its pixels. */
+/** A frame that takes longer (ms) is drawn by the processor, whatever the renderer's name says. */
+const SLOW_FRAME = 150
+/** How many frames with a tree are timed; the first one also compiles the shaders. */
+const TIMED_FRAMES = 3
+/** How long nothing must move before the picture is drawn at full resolution, ms. */
 const REST = 160
 
-/** Shows a tree on a stage through the rig's camera, with the photo's wipe; draws only when something changed. */
+/** Draws a tree on a stage, seen by the rig's camera, with the photo's wipe; only when something has changed. */
 export class Viewer {
   private readonly stage: Stage
   private readonly rig: Rig
-  private readonly wiped: Wipe
-  private readonly dusk = matchMedia('(prefers-color-scheme: dark)')
-  private readonly watch = new ResizeObserver(() => this.resized())
-  private room: Viewport = { width: 0, height: 0 }
+  private readonly wipe: Wipe
+  private readonly darkScheme = matchMedia('(prefers-color-scheme: dark)')
+  private readonly resizing = new ResizeObserver(() => this.onResize())
+  private viewport: Viewport = { width: 0, height: 0 }
   private content: Content | null = null
-  private readonly ageing = new Ageing(share => this.aged(share))
-  private latest = 0
-  private seen: View | 'free' = 'free'
+  private readonly growth = new GrowthAnimation(share => this.showGrowth(share))
+  /** Counts contents, so that a model that was read too late is not shown. */
+  private contentCount = 0
+  private currentView: View | 'free' = 'free'
   private leaves = true
   private wind: string | null
   private lost = false
   private software: boolean
   private frames = 0
-  private timed = 0
-  private pending = 0
-  private resting: ReturnType<typeof setTimeout> | undefined
-  private last: number | null = null
-  private told = ''
+  private timedFrames = 0
+  private pendingFrame = 0
+  private restTimer: ReturnType<typeof setTimeout> | undefined
+  private lastFrameTime: number | null = null
+  private lastStatus = ''
 
   constructor(
     private readonly host: HTMLElement,
@@ -64,68 +67,68 @@ export class Viewer {
   ) {
     this.software = options.software
     this.wind = options.reducedMotion() || options.software ? null : FIRST_WIND
-    if (options.certain) this.timed = TIMED
+    if (options.softwareIsKnown) this.timedFrames = TIMED_FRAMES
     this.stage = new Stage(canvas, this.software)
     this.rig = new Rig(canvas, {
-      still: options.reducedMotion,
+      reducedMotion: options.reducedMotion,
       damped: () => !this.software && !options.reducedMotion(),
-      onTurn: () => this.turned(),
-      onShift: () => this.ask(),
+      onTurn: () => this.leaveView(),
+      onMove: () => this.requestFrame(),
     })
-    this.wiped = new Wipe(host, options.label)
+    this.wipe = new Wipe(host, options.label)
     canvas.addEventListener('webglcontextlost', this.onLost)
     canvas.addEventListener('webglcontextrestored', this.onRestored)
-    this.dusk.addEventListener('change', this.onDusk)
-    this.stage.paint(this.dusk.matches)
-    this.watch.observe(host)
-    this.tell()
+    this.darkScheme.addEventListener('change', this.onScheme)
+    this.stage.paint(this.darkScheme.matches)
+    this.resizing.observe(host)
+    this.reportStatus()
   }
 
   showPhoto(url: string | null): void {
-    this.wiped.show(url)
-    this.ask()
+    this.wipe.show(url)
+    this.requestFrame()
   }
 
   showLive(grown: Grown): void {
-    this.ageing.stop()
-    this.stand(skeletonContent(grown, this.stage.shades))
-    this.content!.age(1)
-    this.tell()
+    this.growth.stop()
+    this.setContent(liveTreeContent(grown, this.stage.uniforms))
+    this.content!.showGrowth(1)
+    this.reportStatus()
   }
 
   playGrowth(grown: Grown): Promise<void> {
     this.showLive(grown)
-    return this.ageIn(GROWTH)
+    return this.animateGrowth(GROWTH)
   }
 
   async showModel(glb: ArrayBuffer): Promise<void> {
-    const turn = ++this.latest
-    const content = await modelContent(glb, this.stage.shades, this.stage.edges)
-    if (turn !== this.latest) return content.dispose()
+    const count = ++this.contentCount
+    const content = await modelContent(glb, this.stage.uniforms, this.stage.antialiased)
+    if (count !== this.contentCount) return content.dispose()
     const first = this.content?.kind !== 'model'
-    this.ageing.stop()
-    this.stand(content)
-    content.age(1)
+    this.growth.stop()
+    this.setContent(content)
+    content.showGrowth(1)
     if (first) this.view('photo')
-    await this.ageIn(LEAFING)
+    await this.animateGrowth(LEAF_GROWTH)
   }
 
   clear(): void {
-    this.ageing.stop()
-    this.latest++
+    this.growth.stop()
+    this.contentCount++
     this.content = null
     this.stage.show(null)
-    this.tell()
-    this.ask()
+    this.reportStatus()
+    this.requestFrame()
   }
 
   /** Stop, and free what is held on the GPU; nothing can be shown from now on. */
   end(): void {
     this.clear()
-    cancelAnimationFrame(this.pending)
-    clearTimeout(this.resting)
-    this.watch.disconnect()
-    this.dusk.removeEventListener('change', this.onDusk)
+    cancelAnimationFrame(this.pendingFrame)
+    clearTimeout(this.restTimer)
+    this.resizing.disconnect()
+    this.darkScheme.removeEventListener('change', this.onScheme)
     this.canvas.removeEventListener('webglcontextlost', this.onLost)
     this.rig.end()
     this.stage.end()
@@ -133,170 +136,176 @@ export class Viewer {
 
   view(name: View): void {
     if (!this.content) return
-    this.seen = name
-    this.rig.fly(poseOf(name, this.content, this.room), FLIGHT)
-    this.tell()
-    this.ask()
+    this.currentView = name
+    this.rig.fly(poseOf(name, this.content, this.viewport), FLIGHT)
+    this.reportStatus()
+    this.requestFrame()
   }
 
-  turnLeaves(on = !this.leaves): void {
+  toggleLeaves(): void {
+    this.setLeaves(!this.leaves)
+  }
+
+  setLeaves(on: boolean): void {
     this.leaves = on
-    this.leaf()
-    this.tell()
-    this.ask()
+    this.applyLeaves()
+    this.reportStatus()
+    this.requestFrame()
   }
 
   blow(wind: string | null): void {
     this.wind = wind
-    this.catchWind()
-    this.stage.relight()
-    this.tell()
-    this.ask()
+    this.applyWind()
+    this.stage.updateShadow()
+    this.reportStatus()
+    this.requestFrame()
   }
 
   orbit(azimuth: number, polar: number): void {
     const { goal } = this.rig
     const tilted = Math.min(Math.max(goal.polar + polar, 0.03), Math.PI / 2)
-    this.rig.fly({ ...goal, azimuth: goal.azimuth + azimuth, polar: tilted }, NUDGE)
-    this.turned()
-    this.ask()
+    this.rig.fly({ ...goal, azimuth: goal.azimuth + azimuth, polar: tilted }, KEY_FLIGHT)
+    this.leaveView()
+    this.requestFrame()
   }
 
   zoom(factor: number): void {
     const { goal } = this.rig
-    this.rig.fly({ ...goal, size: Math.min(Math.max(goal.size / factor, 0.06), 5) }, NUDGE)
-    this.ask()
+    this.rig.fly({ ...goal, size: Math.min(Math.max(goal.size / factor, 0.06), 5) }, KEY_FLIGHT)
+    this.requestFrame()
   }
 
-  /** The picture as it is seen, at twice the CSS pixels or more. */
+  /** Return what is shown as a PNG, with at least two pixels per CSS px. */
   png(): Promise<Blob> {
     if (this.lost) return Promise.reject(new Error('The WebGL context is lost.'))
     const scale = Math.max(2, devicePixelRatio)
-    this.stage.size(this.room, scale)
+    this.stage.size(this.viewport, scale)
     this.stage.draw(this.rig)
-    const sheet = new OffscreenCanvas(this.canvas.width, this.canvas.height)
-    const pen = sheet.getContext('2d')!
-    pen.drawImage(this.canvas, 0, 0)
-    this.wiped.draw(pen, scale)
-    this.ask()
-    return sheet.convertToBlob({ type: 'image/png' })
+    const picture = new OffscreenCanvas(this.canvas.width, this.canvas.height)
+    const ctx = picture.getContext('2d')!
+    ctx.drawImage(this.canvas, 0, 0)
+    this.wipe.draw(ctx, scale)
+    this.requestFrame()
+    return picture.convertToBlob({ type: 'image/png' })
   }
 
-  /** Put a tree in the place of the last; the first opens the view. */
-  private stand(content: Content): void {
-    const opens = this.content === null
-    this.latest++
+  /** Show a tree in place of the last one; for the first one the camera moves to the opening view. */
+  private setContent(content: Content): void {
+    const isFirst = this.content === null
+    this.contentCount++
     this.content = content
     this.stage.show(content)
-    this.leaf()
-    this.catchWind()
-    if (opens) this.rig.stand(openingPose(content, this.room))
-    if (opens) this.seen = 'free'
-    this.ask()
+    this.applyLeaves()
+    this.applyWind()
+    if (isFirst) this.rig.moveTo(openingPose(content, this.viewport))
+    if (isFirst) this.currentView = 'free'
+    this.requestFrame()
   }
 
-  /** Let what is shown move in the wind that was chosen, or in the first that it has. */
-  private catchWind(): void {
+  /** Play the chosen wind on the tree, or its first one where it has no such wind. */
+  private applyWind(): void {
     const sway = this.content?.sway
     if (!sway) return
     if (this.wind !== null && !sway.winds.includes(this.wind)) this.wind = sway.winds[0] ?? null
     sway.blow(this.wind)
   }
 
-  private leaf(): void {
+  private applyLeaves(): void {
     const leaves = this.content?.leaves
     if (leaves) leaves.visible = this.leaves
-    this.stage.shades.canopy.value = leaves && !this.leaves ? 0 : 1
-    this.stage.relight()
+    this.stage.uniforms.canopy.value = leaves && !this.leaves ? 0 : 1
+    this.stage.updateShadow()
   }
 
-  /** Let what is shown grow, where it is seen. */
-  private async ageIn(seconds: number): Promise<void> {
-    const unseen = this.lost || document.hidden || !this.room.width || !this.room.height
-    if (unseen || this.options.reducedMotion()) return
-    const grown = this.ageing.start(seconds)
-    this.tell()
-    this.ask()
+  /** Animate the tree's growth, unless it is not visible or the user wants reduced motion. */
+  private async animateGrowth(seconds: number): Promise<void> {
+    const isHidden = this.lost || document.hidden || !this.viewport.width || !this.viewport.height
+    if (isHidden || this.options.reducedMotion()) return
+    const grown = this.growth.start(seconds)
+    this.reportStatus()
+    this.requestFrame()
     await grown
   }
 
-  private aged(share: number): void {
-    this.content?.age(share)
-    if (share === 1 || !this.software) this.stage.relight()
-    if (share === 1) this.tell()
-    this.ask()
+  private showGrowth(share: number): void {
+    this.content?.showGrowth(share)
+    if (share === 1 || !this.software) this.stage.updateShadow()
+    if (share === 1) this.reportStatus()
+    this.requestFrame()
   }
 
-  private turned(): void {
-    this.seen = 'free'
-    this.tell()
+  private leaveView(): void {
+    this.currentView = 'free'
+    this.reportStatus()
   }
 
-  private resized(): void {
-    this.room = { width: this.host.clientWidth, height: this.host.clientHeight }
-    if (!this.room.width || !this.room.height) return
-    this.rig.resize(aspectOf(this.room))
-    if (this.content && this.seen !== 'free') this.rig.stand(poseOf(this.seen, this.content, this.room))
-    this.ask()
+  private onResize(): void {
+    this.viewport = { width: this.host.clientWidth, height: this.host.clientHeight }
+    if (!this.viewport.width || !this.viewport.height) return
+    this.rig.resize(aspectOf(this.viewport))
+    if (this.content && this.currentView !== 'free')
+      this.rig.moveTo(poseOf(this.currentView, this.content, this.viewport))
+    this.requestFrame()
   }
 
-  /** Draw soon. */
-  private ask(): void {
-    if (!this.pending) this.pending = requestAnimationFrame(now => this.frame(now))
+  /** Draw in the next frame. */
+  private requestFrame(): void {
+    if (!this.pendingFrame) this.pendingFrame = requestAnimationFrame(now => this.frame(now))
   }
 
   private frame(now: number): void {
-    this.pending = 0
-    if (this.lost || !this.room.width || !this.room.height) return
-    const seconds = this.last === null ? 1 / 60 : Math.min((now - this.last) / 1000, 0.25)
+    this.pendingFrame = 0
+    if (this.lost || !this.viewport.width || !this.viewport.height) return
+    const seconds = this.lastFrameTime === null ? 1 / 60 : Math.min((now - this.lastFrameTime) / 1000, 0.25)
     const moved = this.rig.step(seconds)
-    const blown = this.blown(seconds)
-    const moving = this.ageing.step(seconds) || moved || blown
-    this.last = moving ? now : null
+    const swaying = this.stepWind(seconds)
+    const moving = this.growth.step(seconds) || moved || swaying
+    this.lastFrameTime = moving ? now : null
     this.draw(moving)
-    if (moving) this.ask()
+    if (moving) this.requestFrame()
   }
 
-  /** Let the wind blow on; says whether it does. A processor has no time for shadows that move with it. */
-  private blown(seconds: number): boolean {
+  /** Advance the wind; returns whether anything moves. The processor is too slow for shadows that move with it. */
+  private stepWind(seconds: number): boolean {
     const moves = this.content?.sway?.step(seconds) ?? false
-    if (moves && !this.software) this.stage.relight()
+    if (moves && !this.software) this.stage.updateShadow()
     return moves
   }
 
   private draw(moving: boolean): void {
-    this.stage.size(this.room, this.ratio(moving))
+    this.stage.size(this.viewport, this.pixelRatio(moving))
     const start = performance.now()
     const calls = this.stage.draw(this.rig)
-    if (!this.software && this.content && this.timed++ < TIMED) this.time(start)
+    if (!this.software && this.content && this.timedFrames++ < TIMED_FRAMES) this.detectSoftware(start)
     this.frames++
     Object.assign(this.host.dataset, { calls: String(calls), frames: String(this.frames) })
-    const rect = this.content && this.rig.facesPhoto ? photoRect(this.rig.pose, this.content.photo, this.room) : null
-    this.wiped.place(rect, this.room)
-    clearTimeout(this.resting)
-    if (moving && this.software) this.resting = setTimeout(() => this.ask(), REST)
+    const rect =
+      this.content && this.rig.facesPhoto ? photoRect(this.rig.pose, this.content.photo, this.viewport) : null
+    this.wipe.place(rect, this.viewport)
+    clearTimeout(this.restTimer)
+    if (moving && this.software) this.restTimer = setTimeout(() => this.requestFrame(), REST)
   }
 
-  private ratio(moving: boolean): number {
-    if (this.software) return thriftyRatio(this.room, moving)
+  private pixelRatio(moving: boolean): number {
+    if (this.software) return softwarePixelRatio(this.viewport, moving)
     return Math.min(devicePixelRatio, 2)
   }
 
-  /** A GPU that is none is found out by its first frames. */
-  private time(start: number): void {
+  /** Change to software rendering where a frame was slow: some renderers do not tell that they use the processor. */
+  private detectSoftware(start: number): void {
     this.stage.finish()
-    if (this.timed === 1 || performance.now() - start < SLOW) return
+    if (this.timedFrames === 1 || performance.now() - start < SLOW_FRAME) return
     this.software = true
     this.stage.setSoftware(true)
     this.blow(null)
-    this.tell()
-    this.ask()
+    this.reportStatus()
+    this.requestFrame()
   }
 
-  private tell(): void {
-    const shows = this.ageing.running && this.content?.kind === 'live' ? 'growing' : (this.content?.kind ?? 'empty')
+  private reportStatus(): void {
+    const shows = this.growth.running && this.content?.kind === 'live' ? 'growing' : (this.content?.kind ?? 'empty')
     const webgl = this.lost ? 'lost' : this.software ? 'software' : 'ok'
-    const { leaves, seen: view, content } = this
+    const { leaves, currentView: view, content } = this
     const [triangles, winds] = [content?.triangles ?? 0, content?.sway?.winds ?? []]
     const status: PreviewStatus = {
       webgl,
@@ -308,26 +317,26 @@ export class Viewer {
       wind: winds.length ? this.wind : null,
     }
     this.host.dataset.state = shows
-    if (this.told === JSON.stringify(status)) return
-    this.told = JSON.stringify(status)
+    if (this.lastStatus === JSON.stringify(status)) return
+    this.lastStatus = JSON.stringify(status)
     this.options.onStatus(status)
   }
 
   private readonly onLost = (event: Event): void => {
     event.preventDefault()
     this.lost = true
-    this.tell()
+    this.reportStatus()
   }
 
   private readonly onRestored = (): void => {
     this.lost = false
-    this.stage.relight()
-    this.tell()
-    this.ask()
+    this.stage.updateShadow()
+    this.reportStatus()
+    this.requestFrame()
   }
 
-  private readonly onDusk = (): void => {
-    this.stage.paint(this.dusk.matches)
-    this.ask()
+  private readonly onScheme = (): void => {
+    this.stage.paint(this.darkScheme.matches)
+    this.requestFrame()
   }
 }

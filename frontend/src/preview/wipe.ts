@@ -1,14 +1,16 @@
 import type { Rect, Viewport } from './camera'
 
+/** How far the keys move the handle, as shares of the photo's shown width. */
 const STEPS: Record<string, number> = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02 }
 
-/** The photo over the canvas, seen left of a handle that is dragged across it. */
+/** The photo over the canvas, visible left of a handle that can be dragged across it. */
 export class Wipe {
   private readonly photo = document.createElement('img')
   private readonly handle = document.createElement('div')
+  /** How much of the photo is visible, 0..1 from the left. */
   private share = 0.5
   private rect: Rect | null = null
-  private room: Viewport = { width: 0, height: 0 }
+  private viewport: Viewport = { width: 0, height: 0 }
 
   constructor(host: HTMLElement, label: string) {
     this.photo.className = 'preview-photo'
@@ -22,54 +24,54 @@ export class Wipe {
     this.handle.addEventListener('pointermove', event => this.drag(event))
     this.handle.addEventListener('keydown', event => this.key(event))
     host.append(this.photo, this.handle)
-    this.lay()
+    this.update()
   }
 
-  /** The picture that lies here, or none. */
+  /** Set the photo's address; null for none. */
   show(url: string | null): void {
     if (url) this.photo.src = url
     else this.photo.removeAttribute('src')
-    this.lay()
+    this.update()
   }
 
-  /** Show only the tree (1), only the photo (0) or part of both. */
+  /** Set how much of the tree is visible: only the tree (1), only the photo (0) or a part of both. */
   set(fraction: number): void {
     this.share = 1 - Math.min(Math.max(fraction, 0), 1)
-    this.lay()
+    this.update()
   }
 
-  /** Lie over this rectangle of the host; null: fade out. */
-  place(rect: Rect | null, room: Viewport): void {
+  /** Lay the photo over a rectangle of the host; null fades it out. */
+  place(rect: Rect | null, viewport: Viewport): void {
     this.rect = rect
-    this.room = room
-    this.lay()
+    this.viewport = viewport
+    this.update()
   }
 
-  /** Draw what is seen of the photo, `scale` pixels for each CSS pixel. */
-  draw(pen: OffscreenCanvasRenderingContext2D, scale: number): void {
+  /** Draw the visible part of the photo, with `scale` pixels per CSS px. */
+  draw(ctx: OffscreenCanvasRenderingContext2D, scale: number): void {
     if (!this.rect || !this.photo.complete || !this.photo.naturalWidth) return
     const { x, y, width, height } = this.rect
-    pen.save()
-    pen.scale(scale, scale)
-    pen.beginPath()
-    pen.rect(0, 0, this.edge(this.rect), this.room.height)
-    pen.clip()
-    pen.drawImage(this.photo, x, y, width, height)
-    pen.restore()
+    ctx.save()
+    ctx.scale(scale, scale)
+    ctx.beginPath()
+    ctx.rect(0, 0, this.edgeOf(this.rect), this.viewport.height)
+    ctx.clip()
+    ctx.drawImage(this.photo, x, y, width, height)
+    ctx.restore()
   }
 
-  /** What part of the host, from left to right, the photo's rectangle takes. */
-  private span(rect: Rect): [number, number] {
-    return [Math.max(rect.x, 0), Math.min(rect.x + rect.width, this.room.width)]
+  /** Return the left and right ends of the photo within the host, CSS px. */
+  private shownSpan(rect: Rect): [number, number] {
+    return [Math.max(rect.x, 0), Math.min(rect.x + rect.width, this.viewport.width)]
   }
 
-  /** Where the photo ends and the tree begins. */
-  private edge(rect: Rect): number {
-    const [left, right] = this.span(rect)
+  /** Return where the photo ends and the tree begins, CSS px from the host's left. */
+  private edgeOf(rect: Rect): number {
+    const [left, right] = this.shownSpan(rect)
     return left + (right - left) * this.share
   }
 
-  private lay(): void {
+  private update(): void {
     const shown = this.rect !== null && this.photo.hasAttribute('src')
     this.photo.classList.toggle('preview-gone', !shown)
     this.handle.hidden = !shown
@@ -77,7 +79,7 @@ export class Wipe {
     this.handle.setAttribute('aria-valuenow', String(percent))
     this.handle.setAttribute('aria-valuetext', `${percent} %`)
     if (!this.rect) return
-    const edge = this.edge(this.rect)
+    const edge = this.edgeOf(this.rect)
     const { x, y, width, height } = this.rect
     Object.assign(this.photo.style, { left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px` })
     this.photo.style.clipPath = `inset(0 ${Math.max(x + width - edge, 0)}px 0 0)`
@@ -86,7 +88,7 @@ export class Wipe {
 
   private drag(event: PointerEvent): void {
     if (!this.rect || !this.handle.hasPointerCapture(event.pointerId)) return
-    const [left, right] = this.span(this.rect)
+    const [left, right] = this.shownSpan(this.rect)
     const origin = this.handle.offsetParent?.getBoundingClientRect().left ?? 0
     this.set(1 - (event.clientX - origin - left) / Math.max(right - left, 1))
   }

@@ -1,112 +1,113 @@
 import type { Point } from '../strokes'
 import {
-  centred,
+  centreView,
   clampView,
   type Frame,
-  fitted,
+  fitView,
   panBy,
+  panIntoView,
   type Size,
-  showing,
-  toPhoto,
+  toSheet,
   type View,
   zoomAbout,
 } from './viewport'
 
-/** How far inside the window the keyboard's pen is kept, CSS px. */
-const LEEWAY = 40
-const NOWHERE: Size = { width: 0, height: 0 }
+/** How far inside the window the keyboard's cursor is kept, CSS px. */
+const CURSOR_MARGIN = 40
+const EMPTY: Size = { width: 0, height: 0 }
 
-/** Looks at the photo through the window; tells when it sees it otherwise. */
+/** Holds which part of the sheet the window shows, and calls `onChange` with each new view. */
 export class Camera {
   #view: View = { scale: 1, x: 0, y: 0 }
-  #frame: Frame = { photo: NOWHERE, window: NOWHERE }
-  /** What is to be seen whole, photo px. */
-  #extent = NOWHERE
+  #frame: Frame = { sheet: EMPTY, window: EMPTY }
+  /** The area whose size sets the scale of a fitted sheet, sheet px. */
+  #extent = EMPTY
   #fitted = true
 
-  constructor(private readonly changed: (view: View) => void) {}
+  constructor(private readonly onChange: (view: View) => void) {}
 
   get view(): View {
     return this.#view
   }
 
-  /** Look at another photo, the whole of it, at a scale that shows as much as `extent`. */
-  open(photo: Size, extent = photo): void {
-    this.#frame = { ...this.#frame, photo }
+  /** Show another sheet, whole, at the scale that an area of size `extent` (sheet px) needs. */
+  open(sheet: Size, extent = sheet): void {
+    this.#frame = { ...this.#frame, sheet }
     this.#extent = extent
     this.fit()
   }
 
-  /** Show the whole photo at the scale of another extent, if the whole was in sight. */
-  reach(extent: Size): void {
+  /** Change the area that sets the fitted scale (sheet px); a fitted sheet is fitted again. */
+  setExtent(extent: Size): void {
     this.#extent = extent
     if (this.#fitted) this.fit()
   }
 
-  /** Look as high up, and at the scale, that another camera does: `whole` if it shows the whole. */
+  /** Take over the scale and vertical offset (CSS px) of another sheet's camera; `whole` if that one is fitted. */
   follow({ scale, y }: Pick<View, 'scale' | 'y'>, whole: boolean): void {
-    if (!this.#ready || (alike(scale, this.#view.scale) && alike(y, this.#view.y))) return
-    const { photo, window } = this.#frame
-    const [across] = whole ? [photo.width / 2] : toPhoto(this.#view, [window.width / 2, 0])
-    this.#look({ scale, x: window.width / 2 - across * scale, y }, whole)
+    if (!this.#ready || (nearlyEqual(scale, this.#view.scale) && nearlyEqual(y, this.#view.y))) return
+    const { sheet, window } = this.#frame
+    const [across] = whole ? [sheet.width / 2] : toSheet(this.#view, [window.width / 2, 0])
+    this.#setView({ scale, x: window.width / 2 - across * scale, y }, whole)
   }
 
-  /** Whether the whole photo is in sight, and is to stay so. */
+  /** Whether the whole sheet is shown, and will be when the window or the extent changes. */
   get isWhole(): boolean {
     return this.#fitted
   }
 
-  /** Keep the middle where it is, or the whole photo in sight if it was. */
+  /** Set the window's size, CSS px; a fitted sheet is fitted again, any other keeps its middle. */
   resize(window: Size): void {
     const { width, height } = this.#frame.window
-    const middle = toPhoto(this.#view, [width / 2, height / 2])
+    const middle = toSheet(this.#view, [width / 2, height / 2])
     this.#frame = { ...this.#frame, window }
     if (this.#fitted || width === 0) this.fit()
-    else this.#look(centred(this.#view.scale, middle, this.#frame))
+    else this.#setView(centreView(this.#view.scale, middle, this.#frame))
   }
 
+  /** Show the whole sheet. */
   fit(): void {
     if (!this.#ready) return
-    const { photo, window } = this.#frame
-    const { scale } = fitted({ photo: this.#extent, window })
-    this.#look(centred(scale, [photo.width / 2, photo.height / 2], this.#frame), true)
+    const { sheet, window } = this.#frame
+    const { scale } = fitView({ sheet: this.#extent, window })
+    this.#setView(centreView(scale, [sheet.width / 2, sheet.height / 2], this.#frame), true)
   }
 
-  /** Show one photo px as one CSS px. */
+  /** Show one sheet px as one CSS px. */
   actual(): void {
     this.zoom(1 / this.#view.scale)
   }
 
-  /** Scale about a place in the window (CSS px), without one about the middle. */
+  /** Scale by a factor about a point of the window (CSS px), its middle where none is given. */
   zoom(factor: number, about?: Point): void {
     if (!this.#ready) return
     const { width, height } = this.#frame.window
-    this.#look(zoomAbout(this.#view, factor, about ?? [width / 2, height / 2], this.#frame))
+    this.#setView(zoomAbout(this.#view, factor, about ?? [width / 2, height / 2], this.#frame))
   }
 
-  /** CSS px. */
+  /** Move the sheet by an offset, CSS px. */
   pan(by: Point): void {
-    if (this.#ready) this.#look(panBy(this.#view, by))
+    if (this.#ready) this.#setView(panBy(this.#view, by))
   }
 
-  /** Bring a place of the photo into the window. */
-  show(place: Point): void {
-    const view = showing(this.#view, place, LEEWAY, this.#frame)
-    if (view.x !== this.#view.x || view.y !== this.#view.y) this.#look(view)
+  /** Bring a point of the sheet into the window. */
+  show(point: Point): void {
+    const view = panIntoView(this.#view, point, CURSOR_MARGIN, this.#frame)
+    if (view.x !== this.#view.x || view.y !== this.#view.y) this.#setView(view)
   }
 
   get #ready(): boolean {
-    const { photo, window } = this.#frame
-    return Math.min(photo.width, photo.height, window.width, window.height) > 0
+    const { sheet, window } = this.#frame
+    return Math.min(sheet.width, sheet.height, window.width, window.height) > 0
   }
 
-  #look(view: View, whole = false): void {
-    this.#fitted = whole
+  #setView(view: View, fitted = false): void {
+    this.#fitted = fitted
     this.#view = clampView(view, this.#frame)
-    this.changed(this.#view)
+    this.onChange(this.#view)
   }
 }
 
-function alike(one: number, other: number): boolean {
+function nearlyEqual(one: number, other: number): boolean {
   return Math.abs(one - other) <= 1e-6 * Math.max(1, Math.abs(one))
 }

@@ -1,6 +1,6 @@
 import type { View } from './viewport'
 
-/** A canvas to draw on: its device px per CSS px, and where the sheet lies in it. */
+/** A canvas to draw on, with its device px per CSS px and the view of the sheet in it. */
 export interface DrawTarget {
   readonly ctx: CanvasRenderingContext2D
   readonly density: number

@@ -1,3 +1,4 @@
+import { distance } from '../plane'
 import type { Tool } from '../state'
 import type { Line, Point } from '../strokes'
 
@@ -9,12 +10,12 @@ export interface Down {
   readonly id: number
   readonly pointer: PointerKind
   readonly button: number
-  /** CSS px in the window, as all places here. */
+  /** A point of the window, CSS px, as all points here. */
   readonly at: Point
-  /** The wider side of what touches the glass, CSS px. */
+  /** The longer side of the area that touches the screen, CSS px. */
   readonly contact: number
   readonly tool: Tool
-  /** No other pointer of its kind is down. */
+  /** Whether no other pointer of its kind is down. */
   readonly alone: boolean
 }
 
@@ -23,14 +24,14 @@ export interface Move {
   readonly id: number
   readonly pointer: PointerKind
   readonly at: Point
-  /** All places since the last event; ends at `at`. */
+  /** All points since the last event; the last one is `at`. */
   readonly path: Line
   readonly contact: number
-  /** Whether any button or the tip is down. */
+  /** Whether any button or the pen's tip is down. */
   readonly pressed: boolean
 }
 
-/** What the pointers and keys do. */
+/** What happens to the pointers and keys. */
 export type GestureEvent =
   | Down
   | Move
@@ -39,7 +40,7 @@ export type GestureEvent =
   | { readonly type: 'space'; readonly held: boolean }
   | { readonly type: 'escape' }
 
-/** What is to be done about it. */
+/** What a gesture asks the sketch to do. */
 export type Intent =
   | { readonly type: 'begin'; readonly kind: DrawnKind; readonly at: Point }
   | { readonly type: 'extend'; readonly path: Line }
@@ -53,9 +54,10 @@ interface Press {
   readonly id: number
   readonly pointer: PointerKind
   readonly from: Point
-  /** Whether it is a click where it does not go far. */
-  readonly clicks: boolean
-  readonly far: boolean
+  /** Whether it is a click if the pointer hardly moves. */
+  readonly mayClick: boolean
+  /** Whether the pointer has moved further than a click allows. */
+  readonly moved: boolean
 }
 
 interface Drawing extends Press {
@@ -72,16 +74,17 @@ type Mode =
   | { readonly name: 'idle' }
   | Drawing
   | Panning
-  /** Fingers move the photo until the last one is up. */
+  /** Fingers move and scale the sheet until the last one is up. */
   | { readonly name: 'pinch' }
   /** Nothing happens until the last finger is up. */
-  | { readonly name: 'spent' }
+  | { readonly name: 'ignored' }
 
 export interface Gesture {
   readonly mode: Mode
   readonly touches: ReadonlyMap<number, Point>
-  /** Once a pen was seen, fingers never draw. */
+  /** Whether a pen was used: from then on fingers never draw. */
   readonly penSeen: boolean
+  /** Whether the space bar is held. */
   readonly space: boolean
 }
 
@@ -90,10 +93,10 @@ export interface Step {
   readonly intents: readonly Intent[]
 }
 
-/** A pointer that goes no further is a click, CSS px. */
-const TAP = 6
-/** A wider contact is a palm, CSS px. */
-const PALM = 50
+/** A press that moves less far is a click, CSS px. */
+const CLICK_DISTANCE = 6
+/** A longer contact is a palm, CSS px. */
+const PALM_SIZE = 50
 const LEFT = 0
 const MIDDLE = 1
 /** Also the pen's barrel button. */
@@ -102,119 +105,119 @@ const IDLE: Mode = { name: 'idle' }
 
 export const AT_REST: Gesture = { mode: IDLE, touches: new Map(), penSeen: false, space: false }
 
-/** Say what an event means: the state after it, and what is to be done. */
-export function gestured(state: Gesture, event: GestureEvent): Step {
-  if (event.type === 'down') return pressed(state, event)
-  if (event.type === 'move') return moved(state, event)
-  if (event.type === 'up') return lifted(state, event)
-  if (event.type === 'cancel') return canceled(state, event.id)
+/** Return the state after an event, and what it asks for. */
+export function interpret(state: Gesture, event: GestureEvent): Step {
+  if (event.type === 'down') return pressDown(state, event)
+  if (event.type === 'move') return move(state, event)
+  if (event.type === 'up') return lift(state, event)
+  if (event.type === 'cancel') return cancel(state, event.id)
   if (event.type === 'space') return { state: { ...state, space: event.held }, intents: [] }
-  return { state: rested(state), intents: dropped(state.mode) }
+  return { state: endGesture(state), intents: dropStroke(state.mode) }
 }
 
-function pressed(state: Gesture, event: Down): Step {
-  const palm = event.pointer === 'touch' && event.contact > PALM
+function pressDown(state: Gesture, event: Down): Step {
+  const palm = event.pointer === 'touch' && event.contact > PALM_SIZE
   if (palm || ![LEFT, MIDDLE, RIGHT].includes(event.button)) return { state, intents: [] }
-  if (event.pointer === 'touch') return touched(state, event)
-  return begun({ ...state, penSeen: state.penSeen || event.pointer === 'pen' }, event)
+  if (event.pointer === 'touch') return touchDown(state, event)
+  return beginPress({ ...state, penSeen: state.penSeen || event.pointer === 'pen' }, event)
 }
 
-function touched(state: Gesture, event: Down): Step {
-  // An end that was never heard of would leave a finger behind.
+function touchDown(state: Gesture, event: Down): Step {
+  // A finger whose end was missed would otherwise count for ever.
   const touches = new Map(event.alone ? [] : state.touches).set(event.id, event.at)
   const now = { ...state, touches }
   if (isPress(state.mode) && state.mode.pointer !== 'touch') return { state: now, intents: [] }
-  if (touches.size === 1) return begun(now, event)
-  if (state.mode.name === 'spent') return { state: now, intents: [] }
-  return { state: { ...now, mode: { name: 'pinch' } }, intents: dropped(state.mode) }
+  if (touches.size === 1) return beginPress(now, event)
+  if (state.mode.name === 'ignored') return { state: now, intents: [] }
+  return { state: { ...now, mode: { name: 'pinch' } }, intents: dropStroke(state.mode) }
 }
 
-function begun(state: Gesture, event: Down): Step {
+function beginPress(state: Gesture, event: Down): Step {
   const { id, pointer, at, button, tool } = event
-  const press = { id, pointer, from: at, far: false }
-  const before = dropped(state.mode)
-  const kind = drawnBy(state, event)
+  const press = { id, pointer, from: at, moved: false }
+  const before = dropStroke(state.mode)
+  const kind = kindDrawn(state, event)
   if (kind === null) {
-    const clicks = button === LEFT && !state.space
-    return { state: { ...state, mode: { ...press, name: 'pan', at, clicks } }, intents: before }
+    const mayClick = button === LEFT && !state.space
+    return { state: { ...state, mode: { ...press, name: 'pan', at, mayClick } }, intents: before }
   }
-  const clicks = button === LEFT && kind === tool
+  const mayClick = button === LEFT && kind === tool
   return {
-    state: { ...state, mode: { ...press, name: 'draw', kind, clicks } },
+    state: { ...state, mode: { ...press, name: 'draw', kind, mayClick } },
     intents: [...before, { type: 'begin', kind, at }],
   }
 }
 
-/** What a press draws; null where it moves the photo. */
-function drawnBy({ space, penSeen }: Gesture, { button, pointer, tool }: Down): DrawnKind | null {
+/** Return what a press draws; null where it moves the sheet. */
+function kindDrawn({ space, penSeen }: Gesture, { button, pointer, tool }: Down): DrawnKind | null {
   if (button === MIDDLE || (button === LEFT && space) || (pointer === 'touch' && penSeen)) return null
   if (button === RIGHT) return 'branch'
   return tool === 'select' ? null : tool
 }
 
-function moved(state: Gesture, event: Move): Step {
+function move(state: Gesture, event: Move): Step {
   const { id, at, pointer } = event
   const before = state.touches
   const touches = before.has(id) ? new Map(before).set(id, at) : before
   const now = { ...state, touches, penSeen: state.penSeen || pointer === 'pen' }
-  if (pointer === 'touch' && event.contact > PALM) return canceled(state, id)
+  if (pointer === 'touch' && event.contact > PALM_SIZE) return cancel(state, id)
   const { mode } = state
-  if (mode.name === 'pinch') return { state: now, intents: pinched(before, touches) }
+  if (mode.name === 'pinch') return { state: now, intents: pinch(before, touches) }
   if (!isPress(mode) || mode.id !== id) return { state: now, intents: [] }
-  if (!event.pressed) return lifted(now, { id, at })
-  return mode.name === 'draw' ? extended(now, mode, event) : panned(now, mode, event)
+  if (!event.pressed) return lift(now, { id, at })
+  return mode.name === 'draw' ? extendStroke(now, mode, event) : pan(now, mode, event)
 }
 
-function extended(state: Gesture, mode: Drawing, { path }: Move): Step {
-  const far = mode.far || path.some(place => apart(mode.from, place) >= TAP)
-  return { state: { ...state, mode: { ...mode, far } }, intents: [{ type: 'extend', path }] }
+function extendStroke(state: Gesture, mode: Drawing, { path }: Move): Step {
+  const moved = mode.moved || path.some(point => distance(mode.from, point) >= CLICK_DISTANCE)
+  return { state: { ...state, mode: { ...mode, moved } }, intents: [{ type: 'extend', path }] }
 }
 
-function panned(state: Gesture, mode: Panning, { at }: Move): Step {
-  const far = mode.far || !mode.clicks || apart(mode.from, at) >= TAP
-  if (!far) return { state, intents: [] }
-  return { state: { ...state, mode: { ...mode, far, at } }, intents: [{ type: 'pan', by: between(mode.at, at) }] }
+function pan(state: Gesture, mode: Panning, { at }: Move): Step {
+  const moved = mode.moved || !mode.mayClick || distance(mode.from, at) >= CLICK_DISTANCE
+  if (!moved) return { state, intents: [] }
+  return { state: { ...state, mode: { ...mode, moved, at } }, intents: [{ type: 'pan', by: offset(mode.at, at) }] }
 }
 
-/** Follow the first two fingers, or the one that is left. */
-function pinched(before: ReadonlyMap<number, Point>, after: ReadonlyMap<number, Point>): Intent[] {
+/** Return how the first two fingers, or the one that is left, move and scale the sheet. */
+function pinch(before: ReadonlyMap<number, Point>, after: ReadonlyMap<number, Point>): Intent[] {
   const [a, b] = [...before.values()]
   const [c, d] = [...after.values()]
   if (!a || !c || before === after) return []
-  if (!b || !d) return [{ type: 'pan', by: between(a, c) }]
-  const about = middle(c, d)
-  const factor = Math.max(apart(c, d), 1) / Math.max(apart(a, b), 1)
-  return [{ type: 'pinch', factor, about, by: between(middle(a, b), about) }]
+  if (!b || !d) return [{ type: 'pan', by: offset(a, c) }]
+  const about = midpoint(c, d)
+  const factor = Math.max(distance(c, d), 1) / Math.max(distance(a, b), 1)
+  return [{ type: 'pinch', factor, about, by: offset(midpoint(a, b), about) }]
 }
 
-function lifted(state: Gesture, { id, at }: { readonly id: number; readonly at: Point }): Step {
+function lift(state: Gesture, { id, at }: { readonly id: number; readonly at: Point }): Step {
   const { mode } = state
-  const now = without(state, id)
+  const now = removeTouch(state, id)
   if (!isPress(mode) || mode.id !== id) return { state: now, intents: [] }
-  const click: Intent[] = mode.clicks && !mode.far ? [{ type: 'click', at, pointer: mode.pointer }] : []
-  if (mode.name === 'pan') return { state: rested(now), intents: click }
-  const end: Intent[] = mode.far ? [{ type: 'extend', path: [at] }, { type: 'end' }] : [{ type: 'drop' }, ...click]
-  return { state: rested(now), intents: end }
+  const click: Intent[] = mode.mayClick && !mode.moved ? [{ type: 'click', at, pointer: mode.pointer }] : []
+  if (mode.name === 'pan') return { state: endGesture(now), intents: click }
+  const end: Intent[] = mode.moved ? [{ type: 'extend', path: [at] }, { type: 'end' }] : [{ type: 'drop' }, ...click]
+  return { state: endGesture(now), intents: end }
 }
 
-function canceled(state: Gesture, id: number): Step {
-  const now = without(state, id)
+function cancel(state: Gesture, id: number): Step {
+  const now = removeTouch(state, id)
   if (!isPress(state.mode) || state.mode.id !== id) return { state: now, intents: [] }
-  return { state: rested(now), intents: dropped(state.mode) }
+  return { state: endGesture(now), intents: dropStroke(state.mode) }
 }
 
-function without(state: Gesture, id: number): Gesture {
+function removeTouch(state: Gesture, id: number): Gesture {
   const touches = new Map(state.touches)
   touches.delete(id)
-  const over = touches.size === 0 && (state.mode.name === 'pinch' || state.mode.name === 'spent')
+  const over = touches.size === 0 && (state.mode.name === 'pinch' || state.mode.name === 'ignored')
   return { ...state, touches, mode: over ? IDLE : state.mode }
 }
 
-function rested(state: Gesture): Gesture {
-  return { ...state, mode: state.touches.size ? { name: 'spent' } : IDLE }
+function endGesture(state: Gesture): Gesture {
+  return { ...state, mode: state.touches.size ? { name: 'ignored' } : IDLE }
 }
 
-function dropped(mode: Mode): Intent[] {
+function dropStroke(mode: Mode): Intent[] {
   return mode.name === 'draw' ? [{ type: 'drop' }] : []
 }
 
@@ -222,14 +225,10 @@ function isPress(mode: Mode): mode is Drawing | Panning {
   return mode.name === 'draw' || mode.name === 'pan'
 }
 
-function between([x, y]: Point, [toX, toY]: Point): Point {
+function offset([x, y]: Point, [toX, toY]: Point): Point {
   return [toX - x, toY - y]
 }
 
-function middle([x, y]: Point, [otherX, otherY]: Point): Point {
+function midpoint([x, y]: Point, [otherX, otherY]: Point): Point {
   return [(x + otherX) / 2, (y + otherY) / 2]
-}
-
-function apart([x, y]: Point, [otherX, otherY]: Point): number {
-  return Math.hypot(otherX - x, otherY - y)
 }

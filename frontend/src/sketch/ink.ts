@@ -1,7 +1,7 @@
-/** What strokes and marks are drawn with. */
+/** A colour for each kind of stroke and mark. */
 export type Inks = { readonly [name in keyof typeof INK]: string }
 
-/** Colours on the photo. They do not follow the page's theme: photos have none. */
+/** Colours over a photo; they do not follow the page's theme, as photos do not either. */
 export const INK = {
   foliage: 'rgba(150, 214, 72, 0.22)',
   foliageEdge: 'rgba(226, 250, 176, 0.78)',
@@ -28,7 +28,7 @@ export const INK = {
   stray: 'rgba(255, 205, 150, 0.9)',
 } as const
 
-/** Colours on paper: pencils, a brush of thin umber, and no casings. Paper is light by night, too. */
+/** Colours on paper, without casings. Paper is white in the dark theme, too. */
 export const PAPER_INK: Inks = {
   ...INK,
   crown: '#5f9a2a',
@@ -45,10 +45,10 @@ export const PAPER_INK: Inks = {
   stray: 'rgba(196, 110, 30, 0.9)',
 }
 
-/** The sheet of paper, and the picture that shines through it. */
+/** Colours of the paper, and how opaque (0..1) a picture under it shows. */
 export const PAPER = { white: '#fffdf8', edge: 'rgba(80, 66, 40, 0.28)', shade: 'rgba(60, 50, 30, 0.16)', veil: 0.5 }
 
-/** Widths on the screen, CSS px. */
+/** Line widths, CSS px. */
 export const WIDTH = {
   line: { crown: 2.25, branch: 1.75, erase: 2, scale: 2 },
   casing: 2.25,

@@ -2,7 +2,7 @@ import type { Point } from '../strokes'
 import type { Size } from './viewport'
 import { within } from './viewport'
 
-/** What a key asks of the canvas. */
+/** A command that a key gives to the canvas. */
 export type KeyCommand =
   | { readonly type: 'step'; readonly right: number; readonly down: number; readonly fine: boolean }
   | { readonly type: 'zoom'; readonly factor: number }
@@ -10,11 +10,11 @@ export type KeyCommand =
 
 type Key = Pick<KeyboardEvent, 'key' | 'shiftKey' | 'ctrlKey' | 'metaKey' | 'altKey'>
 
-/** Of the photo's longer side. */
+/** An arrow key's steps, as shares of the sheet's longer side. */
 const STEP = 0.02
 const FINE_STEP = 0.0025
 const ZOOM = 1.25
-const WAYS: Readonly<Record<string, Point>> = {
+const ARROWS: Readonly<Record<string, Point>> = {
   ArrowLeft: [-1, 0],
   ArrowRight: [1, 0],
   ArrowUp: [0, -1],
@@ -32,16 +32,16 @@ const COMMANDS: Readonly<Record<string, KeyCommand>> = {
   '1': { type: 'actual' },
 }
 
-/** Read a key; null where it asks nothing of the canvas. */
+/** Return a key's command; null where it has none. */
 export function keyCommand({ key, shiftKey, ctrlKey, metaKey, altKey }: Key): KeyCommand | null {
   if (ctrlKey || metaKey || altKey) return null
-  const way = WAYS[key]
-  if (way) return { type: 'step', right: way[0], down: way[1], fine: shiftKey }
+  const arrow = ARROWS[key]
+  if (arrow) return { type: 'step', right: arrow[0], down: arrow[1], fine: shiftKey }
   return COMMANDS[key] ?? null
 }
 
-/** Go one step from a place of the photo, and not out of it. */
-export function stepped([x, y]: Point, step: KeyCommand & { type: 'step' }, { width, height }: Size): Point {
+/** Return the point one step further, within a sheet of this size; sheet px. */
+export function stepFrom([x, y]: Point, step: KeyCommand & { type: 'step' }, { width, height }: Size): Point {
   const length = (step.fine ? FINE_STEP : STEP) * Math.max(width, height)
   return [within(x + step.right * length, 0, width), within(y + step.down * length, 0, height)]
 }

@@ -1,21 +1,21 @@
 import type { DrawTarget } from './drawTarget'
 import type { Size, View } from './viewport'
 
-/** Bottom to top. */
+/** From bottom to top. */
 const NAMES = ['photo', 'traced', 'strokes', 'pen'] as const
 export type LayerName = (typeof NAMES)[number]
-export type Paint = Record<LayerName, (target: DrawTarget) => void>
+export type Painters = Record<LayerName, (target: DrawTarget) => void>
 
-/** Canvases one above the other; those that were touched are painted anew in the next frame. */
+/** A stack of canvases; those that were invalidated are repainted in the next frame. */
 export class Layers {
   readonly #canvases = new Map<LayerName, CanvasRenderingContext2D>()
-  readonly #touched = new Set<LayerName>()
+  readonly #invalid = new Set<LayerName>()
   #frame = 0
   #density = 1
 
   constructor(
     host: HTMLElement,
-    private readonly paint: Paint,
+    private readonly painters: Painters,
     private readonly view: () => View,
   ) {
     for (const name of NAMES) {
@@ -26,37 +26,37 @@ export class Layers {
     }
   }
 
-  /** CSS px of the window, and device px per CSS px. */
+  /** Set the size of the window (CSS px) and the device px per CSS px. */
   resize({ width, height }: Size, density: number): void {
     this.#density = density
     for (const { canvas } of this.#canvases.values()) {
       canvas.width = Math.round(width * density)
       canvas.height = Math.round(height * density)
     }
-    // A canvas that was resized is empty; waiting for the next frame would show it so.
-    this.touch(...NAMES)
+    // Resizing clears a canvas; it is repainted at once so that it is never shown empty.
+    this.invalidate(...NAMES)
     this.#repaint()
   }
 
-  touch(...names: LayerName[]): void {
-    for (const name of names) this.#touched.add(name)
+  invalidate(...names: LayerName[]): void {
+    for (const name of names) this.#invalid.add(name)
     this.#frame ||= requestAnimationFrame(() => this.#repaint())
   }
 
-  touchAll(): void {
-    this.touch(...NAMES)
+  invalidateAll(): void {
+    this.invalidate(...NAMES)
   }
 
   #repaint(): void {
     cancelAnimationFrame(this.#frame)
     this.#frame = 0
-    for (const name of this.#touched) this.#paint(name, this.#canvases.get(name)!)
-    this.#touched.clear()
+    for (const name of this.#invalid) this.#paint(name, this.#canvases.get(name)!)
+    this.#invalid.clear()
   }
 
   #paint(name: LayerName, ctx: CanvasRenderingContext2D): void {
     ctx.resetTransform()
     ctx.clearRect(0, 0, ctx.canvas.width, ctx.canvas.height)
-    this.paint[name]({ ctx, density: this.#density, view: this.view() })
+    this.painters[name]({ ctx, density: this.#density, view: this.view() })
   }
 }

@@ -5,29 +5,29 @@ import { INK } from './ink'
 import { type Size, toScreen, type View } from './viewport'
 
 const FONT = '600 13px system-ui, sans-serif'
-/** CSS px. */
+/** CSS px, as all sizes here. */
 const HEIGHT = 22
 const PADDING = 8
-/** Between the line and what is said of it: its ticks, and some air. */
-const AWAY = 14
+/** Between the line and its label; the line's ticks need some of it. */
+const GAP = 14
 
-/** The middle of a box, CSS px, beside a measured line's middle, clear of the line, to the right or below. */
+/** Return where to centre a label of this size so that it lies beside a measured line, right of it or below; CSS px. */
 export function labelPlace([from, to]: Line, view: View, { width, height }: Size): Point {
   const [x, y] = toScreen(view, from!)
   const [toX, toY] = toScreen(view, to!)
   const length = Math.hypot(toX - x, toY - y) || 1
   const [across, down] = [(y - toY) / length, (toX - x) / length]
-  const reach = AWAY + (Math.abs(across) * width + Math.abs(down) * height) / 2
-  const side = across + down < 0 ? -reach : reach
+  const away = GAP + (Math.abs(across) * width + Math.abs(down) * height) / 2
+  const side = across + down < 0 ? -away : away
   return [(x + toX) / 2 + side * across, (y + toY) / 2 + side * down]
 }
 
 /** Write a measured line's length beside it. */
 export function drawLength({ ctx, density, view }: DrawTarget, { points, metres }: Scale): void {
-  const words = text.metres(metres)
+  const label = text.metres(metres)
   ctx.setTransform(density, 0, 0, density, 0, 0)
   ctx.font = FONT
-  const width = ctx.measureText(words).width + 2 * PADDING
+  const width = ctx.measureText(label).width + 2 * PADDING
   const [x, y] = labelPlace(points, view, { width, height: HEIGHT })
   ctx.fillStyle = INK.label
   ctx.beginPath()
@@ -36,5 +36,5 @@ export function drawLength({ ctx, density, view }: DrawTarget, { points, metres 
   ctx.fillStyle = INK.scale
   ctx.textAlign = 'center'
   ctx.textBaseline = 'middle'
-  ctx.fillText(words, x, y + 1)
+  ctx.fillText(label, x, y + 1)
 }

@@ -4,16 +4,16 @@ import type { Line } from '../strokes'
 import { continues, pieceTo } from '../tracedBranch'
 import { WIDTH } from './ink'
 
-const smooth = new WeakMap<Line, Path2D>()
-const foliage = new WeakMap<TraceAnswer, Path2D>()
-const wood = new WeakMap<TracedSkeleton, Wood>()
+const smoothPaths = new WeakMap<Line, Path2D>()
+const foliagePaths = new WeakMap<TraceAnswer, Path2D>()
+const woods = new WeakMap<TracedSkeleton, Wood>()
 
-/** A line as a smooth curve in photo px, from its first point to its last. Made once for each line. */
+/** Return a line as a smooth curve, sheet px; cached. */
 export function smoothPath(line: Line): Path2D {
-  return once(smooth, line, () => curve(line))
+  return cached(smoothPaths, line, () => curve(line))
 }
 
-/** A curve through the middles of a line's pieces, bent toward its points. */
+/** Return a smooth curve from a line's first point to its last, through the midpoints of its segments. */
 export function curve(line: Line): Path2D {
   const path = new Path2D()
   const [first, ...others] = line
@@ -28,7 +28,7 @@ export function curve(line: Line): Path2D {
   return path
 }
 
-/** A straight line with a tick of `arm` photo px to either side of each end. */
+/** Return a straight line with a tick across each end that is `arm` sheet px long to either side. */
 export function rulerPath([from, to]: Line, arm: number): Path2D {
   const path = new Path2D()
   if (!from || !to) return path
@@ -43,38 +43,38 @@ export function rulerPath([from, to]: Line, arm: number): Path2D {
   return path
 }
 
-/** The rings of the foliage, to be filled by the even-odd rule. Made once for each answer. */
+/** Return the outlines of the foliage, to be filled by the even-odd rule; cached. */
 export function foliagePath(answer: TraceAnswer): Path2D {
-  return once(foliage, answer, () => {
+  return cached(foliagePaths, answer, () => {
     const path = new Path2D()
     for (const [first, ...others] of answer.foliage) {
       if (!first) continue
       path.moveTo(...first)
-      for (const place of others) path.lineTo(...place)
+      for (const point of others) path.lineTo(...point)
       path.closePath()
     }
     return path
   })
 }
 
-/** Branches as tapering wood; every radius is at least `least` and made `wider`, photo px. */
-export function woodPath(skeleton: TracedSkeleton, joints: Iterable<number>, least: number, wider: number): Path2D {
+/** Return branches as tapering wood; each radius is raised to `minRadius`, then widened by `extra`, sheet px. */
+export function woodPath(skeleton: TracedSkeleton, joints: Iterable<number>, minRadius: number, extra: number): Path2D {
   const path = new Path2D()
-  const further = continues(skeleton)
+  const continued = continues(skeleton)
   const roots = skeleton.points.filter((_, joint) => skeleton.parents[joint]! < 0)
-  const radius = (joint: number) => Math.max(skeleton.radii[joint]!, least) + wider
+  const radius = (joint: number) => Math.max(skeleton.radii[joint]!, minRadius) + extra
   for (const joint of joints) {
-    const [parent, thin] = [skeleton.parents[joint]!, radius(joint)]
+    const [parent, end] = [skeleton.parents[joint]!, radius(joint)]
     if (parent < 0) continue
     const piece = pieceTo(skeleton, joint)
-    addTaper(path, piece, [further[joint] ? radius(parent) : thin, thin], skeleton.parents[parent]! < 0)
-    // Nothing round may reach below the foot.
-    for (const place of piece) addDisc(path, place, Math.min(thin, ...roots.map(root => distance(root, place))))
+    addTaper(path, piece, [continued[joint] ? radius(parent) : end, end], skeleton.parents[parent]! < 0)
+    // No disc may reach below the level foot.
+    for (const point of piece) addDisc(path, point, Math.min(end, ...roots.map(root => distance(root, point))))
   }
   return path
 }
 
-/** A skeleton's wood at a scale (CSS px per photo px): a rim around all, under strokes, and found beside them. */
+/** A skeleton's wood at a scale, CSS px per sheet px: a rim around all, the branches with strokes, and those without. */
 export interface Wood {
   readonly scale: number
   readonly rim: Path2D
@@ -82,33 +82,33 @@ export interface Wood {
   readonly found: Path2D
 }
 
-/** Made anew only when the scale is another. */
+/** Return a skeleton's wood at a scale, CSS px per sheet px; cached until the scale changes. */
 export function woodAt(skeleton: TracedSkeleton, scale: number): Wood {
-  const known = wood.get(skeleton)
-  if (known?.scale === scale) return known
+  const before = woods.get(skeleton)
+  if (before?.scale === scale) return before
   const joints = [...skeleton.points.keys()]
-  const least = WIDTH.thinnestWood / scale
+  const minRadius = WIDTH.thinnestWood / scale
   const of = (stroked: boolean) => joints.filter(joint => skeleton.stroke[joint]! >= 0 === stroked)
-  const made = {
+  const wood = {
     scale,
-    rim: woodPath(skeleton, joints, least, WIDTH.rim / scale),
-    stroked: woodPath(skeleton, of(true), least, 0),
-    found: woodPath(skeleton, of(false), least, 0),
+    rim: woodPath(skeleton, joints, minRadius, WIDTH.rim / scale),
+    stroked: woodPath(skeleton, of(true), minRadius, 0),
+    found: woodPath(skeleton, of(false), minRadius, 0),
   }
-  wood.set(skeleton, made)
-  return made
+  woods.set(skeleton, wood)
+  return wood
 }
 
-/** All parts turn the same way, so that they are filled as one. A piece that stands on the ground has a level foot. */
-function addTaper(path: Path2D, [from, to]: Piece, [wide, thin]: readonly [number, number], stands: boolean): void {
+/** Add a tapering segment. All have the same winding, so that they are filled as one; a root's has a level foot. */
+function addTaper(path: Path2D, [from, to]: Piece, [start, end]: readonly [number, number], isRoot: boolean): void {
   const length = distance(from, to)
   if (length === 0) return
   const [across, down] = [(to[1] - from[1]) / length, (from[0] - to[0]) / length]
   const foot =
-    stands && across !== 0 ? ([Math.sign(across) * wide, 0] as const) : ([across * wide, down * wide] as const)
+    isRoot && across !== 0 ? ([Math.sign(across) * start, 0] as const) : ([across * start, down * start] as const)
   path.moveTo(from[0] + foot[0], from[1] + foot[1])
-  path.lineTo(to[0] + across * thin, to[1] + down * thin)
-  path.lineTo(to[0] - across * thin, to[1] - down * thin)
+  path.lineTo(to[0] + across * end, to[1] + down * end)
+  path.lineTo(to[0] - across * end, to[1] - down * end)
   path.lineTo(from[0] - foot[0], from[1] - foot[1])
   path.closePath()
 }
@@ -119,10 +119,10 @@ function addDisc(path: Path2D, [x, y]: readonly [number, number], radius: number
   path.closePath()
 }
 
-function once<K extends object>(made: WeakMap<K, Path2D>, key: K, make: () => Path2D): Path2D {
-  const known = made.get(key)
+function cached<K extends object>(cache: WeakMap<K, Path2D>, key: K, make: () => Path2D): Path2D {
+  const known = cache.get(key)
   if (known) return known
   const path = make()
-  made.set(key, path)
+  cache.set(key, path)
   return path
 }

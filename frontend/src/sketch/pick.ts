@@ -4,33 +4,38 @@ import type { Selection } from '../state'
 import { lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { firstJoint, pieceTo } from '../tracedBranch'
 
-/** What lies within `reach` photo px of a place: the nearest stroke, else the nearest branch that was traced. */
-export function pick(strokes: Strokes, skeleton: TracedSkeleton | null, at: Point, reach: number): Selection | null {
-  return pickStroke(strokes, at, reach) ?? (skeleton && pickTraced(strokes, skeleton, at, reach))
+/** Return what lies within `tolerance` sheet px of a point: the nearest stroke, else the nearest traced branch. */
+export function pick(
+  strokes: Strokes,
+  skeleton: TracedSkeleton | null,
+  at: Point,
+  tolerance: number,
+): Selection | null {
+  return pickStroke(strokes, at, tolerance) ?? (skeleton && pickTraced(strokes, skeleton, at, tolerance))
 }
 
-/** The end of the measured line that stays where the one within `reach` photo px of a place is moved. */
-export function otherEnd({ scale }: Strokes, at: Point, reach: number): Point | null {
+/** Return the other end of the measured line where one end lies within `tolerance` sheet px of a point; else null. */
+export function otherEnd({ scale }: Strokes, at: Point, tolerance: number): Point | null {
   const [from, to] = scale?.points ?? []
-  if (!from || !to || Math.min(distance(from, at), distance(to, at)) > reach) return null
+  if (!from || !to || Math.min(distance(from, at), distance(to, at)) > tolerance) return null
   return distance(from, at) < distance(to, at) ? to : from
 }
 
-function pickStroke(strokes: Strokes, at: Point, reach: number): StrokeRef | null {
-  let [nearest, least]: [StrokeRef | null, number] = [null, reach]
+function pickStroke(strokes: Strokes, at: Point, tolerance: number): StrokeRef | null {
+  let [nearest, least]: [StrokeRef | null, number] = [null, tolerance]
   for (const ref of strokeRefs(strokes)) {
     const brush = ref.kind === 'branch' ? (strokes.branches[ref.index]?.width ?? 0) : 0
-    const away = distanceToLine(lineOf(strokes, ref), at, ref.kind === 'crown') - brush / 2
-    if (away <= least) [nearest, least] = [ref, away]
+    const gap = distanceToLine(lineOf(strokes, ref), at, ref.kind === 'crown') - brush / 2
+    if (gap <= least) [nearest, least] = [ref, gap]
   }
   return nearest
 }
 
-function pickTraced(strokes: Strokes, skeleton: TracedSkeleton, at: Point, reach: number): Selection | null {
-  let [nearest, least] = [-1, reach]
+function pickTraced(strokes: Strokes, skeleton: TracedSkeleton, at: Point, tolerance: number): Selection | null {
+  let [nearest, least] = [-1, tolerance]
   for (const joint of skeleton.points.keys()) {
-    const away = distanceToWood(skeleton, joint, at)
-    if (away < least) [nearest, least] = [joint, away]
+    const gap = distanceToWood(skeleton, joint, at)
+    if (gap < least) [nearest, least] = [joint, gap]
   }
   if (nearest < 0) return null
   const index = skeleton.stroke[nearest]!
@@ -38,7 +43,7 @@ function pickTraced(strokes: Strokes, skeleton: TracedSkeleton, at: Point, reach
   return index < strokes.branches.length ? { kind: 'branch', index } : null
 }
 
-/** How far outside the wood between a joint and its parent a place lies; negative inside. */
+/** Return how far a point lies outside the wood between a joint and its parent, sheet px; negative inside. */
 function distanceToWood(skeleton: TracedSkeleton, joint: number, at: Point): number {
   const piece = pieceTo(skeleton, joint)
   return distance(along(piece, nearestShare(piece, at)), at) - skeleton.radii[joint]!

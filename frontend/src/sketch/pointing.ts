@@ -2,42 +2,46 @@ import type { Tool } from '../state'
 import type { Point } from '../strokes'
 import type { GestureEvent, Intent, PointerKind } from './gesture'
 
-/** Where the events go; `tool` is the one in use at a place. */
+/** Receives the events of the pointers; all points are CSS px in the window. */
 export interface Listener {
+  /** Returns the tool that a press at a point uses. */
   readonly tool: (at: Point) => Tool
   readonly gesture: (event: GestureEvent) => void
   readonly wheel: (intent: Intent) => void
+  /** Null where no mouse or pen is over the element. */
   readonly hover: (at: Point | null) => void
 }
 
 type Wheel = Pick<WheelEvent, 'deltaX' | 'deltaY' | 'deltaMode' | 'ctrlKey' | 'shiftKey'>
 
+/** What lines and pages of a wheel count as, px. */
 const LINE_PX = 16
 const PAGE_PX = 400
-/** How much a wheel's px zoom; a trackpad's pinch gives few of them. */
-const ZOOM = { wheel: 0.0018, pinch: 0.01 }
-const MOST_AT_ONCE = 150
+/** Growth of the scale's logarithm per px of a wheel; a trackpad's pinch reports fewer px. */
+const ZOOM_RATE = { wheel: 0.0018, pinch: 0.01 }
+/** The most that one event zooms, px. */
+const MAX_DELTA = 150
 
-/** Hear the pointers on an element. */
+/** Listen to the pointers and the wheel on an element. */
 export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, hover }: Listener): void {
   const at = (event: MouseEvent): Point => {
     const { left, top } = element.getBoundingClientRect()
     return [event.clientX - left, event.clientY - top]
   }
-  const on = <K extends keyof HTMLElementEventMap>(type: K, told: (event: HTMLElementEventMap[K]) => void) =>
-    element.addEventListener(type, told, { passive: false })
+  const on = <K extends keyof HTMLElementEventMap>(type: K, listener: (event: HTMLElementEventMap[K]) => void) =>
+    element.addEventListener(type, listener, { passive: false })
   on('pointerdown', event => {
     element.setPointerCapture(event.pointerId)
     const { button, isPrimary: alone } = event
     gesture({ ...contact(event), type: 'down', at: at(event), button, alone, tool: tool(at(event)) })
   })
-  // The middle button would scroll.
+  // The middle button would otherwise scroll the page.
   on('mousedown', event => {
     if (event.button === 1) event.preventDefault()
   })
   on('pointermove', event => {
-    const all = event.getCoalescedEvents()
-    const path = (all.length ? all : [event]).map(at)
+    const events = event.getCoalescedEvents()
+    const path = (events.length ? events : [event]).map(at)
     gesture({ ...contact(event), type: 'move', at: at(event), path, pressed: event.buttons !== 0 })
     hover(event.pointerType === 'touch' ? null : at(event))
   })
@@ -48,30 +52,35 @@ export function listenToPointers(element: HTMLElement, { tool, gesture, wheel, h
   on('contextmenu', event => event.preventDefault())
   on('wheel', event => {
     event.preventDefault()
-    wheel(wheeled(event, at(event)))
+    wheel(wheelIntent(event, at(event)))
   })
 }
 
-/** Hear the space bar, where no control of the page would take it, until the signal. */
-export function listenToSpace(element: HTMLElement, told: (held: boolean) => void, signal: AbortSignal): void {
-  const heard = (event: KeyboardEvent) => {
+/** Listen to the space bar until the signal, unless a control of the page has the focus. */
+export function listenToSpace(element: HTMLElement, onChange: (held: boolean) => void, signal: AbortSignal): void {
+  const listener = (event: KeyboardEvent) => {
     if (event.key !== ' ' || (event.target !== element && event.target !== document.body)) return
     event.preventDefault()
-    told(event.type === 'keydown')
+    onChange(event.type === 'keydown')
   }
-  document.addEventListener('keydown', heard, { signal })
-  document.addEventListener('keyup', heard, { signal })
-  window.addEventListener('blur', () => told(false), { signal })
+  document.addEventListener('keydown', listener, { signal })
+  document.addEventListener('keyup', listener, { signal })
+  window.addEventListener('blur', () => onChange(false), { signal })
 }
 
-/** What a turn of the wheel at a place (CSS px) means: it zooms; sideways, or with Shift, it pans. */
-export function wheeled(wheel: Wheel, about: Point): Intent {
+/** Return what a turn of the wheel over a point (CSS px) means: zoom, or pan if it is sideways or with Shift. */
+export function wheelIntent(wheel: Wheel, about: Point): Intent {
   const unit = wheel.deltaMode === 1 ? LINE_PX : wheel.deltaMode === 2 ? PAGE_PX : 1
   const [right, down] = [wheel.deltaX * unit, wheel.deltaY * unit]
   if (!wheel.ctrlKey && wheel.shiftKey) return { type: 'pan', by: [-(right || down), 0] }
   if (!wheel.ctrlKey && right !== 0) return { type: 'pan', by: [-right, -down] }
-  const turn = Math.min(Math.max(down, -MOST_AT_ONCE), MOST_AT_ONCE)
-  return { type: 'pinch', factor: Math.exp(-turn * (wheel.ctrlKey ? ZOOM.pinch : ZOOM.wheel)), about, by: [0, 0] }
+  const turn = Math.min(Math.max(down, -MAX_DELTA), MAX_DELTA)
+  return {
+    type: 'pinch',
+    factor: Math.exp(-turn * (wheel.ctrlKey ? ZOOM_RATE.pinch : ZOOM_RATE.wheel)),
+    about,
+    by: [0, 0],
+  }
 }
 
 function contact({ pointerId, pointerType, width, height }: PointerEvent) {

@@ -5,48 +5,48 @@ import type { DrawTarget } from './drawTarget'
 import { INK, PAPER_INK } from './ink'
 import { Layers } from './layers'
 import { drawLevels } from './levels'
-import { drawAim, drawCrownTaken, drawMarks, drawPenLine, drawTraced } from './overlay'
+import { drawAssumedCrown, drawCursor, drawMarks, drawPenLine, drawTraced } from './overlay'
 import type { PenLine } from './penLine'
-import { PhotoLayer } from './photoLayer'
+import { SheetLayer } from './sheetLayer'
 import type { SheetView } from './sheetView'
 import type { View } from './viewport'
 
-/** What is seen beside the page's state. */
+/** What the scene draws that is not part of the page's state. */
 export interface SketchStatus {
   readonly view: View
-  /** What was traced of this photo. */
+  /** What was traced in this photo. */
   readonly traced: TraceAnswer | null
   readonly hovered: Selection | null
-  /** The stroke under way. */
+  /** The stroke that is being drawn. */
   readonly pen: PenLine | null
-  /** Where the keyboard's pen is, photo px. */
-  readonly aim: Point | null
+  /** The keyboard's cursor, sheet px; null while it is not shown. */
+  readonly cursor: Point | null
 }
 
-/** Paints the photo and what lies over it. */
+/** Draws a sheet and all that lies over it. */
 export class Scene {
   readonly layers: Layers
-  readonly picture = new PhotoLayer(() => this.layers.touch('photo'))
+  readonly sheet = new SheetLayer(() => this.layers.invalidate('photo'))
 
   constructor(
     host: HTMLElement,
     private readonly status: () => SketchStatus,
     private readonly shown: () => SheetView,
   ) {
-    const paint = {
-      photo: (target: DrawTarget) => this.picture.draw(target, this.shown().isPaper),
+    const painters = {
+      photo: (target: DrawTarget) => this.sheet.draw(target, this.shown().isPaper),
       traced: (target: DrawTarget) => this.#drawTraced(target),
       strokes: (target: DrawTarget) => this.#drawMarks(target),
       pen: (target: DrawTarget) => this.#drawPen(target),
     }
-    this.layers = new Layers(host, paint, () => status().view)
+    this.layers = new Layers(host, painters, () => status().view)
   }
 
   #drawTraced(target: DrawTarget): void {
     const { traced } = this.status()
-    const { sheet, levels, stray, crown } = this.shown()
+    const { sheet, levels, stray, assumedCrown } = this.shown()
     if (traced && sheet) drawTraced(target, traced)
-    if (crown) drawCrownTaken(target, crown, this.#inks)
+    if (assumedCrown) drawAssumedCrown(target, assumedCrown, this.#inks)
     if (levels && sheet) drawLevels(target, { levels, stray, width: sheet.width }, this.#inks)
   }
 
@@ -62,8 +62,8 @@ export class Scene {
   }
 
   #drawPen(target: DrawTarget): void {
-    const { pen, aim } = this.status()
+    const { pen, cursor } = this.status()
     if (pen) drawPenLine(target, pen, this.#inks)
-    if (aim) drawAim(target, aim, pen !== null)
+    if (cursor) drawCursor(target, cursor, pen !== null)
   }
 }

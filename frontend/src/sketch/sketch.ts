@@ -3,28 +3,28 @@ import type { Extent } from '../sheets'
 import type { Selection, Sheet, State, Store } from '../state'
 import type { Line, Point, SheetName } from '../strokes'
 import { Camera } from './camera'
-import { AT_REST, type DrawnKind, type GestureEvent, gestured, type Intent, type PointerKind } from './gesture'
-import { type KeyCommand, keyCommand, stepped } from './keys'
+import { AT_REST, type DrawnKind, type GestureEvent, type Intent, interpret, type PointerKind } from './gesture'
+import { type KeyCommand, keyCommand, stepFrom } from './keys'
 import { PenLine } from './penLine'
 import { otherEnd, pick } from './pick'
 import { listenToPointers, listenToSpace } from './pointing'
 import { Scene, type SketchStatus } from './scene'
-import { extentOf, ofSheet, type SheetView, viewOf } from './sheetView'
+import { extentOf, type SheetView, toPageSelection, viewOf } from './sheetView'
 import './sketch.css'
 import type { SketchEvents, SketchLabels } from './sketchEvents'
-import { toPhoto, toScreen, type View, within } from './viewport'
+import { toScreen, toSheet, type View, within } from './viewport'
 
-/** Points of a stroke are as far apart at least, CSS px. */
-const APART = 0.7
-/** A click takes what lies as near, CSS px. */
-const REACH: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
-/** A press as near to an end of the measured line moves it, CSS px. */
-const END_REACH = 14
+/** The least distance between a stroke's points, CSS px. */
+const POINT_SPACING = 0.7
+/** How far from a click something may lie to be selected, CSS px. */
+const CLICK_TOLERANCE: Record<PointerKind, number> = { mouse: 10, pen: 10, touch: 20 }
+/** How far from an end of the measured line a press may lie to move it, CSS px. */
+const END_TOLERANCE = 14
 
-/** The canvas over the photo, or of paper, that a person draws on. */
+/** The canvas on which a person draws over a photo or on paper. */
 export class Sketch {
   readonly #element = document.createElement('div')
-  readonly #camera = new Camera(view => this.#looked(view))
+  readonly #camera = new Camera(view => this.#viewChanged(view))
   readonly #scene = new Scene(
     this.#element,
     () => this.#status,
@@ -37,14 +37,15 @@ export class Sketch {
   #state: State
   #shown: SheetView
   #gesture = AT_REST
+  /** The stroke that is being drawn. */
   #pen: PenLine | null = null
-  /** The keyboard's pen, photo px. */
-  #aim: Point | null = null
+  /** The keyboard's cursor, sheet px. */
+  #cursor: Point | null = null
   #hovered: Selection | null = null
-  /** The pointer is over an end of the measured line, which can be moved. */
-  #overEnd = false
-  /** What was traced of a photo that is gone. */
-  #foreign: TraceAnswer | null = null
+  /** Whether the pointer is over an end of the measured line, which can be moved. */
+  #overLineEnd = false
+  /** What was traced in the photo before this one; it is not shown. */
+  #staleTrace: TraceAnswer | null = null
 
   constructor(
     host: HTMLElement,
@@ -62,16 +63,16 @@ export class Sketch {
     host.prepend(this.#element)
     this.#listen()
     this.#resizing.observe(this.#element)
-    this.#open()
+    this.#openSheet()
     this.#resize()
-    // A listener before this one may have gone on to a newer state already.
+    // An earlier listener may have changed the state again: the newest one counts.
     this.#unwatch = store.watch(
       state => state,
-      () => this.#changed(store.state),
+      () => this.#stateChanged(store.state),
     )
   }
 
-  /** Leave the page. */
+  /** Remove the sketch from the page. */
   end(): void {
     this.#unwatch()
     this.#resizing.disconnect()
@@ -83,48 +84,49 @@ export class Sketch {
     this.#element.focus({ preventScroll: true })
   }
 
+  /** Show the whole sheet. */
   fit(): void {
     this.#camera.fit()
   }
 
-  /** Show one photo px as one CSS px. */
+  /** Show one sheet px as one CSS px. */
   actual(): void {
     this.#camera.actual()
   }
 
-  /** Scale about the middle. */
+  /** Scale by a factor about the middle of the window. */
   zoom(factor: number): void {
     this.#camera.zoom(factor)
   }
 
-  /** Look as high up, and at the scale, that another sheet is looked at: as if it were as high as this one. */
+  /** Take over the scale and vertical offset (CSS px) of the other sheet's view; `whole` if that one is fitted. */
   follow(view: Pick<View, 'scale' | 'y'>, whole: boolean): void {
     this.#camera.follow(view, whole)
   }
 
-  /** Say what is drawn on, and how to do it by keyboard. */
+  /** Set what screen readers say: what is drawn on, and how to draw by keyboard. */
   name({ canvas, keys }: SketchLabels): void {
     this.#element.ariaLabel = canvas
     this.#element.setAttribute('aria-description', keys)
   }
 
   #listen(): void {
-    const gesture = (event: GestureEvent) => this.#gestured(event)
-    const tool = (at: Point) => (this.#shown.tool === 'select' && this.#otherEnd(at) ? 'scale' : this.#shown.tool)
-    const wheel = (intent: Intent) => this.#do(intent)
-    listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#hover(at) })
-    listenToSpace(this.#element, held => this.#gestured({ type: 'space', held }), this.#listening.signal)
+    const gesture = (event: GestureEvent) => this.#onGesture(event)
+    const tool = (at: Point) => (this.#shown.tool === 'select' && this.#otherEndAt(at) ? 'scale' : this.#shown.tool)
+    const wheel = (intent: Intent) => this.#perform(intent)
+    listenToPointers(this.#element, { tool, gesture, wheel, hover: at => this.#onHover(at) })
+    listenToSpace(this.#element, held => this.#onGesture({ type: 'space', held }), this.#listening.signal)
     this.#element.addEventListener('pointerdown', () => this.events.touched())
-    this.#element.addEventListener('keydown', event => this.#pressed(event))
-    this.#element.addEventListener('focus', () => this.#focused())
-    this.#element.addEventListener('blur', () => this.#scene.layers.touch('pen'))
+    this.#element.addEventListener('keydown', event => this.#onKey(event))
+    this.#element.addEventListener('focus', () => this.#onFocus())
+    this.#element.addEventListener('blur', () => this.#scene.layers.invalidate('pen'))
   }
 
-  /** Who comes by keyboard sees where the pen is. */
-  #focused(): void {
+  /** Show the cursor where the focus came by keyboard. */
+  #onFocus(): void {
     const { sheet } = this.#shown
-    if (sheet && this.#element.matches(':focus-visible')) this.#aim ??= this.#middle(sheet)
-    this.#scene.layers.touch('pen')
+    if (sheet && this.#element.matches(':focus-visible')) this.#cursor ??= this.#middleOfWindow(sheet)
+    this.#scene.layers.invalidate('pen')
     this.events.touched()
   }
 
@@ -134,78 +136,78 @@ export class Sketch {
     this.#scene.layers.resize({ width, height }, window.devicePixelRatio)
   }
 
-  #looked({ scale, x, y }: View): void {
+  #viewChanged({ scale, x, y }: View): void {
     this.#element.dataset.view = [scale, x, y].join(',')
-    this.#scene.layers.touchAll()
+    this.#scene.layers.invalidateAll()
     this.events.looked({ scale, x, y }, this.#camera.isWhole)
   }
 
-  #changed(now: State): void {
+  #stateChanged(now: State): void {
     const [before, shown] = [this.#state, this.#shown]
     this.#state = now
     this.#shown = viewOf(now, this.#name)
-    this.#relay(shown.sheet, before)
-    if (this.#shown.tool !== shown.tool) this.#putAway()
+    this.#updateSheet(shown.sheet, before)
+    if (this.#shown.tool !== shown.tool) this.#cancelStroke()
     if (now.history !== before.history || now.traced !== before.traced) this.#hovered = null
     this.#element.classList.toggle('sketch-stale', now.traced !== null && now.traced.of !== now.history.present)
-    this.#scene.layers.touch('strokes')
-    if (now.traced !== before.traced || now.history !== before.history) this.#scene.layers.touch('traced')
-    this.#pointAt()
+    this.#scene.layers.invalidate('strokes')
+    if (now.traced !== before.traced || now.history !== before.history) this.#scene.layers.invalidate('traced')
+    this.#updatePointer()
   }
 
-  /** Bring what lies under the strokes into step. */
-  #relay(was: Sheet | null, before: State): void {
+  /** Show the sheet as it is now: the same one with another picture, or another sheet. */
+  #updateSheet(old: Sheet | null, before: State): void {
     const { sheet } = this.#shown
     const { sheets, traced } = this.#state
     this.#element.classList.toggle('sketch-paper', this.#shown.isPaper)
-    if (sheet && was && sameSize(sheet, was) && sheet.id === was.id) {
-      if (sheet !== was) this.#scene.picture.show(sheet)
-      if (sheet !== was) this.#scene.layers.touch('photo')
-      if (sheets !== before.sheets) this.#camera.reach(extentOf(this.#state, this.#name)!)
-    } else if (sheet !== was) {
-      this.#foreign = traced === before.traced ? (traced?.answer ?? null) : null
-      this.#open()
+    if (sheet && old && sameSize(sheet, old) && sheet.id === old.id) {
+      if (sheet !== old) this.#scene.sheet.show(sheet)
+      if (sheet !== old) this.#scene.layers.invalidate('photo')
+      if (sheets !== before.sheets) this.#camera.setExtent(extentOf(this.#state, this.#name)!)
+    } else if (sheet !== old) {
+      this.#staleTrace = traced === before.traced ? (traced?.answer ?? null) : null
+      this.#openSheet()
     }
-    if (sheets?.side !== before.sheets?.side) this.#scene.layers.touch('traced')
+    if (sheets?.side !== before.sheets?.side) this.#scene.layers.invalidate('traced')
   }
 
-  #open(): void {
+  #openSheet(): void {
     const { sheet } = this.#shown
-    this.#putAway()
-    this.#aim = null
-    this.#scene.picture.show(sheet)
+    this.#cancelStroke()
+    this.#cursor = null
+    this.#scene.sheet.show(sheet)
     if (sheet) this.#camera.open(sheet, extentOf(this.#state, this.#name)!)
-    this.#scene.layers.touchAll()
+    this.#scene.layers.invalidateAll()
   }
 
-  #putAway(): void {
+  #cancelStroke(): void {
     this.#pen = null
-    this.#gesture = gestured(this.#gesture, { type: 'escape' }).state
-    this.#scene.layers.touch('pen')
+    this.#gesture = interpret(this.#gesture, { type: 'escape' }).state
+    this.#scene.layers.invalidate('pen')
   }
 
   get #traced(): TraceAnswer | null {
     const { traced } = this.#shown
-    return traced === this.#foreign ? null : traced
+    return traced === this.#staleTrace ? null : traced
   }
 
-  #gestured(event: GestureEvent): void {
+  #onGesture(event: GestureEvent): void {
     if (!this.#shown.sheet) return
-    const { state, intents } = gestured(this.#gesture, event)
+    const { state, intents } = interpret(this.#gesture, event)
     this.#gesture = state
-    for (const intent of intents) this.#do(intent)
-    this.#pointAt()
+    for (const intent of intents) this.#perform(intent)
+    this.#updatePointer()
   }
 
-  #do(intent: Intent): void {
+  #perform(intent: Intent): void {
     const { type } = intent
     if (type === 'pan') this.#camera.pan(intent.by)
     else if (type === 'pinch') this.#pinch(intent)
-    else if (type === 'click') this.#select(intent.at, REACH[intent.pointer])
-    else if (type === 'begin') this.#begin(intent.kind, intent.at)
-    else if (type === 'extend') this.#extend(intent.path)
-    else if (type === 'end') this.#finish()
-    else this.#drop()
+    else if (type === 'click') this.#selectAt(intent.at, CLICK_TOLERANCE[intent.pointer])
+    else if (type === 'begin') this.#beginStroke(intent.kind, intent.at)
+    else if (type === 'extend') this.#extendStroke(intent.path)
+    else if (type === 'end') this.#finishStroke()
+    else this.#dropStroke()
   }
 
   #pinch({ by, factor, about }: Intent & { type: 'pinch' }): void {
@@ -213,127 +215,128 @@ export class Sketch {
     this.#camera.zoom(factor, about)
   }
 
-  #begin(kind: DrawnKind, at: Point): void {
-    this.#aim = null
+  #beginStroke(kind: DrawnKind, at: Point): void {
+    this.#cursor = null
     const { sheet, brush } = this.#shown
     const width = kind === 'branch' ? brush : null
-    this.#pen = new PenLine(kind, sheet!, kind === 'scale' ? this.#otherEnd(at) : null, width)
-    this.#extend([at])
+    this.#pen = new PenLine(kind, sheet!, kind === 'scale' ? this.#otherEndAt(at) : null, width)
+    this.#extendStroke([at])
   }
 
-  #extend(path: Line): void {
+  #extendStroke(path: Line): void {
     const { view } = this.#camera
-    for (const at of path) this.#pen?.add(toPhoto(view, at), APART / view.scale)
-    this.#scene.layers.touch('pen')
+    for (const at of path) this.#pen?.add(toSheet(view, at), POINT_SPACING / view.scale)
+    this.#scene.layers.invalidate('pen')
   }
 
-  #finish(): void {
+  #finishStroke(): void {
     const pen = this.#pen
-    this.#drop()
+    this.#dropStroke()
     const line = pen?.finished()
     if (pen && line) this.events.drew(pen.kind, line)
   }
 
-  #drop(): void {
+  #dropStroke(): void {
     this.#pen = null
-    this.#scene.layers.touch('pen')
+    this.#scene.layers.invalidate('pen')
   }
 
-  #select(at: Point, reach: number): void {
-    this.events.selected(ofSheet(this.#pick(at, reach), this.#name))
+  #selectAt(at: Point, tolerance: number): void {
+    this.events.selected(toPageSelection(this.#pickAt(at, tolerance), this.#name))
   }
 
-  #pick(at: Point, reach: number): Selection | null {
+  #pickAt(at: Point, tolerance: number): Selection | null {
     const { view } = this.#camera
     const skeleton = this.#traced?.skeleton ?? null
-    return pick(this.#shown.strokes, skeleton, toPhoto(view, at), reach / view.scale)
+    return pick(this.#shown.strokes, skeleton, toSheet(view, at), tolerance / view.scale)
   }
 
-  /** The end that stays where the one at a place in the window is moved. */
-  #otherEnd(at: Point): Point | null {
+  /** Return the other end of the measured line where one end lies at a point of the window (CSS px); else null. */
+  #otherEndAt(at: Point): Point | null {
     const { view } = this.#camera
-    return otherEnd(this.#shown.strokes, toPhoto(view, at), END_REACH / view.scale)
+    return otherEnd(this.#shown.strokes, toSheet(view, at), END_TOLERANCE / view.scale)
   }
 
-  #hover(at: Point | null): void {
+  #onHover(at: Point | null): void {
     const { sheet, tool } = this.#shown
     const free = sheet && this.#gesture.mode.name === 'idle' ? at : null
-    this.#overEnd = Boolean(free && (tool === 'select' || tool === 'scale') && this.#otherEnd(free))
-    this.#pointAt()
-    const hovered = free && tool === 'select' ? this.#pick(free, REACH.mouse) : null
+    this.#overLineEnd = Boolean(free && (tool === 'select' || tool === 'scale') && this.#otherEndAt(free))
+    this.#updatePointer()
+    const hovered = free && tool === 'select' ? this.#pickAt(free, CLICK_TOLERANCE.mouse) : null
     if (JSON.stringify(hovered) === JSON.stringify(this.#hovered)) return
     this.#hovered = hovered
-    this.#scene.layers.touch('strokes')
-    this.#pointAt()
+    this.#scene.layers.invalidate('strokes')
+    this.#updatePointer()
   }
 
-  #pointAt(): void {
+  #updatePointer(): void {
     const { mode, space } = this.#gesture
-    const panning = mode.name === 'pinch' || (mode.name === 'pan' && (mode.far || !mode.clicks))
-    const choosing = this.#overEnd ? 'end' : this.#hovered ? 'take' : this.#shown.tool === 'select' ? 'choose' : 'draw'
-    this.#element.dataset.pointer = panning ? 'panning' : space ? 'pan' : choosing
+    const panning = mode.name === 'pinch' || (mode.name === 'pan' && (mode.moved || !mode.mayClick))
+    const tool = this.#shown.tool === 'select' ? 'choose' : 'draw'
+    const under = this.#overLineEnd ? 'end' : this.#hovered ? 'take' : tool
+    this.#element.dataset.pointer = panning ? 'panning' : space ? 'pan' : under
   }
 
-  #pressed(event: KeyboardEvent): void {
+  #onKey(event: KeyboardEvent): void {
     const command = keyCommand(event)
     if (!command || !this.#shown.sheet) return
     event.preventDefault()
-    this.#command(command, this.#shown.sheet)
+    this.#run(command, this.#shown.sheet)
   }
 
-  #command(command: KeyCommand, photo: Extent): void {
+  #run(command: KeyCommand, sheet: Extent): void {
     const { type } = command
-    if (type === 'step') this.#step(command, photo)
-    else if (type === 'pen') this.#penKey(photo)
-    else if (type === 'escape') this.#escape()
+    if (type === 'step') this.#moveCursor(command, sheet)
+    else if (type === 'pen') this.#pressPenKey(sheet)
+    else if (type === 'escape') this.#onEscape()
     else if (type === 'remove') this.events.remove()
     else if (type === 'zoom') this.zoom(command.factor)
     else if (type === 'fit') this.fit()
     else this.actual()
   }
 
-  #step(step: KeyCommand & { type: 'step' }, photo: Extent): void {
-    const at = this.#aim ? stepped(this.#aim, step, photo) : this.#middle(photo)
-    this.#aim = at
+  #moveCursor(step: KeyCommand & { type: 'step' }, sheet: Extent): void {
+    const at = this.#cursor ? stepFrom(this.#cursor, step, sheet) : this.#middleOfWindow(sheet)
+    this.#cursor = at
     this.#pen?.add(at, 0)
     this.#camera.show(at)
-    this.#scene.layers.touch('pen')
+    this.#scene.layers.invalidate('pen')
     this.events.said({ pen: 'move', at })
   }
 
-  #penKey(photo: Extent): void {
-    const at = this.#aim ?? this.#middle(photo)
-    this.#aim = at
-    this.#scene.layers.touch('pen')
+  #pressPenKey(sheet: Extent): void {
+    const at = this.#cursor ?? this.#middleOfWindow(sheet)
+    this.#cursor = at
+    this.#scene.layers.invalidate('pen')
     const { tool } = this.#shown
-    if (tool === 'select') this.#select(toScreen(this.#camera.view, at), REACH.mouse)
-    else this.#turnPen(tool, photo, at)
+    if (tool === 'select') this.#selectAt(toScreen(this.#camera.view, at), CLICK_TOLERANCE.mouse)
+    else this.#togglePen(tool, sheet, at)
   }
 
-  #turnPen(kind: DrawnKind, photo: Extent, at: Point): void {
-    if (this.#pen) this.#finish()
+  #togglePen(kind: DrawnKind, sheet: Extent, at: Point): void {
+    if (this.#pen) this.#finishStroke()
     else {
-      this.#pen = new PenLine(kind, photo, null, kind === 'branch' ? this.#shown.brush : null)
+      this.#pen = new PenLine(kind, sheet, null, kind === 'branch' ? this.#shown.brush : null)
       this.#pen.add(at, 0)
     }
     this.events.said({ pen: this.#pen ? 'down' : 'up', at })
   }
 
-  #escape(): void {
-    if (this.#pen) this.#putAway()
+  #onEscape(): void {
+    if (this.#pen) this.#cancelStroke()
     else if (this.#shown.selection) this.events.selected(null)
   }
 
   get #status(): SketchStatus {
     const focused = document.activeElement === this.#element
     const { view } = this.#camera
-    return { view, traced: this.#traced, hovered: this.#hovered, pen: this.#pen, aim: focused ? this.#aim : null }
+    return { view, traced: this.#traced, hovered: this.#hovered, pen: this.#pen, cursor: focused ? this.#cursor : null }
   }
 
-  /** The place of the photo in the middle of the window. */
-  #middle({ width, height }: Extent): Point {
+  /** Return the point of the sheet in the middle of the window, sheet px. */
+  #middleOfWindow({ width, height }: Extent): Point {
     const { clientWidth, clientHeight } = this.#element
-    const [x, y] = toPhoto(this.#camera.view, [clientWidth / 2, clientHeight / 2])
+    const [x, y] = toSheet(this.#camera.view, [clientWidth / 2, clientHeight / 2])
     return [within(x, 0, width), within(y, 0, height)]
   }
 }

@@ -15,13 +15,14 @@ export interface SketchLabels {
 export interface SketchEvents {
   /** The sheet was touched, or has the focus. */
   touched(): void
-  /** One stroke is finished, in photo px. */
+  /** A stroke was finished; sheet px. */
   drew(kind: DrawnKind, points: Line): void
+  /** Something was selected; null: nothing is. */
   selected(selection: Selection | null): void
-  /** What is selected is to go. */
+  /** The selected stroke or branch should be removed. */
   remove(): void
-  /** Where the photo lies in the window now, and whether the whole of it is in sight. */
+  /** The view changed; `whole` where the whole sheet is fitted in the window. */
   looked(view: View, whole: boolean): void
-  /** What the keyboard's pen does, in photo px. */
+  /** The keyboard's pen was put down, lifted or moved; sheet px. */
   said(what: { pen: 'down' | 'up' | 'move'; at: Point }): void
 }

@@ -14,22 +14,22 @@ export interface Draft {
   readonly name: string
   /** Absent in drawings over a photo. */
   readonly source?: Source
-  /** The photo or paper; without an id the service knows of no photo. */
+  /** The front's sheet, sheet px; without an id it has no photo on the service. */
   readonly photo: Extent & { readonly id: string | null }
-  /** The left side's sheet, where it is open. */
+  /** The side's sheet, sheet px, where it is open. */
   readonly side?: Extent | null
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
-  /** The model that was grown of it last, and of which strokes. */
+  /** The id of the model that was last grown from it, and the strokes it was grown from. */
   readonly model: string | null
   readonly modelOf: Strokes | null
-  /** Whether its leaf and its fruit are others than those that are kept here. */
+  /** Whether that model had another leaf or fruit than the draft now has. */
   readonly modelHadOtherLeaf?: boolean
   readonly modelHadOtherFruit?: boolean
 }
 
-/** The pictures of a drawing: under both sheets, and the person's own leaf and fruit. */
+/** A drawing's pictures: those under its sheets, and the own pictures of a leaf and a fruit. */
 const PICTURES = ['photo', 'side', 'leaf', 'fruit'] as const
 type Pictures = Readonly<Record<(typeof PICTURES)[number], Blob | null>>
 
@@ -43,14 +43,15 @@ interface DraftDatabase extends DBSchema {
   photos: { key: string; value: Blob }
 }
 
-const KEPT = 12
+const MAX_DRAFTS = 12
+/** The parts of the state whose changes are saved. */
 const KEYS = ['sheets', 'name', 'history', 'settings', 'seed', 'leaf', 'fruit', 'model'] as const
 
-/** Keeps every drawing in the browser as it is drawn, with its undo history, so that a reload or a crash loses nothing. */
+/** Saves each drawing in the browser as it is drawn, with its undo history: a reload or a crash loses nothing. */
 export class DraftStore {
   #id: string | null = null
-  /** What has been written of this drawing. */
-  #written: Pictures | null = null
+  /** The pictures of this drawing that have been saved; null before the first time. */
+  #saved: Pictures | null = null
   readonly #rounds = new Rounds(() => this.#write(this.store.state))
 
   constructor(
@@ -61,48 +62,48 @@ export class DraftStore {
     for (const key of KEYS)
       store.watch(
         state => state[key],
-        () => this.#keep(),
+        () => this.#save(),
       )
   }
 
-  /** The drawing that is kept now; what is opened next is another one. */
+  /** The id of the draft that is open; null where none is. */
   get id(): string | null {
     return this.#id
   }
 
-  /** Go on with a kept drawing, or with a new one. */
+  /** Save what is drawn from now on as the draft with this id, or as a new one. */
   begin(id: string | null): void {
     this.#id = id ?? crypto.randomUUID()
-    this.#written = null
+    this.#saved = null
   }
 
-  /** List what is kept, the latest first; drawings without a stroke are not worth coming back to. */
+  /** Return the drafts that have strokes, the latest first. */
   async list(): Promise<Draft[]> {
     const drafts = await (await this.database).getAllFromIndex('drafts', 'saved')
     return drafts.filter(({ history }) => !isEmpty(history.present)).reverse()
   }
 
-  /** Find a drawing and its pictures. */
+  /** Return a draft with its pictures; null where it is gone. */
   async find(id: string): Promise<DraftWithPictures | null> {
     const database = await this.database
-    const found = PICTURES.map(async what => [what, (await database.get('photos', keyOf(id, what))) ?? null] as const)
-    const [draft, ...pictures] = await Promise.all([database.get('drafts', id), ...found])
-    const stored = Object.fromEntries(pictures) as Pictures
-    return draft && (stored.photo || draft.source === 'sketch') ? { draft, ...stored } : null
+    const stored = PICTURES.map(async what => [what, (await database.get('photos', keyOf(id, what))) ?? null] as const)
+    const [draft, ...pictures] = await Promise.all([database.get('drafts', id), ...stored])
+    const found = Object.fromEntries(pictures) as Pictures
+    return draft && (found.photo || draft.source === 'sketch') ? { draft, ...found } : null
   }
 
   async remove(id: string): Promise<void> {
     await removeAll(await this.database, [id])
   }
 
-  /** Put a drawing back that was removed. */
+  /** Store a removed draft again. */
   async restore({ draft, ...pictures }: DraftWithPictures): Promise<void> {
     const database = await this.database
     await putPictures(database, draft.id, pictures, null)
     await database.put('drafts', draft)
   }
 
-  async #keep(): Promise<void> {
+  async #save(): Promise<void> {
     try {
       await this.#rounds.ask()
     } catch {
@@ -115,12 +116,12 @@ export class DraftStore {
     const { sheets, leaf, fruit } = state
     if (!id || !sheets) return
     const database = await this.database
-    const before = this.#written
+    const before = this.#saved
     const pictures = { photo: sheets.front.file, side: sheets.side?.file ?? null, leaf, fruit }
     await putPictures(database, id, pictures, before)
     await database.put('drafts', draftOf({ ...state, sheets }, id))
     if (!before) await prune(database)
-    if (this.#id === id) this.#written = pictures
+    if (this.#id === id) this.#saved = pictures
     if (!state.kept) this.store.set({ kept: true })
   }
 }
@@ -139,12 +140,12 @@ function draftOf(state: State & { readonly sheets: Sheets }, id: string): Draft 
   }
 }
 
-/** Under which key a drawing's picture lies. */
+/** Return the key under which a draft's picture is stored. */
 function keyOf(id: string, what: keyof Pictures): string {
   return what === 'photo' ? id : `${id}/${what}`
 }
 
-/** Write the pictures that are others than before. */
+/** Store the pictures that differ from those before; null before the first time. */
 async function putPictures(
   database: IDBPDatabase<DraftDatabase>,
   id: string,
@@ -159,7 +160,7 @@ async function putPictures(
   }
 }
 
-/** Asynchronous, so that a browser without a database rejects instead of throwing. */
+/** Open the database. Asynchronous, so that it rejects, not throws, in a browser without one. */
 async function open(): Promise<IDBPDatabase<DraftDatabase>> {
   return openDB<DraftDatabase>('treestroke', 1, {
     upgrade(database) {
@@ -169,10 +170,10 @@ async function open(): Promise<IDBPDatabase<DraftDatabase>> {
   })
 }
 
-/** Let the drawings go that were touched longest ago. */
+/** Remove the oldest drafts beyond the most that are kept. */
 async function prune(database: IDBPDatabase<DraftDatabase>): Promise<void> {
   const ids = await database.getAllKeysFromIndex('drafts', 'saved')
-  await removeAll(database, ids.slice(0, Math.max(0, ids.length - KEPT)))
+  await removeAll(database, ids.slice(0, Math.max(0, ids.length - MAX_DRAFTS)))
 }
 
 async function removeAll(database: IDBPDatabase<DraftDatabase>, ids: readonly string[]): Promise<void> {

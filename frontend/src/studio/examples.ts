@@ -7,7 +7,7 @@ const strokes = import.meta.glob<string>('../../../examples/*.strokes.json', {
   eager: true,
 })
 
-/** A bundled photo with its strokes; `name` is that of its files. */
+/** An example photo with its strokes, as addresses; `name` is that of its files. */
 export interface Example {
   readonly name: string
   readonly photo: string
@@ -35,7 +35,7 @@ const settings = import.meta.glob<Partial<Settings>>('../../../examples/sketches
   eager: true,
 })
 
-/** A bundled tree as drawn from the front and from its left, by strokes or as pictures, perhaps with a leaf, a fruit and settings; by its files' name. */
+/** An example of sketches (JSON or PNG), perhaps with a leaf and a fruit, as addresses; `name` is that of its files. */
 export interface SketchExample {
   readonly name: string
   readonly front: string

@@ -5,10 +5,11 @@ import type { State, Store } from '../state'
 import { faultOf } from './faultText'
 import type { Grower } from './grower'
 
-/** The models of this service, newest first, page by page; what is wrong is put among the state's faults. */
+/** The models of the service, newest first, page by page; faults go to the state. */
 export class Gallery {
+  /** The cursor of the next page. */
   #next: string | null = null
-  /** What was shown when it was deleted. */
+  /** The model that was shown when it was deleted. */
   #deleted: Pick<State, 'model' | 'shows'> | null = null
 
   constructor(
@@ -21,17 +22,18 @@ export class Gallery {
     return this.#next !== null
   }
 
-  /** Give the next page; none where the service cannot be asked. */
+  /** Return the next page; null after a fault. */
   more(): Promise<Model[] | null> {
-    return this.#trying(async () => {
+    return this.#attempt(async () => {
       const { models, next } = await this.client.listModels(this.#next)
       this.#next = next
       return models
     })
   }
 
+  /** Rename a model, and the drawing if it is the model that is shown; null after a fault. */
   rename(id: string, name: string): Promise<Model | null> {
-    return this.#trying(async () => {
+    return this.#attempt(async () => {
       const model = await this.client.renameModel(id, name)
       this.store.setModel(id, { info: model })
       if (this.store.state.model?.info.id === id) this.store.set({ name })
@@ -39,9 +41,9 @@ export class Gallery {
     })
   }
 
-  /** Delete a model; where it is shown it goes, and the drawing stays. */
+  /** Delete a model; if it is shown it disappears, but the drawing stays. Null after a fault. */
   remove(id: string): Promise<true | null> {
-    return this.#trying<true>(async () => {
+    return this.#attempt<true>(async () => {
       await this.client.removeModel(id)
       const { model, shows } = this.store.state
       if (model?.info.id !== id) return true
@@ -52,9 +54,9 @@ export class Gallery {
     })
   }
 
-  /** Take a deletion back. */
+  /** Undo the deletion of a model; null after a fault. */
   restore(id: string): Promise<Model | null> {
-    return this.#trying(async () => {
+    return this.#attempt(async () => {
       const info = await this.client.restoreModel(id)
       const { model, shows } = this.#deleted ?? {}
       if (model?.info.id === id && !this.store.state.model) this.store.set({ model: { ...model, info }, shows: shows! })
@@ -62,14 +64,15 @@ export class Gallery {
     })
   }
 
-  /** See how a model under way is now; null where that cannot be said. */
+  /** Return the model's present state; null where the service does not answer. */
   async look(model: Model): Promise<Model | null> {
     return isOver(model) ? model : await this.client.getModel(model.id).catch(() => null)
   }
 
-  async #trying<T>(ask: () => Promise<T>): Promise<T | null> {
+  /** Return what a call returns, or put its error among the faults and return null. */
+  async #attempt<T>(call: () => Promise<T>): Promise<T | null> {
     try {
-      const answer = await ask()
+      const answer = await call()
       this.store.fault('gallery', null)
       return answer
     } catch (error) {

@@ -8,13 +8,14 @@ import { faultOf } from './faultText'
 import { inputsOf } from './inputs'
 import { treeOf } from './variants'
 
-const AGAIN_MS = 2000
+/** How often a call is made while the service cannot be reached, and the pause between, ms. */
 const TRIES = 5
+const RETRY_MS = 2000
 
-/** Has trees grown and follows them until they stand in the preview. */
+/** Requests models, follows their growth, and fetches their finished trees. */
 export class Grower {
-  #leave = () => {}
-  /** GLBs of the model that is shown, by their addresses. */
+  #stopFollowing = () => {}
+  /** GLBs of the shown model that were fetched, by their addresses. */
   readonly #trees = new Map<string, ArrayBuffer>()
 
   constructor(
@@ -22,7 +23,7 @@ export class Grower {
     private readonly client: Client,
   ) {}
 
-  /** Ask for a tree of what is drawn. */
+  /** Request a model of what is drawn. */
   async grow(): Promise<void> {
     const { settings, seed, name, leaf, fruit, faults } = this.store.state
     const strokes = this.store.strokes
@@ -32,7 +33,7 @@ export class Grower {
     this.store.set({ asking: true })
     try {
       const order = { inputs, settings, seed, name, leaf, fruit }
-      this.show(await patiently(key => this.client.grow(order, key)), strokes, { leaf, fruit })
+      this.show(await retrying(key => this.client.grow(order, key)), strokes, { leaf, fruit })
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     } finally {
@@ -40,24 +41,25 @@ export class Grower {
     }
   }
 
-  /** Grow another tree of the same strokes. */
+  /** Request another model of the same strokes, with a random seed. */
   async reroll(): Promise<void> {
     this.store.set({ seed: Math.floor(Math.random() * 1_000_000) })
     await this.grow()
   }
 
+  /** Whether a model was requested and is not finished. */
   get isGrowing(): boolean {
     const { asking, model } = this.store.state
     return asking || (model !== null && !isOver(model.info))
   }
 
-  /** Show a model, made of `strokes` and the person's own pictures, and follow it until it is finished. */
+  /** Show a model that was made of these strokes and own pictures, and follow it until it is finished. */
   show(info: Model, strokes: Strokes, { leaf, fruit }: OwnPictures): void {
     this.leave()
     this.#trees.clear()
     this.store.set({ model: { info, strokes, leaf, fruit, variant: 1, growth: null, glb: null }, shows: 'model' })
-    this.#leave = follow(info.id, {
-      changed: now => this.#change(now),
+    this.#stopFollowing = follow(info.id, {
+      changed: now => this.#update(now),
       grew: growth => {
         this.store.setModel(info.id, { growth })
         this.store.set({ shows: 'model' })
@@ -67,7 +69,7 @@ export class Grower {
     })
   }
 
-  /** Show another of the model's trees, from 1; the one before is shown until it has been fetched. */
+  /** Show another of the model's trees, by its number from 1; the present one stays until it is fetched. */
   async choose(variant: number): Promise<void> {
     const { model } = this.store.state
     if (!model || !treeOf(model.info, variant)) return
@@ -77,28 +79,29 @@ export class Grower {
 
   /** Stop following the model. */
   leave(): void {
-    this.#leave()
-    this.#leave = () => {}
+    this.#stopFollowing()
+    this.#stopFollowing = () => {}
   }
 
+  /** Cancel the growth of the shown model. */
   async cancel(): Promise<void> {
     const { model } = this.store.state
     if (!model) return
     try {
-      this.#change(await patiently(() => this.client.cancelModel(model.info.id)))
+      this.#update(await retrying(() => this.client.cancelModel(model.info.id)))
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     }
   }
 
-  #change(model: Model): void {
+  #update(model: Model): void {
     this.store.setModel(model.id, { info: model })
     this.store.set({ online: true })
     if (model.error) this.store.fault('grow', { text: model.error.detail })
     if (model.status === 'succeeded') this.#fetch(model)
   }
 
-  /** Fetch the finished tree, or the one of them that was chosen. */
+  /** Fetch and show the chosen tree of the finished model. */
   async #fetch(info: Model): Promise<void> {
     const variant = this.store.state.model?.variant ?? 1
     try {
@@ -115,7 +118,7 @@ export class Grower {
   async #download(url: string): Promise<ArrayBuffer> {
     const known = this.#trees.get(url)
     if (known) return known
-    const tree = await (await patiently(() => this.client.getFile(url))).arrayBuffer()
+    const tree = await (await retrying(() => this.client.getFile(url))).arrayBuffer()
     this.#trees.set(url, tree)
     return tree
   }
@@ -127,15 +130,15 @@ export class Grower {
   }
 }
 
-/** Try again while the service cannot be reached, under one key, so that what arrived twice is done once. */
-async function patiently<T>(ask: (key: string) => Promise<T>): Promise<T> {
+/** Return what a call returns; it is repeated while the service cannot be reached, with one key so that it acts once. */
+async function retrying<T>(call: (key: string) => Promise<T>): Promise<T> {
   const key = crypto.randomUUID()
-  for (let left = TRIES; ; left--) {
+  for (let triesLeft = TRIES; ; triesLeft--) {
     try {
-      return await ask(key)
+      return await call(key)
     } catch (error) {
-      if (!(error instanceof Unreachable) || left === 1) throw error
-      await new Promise(done => setTimeout(done, AGAIN_MS))
+      if (!(error instanceof Unreachable) || triesLeft === 1) throw error
+      await new Promise(done => setTimeout(done, RETRY_MS))
     }
   }
 }

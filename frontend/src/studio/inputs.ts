@@ -7,7 +7,7 @@ import { sketchToWire } from './sketches'
 
 type Drawn = Pick<State, 'sheets' | 'history'>
 
-/** Return what a tree can be grown from; null where too little is drawn. */
+/** Return the inputs for a model; null where too little is drawn. */
 export function inputsOf({ sheets, history }: Drawn): Inputs | null {
   const strokes = history.present
   if (!sheets || !strokes.branches.length) return null
@@ -20,13 +20,13 @@ export function inputsOf({ sheets, history }: Drawn): Inputs | null {
   return drawn.crown && { photo: sheets.front.id, strokes: drawn, ...(side && { sketches: { side } }) }
 }
 
-/** Whether what is drawn can be traced: a crown over a photo, a first branch on paper. */
+/** Return whether enough is drawn to be traced: a crown over a photo, or a first branch on paper. */
 export function canTrace({ sheets, history }: Drawn): boolean {
   const { crown, branches } = history.present
   return sheets?.source === 'sketch' ? branches.length > 0 : sheets !== null && crown !== null
 }
 
-/** Have what is drawn traced. */
+/** Ask the service to trace what is drawn, and with `grow` for the live tree too; return what it found. */
 export async function traced(client: Client, { sheets, history }: Drawn, grow: boolean): Promise<Omit<Traced, 'of'>> {
   const side = sideSketch({ sheets, history })
   if (sheets!.source === 'photo') {
@@ -38,7 +38,7 @@ export async function traced(client: Client, { sheets, history }: Drawn, grow: b
   return { answer: { ...answer, foliage: [], skeleton: front.skeleton }, crowns }
 }
 
-/** A crown alone does not say where branches go. */
+/** Return the side's sketch; null where it has no branch, since a crown alone says nothing about depth. */
 function sideSketch({ sheets, history }: Drawn): StrokeSketch | null {
   const { side } = history.present
   return sheets?.side && side?.branches.length ? sketchToWire(history.present, 'side', sheets.side) : null

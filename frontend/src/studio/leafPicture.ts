@@ -2,10 +2,10 @@ import { text } from '../text'
 import { Unusable } from './faultText'
 import { isPng } from './png'
 
-/** A picture is looked at in this size, px: what is transparent anywhere is so there, too. */
+/** Side of the copy in which transparency is looked for, px. */
 const SIDE = 128
 
-/** Take a picture as a leaf, or throw `Unusable` where it is none: a PNG of which some is transparent, and not all. */
+/** Return a picture as a PNG cut-out; throws `Unusable` unless it is a PNG that is partly transparent. */
 export async function readLeaf(
   file: Blob,
   mostBytes: number,
@@ -21,14 +21,14 @@ export async function readLeaf(
   return file.slice(0, file.size, 'image/png')
 }
 
-/** How opaque a picture's pixels are, 0 to 255. */
+/** Return the opacity of a reduced copy's pixels, 0 to 255. */
 async function decodedAlpha(file: Blob): Promise<Uint8Array> {
   const picture = await createImageBitmap(file)
-  const pen = new OffscreenCanvas(SIDE, SIDE).getContext('2d')!
-  pen.imageSmoothingQuality = 'high'
-  pen.drawImage(picture, 0, 0, SIDE, SIDE)
+  const ctx = new OffscreenCanvas(SIDE, SIDE).getContext('2d')!
+  ctx.imageSmoothingQuality = 'high'
+  ctx.drawImage(picture, 0, 0, SIDE, SIDE)
   picture.close()
-  return Uint8Array.from({ length: SIDE * SIDE }, alphaIn(pen.getImageData(0, 0, SIDE, SIDE).data))
+  return Uint8Array.from({ length: SIDE * SIDE }, alphaIn(ctx.getImageData(0, 0, SIDE, SIDE).data))
 }
 
 function alphaIn(rgba: Uint8ClampedArray): (_: unknown, pixel: number) => number {

@@ -16,22 +16,22 @@ import { redrawn } from './sheetActions'
 import { correctionsOn, type Drawn, paired, type SketchFile } from './sketches'
 import { readSketch } from './sketchPicture'
 
-/** What takes the place of the present drawing. */
+/** A drawing to open in place of the present one. */
 interface Drawing extends Partial<Pick<State, 'settings' | 'seed' | 'leaf' | 'fruit'>> {
   readonly sheets: Sheets
   readonly name: string
   readonly history: History<Strokes>
-  /** What was corrected while it was read. */
+  /** What was corrected while it was read, as sentences for the user. */
   readonly corrections?: string | undefined
 }
 
-/** Stands for a picture that is no longer known: it differs from any other. */
-const FORGOTTEN = new Blob([])
+/** Stands for a model's picture that was not kept: it differs from any other. */
+const UNKNOWN_PICTURE = new Blob([])
 
-/** Opens photos, paper, projects, examples, drawings and models; what was open before stays until that has worked. */
+/** Opens photos, paper, projects, examples, drafts and models; what is open stays until the next has been read. */
 export class Opener {
-  /** Counts what was asked to be opened: the last wins, whatever takes longest. */
-  #asked = 0
+  /** Counts requests to open something: only the last one is opened, however long the others take. */
+  #requests = 0
 
   constructor(
     private readonly store: Store,
@@ -43,9 +43,9 @@ export class Opener {
   /** Open a photo or a project that was chosen, dropped or pasted. */
   openFile(file: File): Promise<void> {
     return this.#opening(async () => {
-      if (isProject(file)) return this.#projectOf(await this.#read(file), stem(file.name))
+      if (isProject(file)) return this.#openProject(await this.#readProject(file), stem(file.name))
       const sheets = onPhoto(await this.#upload(file))
-      return () => this.#put({ sheets, name: stem(file.name), history: begin(NO_STROKES) })
+      return () => this.#show({ sheets, name: stem(file.name), history: begin(NO_STROKES) })
     })
   }
 
@@ -53,22 +53,22 @@ export class Opener {
   openPaper(): Promise<void> {
     return this.#opening(async () => () => {
       const sheets: Sheets = { source: 'sketch', front: paper(), side: paper() }
-      this.#put({ sheets, name: '', history: begin(NO_STROKES) })
+      this.#show({ sheets, name: '', history: begin(NO_STROKES) })
     })
   }
 
-  /** Open a sketch of a tree's front, as strokes or as a picture, to be drawn on. */
+  /** Open a sketch of a tree's front, from JSON or a picture, to draw on. */
   openSketch(file: File): Promise<void> {
     return this.#opening(async () => {
-      const drawn = await this.#laidOut({ photo: null, ...paired(await this.#sketchIn(file), null) })
-      return () => this.#put({ ...drawn, name: stem(file.name) })
+      const drawn = await this.#onSheets({ photo: null, ...paired(await this.#readSketch(file), null) })
+      return () => this.#show({ ...drawn, name: stem(file.name) })
     })
   }
 
-  /** Open a sketch on a sheet, in the place of what is drawn there; an undo brings that back. */
+  /** Replace what is drawn on a sheet by a sketch; it can be undone. */
   openOn(sheet: SheetName, file: File): Promise<void> {
     return this.#opening(async () => {
-      const sketch = await this.#sketchIn(file)
+      const sketch = await this.#readSketch(file)
       return () => {
         if (!sheetOf(this.store.state, sheet)) return
         this.store.set(redrawn(this.store.state, sheet, sketch))
@@ -77,29 +77,32 @@ export class Opener {
     })
   }
 
-  /** Open an example that was drawn on paper, and grow it. */
+  /** Open an example of sketches, and grow it. */
   openSketches({ name, front, side, leaf, fruit, settings }: SketchExample): Promise<void> {
     return this.#opening(async () => {
-      const bring = async (url: string | undefined) => (url ? await this.client.getFile(url) : null)
-      const [ahead, left, ...own] = await Promise.all([front, side, leaf, fruit].map(bring))
-      const [one, other] = await Promise.all([ahead, left].map(async file => file && this.#sketchIn(file)))
-      const drawn = await this.#laidOut({ photo: null, ...paired(one!, other ?? null) })
-      const how = { settings: { ...DEFAULT_SETTINGS, ...settings }, leaf: own[0] ?? null, fruit: own[1] ?? null }
-      return () => this.#putToGrow({ ...drawn, ...how, name: text.examples[name] ?? name })
+      const fetchFile = async (url: string | undefined) => (url ? await this.client.getFile(url) : null)
+      const files = await Promise.all([front, side, leaf, fruit].map(fetchFile))
+      const [frontSketch, sideSketch] = await Promise.all(
+        files.slice(0, 2).map(async file => file && this.#readSketch(file)),
+      )
+      const drawn = await this.#onSheets({ photo: null, ...paired(frontSketch!, sideSketch ?? null) })
+      const own = { leaf: files[2] ?? null, fruit: files[3] ?? null }
+      const chosen = { settings: { ...DEFAULT_SETTINGS, ...settings }, ...own }
+      return () => this.#openAndGrow({ ...drawn, ...chosen, name: text.examples[name] ?? name })
     })
   }
 
-  /** Open an example and grow it. */
+  /** Open an example of a photo, and grow it. */
   openExample({ name, photo, strokes }: Example): Promise<void> {
     return this.#opening(async () => {
       const [file, drawn] = await Promise.all([this.client.getFile(photo), this.client.getFile(strokes)])
       const history = begin(fromWire(await jsonOf(drawn)))
       const sheets = onPhoto(await this.#upload(file))
-      return () => this.#putToGrow({ sheets, name: text.examples[name] ?? name, history })
+      return () => this.#openAndGrow({ sheets, name: text.examples[name] ?? name, history })
     })
   }
 
-  /** Open a drawing that the browser has kept, with the model that was grown of it. */
+  /** Open a draft, with the model that was last grown from it. */
   openDraft(id: string): Promise<void> {
     return this.#opening(async () => {
       const found = await this.drafts.find(id)
@@ -108,49 +111,52 @@ export class Opener {
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
       const sheets = await this.#sheetsOf(found)
       const own = {
-        leaf: draft.modelHadOtherLeaf ? FORGOTTEN : leaf,
-        fruit: draft.modelHadOtherFruit ? FORGOTTEN : fruit,
+        leaf: draft.modelHadOtherLeaf ? UNKNOWN_PICTURE : leaf,
+        fruit: draft.modelHadOtherFruit ? UNKNOWN_PICTURE : fruit,
       }
       return async () => {
-        this.#put({ name: draft.name, history: draft.history, seed: draft.seed, sheets, settings, leaf, fruit }, id)
+        this.#show({ name: draft.name, history: draft.history, seed: draft.seed, sheets, settings, leaf, fruit }, id)
         const model = draft.model && (await this.#find(draft.model))
         if (model && draft.modelOf && this.drafts.id === id) this.grower.show(model, draft.modelOf, own)
       }
     })
   }
 
-  /** Open a model with its strokes, to look at it and to refine it. */
+  /** Open a model with the drawing that it was made of. */
   openModel(id: string): Promise<void> {
     return this.#opening(async () => {
       const model = await this.#find(id)
       if (!model) throw new Unusable(text.faults.modelGone)
-      const project = await this.#read(await this.client.getFile(model.files.project!))
+      const project = await this.#readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
       const { leaf, fruit = null } = project
-      const drawn = await this.#laidOut(project, file => this.#photoOf(model.photo, file))
+      const drawn = await this.#onSheets(project, file => this.#photoOf(model.photo, file))
       return () => {
-        this.#put({ ...drawn, name: model.name, settings, seed: model.seed, leaf, fruit })
+        this.#show({ ...drawn, name: model.name, settings, seed: model.seed, leaf, fruit })
         this.grower.show(model, drawn.history.present, { leaf, fruit })
       }
     })
   }
 
-  /** Go back to where a photo is chosen; the drawing is kept. */
+  /** Close the drawing, whose draft is kept, and show the start again. */
   close(): void {
     this.grower.leave()
     this.drafts.begin(null)
     this.store.set(closed(this.store.state))
   }
 
-  /** Bring what is to be opened, then put it in its place, unless something else was asked for or left meanwhile. */
-  async #opening(bring: () => Promise<() => void | Promise<void>>): Promise<void> {
-    const [turn, left] = [++this.#asked, this.drafts.id]
-    const isLast = () => turn === this.#asked
+  /**
+   * Read what should be opened, then call what `read` returns, which opens it; not if something else was requested, or
+   * the drawing was left, meanwhile.
+   */
+  async #opening(read: () => Promise<() => void | Promise<void>>): Promise<void> {
+    const [request, draft] = [++this.#requests, this.drafts.id]
+    const isLast = () => request === this.#requests
     this.store.fault('photo', null)
     this.store.set({ opening: true })
     try {
-      const put = await bring()
-      if (isLast() && this.drafts.id === left) await put()
+      const open = await read()
+      if (isLast() && this.drafts.id === draft) await open()
     } catch (error) {
       const fault = faultOf(error)
       if (isLast()) this.store.fault('photo', fault)
@@ -159,17 +165,17 @@ export class Opener {
     }
   }
 
-  async #projectOf(project: Project, name: string): Promise<() => void> {
+  async #openProject(project: Project, name: string): Promise<() => void> {
     const { settings, seed, leaf, fruit = null } = project
-    const drawn = await this.#laidOut(project)
-    return () => this.#put({ ...drawn, name, settings, seed, leaf, fruit })
+    const drawn = await this.#onSheets(project)
+    return () => this.#show({ ...drawn, name, settings, seed, leaf, fruit })
   }
 
-  #read(file: Blob): Promise<Project> {
-    return readProject(file, picture => this.#sketchIn(picture))
+  #readProject(file: Blob): Promise<Project> {
+    return readProject(file, picture => this.#readSketch(picture))
   }
 
-  #sketchIn(file: Blob): Promise<SketchFile> {
+  #readSketch(file: Blob): Promise<SketchFile> {
     return readSketch(file, this.client, this.store.state.limits)
   }
 
@@ -177,11 +183,11 @@ export class Opener {
     return uploaded(file, this.client, this.store.state.limits)
   }
 
-  /** Return the sheets of a kept drawing; over a photo, tracing finds out whether the service still has it. */
-  async #sheetsOf({ draft, photo: file, side: guide }: DraftWithPictures): Promise<Sheets> {
+  /** Return a draft's sheets; if the service no longer has the photo, tracing will notice. */
+  async #sheetsOf({ draft, photo: file, side: sidePicture }: DraftWithPictures): Promise<Sheets> {
     const { photo, source = 'photo' } = draft
     const side = draft.side
-      ? { ...sheetOfSize(draft.side), file: guide, url: guide && URL.createObjectURL(guide) }
+      ? { ...sheetOfSize(draft.side), file: sidePicture, url: sidePicture && URL.createObjectURL(sidePicture) }
       : null
     if (!file) return { source: 'sketch', front: sheetOfSize(photo), side }
     if (source === 'sketch') return { source, front: await this.#photoOf(photo.id, file), side }
@@ -189,11 +195,11 @@ export class Opener {
     return { source, front: { ...photo, id: photo.id!, file, url }, side }
   }
 
-  /** Find a photo that the service had, or send its copy again. */
-  async #photoOf(known: string | null, file: Blob): Promise<PhotoSheet> {
-    if (known === null) return this.#upload(file)
+  /** Return the sheet of a photo that the service has by this id; without one, or if it is gone, the file is sent. */
+  async #photoOf(id: string | null, file: Blob): Promise<PhotoSheet> {
+    if (id === null) return this.#upload(file)
     try {
-      const { id, width, height, image } = await this.client.getPhoto(known)
+      const { width, height, image } = await this.client.getPhoto(id)
       return { id, width, height, file, url: image }
     } catch (error) {
       if (!(error instanceof Refused)) throw error
@@ -201,6 +207,7 @@ export class Opener {
     }
   }
 
+  /** Return a model; null where the service no longer has it. */
   async #find(id: string): Promise<Model | null> {
     try {
       return await this.client.getModel(id)
@@ -210,12 +217,13 @@ export class Opener {
     }
   }
 
-  #putToGrow(drawing: Drawing): void {
-    this.#put(drawing)
+  #openAndGrow(drawing: Drawing): void {
+    this.#show(drawing)
     void this.grower.grow()
   }
 
-  #put(drawing: Drawing, draft: string | null = null): void {
+  /** Show a drawing in place of the present one; its changes are saved as `draft`, or as a new one. */
+  #show(drawing: Drawing, draft: string | null = null): void {
     const { sheets, name, history } = drawing
     const { settings = DEFAULT_SETTINGS, seed = 0, leaf = null, fruit = null } = drawing
     this.grower.leave()
@@ -230,15 +238,15 @@ export class Opener {
     this.store.set({ corrections: text ? { of: this.store.strokes, text } : null })
   }
 
-  /** Open the sheets that strokes lie on; the front's strokes are fitted to the photo that lies under them. */
-  async #laidOut(
+  /** Return a drawing on its sheets; the front's strokes are fitted to the photo under them. */
+  async #onSheets(
     { photo: file, strokes, sizes = {}, corrections }: Drawn & Pick<Project, 'photo'>,
-    send = (photo: Blob) => this.#upload(photo),
+    upload = (photo: Blob) => this.#upload(photo),
   ) {
     const size = sizes.front
     const side = sizes.side ? sheetOfSize(sizes.side) : null
-    if (!size) return { sheets: onPhoto(await send(file!), side), history: begin(strokes), corrections }
-    const front = file ? await send(file) : sheetOfSize(size)
+    if (!size) return { sheets: onPhoto(await upload(file!), side), history: begin(strokes), corrections }
+    const front = file ? await upload(file) : sheetOfSize(size)
     const fitted = withSheet(strokes, 'front', fittedTo(onSheet(strokes, 'front'), size, front))
     const sheets: Sheets = { source: 'sketch', front, side: side ?? paper(front.height) }
     return { sheets, history: begin(fitted), corrections }
@@ -253,6 +261,7 @@ async function jsonOf(file: Blob): Promise<unknown> {
   return JSON.parse(await file.text())
 }
 
+/** Return a file's name without its ending. */
 function stem(name: string): string {
   return name.replace(/\.\w+$/, '')
 }

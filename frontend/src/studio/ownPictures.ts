@@ -2,14 +2,14 @@ import type { OwnPictures, Store } from '../state'
 import { faultOf } from './faultText'
 import { readLeaf } from './leafPicture'
 
-/** Takes a person's own pictures of a leaf and a fruit; what is wrong with one is put among the state's faults. */
+/** Sets a person's own pictures of a leaf and a fruit; faults go to the state. */
 export class OwnPictureActions {
   constructor(
     private readonly store: Store,
     private readonly read: (file: Blob, mostBytes: number) => Promise<Blob> = readLeaf,
   ) {}
 
-  /** Take a picture in the place of the last one, which stays where the new one cannot be used. */
+  /** Use a picture in place of the last one, which stays if the new one cannot be used. */
   async take(file: Blob, kind: keyof OwnPictures = 'leaf'): Promise<void> {
     const { sheets, limits } = this.store.state
     try {
@@ -22,7 +22,7 @@ export class OwnPictureActions {
     }
   }
 
-  /** Go back to the species' leaves, and to no fruit. */
+  /** Remove an own picture: the species' leaf or no fruit is used again. */
   remove(kind: keyof OwnPictures = 'leaf'): void {
     this.store.set({ [kind]: null })
     this.store.fault(kind, null)

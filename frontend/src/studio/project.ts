@@ -10,11 +10,11 @@ import { type Drawn, paired, type SketchFile, sketchFrom, sketchToWire } from '.
 
 /** What a project file holds. */
 export interface Project extends Drawn {
-  /** Absent where it is made of sketches on paper. */
+  /** Null for sketches on paper. */
   readonly photo: Blob | null
   readonly settings: Settings
   readonly seed: number
-  /** The person's own picture of a leaf. */
+  /** The own pictures of a leaf and a fruit. */
   readonly leaf: Blob | null
   readonly fruit?: Blob | null
 }
@@ -23,35 +23,36 @@ const ENDING = '.treestroke'
 const PICTURES = { leaf: 'leaf.png', fruit: 'fruit.png' } as const
 const SHEETS = ['front', 'side'] as const
 
+/** Return whether a file is a project, by its name or type. */
 export function isProject(file: File): boolean {
   return file.name.endsWith(ENDING) || file.type === 'application/zip'
 }
 
-/** Name a project's file. */
+/** Return the name of a project's file. */
 export function projectName(name: string): string {
   return fileName(name, ENDING)
 }
 
-/** Name a file after a drawing; `ending` begins with its dot. */
+/** Return a file name for a drawing's name; `ending` begins with its dot. */
 export function fileName(name: string, ending: string): string {
   return `${name.replace(/[\\/:*?"<>|]/g, '_') || 'tree'}${ending}`
 }
 
-/** Write a project as the command line and the service do: a ZIP of the pictures, the strokes and settings.json. */
+/** Return a project file as the command line and the service write it: a ZIP of pictures, strokes and settings.json. */
 export async function writeProject({ photo, strokes, sizes = {}, settings, seed, ...own }: Project): Promise<Blob> {
   const ending = Object.keys(TYPES).find(key => TYPES[key] === photo?.type) ?? 'jpg'
   const archive = zipSync({
     ...(await member(`photo.${ending}`, photo)),
     ...(await member(PICTURES.leaf, own.leaf)),
     ...(await member(PICTURES.fruit, own.fruit ?? null)),
-    ...(sizes.front ? {} : { 'strokes.json': written(toWire(onSheet(strokes, 'front'))) }),
+    ...(sizes.front ? {} : { 'strokes.json': jsonBytes(toWire(onSheet(strokes, 'front'))) }),
     ...sketches(strokes, sizes),
     'settings.json': strToU8(JSON.stringify({ ...settings, seed }, null, 2)),
   })
   return new Blob([archive], { type: 'application/zip' })
 }
 
-/** Put a picture into an archive as it is. */
+/** Return a picture as an uncompressed member of the archive. */
 async function member(name: string, picture: Blob | null): Promise<Record<string, [Uint8Array, { level: 0 }]>> {
   return picture ? { [name]: [new Uint8Array(await picture.arrayBuffer()), { level: 0 }] } : {}
 }
@@ -59,19 +60,19 @@ async function member(name: string, picture: Blob | null): Promise<Record<string
 function sketches(strokes: Strokes, sizes: NonNullable<Project['sizes']>): Record<string, Uint8Array> {
   const drawn = SHEETS.flatMap(sheet => {
     const size = sizes[sheet]
-    return size && isDrawn(strokes, sheet) ? [[`${sheet}.json`, written(sketchToWire(strokes, sheet, size))]] : []
+    return size && isDrawn(strokes, sheet) ? [[`${sheet}.json`, jsonBytes(sketchToWire(strokes, sheet, size))]] : []
   })
   return Object.fromEntries(drawn)
 }
 
-function written(value: unknown): Uint8Array {
+function jsonBytes(value: unknown): Uint8Array {
   return strToU8(JSON.stringify(value))
 }
 
 /** Reads a sketch that is a picture. */
 type ReadPicture = (picture: Blob) => Promise<SketchFile>
 
-/** Read a project, or throw `Unusable` where it is damaged or none. */
+/** Return what a project file holds; throws `Unusable` where it is damaged or no project. */
 export async function readProject(file: Blob, readPicture: ReadPicture): Promise<Project> {
   const members = await unzip(file)
   const photo = Object.keys(members).find(name => /^photo\.\w+$/.test(name))
@@ -86,7 +87,7 @@ export async function readProject(file: Blob, readPicture: ReadPicture): Promise
   }
 }
 
-/** Read strokes over a photo, or sketches. */
+/** Return the drawing in a project: strokes over a photo, or sketches. */
 async function drawingOf(
   members: Record<string, Uint8Array>,
   hasPhoto: boolean,
@@ -105,7 +106,7 @@ async function sketchOf(
 ): Promise<SketchFile | null> {
   const json = members[`${sheet}.json`]
   const drawing = picture(members[`${sheet}.png`])
-  return json ? read(json, sketchFrom) : drawing && (await readPicture(drawing))
+  return json ? parsed(json, sketchFrom) : drawing && (await readPicture(drawing))
 }
 
 function picture(bytes: Uint8Array | undefined, type = 'image/png'): Blob | null {
@@ -122,18 +123,18 @@ async function unzip(file: Blob): Promise<Record<string, Uint8Array>> {
 }
 
 function strokesOf(json: Uint8Array): Strokes {
-  return read(json, fromWire)
+  return parsed(json, fromWire)
 }
 
-function read<T>(json: Uint8Array, form: (value: unknown) => T): T {
+function parsed<T>(json: Uint8Array, read: (value: unknown) => T): T {
   try {
-    return form(JSON.parse(strFromU8(json)))
+    return read(JSON.parse(strFromU8(json)))
   } catch {
     throw new Unusable(text.faults.projectUnreadable)
   }
 }
 
-/** Read settings; values are for the service to judge, which says what is allowed. */
+/** Return the settings as they are; the service checks their values. */
 function settingsOf(json: Uint8Array | undefined): Partial<Settings> & { seed?: number } {
   try {
     return json ? JSON.parse(strFromU8(json)) : {}

@@ -1,22 +1,19 @@
-/**
- * Does something again for as long as it is asked for meanwhile: one round at a time, and one more for all that was asked
- * while it ran.
- */
+/** Runs a task one at a time: all requests during a run lead to one more run. */
 export class Rounds {
   #running = false
-  #due = false
+  #requested = false
 
-  constructor(private readonly round: () => Promise<void>) {}
+  constructor(private readonly task: () => Promise<void>) {}
 
-  /** Do a round, now or after the one under way; the one that throws is the last until it is asked again. */
+  /** Run the task, now or after the present run; an error ends the runs until the next request. */
   async ask(): Promise<void> {
-    this.#due = true
+    this.#requested = true
     if (this.#running) return
     this.#running = true
     try {
-      while (this.#due) {
-        this.#due = false
-        await this.round()
+      while (this.#requested) {
+        this.#requested = false
+        await this.task()
       }
     } finally {
       this.#running = false

@@ -2,14 +2,14 @@ import { distance } from '../plane'
 import type { State } from '../state'
 import type { Line } from '../strokes'
 
-/** How long a line over the photo is, metres, as far as it is known before anybody says so; never nothing. */
+/** Return a guess of a line's length over the photo, at least 0.01 metres. */
 export function metresOf([from, to]: Line, state: State): number {
   if (!from || !to) return 1
   const metres = distance(from, to) * metresPerPixel(state)
   return Math.max(Number(metres.toPrecision(2)), 0.01)
 }
 
-/** By the measured line before this one, else by the height and how high the strokes reach. */
+/** Return metres per px, by the measured line, else by the height setting and the strokes' height; 0 without strokes. */
 function metresPerPixel({ history, settings }: State): number {
   const { scale, crown, branches } = history.present
   if (scale) return scale.metres / Math.max(distance(scale.points[0]!, scale.points[1]!), 1)

@@ -7,7 +7,7 @@ import { faultOf } from './faultText'
 import { drawable, uploaded } from './photos'
 import type { SketchFile } from './sketches'
 
-/** Opens and closes sheets, and puts pictures under what is drawn on them. */
+/** Opens, closes and activates sheets, and changes the pictures under their strokes. */
 export class SheetActions {
   constructor(
     private readonly store: Store,
@@ -15,39 +15,39 @@ export class SheetActions {
     private readonly sizeOf: (picture: Blob) => Promise<Extent> = decodedSize,
   ) {}
 
-  /** Open the sheet of the tree's left side, as high as the front's. */
+  /** Open the side's sheet, as high as the front's. */
   openSide(): void {
     const { sheets } = this.store.state
     if (!sheets || sheets.side) return
     this.store.set({ sheets: { ...sheets, side: paper(sheets.front.height) }, active: 'side', tool: 'branch' })
   }
 
-  /** Close the side's sheet with what is on it; an undo brings the strokes back, and it with them. */
+  /** Close the side's sheet and remove its strokes; undoing that opens the sheet again. */
   closeSide(): void {
     const { sheets } = this.store.state
     if (!sheets?.side) return
-    const { history } = { ...this.store.state, ...moved(this.store.state, 'side', paper(sheets.front.height)) }
-    const rest = isDrawn(history.present, 'side') ? advance(history, onSheet(history.present, 'front')) : history
-    this.store.set({ sheets: { ...sheets, side: null }, active: 'front', selection: null, history: rest })
+    const { history } = { ...this.store.state, ...withSheetUnder(this.store.state, 'side', paper(sheets.front.height)) }
+    const without = isDrawn(history.present, 'side') ? advance(history, onSheet(history.present, 'front')) : history
+    this.store.set({ sheets: { ...sheets, side: null }, active: 'front', selection: null, history: without })
   }
 
-  /** Draw on a sheet from now on. */
+  /** Make a sheet the active one. */
   activate(sheet: SheetName): void {
     if (openSheets(this.store.state).includes(sheet)) this.store.set({ active: sheet })
   }
 
-  /** Draw branches on paper so wide, as a share of its height; null for a pencil. */
+  /** Choose the brush for branches on paper: its width as a share of the paper's height; null for a pencil. */
   chooseBrush(brush: number | null): void {
     this.store.set({ brush, tool: 'branch', selection: null })
   }
 
-  /** Put a picture under what is drawn on a sheet; the front's gives the tree its colours, so the service gets it. */
+  /** Put a picture under a sheet's strokes; the front's is sent to the service, since it gives the tree its colours. */
   async addPicture(name: SheetName, file: Blob): Promise<void> {
     const before = sheetOf(this.store.state, name)
     try {
       const sheet = name === 'front' ? await this.#upload(file) : await this.#local(file)
       if (before && sheetOf(this.store.state, name) === before) {
-        this.store.set(moved(this.store.state, name, sheet))
+        this.store.set(withSheetUnder(this.store.state, name, sheet))
         if (sheet.corrections) this.store.set({ corrections: { of: this.store.strokes, text: sheet.corrections } })
       }
       this.store.fault('photo', null)
@@ -75,27 +75,31 @@ export class SheetActions {
     return uploaded(file, this.client, this.store.state.limits)
   }
 
-  /** Keep a picture in the browser; one that it cannot show (HEIC, in most) the service turns into one that it can. */
+  /** Return a sheet with a picture that stays in the browser; one that it cannot show is converted by the service. */
   async #local(chosen: Blob): Promise<Sheet> {
     const { limits } = this.store.state
-    const known = await this.sizeOf(chosen).catch(() => null)
-    const file = known ? chosen : await drawable(chosen, this.client, limits)
-    const size = known ?? (await this.sizeOf(file))
+    const decoded = await this.sizeOf(chosen).catch(() => null)
+    const file = decoded ? chosen : await drawable(chosen, this.client, limits)
+    const size = decoded ?? (await this.sizeOf(file))
     return { ...sheetOfSize(size), file, url: URL.createObjectURL(file) }
   }
 }
 
-/** Put a sketch in the place of a sheet's strokes, which an undo brings back; paper without a picture becomes as large. */
+/** Return the state with a sketch in place of a sheet's strokes; paper without a picture takes the sketch's size. */
 export function redrawn(state: State, name: SheetName, { strokes, size }: SketchFile): Partial<State> {
   const before = sheetOf(state, name)!
   const sheet = before.url ? before : sheetOfSize(size)
-  const { history, sheets } = { ...state, ...moved(state, name, sheet) }
+  const { history, sheets } = { ...state, ...withSheetUnder(state, name, sheet) }
   const drawn = withSheet(history.present, name, fittedTo(strokes, size, sheet))
   return { sheets, history: advance(history, drawn), selection: null, active: name, tool: 'branch' }
 }
 
-/** Put another sheet under a sheet's strokes, which keep their place on it, those that can be undone too. */
-function moved({ history, sheets }: State, name: SheetName, sheet: Sheet): Pick<State, 'sheets'> & Partial<State> {
+/** Return the state with another sheet under a sheet's strokes; these, and all in the history, are fitted to it. */
+function withSheetUnder(
+  { history, sheets }: State,
+  name: SheetName,
+  sheet: Sheet,
+): Pick<State, 'sheets'> & Partial<State> {
   const before = sheets![name]!
   const open = replaceSheet(sheets!, name, sheet)
   if (before.width === sheet.width && before.height === sheet.height) return { sheets: open }

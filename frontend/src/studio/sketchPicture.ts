@@ -8,12 +8,12 @@ import { sentenceOf, Unusable } from './faultText'
 import { isPng } from './png'
 import { type SketchFile, sketchFrom } from './sketches'
 
-/** Branches that the service takes as strokes. */
-const MOST_BRANCHES = 199
-/** As far as a stroke may leave the line that was read, as a share of the picture's longer side. */
-const APART = 0.0004
+/** How many branches the service accepts as strokes. */
+const MAX_BRANCHES = 199
+/** How far a simplified stroke may lie from the line that was read, as a share of the picture's longer side. */
+const TOLERANCE = 0.0004
 
-/** Read a sketch, from a PNG of its strokes or from JSON, or throw `Unusable` where it is neither. */
+/** Return the sketch in a file, a PNG of its strokes or JSON; throws `Unusable` where it is neither. */
 export async function readSketch(file: Blob, client: Client, limits: Limits | null): Promise<SketchFile> {
   if (!(await isPng(file))) return fromJson(file)
   const most = limits?.sketch_bytes ?? Number.POSITIVE_INFINITY
@@ -25,14 +25,14 @@ export async function readSketch(file: Blob, client: Client, limits: Limits | nu
   )
 }
 
-/** Turn what a picture shows into strokes, one for each branch, as wide as its brush was on the whole. */
+/** Return what was read from a picture as strokes, one for each branch, with the median width of its line. */
 export function sketchIn(
   { skeleton, crown, crown_drawn, size }: components['schemas']['TracedSketch'],
   warnings: readonly StrokeWarning[] = [],
 ): SketchFile {
   const [width, height] = size
-  const all = branchesOf(skeleton, APART * Math.max(width, height))
-  const branches = longest(all, bearersOf(skeleton), MOST_BRANCHES)
+  const all = branchesOf(skeleton, TOLERANCE * Math.max(width, height))
+  const branches = longest(all, parentBranchesOf(skeleton), MAX_BRANCHES)
   const corrections = [...correctionsFrom(warnings), ...leftOut(all.length - branches.length)].join(' ')
   const strokes = { ...NO_STROKES, crown: crown_drawn ? crown : null, branches }
   return { strokes, size: { width, height }, ...(corrections && { corrections }) }
@@ -46,18 +46,18 @@ async function fromJson(file: Blob): Promise<SketchFile> {
   }
 }
 
-/** The trunk comes first, and each branch after its bearer, from whose line it goes out. */
-function branchesOf({ points, radii, parents, stroke }: TracedSkeleton, apart: number): Branch[] {
-  return grouped(stroke).map(joints => {
-    const bud = points[parents[joints[0]!]!]
-    const line = [...(bud ? [bud] : []), ...joints.map(joint => points[joint]!)]
+/** Return the trunk, then each branch after its parent branch, on whose line it starts; `tolerance` in px. */
+function branchesOf({ points, radii, parents, stroke }: TracedSkeleton, tolerance: number): Branch[] {
+  return jointsByBranch(stroke).map(joints => {
+    const start = points[parents[joints[0]!]!]
+    const line = [...(start ? [start] : []), ...joints.map(joint => points[joint]!)]
     const width = Math.round(20 * median(joints.map(joint => radii[joint]!))) / 10
-    return { points: simplified(line, apart), ...(width > 0 && { width }) }
+    return { points: simplified(line, tolerance), ...(width > 0 && { width }) }
   })
 }
 
-/** List the joints of every branch, outward. */
-function grouped(stroke: readonly number[]): number[][] {
+/** Return the joints of each branch, outward. */
+function jointsByBranch(stroke: readonly number[]): number[][] {
   const joints: number[][] = []
   for (const [joint, branch] of stroke.entries()) {
     joints[branch] ??= []
@@ -66,20 +66,21 @@ function grouped(stroke: readonly number[]): number[][] {
   return joints
 }
 
-/** Give every branch's bearer; -1 for the trunk. */
-function bearersOf({ parents, stroke }: TracedSkeleton): number[] {
-  return grouped(stroke).map(([first]) => stroke[parents[first!]!] ?? -1)
+/** Return each branch's parent branch; -1 for the trunk. */
+function parentBranchesOf({ parents, stroke }: TracedSkeleton): number[] {
+  return jointsByBranch(stroke).map(([first]) => stroke[parents[first!]!] ?? -1)
 }
 
-/** Keep so many branches, the longest with all that bear them. */
-function longest(branches: readonly Branch[], bearers: readonly number[], most: number): Branch[] {
-  const reach = branches.map(({ points }) => lengthOf(points))
+/** Return the longest branches, each with its parent branches; at most `limit`. */
+function longest(branches: readonly Branch[], parents: readonly number[], limit: number): Branch[] {
+  // A branch counts as long as the longest that it leads to.
+  const ranks = branches.map(({ points }) => lengthOf(points))
   for (let branch = branches.length - 1; branch > 0; branch--) {
-    const bearer = bearers[branch]!
-    reach[bearer] = Math.max(reach[bearer]!, reach[branch]!)
+    const parent = parents[branch]!
+    ranks[parent] = Math.max(ranks[parent]!, ranks[branch]!)
   }
-  const ranked = [...branches.keys()].toSorted((one, other) => reach[other]! - reach[one]!)
-  const kept = new Set(ranked.slice(0, most))
+  const ranked = [...branches.keys()].toSorted((one, other) => ranks[other]! - ranks[one]!)
+  const kept = new Set(ranked.slice(0, limit))
   return branches.filter((_, branch) => kept.has(branch))
 }
 
@@ -91,6 +92,7 @@ function median(values: readonly number[]): number {
   return values.toSorted((one, other) => one - other)[Math.floor(values.length / 2)]!
 }
 
+/** Return what was corrected, one sentence for each kind of warning. */
 function correctionsFrom(warnings: readonly StrokeWarning[]): string[] {
   const { corrected } = text.sheets
   return [...new Set(warnings.map(({ code }) => code))].map(code => {
@@ -101,5 +103,5 @@ function correctionsFrom(warnings: readonly StrokeWarning[]): string[] {
 }
 
 function leftOut(count: number): string[] {
-  return count > 0 ? [text.sheets.leftOut(count, MOST_BRANCHES)] : []
+  return count > 0 ? [text.sheets.leftOut(count, MAX_BRANCHES)] : []
 }

@@ -19,14 +19,14 @@ import { metresOf } from './scaling'
 
 const SCALE: Selection = { kind: 'scale', index: 0 }
 
-/** Edits of the strokes; each can be undone. */
+/** Edits the strokes; each edit can be undone. */
 export class StrokeActions {
   constructor(private readonly store: Store) {}
 
-  /** Take a finished stroke; over a photo the trunk is what comes after the crown. */
+  /** Add a finished stroke; after the first crown, the branch tool is chosen for the trunk. */
   draw(kind: StrokeKind, points: Line, sheet: SheetName = 'front'): void {
     if (kind === 'scale') {
-      this.#span(points)
+      this.#setScale(points)
       return
     }
     const own = onSheet(this.store.strokes, sheet)
@@ -35,7 +35,7 @@ export class StrokeActions {
     if (first && this.store.state.tool === 'crown') this.store.set({ tool: 'branch' })
   }
 
-  /** Say how long the measured line is, metres. */
+  /** Set the measured line's length, metres. */
   measure(metres: number): void {
     const { scale } = this.store.strokes
     if (!scale || scale.metres === metres) return
@@ -46,11 +46,12 @@ export class StrokeActions {
     this.store.set({ selection })
   }
 
+  /** Choose a tool. */
   hold(tool: Tool): void {
     this.store.set({ tool, ...(tool !== 'select' && { selection: null }) })
   }
 
-  /** Delete what is selected: a stroke, or a traced branch by a stroke that erases it. */
+  /** Delete what is selected: a stroke, or a traced branch, by an erase stroke across it. */
   remove(): void {
     const { selection, traced } = this.store.state
     if (!selection) return
@@ -70,15 +71,15 @@ export class StrokeActions {
     this.#set(redo(this.store.state.history))
   }
 
-  /** How wide the brush is on a sheet, px; a photo itself shows how thick branches are. */
+  /** Return the brush's width on a sheet, px; null for a pencil and over a photo, which shows thickness itself. */
   #brush(sheet: SheetName): number | null {
     const { state } = this.store
     const drawnOn = sheetOf(state, sheet)
     return drawnOn && isPaper(state, sheet) ? brushWidth(state, drawnOn) : null
   }
 
-  /** Lay the measured line; an end that was moved leaves its length as it was said, a line of its own guesses it. */
-  #span(points: Line): void {
+  /** Set the measured line; it keeps its length where one end was moved, otherwise the length is guessed. */
+  #setScale(points: Line): void {
     const { scale } = this.store.strokes
     const moved = scale?.points.some(end => points.includes(end))
     const metres = scale && moved ? scale.metres : metresOf(points, this.store.state)
@@ -91,7 +92,7 @@ export class StrokeActions {
 
   #set(history: History<Strokes>, selection: Selection | null = null): void {
     const { sheets } = this.store.state
-    // What was closed with the side's sheet comes back with it.
+    // Strokes of the side that come back need their sheet, which was closed.
     const reopened = sheets && !sheets.side && isDrawn(history.present, 'side')
     const side = reopened ? paper(sheets.front.height) : null
     this.store.set({ history, selection, ...(side && { sheets: { ...sheets!, side } }) })

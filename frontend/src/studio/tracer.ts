@@ -6,18 +6,19 @@ import { faultOf } from './faultText'
 import { canTrace, traced } from './inputs'
 import { Rounds } from './rounds'
 
-const AGAIN_MS = 1500
+const RETRY_MS = 1500
 
 /**
- * Keeps what is traced and the live tree in step with the strokes.
+ * Traces the strokes whenever they change, and grows the live tree.
  *
- * One request is under way at a time: what is drawn meanwhile is traced next, the latest only. Tracing comes first; the
- * live tree is asked for when nothing newer is waiting.
+ * There is one request at a time; then only the latest strokes are traced. The live tree is requested after tracing, if
+ * the strokes have not changed again.
  */
 export class Tracer {
   readonly #rounds = new Rounds(() => this.#catchUp())
-  /** Strokes that the service refused: not sent again until others have been drawn. */
+  /** Strokes that the service refused: they are not sent again. */
   #refused: Strokes | null = null
+  /** Strokes whose live tree the service has answered. */
   #grownOf: Strokes | null = null
 
   constructor(
@@ -43,7 +44,7 @@ export class Tracer {
     }
   }
 
-  /** Do the next thing that is due; false where nothing is. */
+  /** Send the next request that the strokes need; returns whether there was one. */
   async #step(): Promise<boolean> {
     const { sheets, traced: found, liveTree } = this.store.state
     const strokes = this.store.strokes
@@ -56,20 +57,21 @@ export class Tracer {
     const isTraced = found?.of === strokes
     if (isTraced && (!strokes.branches.length || this.#grownOf === strokes)) return false
     try {
-      await this.#ask(sheets.front, strokes, isTraced)
+      await this.#request(sheets.front, strokes, isTraced)
     } catch (error) {
       await this.#recover(error, sheets.front, strokes)
     }
     return true
   }
 
-  async #ask(front: Sheet, strokes: Strokes, grow: boolean): Promise<void> {
+  /** Trace the strokes, or with `grow` request their live tree, and put the answer into the state. */
+  async #request(front: Sheet, strokes: Strokes, grow: boolean): Promise<void> {
     if (!grow) this.store.set({ tracing: true })
     const found = await traced(this.client, this.store.state, grow)
     this.store.set({ online: true })
     if (this.#isStale(front, strokes)) return
     this.store.fault('strokes', null)
-    if (!grow) return this.#take({ of: strokes, ...found })
+    if (!grow) return this.#show({ of: strokes, ...found })
     this.#grownOf = strokes
     this.store.set({
       liveTree: found.answer.grown ?? null,
@@ -77,20 +79,22 @@ export class Tracer {
     })
   }
 
-  /** Show what was traced; a branch that was selected in the last answer may be another joint in this one. */
-  #take(traced: Traced): void {
+  /** Show what was traced, and deselect a traced branch: its joint's number may now be another's. */
+  #show(traced: Traced): void {
     const { selection } = this.store.state
     this.store.set({ traced, tracing: false, selection: selection?.kind === 'traced' ? null : selection })
   }
 
+  /** Return whether the photo or the strokes have changed since. */
   #isStale(front: Sheet, strokes: Strokes): boolean {
     return this.store.state.sheets?.front.id !== front.id || this.store.strokes !== strokes
   }
 
+  /** Wait where the service cannot be reached, send a lost photo again, or show a fault. */
   async #recover(error: unknown, front: Sheet, strokes: Strokes): Promise<void> {
     if (error instanceof Unreachable) {
       this.store.set({ online: false })
-      await this.wait(AGAIN_MS)
+      await this.wait(RETRY_MS)
     } else if (error instanceof Refused && error.status === 404 && hasPhoto(front)) {
       await this.#uploadAgain(front)
     } else {
@@ -99,7 +103,7 @@ export class Tracer {
     }
   }
 
-  /** Send the photo again: the service has forgotten it. */
+  /** Send a photo again that the service no longer has. */
   async #uploadAgain(photo: PhotoSheet): Promise<void> {
     try {
       const { id } = await this.client.addPhoto(photo.file)
@@ -107,7 +111,7 @@ export class Tracer {
       if (sheets?.front.id === photo.id) this.store.set({ sheets: { ...sheets, front: { ...photo, id } } })
     } catch (error) {
       if (!(error instanceof Unreachable)) throw error
-      await this.wait(AGAIN_MS)
+      await this.wait(RETRY_MS)
     }
   }
 }

@@ -2,7 +2,7 @@ import type { Model } from '../api/types'
 
 const TREE = /^tree\.(?:v(\d+)\.)?(.+)$/
 
-/** What a model's report says of its trees and their files. */
+/** The part of a model's report about its trees and their files. */
 interface Report {
   readonly variants?: readonly { readonly score?: Model['score']; readonly counts?: Readonly<Record<string, number>> }[]
   readonly files?: Readonly<Record<string, number>>
@@ -16,7 +16,7 @@ export interface TreeFile {
   readonly url: string
 }
 
-/** List the files of a model's trees; what belongs to no tree, such as its project, is none of them. */
+/** Return the files of a model's trees, without files of the model itself, such as its project. */
 export function treeFiles({ files }: Model): TreeFile[] {
   return Object.entries(files).flatMap(([name, url]) => {
     const found = TREE.exec(name)
@@ -24,17 +24,17 @@ export function treeFiles({ files }: Model): TreeFile[] {
   })
 }
 
-/** Count the trees that a model has: as many as there are GLBs. */
+/** Return how many trees a model has: as many as there are GLBs. */
 export function variantsOf(model: Model): number {
   return treeFiles(model).filter(({ what }) => what === 'glb').length
 }
 
-/** Find where one of a model's trees is, from 1. */
+/** Return the address of a tree's GLB, by its number from 1; undefined where there is none. */
 export function treeOf(model: Model, variant: number): string | undefined {
   return model.files[nameOf(variant)]
 }
 
-/** The model as if the one tree were all of it: its score and its counts, where they are told apart. */
+/** Return a model with the score and counts of one of its trees, by its number from 1. */
 export function aloneOf(model: Model, variant: number): Model {
   const { variants, files } = (model.report ?? {}) as Report
   const tree = variants?.[variant - 1]

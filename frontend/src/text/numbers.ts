@@ -35,11 +35,6 @@ export function percent(share: number): string {
   return shares.format(share)
 }
 
-/** Write a length in metres. */
-export function metres(length: number): string {
-  return lengths.format(length)
-}
-
 /** Write a duration that is left: whole seconds or minutes. */
 export function duration(seconds: number): string {
   return seconds < 90 ? wholeSeconds.format(seconds) : minutes.format(seconds / 60)
@@ -50,11 +45,17 @@ export function seconds(number: number): string {
   return tenthSeconds.format(number)
 }
 
+/** Write a length in metres, with three digits that count. */
+export function metres(number: number): string {
+  return lengths.format(number)
+}
+
 /** Write a number of bytes. */
 export function bytes(number: number): string {
   return number < 1e6 ? kilobytes.format(number / 1e3) : megabytes.format(number / 1e6)
 }
 
-function inUnits(unit: string, maximumFractionDigits: number): Intl.NumberFormat {
-  return new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit, unitDisplay: 'short', maximumFractionDigits })
+function inUnits(unit: string, digits: number): Intl.NumberFormat {
+  const fraction = { minimumFractionDigits: digits, maximumFractionDigits: digits }
+  return new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit, unitDisplay: 'short', ...fraction })
 }

@@ -1,3 +1,4 @@
+import { whole } from './numbers'
 import { plural } from './plural'
 
 /** What is said of the two sheets, the front's and the left side's. */
@@ -41,8 +42,8 @@ export const sheetsText = {
   },
   leftOut: (count: number, most: number) =>
     plural(count, {
-      one: `The shortest branch was left out. At most ${most} can be drawn.`,
-      other: `The # shortest branches were left out. At most ${most} can be drawn.`,
+      one: `The shortest branch was left out. At most ${whole(most)} can be drawn.`,
+      other: `The # shortest branches were left out. At most ${whole(most)} can be drawn.`,
     }),
   hide: 'Hide the photo',
   show: 'Show the photo',
@@ -69,14 +70,14 @@ export const sheetsText = {
     mixedGrow: 'Draw more, or grow the tree. This side replaces the guessed depth.',
     how: {
       mouse: 'Drag along each branch outward, or drop a drawing here.',
-      touch: 'Draw with your finger. Use two fingers to move and zoom.',
+      touch: 'Draw with your finger. Two fingers move and zoom.',
       pen: 'Draw with the pen, each branch outward.',
     },
   },
   welcome: {
     draw: 'Draw it yourself',
     drawHint: 'Draw two sides on white paper, or open a PNG of dark strokes.',
-    examples: 'Or drawn from two sides',
+    examples: 'Or draw a tree from two sides',
     examplesHint: 'Two sketches make one tree, without a photo.',
   },
   tabs: { front: 'Front', side: 'Left side', tree: 'Tree' },

@@ -31,7 +31,7 @@ export function App({ studio }: { readonly studio: Studio }) {
 function Page() {
   const main = useRef<HTMLElement>(null)
   const closed = useStore(({ sheets }) => sheets === null)
-  const { resuming, Workspace, ready } = useBeginning(closed)
+  const { resuming, Workspace, ready } = useStart(closed)
   useLayoutEffect(() => {
     document.documentElement.classList.toggle('is-drawing', !closed)
   }, [closed])
@@ -56,7 +56,7 @@ function Page() {
 }
 
 /** Open again what was open and load the workspace, both after the first paint; the page is ready when both are there. */
-function useBeginning(closed: boolean) {
+function useStart(closed: boolean) {
   const studio = useStudio()
   const [resuming, setResuming] = useState(isToResume)
   const [Workspace, setWorkspace] = useState<ComponentType | null>(null)
@@ -91,7 +91,7 @@ function Opening() {
 function LiveRegion() {
   const announcement = useStore(state => state.announcement)
   return (
-    <div class="unseen" role="status" aria-live="polite">
+    <div class="visually-hidden" role="status" aria-live="polite">
       {announcement}
     </div>
   )

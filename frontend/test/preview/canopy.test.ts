@@ -13,9 +13,9 @@ function ball(): number[] {
 
 describe('the light in a ball of leaves', () => {
   const canopy = canopyOf(ball(), SUN)
-  const lit = (...place: number[]) => lightAt(canopy, place)
+  const lit = (...point: number[]) => lightAt(canopy, point)
 
-  it('comes more to its rim than to its middle', () => {
+  it('reaches its rim more than its middle', () => {
     const [sky, sun] = lit(0, 2, 0)
     const [skyAbove] = lit(0, 2.95, 0)
     const [, sunTowards] = lit(SUN[0] * 0.9, 2 + SUN[1] * 0.9, SUN[2] * 0.9)
@@ -23,25 +23,25 @@ describe('the light in a ball of leaves', () => {
     expect(sunTowards!).toBeGreaterThan(sun! * 2.5)
   })
 
-  it('comes to the side of the sun and hardly to the other', () => {
+  it('reaches the side of the sun and hardly the other', () => {
     const [, towards] = lit(SUN[0] * 0.9, 2 + SUN[1] * 0.9, SUN[2] * 0.9)
     const [, away] = lit(-SUN[0] * 0.9, 2 - SUN[1] * 0.9, -SUN[2] * 0.9)
     expect(away!).toBeLessThan(towards! / 2.5)
   })
 
-  it('gives two bytes a vertex', () => {
+  it('has two bytes a vertex', () => {
     expect(lightAt(canopy, [0, 2, 0, 1, 2, 0])).toHaveLength(4)
   })
 })
 
-it('takes a single leaf', () => {
+it('lights a single leaf', () => {
   const light = lightAt(canopyOf([0, 1, 0], SUN), [0, 1, 0])
   expect(Math.min(...light)).toBeGreaterThan(150)
 })
 
 it('throws the shadow away from the sun, and nowhere else', () => {
   const side = 32
-  const shadow = groundShadow(ball(), SUN, { centre: [0, 0], reach: 4, side })
+  const shadow = groundShadow(ball(), SUN, { centre: [0, 0], radius: 4, side })
   const fall = 2 / SUN[1]
   const byte = (x: number, z: number) =>
     shadow[Math.floor(((z / 4 + 1) / 2) * side) * side + Math.floor(((x / 4 + 1) / 2) * side)]!

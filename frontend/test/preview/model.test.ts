@@ -1,7 +1,7 @@
 import { expect, it } from 'vitest'
 import { gainOf } from '../../src/preview/model'
 
-it('brings dark textures up, halfway at most, and leaves bright ones alone', () => {
+it('brightens dark textures halfway, four times at most, and keeps bright ones', () => {
   expect(gainOf(0.4)).toBe(1)
   expect(gainOf(0.05)).toBeCloseTo(2, 6)
   expect(gainOf(0)).toBe(4)

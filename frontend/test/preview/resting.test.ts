@@ -1,23 +1,23 @@
 import { Bone, Box3, BufferAttribute, BufferGeometry, Matrix4, Mesh, Skeleton, SkinnedMesh } from 'three'
 import { expect, test } from 'vitest'
-import { restingVertices, takeIn } from '../../src/preview/resting'
+import { expandBox, restingVertices } from '../../src/preview/resting'
 
-/** Packed to 16 bits: three corners of a box. */
-function packed(): BufferGeometry {
+/** Three corners of a box, quantized to 16 bits. */
+function quantized(): BufferGeometry {
   const geometry = new BufferGeometry()
   geometry.setAttribute('position', new BufferAttribute(new Int16Array([0, 0, 0, 32767, 0, 0, 0, -32767, 0]), 3, true))
   return geometry
 }
 
 function skinned(): SkinnedMesh {
-  const mesh = new SkinnedMesh(packed())
+  const mesh = new SkinnedMesh(quantized())
   const root = new Bone()
   const branch = new Bone()
   branch.position.set(0, 3, 0)
   root.add(branch)
   mesh.add(root)
   mesh.updateMatrixWorld(true)
-  // The packing is undone by the bones: 4 m for each unit.
+  // The bones undo the quantization: 4 m for each unit.
   const inverse = (bone: Bone) =>
     bone.matrixWorld
       .clone()
@@ -27,15 +27,15 @@ function skinned(): SkinnedMesh {
   return mesh
 }
 
-test('packed vertices lie where their mesh puts them', () => {
-  const mesh = new Mesh(packed())
+test('quantized vertices lie where their mesh puts them', () => {
+  const mesh = new Mesh(quantized())
   mesh.scale.setScalar(2)
   mesh.position.set(0, 1, 0)
   mesh.updateMatrixWorld(true)
   expect([...restingVertices(mesh)]).toEqual([0, 1, 0, 2, 1, 0, 0, -1, 0])
 })
 
-test('vertices on bones lie where these put them, in any wind', () => {
+test('vertices on bones lie in the rest pose, in any wind', () => {
   const mesh = skinned()
   const still = [...restingVertices(mesh)]
   mesh.skeleton.bones[1]!.rotation.z = 1
@@ -44,9 +44,9 @@ test('vertices on bones lie where these put them, in any wind', () => {
   expect([...restingVertices(mesh)]).toEqual(still)
 })
 
-test('a box takes vertices in', () => {
+test('a box expands to contain vertices', () => {
   const box = new Box3()
-  takeIn(box, restingVertices(skinned()))
+  expandBox(box, restingVertices(skinned()))
   expect([box.min.toArray(), box.max.toArray()]).toEqual([
     [0, -4, 0],
     [4, 0, 0],

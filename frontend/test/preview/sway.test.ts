@@ -25,7 +25,7 @@ test('a still tree does not move, and one in the wind does', () => {
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
 })
 
-test('wind goes round and round', () => {
+test('wind repeats', () => {
   sway.blow('breeze')
   sway.step(1)
   sway.step(2)
@@ -39,7 +39,7 @@ test('without wind the tree stands as it was', () => {
   expect([sway.step(0.1), bone.quaternion.toArray()]).toEqual([false, [0, 0, 0, 1]])
 })
 
-test('one wind gives way to another, and comes back', () => {
+test('one wind changes to another, and back', () => {
   sway.blow('breeze')
   sway.step(1)
   sway.blow('gust')
@@ -52,7 +52,7 @@ test('one wind gives way to another, and comes back', () => {
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
 })
 
-test('a wind that the file does not have is stillness', () => {
+test('a wind that the file does not have moves nothing', () => {
   sway.blow('storm')
   expect(sway.step(1)).toBe(false)
 })

@@ -4,7 +4,7 @@ import { type Tubes, tubes } from '../../src/preview/tubes'
 
 const photo = { width: 100, height: 100, metres_per_pixel: 0.01, root: [50, 90] as [number, number] }
 
-/** A trunk of three joints, one branch of two that is born later, and one twig born between. */
+/** A trunk of three joints, a branch of two that is born later, and a twig that is born before that. */
 const FORK: Grown = {
   points: [
     [0, 0, 0],
@@ -20,7 +20,7 @@ const FORK: Grown = {
   photo,
 }
 
-/** A tree of chains that fork at random, as many joints as asked for. */
+/** A tree of chains that fork at random, with this many joints. */
 function thicket(joints: number): Grown {
   let seed = 7
   const chance = () => {
@@ -59,7 +59,7 @@ function dot(a: Axis, b: Axis): number {
 /** The centre of the tube at each of its vertices. */
 function centre(tube: Tubes, vertex: number): number[] {
   const normal = at(tube.normals, vertex)
-  return at(tube.positions, vertex).map((part, axis) => part - normal[axis]! * tube.stems[vertex * 2 + 1]!)
+  return at(tube.positions, vertex).map((part, axis) => part - normal[axis]! * tube.bornRadii[vertex * 2 + 1]!)
 }
 
 describe.each([
@@ -73,25 +73,25 @@ describe.each([
     expect(tube.indices.length).toBe((grown.parents.length - 1) * sides * 6)
   })
 
-  it('name only vertices that there are, and all of them but lone ones', () => {
+  it('refer only to vertices that exist, and have one joint for each', () => {
     expect(Math.max(...tube.indices)).toBeLessThan(tube.positions.length / 3)
-    expect(tube.nodes.length * 3).toBe(tube.positions.length)
+    expect(tube.joints.length * 3).toBe(tube.positions.length)
   })
 
   it('have unit normals', () => {
-    for (let vertex = 0; vertex < tube.nodes.length; vertex++)
+    for (let vertex = 0; vertex < tube.joints.length; vertex++)
       expect(Math.hypot(...at(tube.normals, vertex))).toBeCloseTo(1, 5)
   })
 
   it("lie round the skeleton's joints with their radii", () => {
-    for (let vertex = 0; vertex < tube.nodes.length; vertex++) {
-      const node = tube.nodes[vertex]!
+    for (let vertex = 0; vertex < tube.joints.length; vertex++) {
+      const node = tube.joints[vertex]!
       const middle = centre(tube, vertex)
       const away = [node, grown.parents[node]!]
         .filter(joint => joint >= 0)
         .map(joint => Math.hypot(...grown.points[joint]!.map((part, axis) => part - middle[axis]!)))
       expect(Math.min(...away)).toBeLessThan(1e-5)
-      expect(tube.stems[vertex * 2 + 1]).toBeCloseTo(grown.radii[node]!, 6)
+      expect(tube.bornRadii[vertex * 2 + 1]).toBeCloseTo(grown.radii[node]!, 6)
     }
   })
 
@@ -99,7 +99,7 @@ describe.each([
     tube.counts.forEach((count, iteration) => {
       const edges = grown.parents.filter((parent, node) => parent >= 0 && grown.born[node]! <= iteration)
       expect(count).toBe(edges.length * sides * 6)
-      const drawn = Array.from(tube.indices.subarray(0, count), vertex => grown.born[tube.nodes[vertex]!]!)
+      const drawn = Array.from(tube.indices.subarray(0, count), vertex => grown.born[tube.joints[vertex]!]!)
       expect(Math.max(0, ...drawn)).toBeLessThanOrEqual(iteration)
     })
   })
@@ -116,17 +116,17 @@ it('turns its faces outwards', () => {
 
 it('starts a side branch with its own thickness, not with that of its parent', () => {
   const tube = tubes(FORK, 5)
-  const radii = Array.from(tube.nodes, (node, vertex) => (node === 3 ? tube.stems[vertex * 2 + 1]! : 0))
+  const radii = Array.from(tube.joints, (node, vertex) => (node === 3 ? tube.bornRadii[vertex * 2 + 1]! : 0))
   expect(Math.max(...radii)).toBeCloseTo(0.1, 6)
   expect(radii.filter(radius => radius > 0)).toHaveLength(10)
 })
 
-it('draws no twig thinner than asked for', () => {
-  const { stems } = tubes(FORK, 5, 0.08)
-  expect(Math.min(...stems.filter((_, place) => place % 2 === 1))).toBeCloseTo(0.08, 6)
+it('draws no twig thinner than the limit', () => {
+  const { bornRadii } = tubes(FORK, 5, 0.08)
+  expect(Math.min(...bornRadii.filter((_, place) => place % 2 === 1))).toBeCloseTo(0.08, 6)
 })
 
-it('takes a lone root', () => {
+it('has no triangles for a lone root', () => {
   const lone = tubes({ points: [[0, 0, 0]], radii: [1], parents: [-1], born: [0], photo })
   expect(lone.indices).toHaveLength(0)
   expect([...lone.counts]).toEqual([0])

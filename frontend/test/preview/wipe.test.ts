@@ -3,7 +3,7 @@ import { beforeEach, describe, expect, it } from 'vitest'
 import { Wipe } from '../../src/preview/wipe'
 
 const RECT = { x: 100, y: 0, width: 200, height: 300 }
-const ROOM = { width: 400, height: 300 }
+const VIEWPORT = { width: 400, height: 300 }
 
 describe('the wipe', () => {
   let host: HTMLElement
@@ -16,10 +16,10 @@ describe('the wipe', () => {
     host = document.createElement('div')
     wipe = new Wipe(host, 'Photo or tree')
     wipe.show('blob:a')
-    wipe.place(RECT, ROOM)
+    wipe.place(RECT, VIEWPORT)
   })
 
-  it('lies exactly over the rectangle, cut in the middle at first', () => {
+  it('lies exactly over the rectangle, first divided in the middle', () => {
     expect(photo().style).toMatchObject({ left: '100px', top: '0px', width: '200px', height: '300px' })
     expect(photo().style.clipPath).toBe('inset(0 100px 0 0)')
     expect(slider().style.left).toBe('200px')
@@ -31,13 +31,13 @@ describe('the wipe', () => {
     [0.25, '250px', '75'],
     [1, '100px', '0'],
     [7, '100px', '0'],
-  ])('shows the tree by %f with its handle at %s', (fraction, left, percent) => {
+  ])('shows a share of %f of the tree with its handle at %s', (fraction, left, percent) => {
     wipe.set(fraction)
     expect(slider().style.left).toBe(left)
     expect(slider().getAttribute('aria-valuenow')).toBe(percent)
   })
 
-  it('moves with arrow keys, to the ends with Home and End, and leaves Tab alone', () => {
+  it('moves with arrow keys, to the ends with Home and End, and ignores Tab', () => {
     press('ArrowRight')
     expect(slider().getAttribute('aria-valuenow')).toBe('52')
     press('ArrowLeft')
@@ -52,15 +52,15 @@ describe('the wipe', () => {
   })
 
   it('stays within the host where the photo is zoomed beyond it', () => {
-    wipe.place({ x: -300, y: -100, width: 1000, height: 500 }, ROOM)
+    wipe.place({ x: -300, y: -100, width: 1000, height: 500 }, VIEWPORT)
     expect(slider().style.left).toBe('200px')
     expect(photo().style.clipPath).toBe('inset(0 500px 0 0)')
   })
 
-  it('is gone, and out of the tab order, away from the photo and without one', () => {
-    wipe.place(null, ROOM)
+  it('is hidden, and not in the tab order, away from the photo’s view and without a photo', () => {
+    wipe.place(null, VIEWPORT)
     expect([slider().hidden, photo().classList.contains('preview-gone')]).toEqual([true, true])
-    wipe.place(RECT, ROOM)
+    wipe.place(RECT, VIEWPORT)
     expect(slider().hidden).toBe(false)
     wipe.show(null)
     expect(slider().hidden).toBe(true)

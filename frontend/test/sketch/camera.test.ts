@@ -5,22 +5,22 @@ import type { View } from '../../src/sketch/viewport'
 const WINDOW = { width: 440, height: 700 }
 const PAPER = { width: 900, height: 1200 }
 
-/** Two sheets that look where the other does. */
+/** Two cameras that follow each other. */
 function linked(other = PAPER, extent = PAPER) {
-  let told = 0
-  const tell = (to: () => Camera, from: () => Camera) => (view: View) => {
-    told++
-    if (told > 50) throw new Error('they go on and on')
+  let changes = 0
+  const link = (to: () => Camera, from: () => Camera) => (view: View) => {
+    changes++
+    if (changes > 50) throw new Error('the cameras follow each other without end')
     to().follow(view, from().isWhole)
   }
   const one: Camera = new Camera(
-    tell(
+    link(
       () => two,
       () => one,
     ),
   )
   const two: Camera = new Camera(
-    tell(
+    link(
       () => one,
       () => two,
     ),
@@ -31,14 +31,14 @@ function linked(other = PAPER, extent = PAPER) {
   return { one, two }
 }
 
-test('what is fitted shows as much as the widest sheet needs, in the middle', () => {
+test('a fitted sheet has the scale that the widest sheet needs, and lies in the middle', () => {
   const { one, two } = linked({ width: 2400, height: 1200 }, { width: 2400, height: 1200 })
   expect(one.view.scale).toBeCloseTo(two.view.scale)
   expect(one.view.y).toBeCloseTo(two.view.y)
   expect(2 * one.view.x + 900 * one.view.scale).toBeCloseTo(WINDOW.width)
 })
 
-test('one sheet follows the other’s height and scale, and keeps its own place across', () => {
+test('one sheet follows the other’s scale and vertical offset, and keeps its own horizontal one', () => {
   const { one, two } = linked()
   one.zoom(2, [100, 600])
   one.pan([-30, -80])
@@ -47,7 +47,7 @@ test('one sheet follows the other’s height and scale, and keeps its own place 
   expect(two.view.x).not.toBe(one.view.x)
 })
 
-test('both stay whole where the window changes, and neither does once one was moved', () => {
+test('both stay fitted where the window changes, and neither does once one was moved', () => {
   const { one, two } = linked()
   for (const camera of [one, two]) camera.resize({ width: 300, height: 500 })
   expect(two.view).toEqual(one.view)

@@ -4,8 +4,8 @@ import {
   type Down,
   type Gesture,
   type GestureEvent,
-  gestured,
   type Intent,
+  interpret,
   type Move,
 } from '../../src/sketch/gesture'
 import type { Line, Point } from '../../src/strokes'
@@ -37,22 +37,21 @@ const second = { ...finger, alone: false } as const
 const pen = { pointer: 'pen' } as const
 const space = (held: boolean): GestureEvent => ({ type: 'space', held })
 
-function played(events: readonly GestureEvent[], state: Gesture = AT_REST): { intents: Intent[]; state: Gesture } {
+function play(events: readonly GestureEvent[], state: Gesture = AT_REST): { intents: Intent[]; state: Gesture } {
   let now = state
   const intents: Intent[] = []
   for (const event of events) {
-    const step = gestured(now, event)
+    const step = interpret(now, event)
     now = step.state
     intents.push(...step.intents)
   }
   return { intents, state: now }
 }
-const kinds = (events: readonly GestureEvent[], state?: Gesture) =>
-  played(events, state).intents.map(({ type }) => type)
+const kinds = (events: readonly GestureEvent[], state?: Gesture) => play(events, state).intents.map(({ type }) => type)
 
 describe('drawing', () => {
-  test('a left drag draws by the tool, through every coalesced place', () => {
-    const { intents, state } = played([
+  test('a left drag draws with the tool, through every coalesced point', () => {
+    const { intents, state } = play([
       down(1, [10, 10]),
       move(1, [
         [14, 10],
@@ -76,17 +75,17 @@ describe('drawing', () => {
   })
 
   test.each(['crown', 'branch', 'select'] as const)('a right drag draws a branch, also with the tool %s', tool => {
-    const { intents } = played([down(1, [0, 0], { button: 2, tool }), move(1, [[9, 9]]), up(1, [9, 9])])
+    const { intents } = play([down(1, [0, 0], { button: 2, tool }), move(1, [[9, 9]]), up(1, [9, 9])])
     expect(intents[0]).toEqual({ type: 'begin', kind: 'branch', at: [0, 0] })
     expect(intents.at(-1)).toEqual({ type: 'end' })
   })
 
   test("the pen's barrel button draws a branch", () => {
-    expect(played([down(4, [0, 0], { ...pen, button: 2 })]).intents[0]).toMatchObject({ type: 'begin', kind: 'branch' })
+    expect(play([down(4, [0, 0], { ...pen, button: 2 })]).intents[0]).toMatchObject({ type: 'begin', kind: 'branch' })
   })
 
   test('a tap with a tiny wiggle is a click and no stroke', () => {
-    const { intents } = played([down(1, [10, 10]), move(1, [[14, 12]]), move(1, [[10, 10]]), up(1, [11, 10])])
+    const { intents } = play([down(1, [10, 10]), move(1, [[14, 12]]), move(1, [[10, 10]]), up(1, [11, 10])])
     expect(intents.slice(-2)).toEqual([{ type: 'drop' }, { type: 'click', at: [11, 10], pointer: 'mouse' }])
   })
 
@@ -120,18 +119,18 @@ describe('pointers whose end was missed', () => {
     ])
   })
 
-  test('a press of the same pointer begins anew', () => {
+  test('a second press of the same pointer begins another stroke', () => {
     expect(kinds([down(1, [0, 0]), move(1, [[50, 0]]), down(1, [9, 9])])).toEqual(['begin', 'extend', 'drop', 'begin'])
   })
 
   test('a finger that was forgotten does not make the next one a second', () => {
-    const { intents, state } = played([down(1, [0, 0], finger), move(1, [[50, 0]], finger), down(2, [9, 9], finger)])
+    const { intents, state } = play([down(1, [0, 0], finger), move(1, [[50, 0]], finger), down(2, [9, 9], finger)])
     expect(intents.map(({ type }) => type)).toEqual(['begin', 'extend', 'drop', 'begin'])
     expect([...state.touches.keys()]).toEqual([2])
   })
 
   test('moves and ends of unknown pointers do nothing', () => {
-    expect(played([move(7, [[1, 1]]), up(7, [1, 1]), { type: 'cancel', id: 7 }])).toEqual({
+    expect(play([move(7, [[1, 1]]), up(7, [1, 1]), { type: 'cancel', id: 7 }])).toEqual({
       intents: [],
       state: AT_REST,
     })
@@ -139,9 +138,9 @@ describe('pointers whose end was missed', () => {
 })
 
 describe('panning', () => {
-  test('Space with a left drag pans and never draws, also when Space is let go first', () => {
+  test('Space with a left drag pans and never draws, also when Space is released first', () => {
     const events = [space(true), down(1, [0, 0]), move(1, [[5, 2]]), space(false), move(1, [[9, 9]]), up(1, [9, 9])]
-    expect(played(events).intents).toEqual([
+    expect(play(events).intents).toEqual([
       { type: 'pan', by: [5, 2] },
       { type: 'pan', by: [4, 7] },
     ])
@@ -151,7 +150,7 @@ describe('panning', () => {
     expect(kinds([down(1, [0, 0], { button: 1 }), move(1, [[1, 0]]), up(1, [1, 0])])).toEqual(['pan'])
   })
 
-  test('Space does not turn a stroke under way into panning', () => {
+  test('Space does not turn a stroke that has begun into panning', () => {
     expect(kinds([down(1, [0, 0]), space(true), move(1, [[50, 0]]), up(1, [50, 0])])).toEqual([
       'begin',
       'extend',
@@ -160,12 +159,12 @@ describe('panning', () => {
     ])
   })
 
-  test('the select tool clicks, and pans from as far as is no click', () => {
+  test('the select tool clicks, and pans where the pointer moves too far for a click', () => {
     const tool = 'select'
-    expect(played([down(1, [0, 0], { tool }), move(1, [[3, 0]]), up(1, [3, 0])]).intents).toEqual([
+    expect(play([down(1, [0, 0], { tool }), move(1, [[3, 0]]), up(1, [3, 0])]).intents).toEqual([
       { type: 'click', at: [3, 0], pointer: 'mouse' },
     ])
-    expect(played([down(1, [0, 0], { tool }), move(1, [[3, 0]]), move(1, [[12, 0]]), up(1, [12, 0])]).intents).toEqual([
+    expect(play([down(1, [0, 0], { tool }), move(1, [[3, 0]]), move(1, [[12, 0]]), up(1, [12, 0])]).intents).toEqual([
       { type: 'pan', by: [12, 0] },
     ])
   })
@@ -182,7 +181,7 @@ describe('fingers', () => {
   })
 
   test('a second finger drops the stroke and both pinch', () => {
-    const { intents } = played([
+    const { intents } = play([
       down(1, [100, 100], finger),
       move(1, [[130, 100]], finger),
       down(2, [230, 100], second),
@@ -196,45 +195,45 @@ describe('fingers', () => {
     expect(
       kinds([...pinch, move(1, [[9, 9]], finger), down(3, [50, 50], second), move(3, [[90, 90]], second)]),
     ).toEqual(['begin', 'drop', 'pan', 'pinch'])
-    const { state } = played([...pinch, up(1, [0, 0])])
+    const { state } = play([...pinch, up(1, [0, 0])])
     expect(kinds([down(4, [0, 0], finger)], state)).toEqual(['begin'])
   })
 
   test('a third finger changes nothing', () => {
-    const { state } = played([down(1, [0, 0], finger), down(2, [100, 0], second), down(3, [50, 50], second)])
-    const { intents } = played([move(3, [[60, 60]], second)], state)
+    const { state } = play([down(1, [0, 0], finger), down(2, [100, 0], second), down(3, [50, 50], second)])
+    const { intents } = play([move(3, [[60, 60]], second)], state)
     expect(intents).toEqual([{ type: 'pinch', factor: 1, about: [50, 0], by: [0, 0] }])
   })
 
-  test('fingers that meet do not blow the photo up', () => {
-    const { state } = played([down(1, [0, 0], finger), down(2, [10, 0], second), move(2, [[0, 0]], second)])
-    const [pinch] = played([move(2, [[10, 0]], second)], state).intents
+  test('fingers that touch each other do not magnify the sheet without limit', () => {
+    const { state } = play([down(1, [0, 0], finger), down(2, [10, 0], second), move(2, [[0, 0]], second)])
+    const [pinch] = play([move(2, [[10, 0]], second)], state).intents
     expect(pinch).toMatchObject({ factor: 10 })
   })
 
-  test('a palm is not felt', () => {
+  test('a palm is ignored', () => {
     const palm = { ...finger, contact: 51 }
-    expect(played([down(1, [0, 0], palm), move(1, [[90, 0]], palm), up(1, [90, 0])])).toEqual({
+    expect(play([down(1, [0, 0], palm), move(1, [[90, 0]], palm), up(1, [90, 0])])).toEqual({
       intents: [],
       state: AT_REST,
     })
   })
 
   test('a finger that widens to a palm drops its stroke', () => {
-    const { intents, state } = played([down(1, [0, 0], finger), move(1, [[9, 0]], { ...finger, contact: 70 })])
+    const { intents, state } = play([down(1, [0, 0], finger), move(1, [[9, 0]], { ...finger, contact: 70 })])
     expect(intents.map(({ type }) => type)).toEqual(['begin', 'drop'])
     expect(state).toEqual(AT_REST)
   })
 
-  test('Escape under a finger leaves nothing to draw with until it is up', () => {
-    const { intents, state } = played([down(1, [0, 0], finger), { type: 'escape' }, down(2, [9, 9], second)])
+  test('after Escape under a finger nothing draws until it is up', () => {
+    const { intents, state } = play([down(1, [0, 0], finger), { type: 'escape' }, down(2, [9, 9], second)])
     expect(intents.map(({ type }) => type)).toEqual(['begin', 'drop'])
     expect(kinds([up(2, [9, 9]), up(1, [0, 0]), down(3, [0, 0], finger)], state)).toEqual(['begin'])
   })
 })
 
 describe('a pen', () => {
-  const seen = played([down(9, [0, 0], pen), move(9, [[50, 0]], pen), up(9, [50, 0])]).state
+  const seen = play([down(9, [0, 0], pen), move(9, [[50, 0]], pen), up(9, [50, 0])]).state
 
   test('draws', () => {
     expect(kinds([down(9, [0, 0], pen), move(9, [[50, 0]], pen), up(9, [50, 0])])).toEqual([
@@ -256,17 +255,17 @@ describe('a pen', () => {
   })
 
   test('that hovers is seen', () => {
-    const { state } = played([move(9, [[5, 5]], { ...pen, pressed: false })])
+    const { state } = play([move(9, [[5, 5]], { ...pen, pressed: false })])
     expect(kinds([down(1, [0, 0], finger)], state)).toEqual([])
   })
 
   test("once seen, a finger's tap still selects", () => {
-    expect(played([down(1, [4, 4], finger), up(1, [4, 4])], seen).intents).toEqual([
+    expect(play([down(1, [4, 4], finger), up(1, [4, 4])], seen).intents).toEqual([
       { type: 'click', at: [4, 4], pointer: 'touch' },
     ])
   })
 
-  test('goes on drawing when a palm is laid down beside it, and the palm does nothing after it', () => {
+  test('goes on drawing when a palm touches beside it, and the palm does nothing afterwards', () => {
     const events = [
       down(9, [0, 0], pen),
       down(1, [80, 80], finger),
@@ -276,7 +275,7 @@ describe('a pen', () => {
       move(1, [[140, 99]], finger),
       up(1, [140, 99]),
     ]
-    const { intents, state } = played(events)
+    const { intents, state } = play(events)
     expect(intents.map(({ type }) => type)).toEqual(['begin', 'extend', 'extend', 'end'])
     expect(state.mode).toEqual({ name: 'idle' })
   })

@@ -1,13 +1,13 @@
 import { expect, test } from 'vitest'
-import { keyCommand, stepped } from '../../src/sketch/keys'
+import { keyCommand, stepFrom } from '../../src/sketch/keys'
 
-const PHOTO = { width: 1000, height: 500 }
+const SHEET = { width: 1000, height: 500 }
 const key = (name: string, change = {}) =>
   keyCommand({ key: name, shiftKey: false, ctrlKey: false, metaKey: false, altKey: false, ...change })
 const walk = (name: string, shiftKey: boolean) => {
   const command = key(name, { shiftKey })
-  if (command?.type !== 'step') throw new Error('no step')
-  return stepped([500, 250], command, PHOTO)
+  if (command?.type !== 'step') throw new Error('not a step')
+  return stepFrom([500, 250], command, SHEET)
 }
 
 test('an arrow key goes 2 % of the longer side, and with Shift 0.25 %', () => {
@@ -17,12 +17,12 @@ test('an arrow key goes 2 % of the longer side, and with Shift 0.25 %', () => {
   expect(walk('ArrowUp', true)).toEqual([500, 247.5])
 })
 
-test('no step leads out of the photo', () => {
+test('no step leads off the sheet', () => {
   const step = { type: 'step', right: 1, down: -1, fine: false } as const
-  expect(stepped([995, 3], step, PHOTO)).toEqual([1000, 0])
+  expect(stepFrom([995, 3], step, SHEET)).toEqual([1000, 0])
 })
 
-test('Enter, Escape, Delete, 0 and 1 have their meaning', () => {
+test('Enter, Escape, Delete, 0 and 1 are commands', () => {
   expect(['Enter', 'Escape', 'Delete', 'Backspace', '0', '1'].map(name => key(name)?.type)).toEqual([
     'pen',
     'escape',
@@ -35,7 +35,7 @@ test('Enter, Escape, Delete, 0 and 1 have their meaning', () => {
 
 test('plus and minus undo each other', () => {
   const [bigger, smaller] = [key('+'), key('-')]
-  if (bigger?.type !== 'zoom' || smaller?.type !== 'zoom') throw new Error('no zoom')
+  if (bigger?.type !== 'zoom' || smaller?.type !== 'zoom') throw new Error('not a zoom')
   expect(bigger.factor * smaller.factor).toBe(1)
   expect(key('=')).toEqual(bigger)
 })

@@ -5,7 +5,7 @@ import type { Line } from '../../src/strokes'
 const VIEW = { scale: 2, x: 10, y: 20 }
 const BOX = { width: 100, height: 30 }
 
-test('what is said of a line stands beside its middle and clear of it, whichever way it was drawn', () => {
+test('a line’s label lies beside its middle and clear of it, whichever way it was drawn', () => {
   const upright: Line = [
     [50, 10],
     [50, 30],
@@ -16,7 +16,7 @@ test('what is said of a line stands beside its middle and clear of it, whichever
   expect(labelPlace([upright[1]!, upright[0]!], VIEW, BOX)).toEqual([x, y])
 })
 
-test('of a level line it stands below', () => {
+test('the label of a level line lies below it', () => {
   const level: Line = [
     [10, 10],
     [30, 10],
@@ -26,7 +26,7 @@ test('of a level line it stands below', () => {
   expect(x).toBeCloseTo(50, 6)
 })
 
-test('a line without length has its place, too', () => {
+test('a line without length has a label, too', () => {
   const point: Line = [
     [5, 5],
     [5, 5],

@@ -2,15 +2,15 @@ import { expect, test } from 'vitest'
 import { PenLine } from '../../src/sketch/penLine'
 import type { Point } from '../../src/strokes'
 
-const PHOTO = { width: 1200, height: 1541 }
+const SHEET = { width: 1200, height: 1541 }
 
-function drawn(kind: 'crown' | 'branch', places: readonly Point[], apart = 0) {
-  const pen = new PenLine(kind, PHOTO)
-  for (const place of places) pen.add(place, apart)
+function drawn(kind: 'crown' | 'branch', points: readonly Point[], spacing = 0) {
+  const pen = new PenLine(kind, SHEET)
+  for (const point of points) pen.add(point, spacing)
   return pen
 }
 
-test('places are kept to a hundredth of a pixel', () => {
+test('points are rounded to hundredths of a pixel', () => {
   expect(
     drawn('branch', [
       [0.126, 7],
@@ -22,7 +22,7 @@ test('places are kept to a hundredth of a pixel', () => {
   ])
 })
 
-test('a stroke never leaves the photo', () => {
+test('a stroke never leaves the sheet', () => {
   expect(
     drawn('branch', [
       [-50, 20],
@@ -34,7 +34,7 @@ test('a stroke never leaves the photo', () => {
   ])
 })
 
-test('places too near to the last one are left out', () => {
+test('points too near to the last one are left out', () => {
   expect(
     drawn(
       'branch',
@@ -82,7 +82,7 @@ test('a branch has two distinct points and a crown three', () => {
   ).toHaveLength(3)
 })
 
-test('outside the photo a stroke falls together to what its edge leaves of it', () => {
+test('a stroke outside the sheet is only what lies on its edge, here one point', () => {
   expect(
     drawn('branch', [
       [-5, 7],
@@ -93,28 +93,28 @@ test('outside the photo a stroke falls together to what its edge leaves of it', 
 })
 
 test('an endless stroke is thinned, from its start to its end, and never has more than 10,000 points', () => {
-  const places = Array.from({ length: 70_000 }, (_, step): Point => [600 + 400 * Math.cos(step / 9), step / 50])
-  const line = drawn('branch', places).finished()!
+  const points = Array.from({ length: 70_000 }, (_, step): Point => [600 + 400 * Math.cos(step / 9), step / 50])
+  const line = drawn('branch', points).finished()!
   expect(line.length).toBeLessThanOrEqual(10_000)
   expect(line.length).toBeGreaterThan(4000)
   expect(line[0]).toEqual([1000, 0])
   expect(line.at(-1)![1]).toBeGreaterThan(1390)
 })
 
-test('a measured line is straight, from where it began to where the pen is', () => {
-  const pen = new PenLine('scale', PHOTO)
-  const places: Point[] = [
+test('a measured line is straight, from its first point to its last', () => {
+  const pen = new PenLine('scale', SHEET)
+  const points: Point[] = [
     [10, 10],
     [20, 12],
     [30, 90],
   ]
-  for (const place of places) pen.add(place, 0)
-  expect(pen.finished()).toEqual([places[0], places[2]])
+  for (const point of points) pen.add(point, 0)
+  expect(pen.finished()).toEqual([points[0], points[2]])
 })
 
-test('a measured line of which one end is moved keeps its other end as it is', () => {
+test('a measured line whose one end is moved keeps its other end exactly', () => {
   const other: Point = [5, 5]
-  const pen = new PenLine('scale', PHOTO, other)
+  const pen = new PenLine('scale', SHEET, other)
   pen.add([50, 60], 0)
   pen.add([70, 80], 0)
   expect(pen.finished()).toEqual([other, [70, 80]])

@@ -1,12 +1,12 @@
 import { expect, test } from 'vitest'
-import { wheeled } from '../../src/sketch/pointing'
+import { wheelIntent } from '../../src/sketch/pointing'
 
 const turn = (change: Partial<WheelEvent>) =>
-  wheeled({ deltaX: 0, deltaY: 0, deltaMode: 0, ctrlKey: false, shiftKey: false, ...change }, [30, 40])
+  wheelIntent({ deltaX: 0, deltaY: 0, deltaMode: 0, ctrlKey: false, shiftKey: false, ...change }, [30, 40])
 
-test('the wheel zooms about the pointer, and back by the same turn', () => {
+test('the wheel zooms about the pointer, and the opposite turn undoes it', () => {
   const [nearer, farther] = [turn({ deltaY: -100 }), turn({ deltaY: 100 })]
-  if (nearer.type !== 'pinch' || farther.type !== 'pinch') throw new Error('no zoom')
+  if (nearer.type !== 'pinch' || farther.type !== 'pinch') throw new Error('not a zoom')
   expect(nearer).toMatchObject({ about: [30, 40], by: [0, 0] })
   expect(nearer.factor).toBeGreaterThan(1.1)
   expect(nearer.factor * farther.factor).toBeCloseTo(1, 12)
@@ -16,7 +16,7 @@ test("a trackpad's pinch, which turns little, zooms more for each turn", () => {
   expect(turn({ deltaY: -3, ctrlKey: true })).toMatchObject({ factor: Math.exp(0.03) })
 })
 
-test('lines and pages turn more than pixels, and nothing leaps', () => {
+test('lines and pages turn more than pixels, and one turn never zooms far', () => {
   const factors = [turn({ deltaY: -1 }), turn({ deltaY: -1, deltaMode: 1 }), turn({ deltaY: -9, deltaMode: 2 })].map(
     intent => (intent.type === 'pinch' ? intent.factor : 0),
   )

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
 import { begin } from '../../src/history'
 import { paper, sheetOfSize } from '../../src/sheets'
-import { extentOf, ofSheet, viewOf } from '../../src/sketch/sheetView'
+import { extentOf, toPageSelection, viewOf } from '../../src/sketch/sheetView'
 import { EMPTY, type Sheet, type State } from '../../src/state'
 import { NO_STROKES, withSheet, withStroke } from '../../src/strokes'
 import { answer, CROWN, LIMB, photoSheets, sketchSheets, TRUNK } from '../builders'
@@ -11,7 +11,7 @@ const both = withSheet(front, 'side', withStroke(NO_STROKES, 'branch', LIMB))
 const sketched: State = { ...EMPTY, sheets: sketchSheets(paper(), paper()), history: begin(both) }
 const traced = { of: both, answer: answer(), crowns: { front: CROWN, side: CROWN } }
 
-test('each sheet shows its own strokes, and what is selected or at fault on it', () => {
+test('each sheet shows its own strokes, and its own selection and fault', () => {
   const state: State = {
     ...sketched,
     selection: { kind: 'branch', index: 0, sheet: 'side' },
@@ -23,27 +23,27 @@ test('each sheet shows its own strokes, and what is selected or at fault on it',
   expect([ahead.fault, side.fault]).toEqual([{ kind: 'branch', index: 0 }, null])
 })
 
-test('paper shows the crown that was taken while none is drawn, and never what is traced in photos', () => {
-  expect(viewOf({ ...sketched, traced }, 'side')).toMatchObject({ crown: CROWN, traced: null })
+test('paper shows the assumed crown while none is drawn, and never what is traced in photos', () => {
+  expect(viewOf({ ...sketched, traced }, 'side')).toMatchObject({ assumedCrown: CROWN, traced: null })
   const crowned = withSheet(both, 'side', { ...NO_STROKES, crown: CROWN, branches: [{ points: LIMB }] })
-  expect(viewOf({ ...sketched, history: begin(crowned), traced }, 'side').crown).toBeNull()
+  expect(viewOf({ ...sketched, history: begin(crowned), traced }, 'side').assumedCrown).toBeNull()
 })
 
 test('a photo shows what is traced, no brush and no lines, until the side’s sheet is opened beside it', () => {
   const crowned = { ...front, crown: CROWN }
   const state: State = { ...EMPTY, sheets: photoSheets(), history: begin(crowned), traced, brush: 0.02 }
-  expect(viewOf(state, 'front')).toMatchObject({ traced: traced.answer, crown: null, brush: null, levels: null })
+  expect(viewOf(state, 'front')).toMatchObject({ traced: traced.answer, assumedCrown: null, brush: null, levels: null })
   const beside = { ...state, sheets: photoSheets(undefined, paper(100)) }
   expect(viewOf(beside, 'front').levels).toEqual({ root: 95, top: 40 })
   expect(viewOf(beside, 'side').brush).toBe(2)
 })
 
-test('nothing is measured on paper', () => {
+test('the scale tool is not used on paper', () => {
   expect(viewOf({ ...sketched, tool: 'scale' }, 'front').tool).toBe('select')
   expect(viewOf({ ...EMPTY, sheets: photoSheets(), tool: 'scale' }, 'front').tool).toBe('scale')
 })
 
-test('the widest of the sheets says how much is seen of all', () => {
+test('the widest sheet sets the extent of all', () => {
   const beside = (side: Sheet | null) => ({ ...sketched, sheets: sketchSheets(paper(), side) })
   const [wide, small] = [
     { width: 2400, height: 1200 },
@@ -54,7 +54,7 @@ test('the widest of the sheets says how much is seen of all', () => {
   expect(extentOf(beside(null), 'side')).toBeNull()
 })
 
-test('what is chosen on the side is named for all of the page', () => {
-  expect(ofSheet({ kind: 'branch', index: 2 }, 'side')).toEqual({ kind: 'branch', index: 2, sheet: 'side' })
-  expect(ofSheet({ kind: 'branch', index: 2 }, 'front')).toEqual({ kind: 'branch', index: 2 })
+test('what is selected on the side keeps its sheet’s name in the page’s state', () => {
+  expect(toPageSelection({ kind: 'branch', index: 2 }, 'side')).toEqual({ kind: 'branch', index: 2, sheet: 'side' })
+  expect(toPageSelection({ kind: 'branch', index: 2 }, 'front')).toEqual({ kind: 'branch', index: 2 })
 })

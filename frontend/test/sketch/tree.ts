@@ -1,8 +1,8 @@
 import type { TracedSkeleton } from '../../src/api/types'
 
 /**
- * A stroked trunk 0-1-2 and a traced branch 3-4-5 off joint 1, which forks at 4 into its continuation 5 and the thinner
- * but longer 6-7; 8 leaves the trunk's tip as a branch of its own.
+ * A stroked trunk 0-1-2 and a traced branch 3-4-5 from joint 1, which forks at 4 into its continuation 5 and the thinner
+ * but longer 6-7; 8 leaves the trunk's tip as another branch.
  */
 export const TREE: TracedSkeleton = {
   points: [

@@ -17,7 +17,7 @@ function begin() {
   return { store, drafts, strokes: new StrokeActions(store) }
 }
 
-/** A drawing of a crown and a trunk, as kept. */
+/** A saved draft with a crown and a trunk. */
 async function kept() {
   const { store, drafts, strokes } = begin()
   store.set({ sheets: photoSheets(), name: 'Oak' })
@@ -27,14 +27,14 @@ async function kept() {
   return { store, drafts, strokes }
 }
 
-test('a drawing is kept with its photo and its undo history', async () => {
+test('a drawing is saved with its photo and its undo history', async () => {
   const { store, drafts } = await kept()
   const found = (await new DraftStore(new Store()).find(drafts.id!))!
   expect(found.draft).toMatchObject({ name: 'Oak', history: store.state.history, photo: { id: 'pho_1' } })
   expect(await found.photo?.text()).toBe('a photo')
 })
 
-test('what is deleted or undone is kept, too', async () => {
+test('deleting and undoing are saved, too', async () => {
   const { drafts, strokes } = await kept()
   strokes.clear()
   strokes.undo()
@@ -59,7 +59,7 @@ test('the latest drawing is listed first, and those without a stroke are not', a
   await vi.waitFor(async () => expect((await drafts.list()).map(draft => draft.id)).toEqual([drafts.id, first]))
 })
 
-test('no more than a dozen are kept', async () => {
+test('no more than twelve drafts are kept', async () => {
   const { store, drafts } = await kept()
   const first = drafts.id!
   for (let i = 0; i < 13; i++) {
@@ -77,13 +77,13 @@ test('a deleted drawing is gone', async () => {
   expect(await drafts.find(drafts.id!)).toBeNull()
 })
 
-test('a browser that keeps nothing is noticed', async () => {
+test('the state tells that a browser cannot save', async () => {
   const store = new Store()
   new DraftStore(store, Promise.reject(new DOMException('private', 'InvalidStateError')))
   await vi.waitFor(() => expect(store.state.kept).toBe(false))
 })
 
-test('a leaf of one’s own is kept with the drawing, goes with it, and comes back with it', async () => {
+test('an own picture of a leaf is saved, removed and restored with its draft', async () => {
   const { store, drafts } = await kept()
   const id = drafts.id!
   store.set({ leaf: new Blob(['leaf']) })

@@ -2,12 +2,12 @@ import { expect, test } from 'vitest'
 import { Refused, Unreachable } from '../../src/api/client'
 import { faultOf, Unusable } from '../../src/studio/faultText'
 
-test("the service's words become a sentence without their place", () => {
+test("the service's message becomes a sentence without the field's path", () => {
   const fault = faultOf(new Refused(422, 'other', 'settings/height: 900 is too high; give 0.1 to 150', null))
   expect(fault).toEqual({ text: '900 is too high; give 0.1 to 150.' })
 })
 
-test('a service that does not answer is told apart from one that refuses', () => {
+test('a service that does not answer has another sentence than one that refuses', () => {
   expect(faultOf(new Unreachable()).text).toContain('Your drawing is safe')
   expect(faultOf(new Unusable('Draw it longer.')).text).toBe('Draw it longer.')
 })

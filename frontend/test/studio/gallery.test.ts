@@ -30,7 +30,7 @@ test('pages follow each other until there is no more', async () => {
   expect(gallery.hasMore).toBe(false)
 })
 
-test('a page that cannot be had is a sentence in the gallery, and asked for again it goes', async () => {
+test('a page that cannot be read is a fault of the gallery until one can', async () => {
   let down = true
   service(call => (down ? problem(422, 'cursor_invalid', 'there is no such page') : serve(call)))
   const { store, gallery } = begin()
@@ -41,7 +41,7 @@ test('a page that cannot be had is a sentence in the gallery, and asked for agai
   expect(store.state.faults.gallery).toBeUndefined()
 })
 
-test('the tree that is looked at goes when it is deleted, the strokes stay, and undo brings it back', async () => {
+test('the shown model disappears when it is deleted, the strokes stay, and undo brings it back', async () => {
   service(serve)
   const { store, grower, gallery } = begin()
   const glb = new ArrayBuffer(4)
@@ -58,7 +58,7 @@ test('the tree that is looked at goes when it is deleted, the strokes stay, and 
   ])
 })
 
-test('another tree than the one looked at goes without a trace', async () => {
+test('deleting another model leaves the shown one', async () => {
   service(serve)
   const { store, grower, gallery } = begin()
   store.set({ model: shownModel({ id: 'mdl_9' }) })
@@ -67,7 +67,7 @@ test('another tree than the one looked at goes without a trace', async () => {
   expect(grower.leave).not.toHaveBeenCalled()
 })
 
-test('the name of the tree that is looked at is that of the drawing too', async () => {
+test('renaming the shown model renames the drawing', async () => {
   service(serve)
   const { store, gallery } = begin()
   store.set({ model: shownModel({ status: 'succeeded' }), name: 'Oak' })

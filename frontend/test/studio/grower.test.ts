@@ -34,7 +34,7 @@ function serve({ method, path }: Call): Response {
 
 const finished = () => model({ status: 'succeeded', files: { 'tree.glb': '/v1/models/mdl_1/tree.glb' } })
 
-test('a tree is asked for with what was drawn, followed, and brought', async () => {
+test('a model is requested with what was drawn, followed, and its tree fetched', async () => {
   const calls = service(serve)
   const { store, grower } = begin()
   await grower.grow()
@@ -49,7 +49,7 @@ test('a tree is asked for with what was drawn, followed, and brought', async () 
   expect(Events.last.readyState).toBe(Events.CLOSED)
 })
 
-test('a second press while a tree grows asks for nothing', async () => {
+test('while a tree grows, growing again requests nothing', async () => {
   const calls = service(serve)
   const { grower } = begin()
   await Promise.all([grower.grow(), grower.grow()])
@@ -58,7 +58,7 @@ test('a second press while a tree grows asks for nothing', async () => {
   expect(grower.isGrowing).toBe(true)
 })
 
-test('without a trunk nothing is asked for', async () => {
+test('without a trunk nothing is requested', async () => {
   const calls = service(serve)
   const { strokes, grower } = begin()
   strokes.undo()
@@ -66,7 +66,7 @@ test('without a trunk nothing is asked for', async () => {
   expect(calls).toHaveLength(0)
 })
 
-test('with a stroke that cannot be used nothing is asked for', async () => {
+test('with a stroke at fault nothing is requested', async () => {
   const calls = service(serve)
   const { store, grower } = begin()
   store.fault('strokes', { text: 'The trunk does not reach the crown.', stroke: { kind: 'branch', index: 0 } })
@@ -93,7 +93,7 @@ test('a request that got lost is sent again under the same key', async () => {
   expect(store.state.model?.info.id).toBe('mdl_1')
 })
 
-test('a refusal is said, and nothing else changes', async () => {
+test('a refusal becomes a fault, and nothing else changes', async () => {
   service(() => problem(422, 'out_of_range', 'settings/height: 900 is too high; give 0.1 to 150', '/settings/height'))
   const { store, grower } = begin()
   await grower.grow()
@@ -101,7 +101,7 @@ test('a refusal is said, and nothing else changes', async () => {
   expect([store.state.model, store.state.asking]).toEqual([null, false])
 })
 
-test('a failure is said in the words of the service', async () => {
+test('a failure becomes a fault in the service’s words', async () => {
   service(serve)
   const { store, grower } = begin()
   await grower.grow()
@@ -111,7 +111,7 @@ test('a failure is said in the words of the service', async () => {
   expect(grower.isGrowing).toBe(false)
 })
 
-test('a broken connection is noted until events come again', async () => {
+test('the page is offline from a broken connection until events arrive again', async () => {
   service(serve)
   const { store, grower } = begin()
   await grower.grow()
@@ -121,7 +121,7 @@ test('a broken connection is noted until events come again', async () => {
   expect(store.state.online).toBe(true)
 })
 
-test('a model that is gone is forgotten, with a sentence', async () => {
+test('a model that is gone is no longer shown, with a fault', async () => {
   service(serve)
   const { store, grower } = begin()
   await grower.grow()
@@ -140,7 +140,7 @@ test('a canceled tree is no longer growing', async () => {
   expect([store.state.model?.info.status, grower.isGrowing]).toEqual(['canceled', false])
 })
 
-test('another model takes the followed one’s place, and its tree is not mistaken', async () => {
+test('another model replaces the followed one, whose late tree is not shown', async () => {
   service(serve)
   const { store, grower } = begin()
   await grower.grow()
@@ -160,7 +160,7 @@ test('another tree of the same strokes has another seed', async () => {
   expect(store.state.seed).not.toBe(3)
 })
 
-test('a leaf of one’s own is sent with the wish, whole', async () => {
+test('an own picture of a leaf is sent with the request, whole', async () => {
   const calls = service(serve)
   const { store, grower } = begin()
   const bytes = Uint8Array.from({ length: 100_000 }, (_, at) => at % 251)
@@ -175,7 +175,7 @@ test('a leaf of one’s own is sent with the wish, whole', async () => {
   expect(calls.at(-1)!.body).not.toHaveProperty('leaf')
 })
 
-test('another of the model’s trees is brought once, and the last choice stands', async () => {
+test('another of the model’s trees is fetched once, and the last choice is shown', async () => {
   const calls = service(({ path }) => new Response(path))
   const { store, grower } = begin()
   const files = { 'tree.glb': '/tree.glb', 'tree.v2.glb': '/tree.v2.glb' }

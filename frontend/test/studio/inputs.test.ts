@@ -43,7 +43,7 @@ test('a photo is traced from its crown on, paper from its first branch on', () =
   expect(canTrace({ ...sketched, history: begin({ ...NO_STROKES, crown: CROWN }) })).toBe(false)
 })
 
-test('traced sketches are told as traced photos are, with the crowns that were taken', async () => {
+test('traced sketches have the form of traced photos, with the crowns of both sheets', async () => {
   const warnings = [{ code: 'side_assumed', stroke: 'side', detail: '' }]
   const calls = service(() => Response.json(sketchAnswer({ warnings })))
   const found = await traced(new Client(), sketched, true)

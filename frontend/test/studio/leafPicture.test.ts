@@ -8,7 +8,7 @@ const alpha =
   async () =>
     Uint8Array.from(pixels)
 
-test('a PNG of which some is transparent is taken as it is', async () => {
+test('a PNG that is partly transparent is used as it is', async () => {
   const leaf = await readLeaf(png(20), 4e6, alpha(255, 0, 255))
   expect([leaf.type, leaf.size]).toEqual(['image/png', 28])
 })

@@ -6,7 +6,7 @@ import { photo, photoSheets } from '../builders'
 
 const leaf = new Blob(['leaf'])
 
-test('a leaf is taken, and one that is of no use leaves it there and says why', async () => {
+test('a leaf’s picture is used, and one that cannot be used leaves it with a fault', async () => {
   const store = new Store()
   let good = true
   const pictures = new OwnPictureActions(store, async file => {
@@ -22,7 +22,7 @@ test('a leaf is taken, and one that is of no use leaves it there and says why', 
   expect([store.state.leaf, store.state.faults.leaf]).toEqual([null, undefined])
 })
 
-test('a leaf that was still being read does not go to another drawing', async () => {
+test('a picture that is still being read does not go to another drawing', async () => {
   const store = new Store()
   store.set({ sheets: photoSheets() })
   const taking = new OwnPictureActions(store, async file => file).take(leaf)

@@ -16,7 +16,8 @@ const jpeg = new Blob([readFileSync(new URL('../../../examples/osage_orange_autu
   type: 'image/jpeg',
 })
 
-const opened = (file: Blob) => readProject(file, () => Promise.reject(new Error('there is no picture')))
+const opened = (file: Blob) =>
+  readProject(file, () => Promise.reject(new Error('this project has no picture of a sketch')))
 
 function zip(members: Record<string, string>): Blob {
   return new Blob([zipSync(Object.fromEntries(Object.entries(members).map(([name, held]) => [name, strToU8(held)])))])
@@ -30,13 +31,13 @@ test('a project is read as it was written', async () => {
   expect(Buffer.from(await read.photo!.arrayBuffer()).equals(Buffer.from(await jpeg.arrayBuffer()))).toBe(true)
 })
 
-test.each(['image/heic', 'image/avif', 'image/tiff'])('a photo of type %s keeps it', async type => {
+test.each(['image/heic', 'image/avif', 'image/tiff'])('a photo of type %s keeps its type', async type => {
   const photo = new Blob(['dots'], { type })
   const written = await writeProject({ photo, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf: null })
   expect((await opened(written)).photo?.type).toBe(type)
 })
 
-test('a project without a crown is kept and read, too', async () => {
+test('a project without a crown is written and read, too', async () => {
   const strokes = { crown: null, branches: [{ points: TRUNK }], erase: [], scale: null }
   const read = await opened(
     await writeProject({ photo: jpeg, strokes, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }),
@@ -59,18 +60,18 @@ test.each([
   await expect(opened(file)).rejects.toThrow(word)
 })
 
-test('a project is known by its ending or its type', () => {
+test('a project is recognized by its ending or its type', () => {
   expect(isProject(new File([], 'oak.treestroke'))).toBe(true)
   expect(isProject(new File([], 'oak.zip', { type: 'application/zip' }))).toBe(true)
   expect(isProject(new File([], 'oak.jpg', { type: 'image/jpeg' }))).toBe(false)
 })
 
-test('a name makes a file name that every system takes', () => {
+test('a name becomes a file name that every system accepts', () => {
   expect(projectName('Oak: 3/4 "view"')).toBe('Oak_ 3_4 _view_.treestroke')
   expect(projectName('')).toBe('tree.treestroke')
 })
 
-test('a leaf of one’s own goes with the project', async () => {
+test('a project holds an own picture of a leaf', async () => {
   const leaf = new Blob(['a leaf'], { type: 'image/png' })
   const project = { photo: jpeg, strokes: STROKES, settings: DEFAULT_SETTINGS, seed: 0, leaf }
   const read = await opened(await writeProject(project))
@@ -87,7 +88,7 @@ test('sketches on paper are read as they were written, with a fruit and without 
   expect(await read.fruit?.text()).toBe('a pear')
 })
 
-test('a side that goes with a photo’s strokes is kept with them', async () => {
+test('a side beside a photo’s strokes is written and read with them', async () => {
   const strokes = withSheet(STROKES, 'side', { ...NO_STROKES, branches: [{ points: LIMB }] })
   const sizes = { side: { width: 450, height: 600 } }
   const project = { photo: jpeg, strokes, sizes, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }
@@ -96,7 +97,7 @@ test('a side that goes with a photo’s strokes is kept with them', async () => 
   expect(read.photo?.size).toBe(jpeg.size)
 })
 
-test('a sketch that is a picture is read as strokes, and what was mended in it is said', async () => {
+test('a sketch that is a picture is read as strokes, with its corrections', async () => {
   const picture = zip({ 'front.png': 'ahead', 'side.png': 'left', 'settings.json': '{"height": 6}' })
   const size = { width: 450, height: 600 }
   const ways = { ahead: TRUNK, left: LIMB } as Readonly<Record<string, typeof TRUNK>>

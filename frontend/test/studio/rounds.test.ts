@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
 import { Rounds } from '../../src/studio/rounds'
 
-/** Rounds that wait until they are let go, one after another. */
+/** Rounds whose runs wait until they are released, one after another. */
 function held(fails = (_: number) => false) {
   const begun: (() => void)[] = []
   const rounds = new Rounds(async () => {
@@ -14,7 +14,7 @@ function held(fails = (_: number) => false) {
 
 const settled = () => new Promise(done => setTimeout(done))
 
-test('one round is under way at a time, and all that was asked meanwhile is one more', async () => {
+test('there is one run at a time, and all requests meanwhile lead to one more', async () => {
   const { begun, rounds } = held()
   const first = rounds.ask()
   rounds.ask()
@@ -28,7 +28,7 @@ test('one round is under way at a time, and all that was asked meanwhile is one 
   expect(begun).toHaveLength(2)
 })
 
-test('a round that breaks is told, and the next one can be asked for', async () => {
+test('a run that fails rejects, and the next one can be requested', async () => {
   const { begun, rounds } = held(number => number === 0)
   const first = rounds.ask()
   begun[0]!()

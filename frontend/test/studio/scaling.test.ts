@@ -12,15 +12,15 @@ const LINE: Line = [
 const drawn: Strokes = { crown: CROWN, branches: [{ points: TRUNK }], erase: [], scale: null }
 const state = (strokes: Partial<Strokes>): State => ({ ...EMPTY, history: begin({ ...drawn, ...strokes }) })
 
-test('a line is guessed by the height, from the trunk’s foot to the crown’s top', () => {
+test('a length is guessed from the tree’s height, from the trunk’s foot to the crown’s top', () => {
   expect(metresOf(LINE, state({}))).toBeCloseTo((17 / 85) * 10, 6)
 })
 
-test('a line is guessed by the one before it', () => {
+test('a length is guessed from the line before it', () => {
   const scale = { points: [CROWN[0]!, [20, 20]] as Line, metres: 1.8 }
   expect(metresOf(LINE, state({ scale }))).toBeCloseTo(3.1, 6)
 })
 
-test('without anything drawn a line still has a length', () => {
+test('a line has a length even where nothing is drawn', () => {
   expect(metresOf(LINE, state({ crown: null, branches: [] }))).toBeGreaterThan(0)
 })

@@ -19,14 +19,14 @@ function begin() {
   return { store, actions, strokes: new StrokeActions(store) }
 }
 
-test('the side’s sheet opens as high as the photo beside it, and a branch is what is drawn next', () => {
+test('the side’s sheet opens as high as the photo beside it, with the branch tool', () => {
   const { store, actions } = begin()
   store.set({ sheets: photoSheets(photo({ height: 600 })) })
   actions.openSide()
   expect(store.state).toMatchObject({ sheets: { side: { width: 450, height: 600 } }, active: 'side', tool: 'branch' })
 })
 
-test('a sheet that is put away takes its strokes along, and an undo brings both back', () => {
+test('a sheet that is closed loses its strokes, and an undo brings both back', () => {
   const { store, actions, strokes } = begin()
   strokes.draw('branch', TRUNK)
   strokes.draw('branch', LIMB, 'side')
@@ -50,7 +50,7 @@ test('a picture under the side stays in the browser; strokes keep their place on
   expect(store.strokes.side?.branches[0]?.points[0]?.[0]).toBe(TRUNK[0]![0] + 450)
 })
 
-test('a picture under the front is sent, since it lends the tree its colours', async () => {
+test('a picture under the front is sent, since it gives the tree its colours', async () => {
   vi.stubGlobal('createImageBitmap', async () => ({ ...WIDE, close() {} }))
   service(() => Response.json({ id: 'pho_9', ...WIDE, image: '/v1/photos/pho_9/image' }, { status: 201 }))
   const { store, actions } = begin()
@@ -62,7 +62,7 @@ test('a picture under the front is sent, since it lends the tree its colours', a
   expect(store.state.sheets?.front).toEqual({ id: null, ...WIDE, file: null, url: null })
 })
 
-test('what is no picture leaves the sheet as it was, and is said as the service says it', async () => {
+test('a file that is not a picture leaves the sheet as it was, with the service’s fault', async () => {
   service(() => problem(422, 'format_not_allowed', 'photo: this is a PDF document; export its picture'))
   const { store } = begin()
   const actions = new SheetActions(store, new Client(), () => Promise.reject(new Error('no picture')))
@@ -71,7 +71,7 @@ test('what is no picture leaves the sheet as it was, and is said as the service 
   expect(store.state.faults.photo?.text).toBe('This is a PDF document; export its picture.')
 })
 
-test('a picture that the browser cannot show lies under the side as the service shows it, which keeps nothing', async () => {
+test('a picture that the browser cannot show is converted by the service, which does not keep it', async () => {
   const png = new Blob(['dots'], { type: 'image/png' })
   const calls = service(({ method, path }) => {
     if (method === 'DELETE') return new Response(null, { status: 204 })
@@ -88,7 +88,7 @@ test('a picture that the browser cannot show lies under the side as the service 
   expect(calls.map(({ method, path }) => `${method} ${path}`).at(-1)).toBe('DELETE /v1/photos/pho_9')
 })
 
-test('what was mended in a picture under the front is said until something is drawn', async () => {
+test('corrections of a picture under the front are shown until something is drawn', async () => {
   const warnings = [{ code: 'photo_cut_short', stroke: 'photo', detail: 'the file is cut short' }]
   service(() => Response.json({ id: 'pho_9', ...WIDE, image: '/image', warnings }, { status: 201 }))
   const { store, actions } = begin()
@@ -96,7 +96,7 @@ test('what was mended in a picture under the front is said until something is dr
   expect(store.state.corrections).toEqual({ of: store.strokes, text: 'The file is cut short.' })
 })
 
-test('a brush is taken up with the branch, and its width goes with each stroke on paper', () => {
+test('choosing a brush chooses the branch tool, and each stroke on paper gets the brush’s width', () => {
   const { store, actions, strokes } = begin()
   strokes.hold('crown')
   actions.chooseBrush(0.02)

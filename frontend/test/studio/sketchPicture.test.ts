@@ -5,8 +5,8 @@ import { CROWN, drawnAnswer, TRUNK } from '../builders'
 
 const SHOWN = drawnAnswer().front
 
-/** A trunk that bears so many limbs, each a little longer than the one before, and a twig on the first of them. */
-function bearing(limbs: number) {
+/** A trunk with this many limbs, each a little longer than the one before, and a twig on the first of them. */
+function trunkWith(limbs: number) {
   const trunk = [0, 1].map(end => [500, 1000 - 900 * end] as [number, number])
   const tips = Array.from({ length: limbs }, (_, limb) => [510 + limb, 100] as [number, number])
   const twig: [number, number] = [510, 800]
@@ -18,7 +18,7 @@ function bearing(limbs: number) {
   }
 }
 
-test('every branch is one stroke, the trunk first, each from the line of its bearer to its tip', () => {
+test('every branch is one stroke, the trunk first, each from the line of its parent branch to its tip', () => {
   const { strokes, size } = sketchIn(SHOWN)
   expect(strokes.branches.map(({ points }) => points)).toEqual([
     TRUNK,
@@ -30,7 +30,7 @@ test('every branch is one stroke, the trunk first, each from the line of its bea
   expect(size).toEqual({ width: 100, height: 100 })
 })
 
-test('a stroke is as wide as its brush mostly was', () => {
+test('a stroke has the median width of its line', () => {
   expect(sketchIn(SHOWN).strokes.branches.map(({ width }) => width)).toEqual([10, 4])
 })
 
@@ -40,15 +40,15 @@ test('a pen’s strokes have no width', () => {
   expect(branches.every(branch => !('width' in branch))).toBe(true)
 })
 
-test('a crown that was drawn is the crown, one that was assumed is none', () => {
+test('a crown that was drawn becomes a stroke, one that was assumed does not', () => {
   const crown = CROWN.map(([x, y]) => [x, y] as [number, number])
   expect(sketchIn({ ...SHOWN, crown, crown_drawn: true }).strokes.crown).toEqual(CROWN)
   expect(sketchIn({ ...SHOWN, crown }).strokes).toMatchObject({ ...NO_STROKES, branches: expect.anything() })
 })
 
-test('of more branches than can be drawn the shortest are left out, those that bear others last, and it is said', () => {
+test('of too many branches the shortest are left out, parent branches last, and the corrections say so', () => {
   const size: [number, number] = [1000, 1000]
-  const { strokes, corrections } = sketchIn({ ...SHOWN, skeleton: bearing(210), size })
+  const { strokes, corrections } = sketchIn({ ...SHOWN, skeleton: trunkWith(210), size })
   expect(strokes.branches).toHaveLength(199)
   expect(corrections).toContain('13 shortest branches were left out')
   expect(strokes.branches[0]!.points[0]).toEqual([500, 1000])
@@ -59,9 +59,14 @@ test('of more branches than can be drawn the shortest are left out, those that b
   expect(strokes.branches[1]!.points.at(-1)).toEqual([510, 100])
 })
 
-test('what was mended is said once for each kind', () => {
-  const told = (code: string, detail = '') => ({ code, stroke: 'front/picture', detail })
-  const warnings = [told('loop_cut'), told('branch_joined'), told('loop_cut'), told('new_one', 'a dot was dropped')]
+test('the corrections name each kind once', () => {
+  const warning = (code: string, detail = '') => ({ code, stroke: 'front/picture', detail })
+  const warnings = [
+    warning('loop_cut'),
+    warning('branch_joined'),
+    warning('loop_cut'),
+    warning('new_one', 'a dot was dropped'),
+  ]
   const { corrections } = sketchIn(SHOWN, warnings)
   expect(corrections).toMatch(/^2 loops of branches were cut open\. 1 gap was closed\. A dot was dropped\.$/)
   expect(sketchIn(SHOWN).corrections).toBeUndefined()

@@ -12,7 +12,7 @@ beforeEach(() => {
   strokes = new StrokeActions(store)
 })
 
-test('after the first crown the branch tool is at hand', () => {
+test('after the first crown the branch tool is chosen', () => {
   strokes.draw('crown', CROWN)
   expect(store.state.tool).toBe('branch')
   strokes.hold('crown')
@@ -20,7 +20,7 @@ test('after the first crown the branch tool is at hand', () => {
   expect(store.state.tool).toBe('crown')
 })
 
-test('every edit can be undone and done again, without end', () => {
+test('every edit can be undone and redone, however many there are', () => {
   strokes.draw('crown', CROWN)
   for (let i = 0; i < 150; i++) strokes.draw('branch', TRUNK)
   const full = store.strokes
@@ -72,7 +72,7 @@ test('with nothing selected nothing is deleted', () => {
   expect(store.state.history).toBe(before)
 })
 
-test('a measured line is selected for its length, which is an edit of its own', () => {
+test('a measured line is selected so that its length can be set, which is another edit', () => {
   strokes.draw('scale', TRUNK)
   expect(store.state.selection).toEqual({ kind: 'scale', index: 0 })
   strokes.measure(1.8)
@@ -86,7 +86,7 @@ test('a measured line is selected for its length, which is an edit of its own', 
   expect(store.strokes.scale).toBeNull()
 })
 
-test('an end that is moved leaves the length as it was said', () => {
+test('moving an end keeps the length that was set', () => {
   strokes.draw('scale', TRUNK)
   strokes.measure(1.8)
   strokes.draw('scale', [TRUNK[0]!, [60, 30]])

@@ -31,7 +31,7 @@ test('a crown alone is traced and not grown', async () => {
   expect(store.state.liveTree).toBeNull()
 })
 
-test('with a trunk the tracing comes first, the live tree after it', async () => {
+test('with a trunk, tracing comes first and then the live tree', async () => {
   const calls = service(traced)
   const { store, strokes } = await begin()
   strokes.draw('crown', CROWN)
@@ -46,7 +46,7 @@ test('with a trunk the tracing comes first, the live tree after it', async () =>
   expect(store.state.tracing).toBe(false)
 })
 
-test('no more than one request is under way, and what was drawn meanwhile is traced once, by its latest', async () => {
+test('there is one request at a time, and of what is drawn meanwhile only the latest is traced', async () => {
   let underway = 0
   const calls = service(async call => {
     expect(++underway).toBe(1)
@@ -97,7 +97,7 @@ test('refused strokes stay, say what is wrong with which, and are not sent again
   expect(store.state.faults.strokes?.stroke).toEqual({ kind: 'branch', index: 0 })
 })
 
-test('while the service is away it is asked again, and the strokes are traced when it is back', async () => {
+test('while the service cannot be reached it is asked again, until the strokes are traced', async () => {
   let tries = 0
   service(call => (++tries < 4 ? 'down' : traced(call)))
   const { store, wait, strokes } = await begin()
@@ -110,7 +110,7 @@ test('while the service is away it is asked again, and the strokes are traced wh
   expect(store.state.traced).not.toBeNull()
 })
 
-test('a photo that the service has forgotten is sent again', async () => {
+test('a photo that the service no longer has is sent again', async () => {
   service(call => {
     if (call.path === '/v1/photos') return Response.json({ id: 'pho_2', width: 100, height: 100 })
     return call.path.includes('pho_2') ? traced(call) : problem(404, 'not_found', 'no such photo')
@@ -157,7 +157,7 @@ test('the live tree comes back with its strokes: after a trunk that was deleted,
   }
 })
 
-test('a traced branch that was selected is let go when its joints are numbered anew', async () => {
+test('a selected traced branch is deselected when joints get new numbers', async () => {
   service(traced)
   const { store, strokes } = await begin()
   strokes.draw('crown', CROWN)
@@ -166,7 +166,7 @@ test('a traced branch that was selected is let go when its joints are numbered a
   expect(store.state.selection).toBeNull()
 })
 
-test('where nothing can be grown, it is asked for once', async () => {
+test('a live tree that cannot be grown is requested once', async () => {
   const calls = service(() => Response.json(answer()))
   const { store, strokes } = await begin()
   strokes.draw('crown', CROWN)

@@ -14,7 +14,7 @@ const trees = [
   { seed: 5, score: { silhouette_iou: 0.8 }, counts: { leaves: 20 } },
 ]
 
-test('files of trees are told from others, and by tree', () => {
+test('files of trees are found among others, with their tree’s number', () => {
   const grown = model({ files })
   expect(treeFiles(grown).map(({ variant, what }) => [variant, what])).toEqual([
     [1, 'glb'],

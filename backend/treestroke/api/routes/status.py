@@ -21,9 +21,9 @@ from treestroke.limits import (
     MAX_TEXT_BYTES,
 )
 from treestroke.schemas import Health, Limits, Version
-from treestroke.service.doctor import readiness
 from treestroke.service.engine_version import engine_version
 from treestroke.service.files import files_on_offer
+from treestroke.service.readiness import readiness
 
 router = APIRouter(tags=["service"])
 

@@ -43,9 +43,10 @@ function usePointer(): PointerKind {
   return pointer
 }
 
-/** A browser may not know what a pointer is. */
+/** Return the kind of a pointer; what a phone takes for a mouse, or does not know, is a finger. */
 function kindOf(pointerType: string): PointerKind {
-  return pointerType === 'touch' || pointerType === 'pen' ? pointerType : 'mouse'
+  if (pointerType === 'touch' || pointerType === 'pen') return pointerType
+  return matchMedia('(any-pointer: fine)').matches ? 'mouse' : 'touch'
 }
 
 function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint }) {

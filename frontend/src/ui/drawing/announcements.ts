@@ -5,7 +5,7 @@ import { isEmpty, lineOf, type Point, type StrokeRef, type Strokes, strokeRefs }
 import { text } from '../../text'
 import { strokeName } from './strokeTexts'
 
-/** Have screen readers say what the eye sees on the sheets: tools, strokes, what was found; the call ends it. */
+/** Announce the tool, the sheet and the selection that are chosen, edits, and what was traced; the call ends it. */
 export function announceDrawing(store: Store): () => void {
   const say = <T>(select: (state: State) => T, sentence: (now: T, before: T) => string | null) => {
     let before = select(store.state)
@@ -18,7 +18,7 @@ export function announceDrawing(store: Store): () => void {
   const ends = [
     say(
       state => state.history,
-      (now, before) => editSaid(before, now),
+      (now, before) => editText(before, now),
     ),
     say(
       state => state.active,
@@ -42,15 +42,15 @@ export function announceDrawing(store: Store): () => void {
   }
 }
 
-/** Say what the keyboard's pen does, at a place of a sheet in pixels. */
+/** Announce what the keyboard's pen does, at a place of a sheet in pixels. */
 export function announcePen(store: Store, pen: 'down' | 'up' | 'move', [x, y]: Point, { width, height }: Sheet): void {
   const [right, down] = [x / width, y / height]
   if (pen === 'up') store.announce(text.strokes.penUp)
   else store.announce(pen === 'down' ? text.strokes.penDown(right, down) : text.strokes.penAt(right, down))
 }
 
-/** Say what an edit of the strokes did, for those who do not see it; null where another drawing was opened. */
-export function editSaid(before: History<Strokes>, now: History<Strokes>): string | null {
+/** Return what an edit of the strokes did, in words; null where another drawing was opened. */
+export function editText(before: History<Strokes>, now: History<Strokes>): string | null {
   if (now.future[0] === before.present) return text.strokes.undone
   if (now.past.at(-1) !== before.present) return null
   if (before.future[0] === now.present) return text.strokes.redone
@@ -64,13 +64,13 @@ export function editSaid(before: History<Strokes>, now: History<Strokes>): strin
   return gone ? text.strokes.deleted(strokeName(gone)) : null
 }
 
-/** Find the strokes of `strokes` that `others` have not: more than one were not drawn, but opened. */
+/** List the strokes that others lack; more than one at once were opened, not drawn. */
 function missing(strokes: Strokes, others: Strokes): StrokeRef[] {
   const known = new Set(strokeRefs(others).map(ref => lineOf(others, ref)))
   return strokeRefs(strokes).filter(ref => !known.has(lineOf(strokes, ref)))
 }
 
-/** Count the ends of what was traced: as many branches does the eye see. */
+/** Count the tips of what was traced: each ends one branch. */
 function tipCount({ parents }: TracedSkeleton): number {
   const bearing = new Set(parents)
   return parents.filter((_, joint) => !bearing.has(joint)).length

@@ -23,12 +23,12 @@ type Change = (id: string, changed: Partial<Entry>) => void
 export function GalleryDialog() {
   return (
     <Dialog title={text.gallery.title} class="gallery-dialog">
-      <Trees />
+      <Models />
     </Dialog>
   )
 }
 
-function Trees() {
+function Models() {
   const { store, client, grower } = useStudio()
   const [gallery] = useState(() => new Gallery(store, client, grower))
   const { entries, page, load, change } = usePages(gallery)
@@ -52,7 +52,11 @@ function Trees() {
       <ul class="cards" ref={list}>
         {entries.map(({ model, deleted }) => {
           const one = { key: model.id, model, gallery, change }
-          return deleted ? <Deleted {...one} focus={setFocused} /> : <Tree {...one} focused={focused === model.id} />
+          return deleted ? (
+            <DeletedModel {...one} focus={setFocused} />
+          ) : (
+            <ListedModel {...one} focused={focused === model.id} />
+          )
         })}
       </ul>
       <p class="gallery-empty" hidden={page !== 'loaded' || entries.length > 0}>
@@ -107,7 +111,7 @@ interface EntryProps {
   readonly change: Change
 }
 
-function Tree({ model, gallery, change, focused }: EntryProps & { readonly focused: boolean }) {
+function ListedModel({ model, gallery, change, focused }: EntryProps & { readonly focused: boolean }) {
   const { store, opener } = useStudio()
   const open = () => {
     store.set({ dialog: null })
@@ -126,7 +130,7 @@ function Tree({ model, gallery, change, focused }: EntryProps & { readonly focus
 }
 
 /** The place of a deleted model, with the button that brings it back. */
-function Deleted({ model, gallery, change, focus }: EntryProps & { focus(id: string): void }) {
+function DeletedModel({ model, gallery, change, focus }: EntryProps & { focus(id: string): void }) {
   const { store } = useStudio()
   const undo = useRef<HTMLButtonElement>(null)
   useLayoutEffect(() => undo.current!.focus(), [])
@@ -138,7 +142,7 @@ function Deleted({ model, gallery, change, focus }: EntryProps & { focus(id: str
     store.announce(text.gallery.restored(nameOf(model)))
   }
   return (
-    <li class="card gone">
+    <li class="card is-deleted">
       <p>{text.gallery.removed(nameOf(model))}</p>
       <button type="button" class="button outlined" ref={undo} onClick={restore}>
         {text.gallery.undo}

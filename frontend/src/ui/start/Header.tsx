@@ -62,7 +62,7 @@ function NameField() {
   }
   return (
     <div class="head-title">
-      <h1 class="unseen">{name || text.header.untitled}</h1>
+      <h1 class="visually-hidden">{name || text.header.untitled}</h1>
       <input
         class="head-name"
         aria-label={text.header.name}

@@ -8,7 +8,7 @@ import { Icon } from '../parts/Icon'
 import { IconButton } from '../parts/IconButton'
 import { ICONS } from '../parts/icons'
 import { useStore } from '../parts/useStore'
-import { drawPortrait } from './portrait'
+import { drawThumbnail } from './thumbnail'
 import { ago } from './when'
 
 const LONGEST_NAME = 200
@@ -71,10 +71,10 @@ function Picture({ model }: { readonly model: Model }) {
   const canvas = useRef<HTMLCanvasElement>(null)
   const [broken, setBroken] = useState(false)
   useEffect(() => {
-    if (url) drawPortrait(canvas.current!, url).catch(() => setBroken(true))
+    if (url) drawThumbnail(canvas.current!, url).catch(() => setBroken(true))
   }, [url])
   if (broken) return <Icon path={ICONS.tree} />
-  if (url) return <canvas class="card-portrait" ref={canvas} />
+  if (url) return <canvas class="card-thumbnail" ref={canvas} />
   return (
     <span class="card-status">
       <Icon path={ICONS.tree} />

@@ -16,7 +16,7 @@ import './welcome.css'
 /** How many of the latest trees are shown. */
 const TREES = 4
 
-/** What is seen while nothing is open: what this is, and every way to begin. `late`: a drawing may come first. */
+/** What is seen while nothing is open: what this is, and every way to start. `late`: it waits a moment for a drawing that is opened again. */
 export function Welcome({ late }: { readonly late: boolean }) {
   const closed = useStore(({ sheets }) => sheets === null)
   const { welcome, sheets } = text
@@ -58,7 +58,7 @@ function Hero() {
           ])}
         </h1>
         <Lead />
-        <Beginnings />
+        <StartButtons />
         <OpeningFault />
         <p class="soft">{welcome.formats}</p>
       </div>
@@ -83,22 +83,22 @@ function Lead() {
   )
 }
 
-/** The ways to begin: a photo, white paper, a drawing. */
-function Beginnings() {
+/** The ways to start: with a photo, on white paper, with a drawing. */
+function StartButtons() {
   const studio = useStudio()
   const { welcome, sheets } = text
   const draw = () => mayLeave(studio) && studio.opener.openPaper()
   const open = () => chooseSketch(file => openSketch(studio, file))
   return (
     <>
-      <div class="hero-begin">
+      <div class="hero-start">
         <button type="button" class="button chief hero-choose" onClick={() => choose(studio)}>
           <Icon path={ICONS.photo} />
           {welcome.choose}
         </button>
         <span class="hero-other">{welcome.otherWays}</span>
       </div>
-      <div class="hero-begin">
+      <div class="hero-start">
         <button type="button" class="button outlined hero-draw" onClick={draw}>
           <Icon path={ICONS.sheet} />
           {sheets.welcome.draw}

@@ -47,7 +47,7 @@ const NEAREST = 84
 
 /** Grow the tree of the illustration: always the same one. */
 export function drawnTree(): DrawnTree {
-  const chance = dice(11)
+  const chance = randomFrom(11)
   const twigs: Twig[] = []
   const leaves: Leaf[] = []
   const grow = ({ from, angle, length, level, leads }: Shoot): void => {
@@ -120,7 +120,7 @@ function smooth(points: readonly Point[]): string {
   return `M${points[0]!.map(value => value.toFixed(1)).join(' ')}${parts.join('')}`
 }
 
-function dice(seed: number): () => number {
+function randomFrom(seed: number): () => number {
   let state = seed
   return () => {
     state = (state * 1664525 + 1013904223) % 4294967296

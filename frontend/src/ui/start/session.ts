@@ -17,7 +17,7 @@ export async function resume(studio: Studio): Promise<void> {
   else if (model) await studio.opener.openModel(model)
 }
 
-/** Keep the address and the tab's memory at what is open, and follow an address that is changed by hand. */
+/** Keep the address and the tab's storage at what is open, and follow an address that is changed by hand. */
 export function followSession(studio: Studio): void {
   const { store, drafts } = studio
   store.watch(
@@ -54,7 +54,7 @@ function remembered(): string | null {
   try {
     return sessionStorage.getItem(DRAFT)
   } catch {
-    return null // the browser allows no memory
+    return null // the browser stores nothing
   }
 }
 
@@ -63,6 +63,6 @@ function remember(id: string | null): void {
     if (id) sessionStorage.setItem(DRAFT, id)
     else sessionStorage.removeItem(DRAFT)
   } catch {
-    // the browser allows no memory: a reload begins anew
+    // the browser stores nothing: a reload starts with nothing open
   }
 }

@@ -15,7 +15,7 @@ const button = (label: string) =>
 
 /** Show the line on a device whose main pointer is a finger, or is none. */
 async function on(device: 'phone' | 'desk'): Promise<void> {
-  vi.stubGlobal('matchMedia', () => ({ matches: device === 'phone' }))
+  vi.stubGlobal('matchMedia', (query: string) => ({ matches: query.includes('fine') === (device === 'desk') }))
   studio = new Studio()
   studio.store.set({ sheets: photoSheets() })
   await mount(studio, <HintLine />)
@@ -31,9 +31,11 @@ function press(pointerType: string): Promise<void> {
 beforeEach(() => on('desk'))
 afterEach(() => vi.unstubAllGlobals())
 
-test('a phone says how to draw with a finger before anything is touched, a desk how with the mouse', async () => {
+test('a phone says how to draw with a finger, whatever was pressed, and a desk how with the mouse', async () => {
   expect(said()).toContain(text.hints.how.mouse.crown)
   await on('phone')
+  expect(said()).toContain('with your finger')
+  await press('mouse')
   expect(said()).toContain('with your finger')
   expect(said()).not.toContain('button')
 })

@@ -4,7 +4,7 @@ import { paper } from '../../../src/sheets'
 import { type State, Store } from '../../../src/state'
 import { type Line, NO_STROKES, withoutStroke, withScale, withSheet, withStroke } from '../../../src/strokes'
 import { text } from '../../../src/text'
-import { announceDrawing, announcePen, editSaid } from '../../../src/ui/drawing/announcements'
+import { announceDrawing, announcePen, editText } from '../../../src/ui/drawing/announcements'
 import { answer, drawnAnswer, sketchSheets } from '../../builders'
 
 const LOOP: Line = [
@@ -22,35 +22,35 @@ const trunked = advance(crowned, withStroke(crowned.present, 'branch', TRUNK))
 const branched = advance(trunked, withStroke(trunked.present, 'branch', [...TRUNK]))
 
 test('what was drawn is named', () => {
-  expect(editSaid(empty, crowned)).toBe('Drawn: Crown.')
-  expect(editSaid(crowned, trunked)).toBe('Drawn: Trunk.')
-  expect(editSaid(trunked, branched)).toBe('Drawn: Branch 2.')
+  expect(editText(empty, crowned)).toBe('Drawn: Crown.')
+  expect(editText(crowned, trunked)).toBe('Drawn: Trunk.')
+  expect(editText(trunked, branched)).toBe('Drawn: Branch 2.')
 })
 
 test('a crown drawn anew is a drawn crown, not a deleted one', () => {
-  expect(editSaid(crowned, advance(crowned, withStroke(crowned.present, 'crown', [...LOOP])))).toBe('Drawn: Crown.')
+  expect(editText(crowned, advance(crowned, withStroke(crowned.present, 'crown', [...LOOP])))).toBe('Drawn: Crown.')
 })
 
 test('what was deleted is named as it was', () => {
   const without = advance(branched, withoutStroke(branched.present, { kind: 'branch', index: 1 }))
-  expect(editSaid(branched, without)).toBe('Deleted: Branch 2.')
+  expect(editText(branched, without)).toBe('Deleted: Branch 2.')
 })
 
 test('clearing, undoing and redoing are told apart', () => {
   const cleared = advance(branched, NO_STROKES)
-  expect(editSaid(branched, cleared)).toBe('All strokes cleared.')
-  expect(editSaid(cleared, undo(cleared))).toBe('Undone.')
-  expect(editSaid(undo(branched), redo(undo(branched)))).toBe('Redone.')
+  expect(editText(branched, cleared)).toBe('All strokes cleared.')
+  expect(editText(cleared, undo(cleared))).toBe('Undone.')
+  expect(editText(undo(branched), redo(undo(branched)))).toBe('Redone.')
 })
 
 test('nothing is said of another drawing', () => {
-  expect(editSaid(branched, begin(withStroke(NO_STROKES, 'crown', LOOP)))).toBeNull()
+  expect(editText(branched, begin(withStroke(NO_STROKES, 'crown', LOOP)))).toBeNull()
 })
 
 test('a measured line is named, and its length when that is said', () => {
   const lined = advance(trunked, withScale(trunked.present, [...TRUNK], 1))
   const measured = advance(lined, withScale(lined.present, lined.present.scale!.points, 1.8))
-  expect([editSaid(trunked, lined), editSaid(lined, measured)]).toEqual([
+  expect([editText(trunked, lined), editText(lined, measured)]).toEqual([
     'Drawn: Measured line.',
     'The measured line is 1.8 m long.',
   ])
@@ -58,11 +58,11 @@ test('a measured line is named, and its length when that is said', () => {
 
 test('what is drawn on the other sheet is told as such', () => {
   const side = withSheet(trunked.present, 'side', withStroke(NO_STROKES, 'branch', [...TRUNK]))
-  expect(editSaid(trunked, advance(trunked, side))).toBe('Drawn: Trunk (left side).')
+  expect(editText(trunked, advance(trunked, side))).toBe('Drawn: Trunk (left side).')
 })
 
 test('strokes that come all at once were opened, not drawn', () => {
-  expect(editSaid(empty, advance(empty, branched.present))).toBe('Drawing opened.')
+  expect(editText(empty, advance(empty, branched.present))).toBe('Drawing opened.')
 })
 
 test('tools, sheets and what is selected are said, until the call', () => {

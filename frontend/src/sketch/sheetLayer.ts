@@ -2,19 +2,21 @@ import type { Sheet } from '../state'
 import type { DrawTarget } from './drawTarget'
 import { INK, PAPER } from './ink'
 
-/** A photo that is shown much smaller than it is would be slow to draw and glitter; halves of halves are neither. */
+/** How often a picture is halved: shrinking the full one at each draw would be slow, and flicker while zooming. */
 const HALVINGS = 4
-/** From this scale on the photo's pixels are shown as such. */
-const PIXELS_SHOW = 12
+/** From this scale on, CSS px per sheet px, the picture's pixels are shown as squares. */
+const SQUARE_PIXELS_SCALE = 12
 
-/** The upright picture or the paper, ready to be drawn at any scale. */
-export class PhotoLayer {
+/** Draws a sheet, its paper and its picture, at any scale. */
+export class SheetLayer {
   #sheet: Sheet | null = null
+  /** The picture, and smaller copies of it, each half as large as the one before. */
   #levels: CanvasImageSource[] = []
 
-  constructor(private readonly loaded: () => void) {}
+  /** `onLoad` is called when a picture can be drawn. */
+  constructor(private readonly onLoad: () => void) {}
 
-  /** Show another photo or paper, or none; `loaded` is called when its picture can be drawn. */
+  /** Show another sheet, or none. */
   show(sheet: Sheet | null): void {
     const before = this.#sheet
     this.#sheet = sheet
@@ -23,15 +25,15 @@ export class PhotoLayer {
     if (sheet?.url) void this.#load(sheet.url)
   }
 
-  /** Draw the photo; on `paper` it shines through. */
+  /** Draw the sheet; on `paper` its picture is half transparent. */
   draw({ ctx, density, view: { scale, x, y } }: DrawTarget, paper: boolean): void {
     if (!this.#sheet) return
     const { width, height, hidden } = this.#sheet
     ctx.setTransform(density * scale, 0, 0, density * scale, density * x, density * y)
     if (paper) drawPaper(ctx, this.#sheet)
-    const shrunk = Math.floor(Math.log2(1 / Math.min(1, scale * density)))
-    const picture = this.#levels[Math.min(shrunk, this.#levels.length - 1)]
-    ctx.imageSmoothingEnabled = scale < PIXELS_SHOW
+    const halvings = Math.floor(Math.log2(1 / Math.min(1, scale * density)))
+    const picture = this.#levels[Math.min(halvings, this.#levels.length - 1)]
+    ctx.imageSmoothingEnabled = scale < SQUARE_PIXELS_SCALE
     ctx.globalAlpha = paper ? PAPER.veil : 1
     if (picture && !hidden) ctx.drawImage(picture, 0, 0, width, height)
     ctx.globalAlpha = 1
@@ -46,8 +48,8 @@ export class PhotoLayer {
     picture.src = url
     await picture.decode().catch(() => undefined)
     if (this.#sheet?.url !== url || !picture.naturalWidth) return
-    this.#levels = halvings(picture)
-    this.loaded()
+    this.#levels = halvedCopies(picture)
+    this.onLoad()
   }
 }
 
@@ -60,16 +62,16 @@ function drawPaper(ctx: CanvasRenderingContext2D, { width, height }: Sheet): voi
   ctx.shadowColor = 'transparent'
 }
 
-function halvings(picture: HTMLImageElement): CanvasImageSource[] {
-  const levels: HTMLCanvasElement[] = [drawn(picture, picture.naturalWidth, picture.naturalHeight)]
+function halvedCopies(picture: HTMLImageElement): CanvasImageSource[] {
+  const levels: HTMLCanvasElement[] = [resized(picture, picture.naturalWidth, picture.naturalHeight)]
   for (let level = 1; level <= HALVINGS; level++) {
     const { width, height } = levels[level - 1]!
-    levels.push(drawn(levels[level - 1]!, Math.ceil(width / 2), Math.ceil(height / 2)))
+    levels.push(resized(levels[level - 1]!, Math.ceil(width / 2), Math.ceil(height / 2)))
   }
   return levels
 }
 
-function drawn(source: CanvasImageSource, width: number, height: number): HTMLCanvasElement {
+function resized(source: CanvasImageSource, width: number, height: number): HTMLCanvasElement {
   const canvas = document.createElement('canvas')
   canvas.width = width
   canvas.height = height

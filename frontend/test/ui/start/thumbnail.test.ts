@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { afterGap } from '../../../src/ui/start/portrait'
+import { afterGap } from '../../../src/ui/start/thumbnail'
 
 const SKY = [180, 200, 230, 255]
 const WHITE = [255, 255, 255, 255]

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
-import { isCompressed, readGlb } from '../../src/preview/reading'
+import { isCompressed, readGlb } from '../../src/preview/glb'
 
-/** A GLB of nothing but its head. */
+/** A GLB with nothing but its JSON. */
 function glb(head: object): ArrayBuffer {
   const json = new TextEncoder().encode(JSON.stringify({ asset: { version: '2.0' }, ...head }))
   const length = Math.ceil(json.length / 4) * 4
@@ -13,7 +13,7 @@ function glb(head: object): ArrayBuffer {
   return file.buffer
 }
 
-test('a compressed file is known by its head', () => {
+test('a compressed file is recognized by its JSON', () => {
   expect(isCompressed(glb({ extensionsRequired: ['EXT_meshopt_compression'] }))).toBe(true)
   expect(isCompressed(glb({ extensionsRequired: ['KHR_meshopt_compression'] }))).toBe(true)
   expect(isCompressed(glb({ scenes: [] }))).toBe(false)

@@ -1,9 +1,10 @@
 import { type GLTF, GLTFLoader } from 'three/addons/loaders/GLTFLoader.js'
 
+/** Where a GLB holds the length of its JSON, and where the JSON begins, bytes. */
 const JSON_LENGTH = 12
 const JSON_BEGIN = 20
 
-/** Read a GLB; what unpacks compressed ones is only brought where one is. */
+/** Read a GLB; the decoder of compressed ones is loaded only when one is read. */
 export async function readGlb(glb: ArrayBuffer): Promise<GLTF> {
   const loader = new GLTFLoader()
   if (isCompressed(glb)) {
@@ -13,7 +14,7 @@ export async function readGlb(glb: ArrayBuffer): Promise<GLTF> {
   return loader.parseAsync(glb, '')
 }
 
-/** Tell whether a GLB is compressed, by the head of the file. */
+/** Return whether a GLB is compressed, as its JSON tells. */
 export function isCompressed(glb: ArrayBuffer): boolean {
   if (glb.byteLength < JSON_BEGIN) return false
   const length = new DataView(glb).getUint32(JSON_LENGTH, true)
