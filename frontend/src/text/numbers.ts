@@ -55,7 +55,6 @@ export function bytes(number: number): string {
   return number < 1e6 ? kilobytes.format(number / 1e3) : megabytes.format(number / 1e6)
 }
 
-function inUnits(unit: string, digits: number): Intl.NumberFormat {
-  const fraction = { minimumFractionDigits: digits, maximumFractionDigits: digits }
-  return new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit, unitDisplay: 'short', ...fraction })
+function inUnits(unit: string, maximumFractionDigits: number): Intl.NumberFormat {
+  return new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit, unitDisplay: 'short', maximumFractionDigits })
 }
