@@ -2,7 +2,7 @@
 export const scoreText = {
   details: 'Details',
   title: 'How well it turned out',
-  match: (percent: string) => `${percent} match with the foliage and branches found in the photo`,
+  match: (percent: string) => `${percent} match with the foliage and branches`,
   doubtful: (percent: string) => `${percent} match, but the photo was hard to read`,
   /** Of a sketched tree. */
   sketchMatch: (front: string) => `${front} of the front strokes are in the tree`,

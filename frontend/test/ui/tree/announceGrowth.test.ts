@@ -46,7 +46,7 @@ test('the end is always said, once', () => {
   at(300, { online: true })
   expect(said).toEqual([
     'Growing branches',
-    'The tree is grown. 93% match with the foliage and branches found in the photo. A very close match.',
+    'The tree is grown. 93% match with the foliage and branches. A very close match.',
   ])
 })
 

@@ -26,7 +26,7 @@ test('figures that the service does not give are left out', () => {
 })
 
 test('one line says how well it fits and what it is made of', () => {
-  expect(matchOf(grown)).toBe('92% match with the foliage and branches found in the photo')
+  expect(matchOf(grown)).toBe('92% match with the foliage and branches')
   expect(makingOf(grown)).toBe('122,971 triangles · 5.2 MB')
   expect(makingOf(model())).toBe('')
 })
