@@ -38,7 +38,7 @@ class Service:
 
     def models(self) -> list[dict[str, Any]]:
         """List its models, newest first."""
-        return list(self.client.get("/v1/models").json()["models"])
+        return list(self.client.get("/v1/models", params={"limit": 100}).json()["models"])
 
 
 def _missing(what: str) -> None:
@@ -46,9 +46,9 @@ def _missing(what: str) -> None:
     pytest.skip(what)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A service of the file's own, without models at first."""
+    """One service for all tests of a process: what one of them has grown, the others get at once."""
     if not (PAGE / "index.html").is_file():
         _missing("the page is not built: run `make page`")
     with serving(tmp_path_factory.mktemp("e2e") / "data") as url, httpx.Client(base_url=url, timeout=70) as client:
@@ -78,11 +78,12 @@ def open_page(service: Service, browser: Browser, request: pytest.FixtureRequest
             viewport: tuple[int, int] = (1360, 720),
             touch: bool = False,
             dark: bool = False,
-            still: bool = False,
+            still: bool = True,
             script: str = "",
         ) -> Visitor:
             """Open a path of the page; `touch` has fingers in place of a mouse, `still` wants no motion.
 
+            Motion is for tests that look at it: without a GPU, a tree that grows and a flight to it take seconds.
             ``script`` runs before the page's own, to make another browser of this one.
             """
             context = browser.new_context(

@@ -10,8 +10,6 @@ from tests.e2e.visitor import ROOT, Visitor, strokes_of
 
 PHOTO = ROOT / "examples" / "sugar_maple_autumn.jpg"
 STROKES = strokes_of(PHOTO)
-STILL_MS = 500
-"""Until what the wheel or a drag has moved stands still."""
 LEVEL = [[200.0, 400.0], [420.0, 396.0]]
 LIMB = [[300.0, 430.0], [260.0, 380.0], [220.0, 340.0]]
 
@@ -96,7 +94,7 @@ def test_strokes_are_exact_when_the_photo_is_zoomed_and_moved(visitor: Visitor) 
     page.mouse.move(*visitor.view().at(LIMB[0]))
     for _ in range(4):
         page.mouse.wheel(0, -120)
-    page.wait_for_timeout(STILL_MS)
+    visitor.wait_until_still()
     page.keyboard.down("Space")
     x, y = visitor.view().at(LIMB[0])
     page.mouse.move(600, 300)
@@ -104,7 +102,7 @@ def test_strokes_are_exact_when_the_photo_is_zoomed_and_moved(visitor: Visitor) 
     page.mouse.move(660, 345, steps=3)
     page.mouse.up()
     page.keyboard.up("Space")
-    page.wait_for_timeout(STILL_MS)
+    visitor.wait_until_still()
     assert visitor.view().at(LIMB[0]) == pytest.approx((x + 60, y + 45), abs=0.6)
     visitor.draw(LIMB, button="right")
     visitor.until(lambda: len(last_branches(visitor)) == 2)
@@ -160,7 +158,7 @@ def test_fingers_draw_and_pinch_on_a_phone(open_page: OpenPage) -> None:
 
 
 def test_the_whole_way_goes_by_keyboard(open_page: OpenPage) -> None:
-    visitor = open_page(still=True)
+    visitor = open_page()
     page, keys = visitor.page, visitor.page.keyboard
     visitor.tab_to(page.get_by_role("button", name="Choose a photo"))
     with page.expect_file_chooser() as chooser:

@@ -80,7 +80,7 @@ def shown(visitor: Visitor) -> np.ndarray:
 
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_axe_finds_nothing_from_the_welcome_to_the_gallery(open_page: OpenPage, dark: bool) -> None:
-    visitor = open_page(dark=dark, still=True)
+    visitor = open_page(dark=dark)
     page = visitor.page
     assert visitor.violations() == []
     page.get_by_role("button", name="Sugar maple in autumn").click()
@@ -89,7 +89,7 @@ def test_axe_finds_nothing_from_the_welcome_to_the_gallery(open_page: OpenPage, 
     assert visitor.violations() == []
     for name in ("Settings", "Details", "More downloads", "Gallery", "Shortcuts"):
         page.get_by_role("button", name=name, exact=True).first.click()
-        page.wait_for_timeout(300)
+        visitor.pause(300)
         visitor.shot(f"{name.lower().replace(' ', '-')}-{'dark' if dark else 'light'}")
         assert visitor.violations() == [], name
         page.keyboard.press("Escape")
@@ -100,7 +100,7 @@ def test_axe_finds_nothing_from_the_welcome_to_the_gallery(open_page: OpenPage, 
     [((360, 640), 100), ((390, 844), 100), ((360, 740), 200), ((1440, 900), 200), ((2560, 1440), 100)],
 )
 def test_nothing_is_cut_off_at_any_size(open_page: OpenPage, size: tuple[int, int], percent: int) -> None:
-    visitor = open_page(viewport=size, still=True)
+    visitor = open_page(viewport=size)
     page = visitor.page
     page.evaluate(f"document.documentElement.style.fontSize = '{percent}%'")
     assert page.evaluate(OVERFLOW) <= 0

@@ -51,8 +51,9 @@ def test_the_welcome_is_there_before_the_code_that_draws(visitor: Visitor) -> No
 
 
 def test_a_newcomer_gets_from_a_photo_to_a_tree_and_takes_it_home(
-    visitor: Visitor, service: Service, tmp_path: Path
+    open_page: OpenPage, service: Service, tmp_path: Path
 ) -> None:
+    visitor = open_page(still=False)
     page = visitor.page
     follow_the_hints(visitor)
     visitor.shot("live")
@@ -82,14 +83,15 @@ def test_the_strokes_that_arrive_are_those_that_were_drawn(visitor: Visitor) -> 
 
 
 def test_one_click_on_an_example_shows_a_tree_drawn_in_few_calls_and_only_when_something_changes(
-    visitor: Visitor,
+    open_page: OpenPage,
 ) -> None:
+    visitor = open_page(still=False)
     visitor.page.get_by_role("button", name="Sugar maple in autumn").click()
     visitor.wait_for_preview("model")
     visitor.wait_for_rest()
     frames, calls = visitor.drawn()
     assert 1 <= calls <= MOST_CALLS
-    visitor.page.wait_for_timeout(1500)
+    visitor.pause(1500)
     assert visitor.drawn()[0] == frames
     visitor.page.get_by_role("button", name="Side", exact=True).click()
     visitor.wait_for_rest()
@@ -98,7 +100,7 @@ def test_one_click_on_an_example_shows_a_tree_drawn_in_few_calls_and_only_when_s
 
 
 def test_with_shadows_a_tree_takes_no_more_than_six_calls(open_page: OpenPage) -> None:
-    visitor = open_page(viewport=(900, 440), still=True, script=GPU)
+    visitor = open_page(viewport=(900, 440), script=GPU)
     visitor.page.get_by_role("button", name="Osage orange").click()
     visitor.wait_for_preview("model", timeout_ms=150_000)
     visitor.page.get_by_role("combobox", name="View").select_option("side")

@@ -89,8 +89,7 @@ def test_of_several_trees_one_is_looked_at_and_taken_home(visitor: Visitor, serv
     page.get_by_role("button", name="Tree 2 of 2").click()
     link = page.get_by_role("link", name="Download GLB")
     expect(link).to_have_attribute("href", model["files"]["tree.v2.glb"])
-    visitor.wait_for_rest()
-    assert picture(visitor) != first
+    visitor.until(lambda: picture(visitor) != first)
     visitor.shot("second-tree")
     with page.expect_download() as download:
         link.click()

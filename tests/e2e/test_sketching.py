@@ -12,8 +12,6 @@ from tests.e2e.visitor import ROOT, Path2D, Visitor
 
 PHOTO = ROOT / "examples" / "oak_02.jpg"
 DRAWINGS = {sheet: ROOT / "examples" / "sketches" / f"imagined.{sheet}.png" for sheet in ("front", "side")}
-STILL_MS = 400
-"""Until what was zoomed stands still."""
 FRONT: list[Path2D] = [
     [(450, 1080), (446, 800), (455, 500), (450, 160)],
     [(449, 760), (340, 640), (210, 560)],
@@ -93,7 +91,7 @@ def test_both_sheets_are_looked_at_alike_and_have_one_history(visitor: Visitor) 
     draw_all(visitor, "side", SIDE[:2])
     page.mouse.move(*visitor.view().at((450, 600)))
     page.mouse.wheel(0, -300)
-    page.wait_for_timeout(STILL_MS)
+    visitor.wait_until_still()
     assert lined_up(visitor) == pytest.approx((0, 1), abs=0.01)
     visitor.until(lambda: len(branches(visitor, "side")) == 2)
     visitor.wait_until_traced()
@@ -133,7 +131,7 @@ def test_a_side_sketch_says_how_deep_the_tree_of_a_photo_is(visitor: Visitor, se
     guessed = service.models()[0]
     page.get_by_role("button", name="Draw its left side, too").click()
     visitor.sheet = "side"
-    page.wait_for_timeout(STILL_MS)
+    visitor.wait_until_still()
     box, view = visitor.sketch.bounding_box(), visitor.view()
     assert box is not None
     middle = (box["x"] + box["width"] / 2 - view.left) / view.scale

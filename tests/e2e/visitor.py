@@ -16,8 +16,10 @@ SHOTS = ROOT / "out" / "e2e"
 AXE = ROOT / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
 PATIENCE_MS = 60_000
 """For one thing to happen: without a GPU a frame of a tree takes seconds."""
-REST_MS = 1200
-"""Without a new frame for so long, the preview is at rest."""
+REST_MS = 250
+"""By the page's clock: longer than the preview waits before it draws its last frame again, with all pixels."""
+STILL_MS = 100
+"""By the page's clock: longer than the sheet takes from one step of a movement to the next."""
 JSON = {"Content-Type": "application/json"}
 expect.set_options(timeout=PATIENCE_MS)
 Point = Sequence[float]
@@ -35,6 +37,9 @@ _DROP = """(target, file) => {
             new DragEvent(name, { dataTransfer, bubbles: true, cancelable: true, clientY: file.y }))
     for (const event of events) target.dispatchEvent(event)
 }"""
+_PAUSE = """ms => new Promise(over =>
+    setTimeout(() => requestAnimationFrame(() => requestAnimationFrame(over)), ms))"""
+"""Timers and frames that the page has asked for by then come first, however slow the machine is."""
 _AXE = """async () => (await axe.run()).violations.map(one =>
     `${one.impact} ${one.id}: ${one.help}: ${one.nodes.map(node => node.target.join(' ')).join(', ')}`)"""
 
@@ -134,7 +139,18 @@ class Visitor:
         while self.drawn() != before:
             assert time.monotonic() - began < timeout_ms / 1000, "the preview draws on and on"
             before = self.drawn()
-            self.page.wait_for_timeout(REST_MS)
+            self.pause(REST_MS)
+
+    def wait_until_still(self) -> None:
+        """Wait until the wheel or a drag has moved the sheet to its place."""
+        before = ""
+        while not before or before != self.sketch.get_attribute("data-view"):
+            before = self.sketch.get_attribute("data-view") or ""
+            self.pause(STILL_MS)
+
+    def pause(self, page_ms: int) -> None:
+        """Let time pass on the page's clock, and two frames."""
+        self.page.evaluate(_PAUSE, page_ms)
 
     def until(self, holds: Callable[[], bool]) -> None:
         """Wait until something holds."""
