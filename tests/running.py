@@ -34,7 +34,7 @@ def serving(data: Path, descriptors: int | None = None, **settings: object) -> I
     finally:
         process.terminate()
         try:
-            process.wait(20)
+            process.wait(120)
         finally:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
