@@ -19,7 +19,7 @@ DATA = Path(__file__).parent / "data"
 
 
 def test_logs_are_json_and_every_line_of_a_job_names_it(tmp_path: Path) -> None:
-    with serving(tmp_path / "data") as address, Client(address) as client:
+    with serving(tmp_path / "data", tracers=1) as address, Client(address) as client:
         photo = client.upload(DATA / "elm_house.jpg")
         model = client.wait(client.grow(photo, DATA / "elm_house.strokes.json", {"iterations": 5}), timeout=600)
     lines = [json.loads(line) for line in (tmp_path / "data.log").read_text().splitlines()]
@@ -62,7 +62,7 @@ def test_lines_about_different_jobs_are_different_lines() -> None:
 
 
 def test_requests_that_are_no_http_are_told_once_with_who_sent_them(tmp_path: Path) -> None:
-    with serving(tmp_path / "data") as address:
+    with serving(tmp_path / "data", workers=0, tracers=1) as address:
         host, port = address.removeprefix("http:" + "//").split(":")
         for _ in range(5):
             with socket.create_connection((host, int(port)), timeout=60) as line:

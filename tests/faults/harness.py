@@ -36,7 +36,7 @@ QUICK: dict[str, object] = {"iterations": 0, "foliage": "bare"}
 """Of a model that takes about a second."""
 ENDLESS: dict[str, object] = {"iterations": 2000, "foliage": "leaves", "variants": 16}
 """Of a model that is still under way when a test stops it."""
-PATIENCE_SECONDS = 180.0
+PATIENCE_SECONDS = 300.0
 """Emergency exit of what a test waits for: nothing is expected to take this long, however busy the machine is."""
 POISONED = "tests.faults.poisoned_serve"
 Row = dict[str, Any]
