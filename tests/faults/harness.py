@@ -22,6 +22,7 @@ import cv2
 import httpx
 from tests.faults.held import released
 from tests.faults.processes import Process, end_sessions, processes, wait_for
+from tests.running import FAR_LIMITS
 
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
@@ -106,7 +107,7 @@ class Service:
         self.data = data or folder / "data"
         self.log_path = folder / "log.txt"
         self._program = program
-        self._settings = {"workers": 1, "tracers": 1, "memory_mb": 2048, **settings}
+        self._settings = {**FAR_LIMITS, "workers": 1, "tracers": 1, "memory_mb": 2048, **settings}
         self._started: list[subprocess.Popen[bytes]] = []
         self._seeds = count()
         self._photo: str | None = None
