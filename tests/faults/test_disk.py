@@ -56,6 +56,7 @@ def stored(service: Service) -> set[str]:
 
 
 def test_a_full_disk_refuses_uploads_and_serves_nothing_half_made(tmp_path: Path, small_disk: Path) -> None:
+    """Takes over 20 s: nothing can be written of an attempt that finds no room, and so its lease runs out."""
     disk = Filler(small_disk)
     with Service(tmp_path / "service", data=small_disk / "data", program=POISONED) as service:
         service.wait_for_workers(1)

@@ -8,6 +8,7 @@ from tests.faults.processes import Process, wait_for
 
 
 def test_a_worker_that_comes_back_after_its_lease_changes_nothing(broker_url: str, tmp_path: Path) -> None:
+    """Takes over 20 s: a lease runs out, and four workers are started."""
     with Service(tmp_path / "service", broker_url=broker_url.replace("/0", "/2"), workers=0) as service:
         for _ in range(3):
             service.run("tests.faults.poisoned_worker", TREESTROKE_WORKERS=1)
