@@ -32,6 +32,7 @@ class Scheduling(LoadFileScheduling):
         return "tests/api" if file.startswith("tests/api/") and file not in NO_SHARED_SERVICE else file
 
 
+@pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> Scheduling:
     return Scheduling(config, log)  # type: ignore[arg-type]
 
@@ -41,7 +42,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    promises.CHECKED[0] = config.getoption("--promises")
+    promises.checked = config.getoption("--promises")
     slow = [hypothesis.HealthCheck.too_slow]
     hypothesis.settings.register_profile("busy", hypothesis.settings(), deadline=None, suppress_health_check=slow)
     hypothesis.settings.load_profile("busy")

@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-CHECKED = [False]
+checked = False
 """Set by the option ``--promises``."""
 
 
@@ -14,4 +14,4 @@ def kept(seconds: float) -> Iterator[None]:
     began = time.monotonic()
     yield
     took = time.monotonic() - began
-    assert took < seconds or not CHECKED[0], f"{seconds:g} s are promised, it took {took:.2f} s"
+    assert took < seconds or not checked, f"{seconds:g} s are promised, it took {took:.2f} s"

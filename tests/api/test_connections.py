@@ -23,6 +23,10 @@ HEAD_SECONDS, LATE_SECONDS = 2.0, 2.5
 """A limit that no stall of a busy machine reaches, and what takes longer."""
 
 
+released = threading.Event()
+"""Set when the application may answer what is held."""
+
+
 async def application(scope: Scope, receive: Receive, send: Send) -> None:
     """Answer at once, or as the path says: when the body is whole, after a while, or at length."""
     path, size = scope["path"], 2
@@ -31,6 +35,8 @@ async def application(scope: Scope, receive: Receive, send: Send) -> None:
             pass
     if path == "/late":
         await asyncio.sleep(LATE_SECONDS)
+    while path == "/held" and not released.is_set():
+        await asyncio.sleep(0.01)
     size = {"/large": 20_000_000, "/medium": 1_000_000, "/small": 90_000}.get(path, size)
     await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"%d" % size)]})
     await send({"type": "http.response.body", "body": bytes(size)})
@@ -229,10 +235,12 @@ def test_an_upload_under_way_makes_room_only_where_nobody_is_silent() -> None:
 
 
 def test_where_every_request_is_whole_one_more_is_told_to_come_again() -> None:
+    released.clear()
     with serving(limit=2) as served:
-        lines = [served.line(GET.replace(b"/ ", b"/late ", 1) + b"\r\n") for _ in range(2)]
+        lines = [served.line(GET.replace(b"/ ", b"/held ", 1) + b"\r\n") for _ in range(2)]
         wait_for(lambda: served.answering == 2, PATIENCE_SECONDS, "both requests")
         refused = rest(served.line())
+        released.set()
         assert refused.startswith(b"HTTP/1.1 503 ")
         assert b"retry-after: 1" in refused.lower()
         assert all(answer(line).startswith(b"HTTP/1.1 200 ") for line in lines)
