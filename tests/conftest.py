@@ -14,8 +14,8 @@ from treestroke.store.database import Database
 EXAMPLES = Path(__file__).parents[1] / "examples"
 DATA = Path(__file__).parent / "data"
 
-FIRST = ("tests/faults/", "tests/test_installed.py", "tests/api/test_schemathesis.py", "tests/api/")
-"""What takes longest from its beginning to its end, mostly by waiting: other tests run meanwhile."""
+FIRST = ("tests/api/test_events.py", "tests/faults/", "tests/test_installed.py", "tests/api/")
+"""What takes longest from its beginning to its end, mostly by waiting: the tests of one service, one after another."""
 
 NO_SHARED_SERVICE = tuple(
     f"tests/api/test_{name}.py" for name in ("schemathesis", "connections", "following", "limits")

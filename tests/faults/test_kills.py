@@ -13,6 +13,7 @@ from tests.rows import add_model
 
 from treestroke.service.dispatch import record_heartbeat
 from treestroke.store.database import Database
+from treestroke.store.leases import heartbeat
 from treestroke.store.tables import ModelRow, Worker
 
 AGAIN_SECONDS = 30
@@ -49,11 +50,15 @@ def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: 
     record_heartbeat(database, name, 1)
     held = add_model(database, status="running", attempt=1, worker=name, claim="token", settings={})
     here.hit()
-    wait_for(
-        lambda: [one for one in service.workers() if one.pid != here.pid and service.name_of(one)],
-        PATIENCE_SECONDS,
-        "another",
-    )
+
+    def another() -> bool:
+        """Tell whether another worker is ready; whoever holds the job goes on meanwhile."""
+        record_heartbeat(database, name, 1)
+        with database.writing() as session:
+            heartbeat(session, held, None, 0.0, 0.0)
+        return any(one.pid != here.pid and service.name_of(one) for one in service.workers())
+
+    wait_for(another, PATIENCE_SECONDS, "another worker", every_s=0.5)
     row = service.row(held.id)
     assert (row["status"], row["worker"], row["attempt"]) == ("running", name, 1)
     with database.writing() as session:
