@@ -11,7 +11,7 @@ PAGE_SOURCES := $(shell find frontend examples -type f -not -path '*/node_module
 PAGE_STAMP := $(PAGE)/.built-$(shell sha256sum $(PAGE_SOURCES) | sort | sha256sum | cut -c1-16)
 SCHEMA := frontend/src/api/schema.d.ts
 DEFAULTS := frontend/src/api/defaults.ts
-PYTEST = $(BIN)/python -m pytest -q --ignore=tests/benchmarks -p no:benchmark
+PYTEST = $(BIN)/python -m pytest -q --ignore=tests/benchmarks -p no:benchmark --durations=15
 EXAMPLE ?= burr_oak_dusk
 PORT ?= 8000
 
@@ -19,7 +19,7 @@ PORT ?= 8000
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/bytecode
 
-.PHONY: run page test redis chromium check types pictures bench golden readers usd chaos setup
+.PHONY: run page test redis chromium check types pictures bench golden nightly readers usd chaos setup
 .DEFAULT_GOAL := run
 
 # Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
@@ -35,9 +35,8 @@ page: $(PAGE_STAMP)
 
 test: $(STAMP) page redis chromium
 	@cd frontend && node_modules/.bin/vitest run
-	@$(PYTEST) -m "not golden and not alone and not browser and not readers" -n 3 --dist loadfile
+	@$(PYTEST) -m "not golden and not nightly and not browser and not readers" -n 4 --dist loadfile --no-loadscope-reorder
 	@$(PYTEST) -m browser -n 2 --dist loadfile
-	@$(PYTEST) -m alone
 
 # Tests need a Redis to start and kill, and a browser. CI installs them where they are missing; elsewhere the tests say so.
 redis:
@@ -81,6 +80,10 @@ bench: $(STAMP) page
 	@$(BIN)/python -m tests.benchmarks.page_times
 	@$(BIN)/python -m tests.benchmarks.files_table
 	@$(BIN)/python -m tests.benchmarks.growth_ratio
+
+# One test at a time, for a quiet machine: what only repeats, and what is promised in seconds.
+nightly: $(STAMP) page redis
+	@$(PYTEST) --promises -m "not golden and not browser and not readers"
 
 golden: $(STAMP)
 	$(BIN)/python -m pytest -q -m golden

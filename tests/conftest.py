@@ -1,15 +1,61 @@
-"""Real photos for all tests."""
+"""Real photos for all tests, and the order in which several processes run them."""
 
 from collections.abc import Iterator
 from pathlib import Path
 
+import hypothesis
 import pytest
+from tests import promises
+from xdist.scheduler import LoadFileScheduling
 
 from treestroke.service.execution import one_thread
 from treestroke.store.database import Database
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 DATA = Path(__file__).parent / "data"
+
+FIRST = ("tests/api/test_events.py", "tests/faults/", "tests/test_installed.py", "tests/api/")
+"""What takes longest from its beginning to its end, mostly by waiting: the tests of one service, one after another."""
+
+NO_SHARED_SERVICE = tuple(
+    f"tests/api/test_{name}.py" for name in ("schemathesis", "connections", "following", "limits")
+)
+
+
+class Scheduling(LoadFileScheduling):
+    """Keeps in one process what shares services: a file's tests, those that harm one broker's, and those of the API."""
+
+    def _split_scope(self, nodeid: str) -> str:
+        file = str(super()._split_scope(nodeid))
+        if file.startswith("tests/faults/") and nodeid.endswith(("[files]", "[redis]")):
+            return nodeid.rpartition("[")[2]
+        return "tests/api" if file.startswith("tests/api/") and file not in NO_SHARED_SERVICE else file
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> Scheduling:
+    return Scheduling(config, log)  # type: ignore[arg-type]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--promises", action="store_true", help="check what is promised in seconds, on a quiet machine")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    promises.checked = config.getoption("--promises")
+    slow = [hypothesis.HealthCheck.too_slow]
+    hypothesis.settings.register_profile("busy", hypothesis.settings(), deadline=None, suppress_health_check=slow)
+    hypothesis.settings.load_profile("busy")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let what takes longest begin first."""
+
+    def place(item: pytest.Item) -> int:
+        return next((at for at, path in enumerate(FIRST) if item.nodeid.startswith(path)), len(FIRST))
+
+    items.sort(key=place)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -12,12 +12,14 @@ from functools import partial
 from pathlib import Path
 
 BACKEND = Path(__file__).parents[1] / "backend"
+FAR_LIMITS = {"trace_seconds": 300, "model_seconds": 1800}
+"""What is to end well ends well on a busy machine too."""
 
 
 @contextmanager
 def serving(data: Path, descriptors: int | None = None, **settings: object) -> Iterator[str]:
     """Run the service on a free port with settings by name, perhaps with few descriptors; give its address."""
-    given = {f"TREESTROKE_{name.upper()}": str(value) for name, value in settings.items()}
+    given = {f"TREESTROKE_{name.upper()}": str(value) for name, value in {**FAR_LIMITS, **settings}.items()}
     environment = {**os.environ, "PYTHONPATH": str(BACKEND), **given}
     command = [sys.executable, "-m", "treestroke", "serve", "--data", str(data), "--port", "0"]
     few = None if descriptors is None else partial(resource.setrlimit, resource.RLIMIT_NOFILE, (descriptors,) * 2)
@@ -34,7 +36,7 @@ def serving(data: Path, descriptors: int | None = None, **settings: object) -> I
     finally:
         process.terminate()
         try:
-            process.wait(20)
+            process.wait(120)
         finally:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)

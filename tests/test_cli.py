@@ -297,7 +297,7 @@ def test_the_bytes_do_not_depend_on_the_number_of_threads(
         argv = ["model", str(maple_photo), "--strokes", str(maple_strokes), "--out", str(out), *QUICK]
         many = {"OMP_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": threads, "OPENCV_FOR_THREADS_NUM": threads}
         env = os.environ | many | {"PYTHONPATH": str(Path(treestroke.__file__).parents[1])}
-        subprocess.run([sys.executable, "-m", "treestroke", *argv], env=env, check=True, timeout=120)
+        subprocess.run([sys.executable, "-m", "treestroke", *argv], env=env, check=True, timeout=600)
         trees.append(out.read_bytes())
     assert trees[0] == trees[1]
 

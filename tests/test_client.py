@@ -26,6 +26,8 @@ DATA = Path(__file__).parent / "data"
 PHOTO, STROKES = DATA / "elm_house.jpg", DATA / "elm_house.strokes.json"
 QUICK = {"iterations": 20}
 WHOLE = 2**60
+PATIENCE_SECONDS = 300
+"""Emergency exit of what is waited for."""
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +49,7 @@ def photo(client: Client) -> PhotoInfo:
 
 @pytest.fixture(scope="module")
 def tree(client: Client, photo: PhotoInfo) -> ModelInfo:
-    return client.wait(client.grow(photo, STROKES, QUICK, name="Elm"), timeout=120)
+    return client.wait(client.grow(photo, STROKES, QUICK, name="Elm"), timeout=PATIENCE_SECONDS)
 
 
 @contextmanager
@@ -156,7 +158,7 @@ def test_a_trace_grows_the_whole_skeleton(client: Client, photo: PhotoInfo) -> N
 def test_a_tree_is_followed_to_its_end(client: Client, photo: PhotoInfo) -> None:
     seen, previews = [], []
     model = client.grow(photo, STROKES, QUICK, seed=1)
-    ended = client.wait(model, timeout=120, on_progress=seen.append, on_preview=previews.append)
+    ended = client.wait(model, timeout=PATIENCE_SECONDS, on_progress=seen.append, on_preview=previews.append)
     assert ended.status == "succeeded"
     assert len(previews) == 1
     assert [now.progress for now in seen] == sorted(now.progress for now in seen)
@@ -164,7 +166,7 @@ def test_a_tree_is_followed_to_its_end(client: Client, photo: PhotoInfo) -> None
 
 
 def test_waiting_for_what_is_finished_ends_at_once(client: Client, tree: ModelInfo) -> None:
-    assert client.wait(tree.id, timeout=5) == client.model(tree)
+    assert client.wait(tree.id, timeout=PATIENCE_SECONDS) == client.model(tree)
 
 
 def test_a_file_arrives_whole(client: Client, tree: ModelInfo, tmp_path: Path) -> None:
@@ -194,7 +196,7 @@ def test_a_model_is_named_deleted_and_restored(client: Client, tree: ModelInfo) 
 def test_a_model_is_canceled(client: Client, photo: PhotoInfo) -> None:
     model = client.grow(photo, STROKES, {"iterations": 2000}, seed=2)
     client.cancel(model)
-    assert client.wait(model, timeout=60).status == "canceled"
+    assert client.wait(model, timeout=PATIENCE_SECONDS).status == "canceled"
 
 
 def test_models_are_given_over_pages(client: Client, photo: PhotoInfo, tree: ModelInfo) -> None:
@@ -226,13 +228,13 @@ def test_a_stream_that_breaks_is_taken_up_again(address: str, photo: PhotoInfo) 
     previews: list[object] = []
     with through(address, breaking(4, 3000, b"/events")) as place, Client(place) as client:
         model = client.grow(photo, STROKES, QUICK, seed=3)
-        assert client.wait(model, timeout=120, on_preview=previews.append).status == "succeeded"
+        assert client.wait(model, timeout=PATIENCE_SECONDS, on_preview=previews.append).status == "succeeded"
     assert len(previews) <= 1
 
 
 def test_without_a_stream_a_model_is_looked_up(address: str, photo: PhotoInfo) -> None:
     with through(address, breaking(WHOLE, 0, b"/events")) as place, Client(place) as client:
-        assert client.wait(client.grow(photo, STROKES, QUICK, seed=4), timeout=120).status == "succeeded"
+        assert client.wait(client.grow(photo, STROKES, QUICK, seed=4), timeout=PATIENCE_SECONDS).status == "succeeded"
 
 
 def test_a_download_that_breaks_is_made_again(address: str, tree: ModelInfo, tmp_path: Path) -> None:
@@ -245,7 +247,9 @@ def test_a_tree_is_made_of_sketches_in_any_form(client: Client, tmp_path: Path) 
     picture, text = tmp_path / "front.png", tmp_path / "side.json"
     picture.write_bytes(sketched.png(sketched.FRONT))
     text.write_text(json.dumps(sketched.SIDE))
-    model = client.wait(client.grow_sketches(picture, text, QUICK, fruit=sketched.berry(), name="Pear"), timeout=120)
+    model = client.wait(
+        client.grow_sketches(picture, text, QUICK, fruit=sketched.berry(), name="Pear"), timeout=PATIENCE_SECONDS
+    )
     assert (model.status, model.photo, model.name) == ("succeeded", None, "Pear")
     assert {"front.png", "side.json"} <= set(model.files)
     assert json.loads(client.download(model, tmp_path / "again.json", "side.json").read_text()) == sketched.SIDE
@@ -267,9 +271,9 @@ def test_sketches_are_traced(client: Client) -> None:
 
 
 def test_a_photo_is_given_a_side_or_lends_its_colours(client: Client, photo: PhotoInfo) -> None:
-    mixed = client.wait(client.grow(photo, STROKES, QUICK, side=sketched.SIDE), timeout=120)
+    mixed = client.wait(client.grow(photo, STROKES, QUICK, side=sketched.SIDE), timeout=PATIENCE_SECONDS)
     assert {"strokes.json", "side.json"} <= set(mixed.files)
-    over = client.wait(client.grow_sketches(sketched.FRONT, settings=QUICK, photo=photo), timeout=120)
+    over = client.wait(client.grow_sketches(sketched.FRONT, settings=QUICK, photo=photo), timeout=PATIENCE_SECONDS)
     assert (over.status, over.photo) == ("succeeded", photo.id)
 
 

@@ -23,7 +23,7 @@ def _own_environment() -> Iterator[None]:
 
 
 def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with serving(tmp_path / "data"):
+    with serving(tmp_path / "data", workers=0, tracers=1):
         for path in (tmp_path / "data").glob("*lock*"):
             path.unlink()
         assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 2
@@ -34,7 +34,7 @@ def test_a_data_folder_is_one_launcher_s(tmp_path: Path, capsys: pytest.CaptureF
 def test_a_data_folder_that_was_open_is_closed_before_it_is_served(tmp_path: Path) -> None:
     data = tmp_path / "data"
     data.mkdir(0o755)
-    with serving(data):
+    with serving(data, workers=0, tracers=1):
         assert [path for path in (data, *data.rglob("*")) if path.stat().st_mode & 0o077] == []
 
 

@@ -32,6 +32,11 @@ def encoded(kind: str = "PNG", seed: int = 0, **options: Any) -> bytes:
     return out.getvalue()
 
 
+def picture_of_the_example() -> Image.Image:
+    """Draw the tree that the document's example of strokes is drawn over."""
+    return Image.fromarray(cv2.resize(pixels(), (800, 960)))
+
+
 def request(photo: str, **others: Any) -> dict[str, Any]:
     """Ask for a model of it that is made at once."""
     return {"photo": photo, "strokes": STROKES, "settings": QUICK, **others}

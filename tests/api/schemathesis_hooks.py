@@ -4,10 +4,8 @@ import os
 from itertools import count
 from typing import Any
 
-import cv2
 import schemathesis
 from hypothesis import strategies
-from PIL import Image
 from schemathesis.transport.serialization import Binary
 from tests.api import drawn
 from tests.api.corpora import saved
@@ -15,8 +13,7 @@ from tests.api.corpora import saved
 from treestroke.wire_requests import SKETCHES_EXAMPLE
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
-PICTURE = Image.fromarray(cv2.resize(drawn.pixels(), (800, 960)))
-"""The tree that the document's example of strokes is drawn over."""
+PICTURE = drawn.picture_of_the_example()
 PHOTO = saved(PICTURE, "JPEG")
 _numbers = count()
 STORED = os.environ.get("STORED_PHOTO", "")

@@ -17,7 +17,14 @@ from tests.faults.processes import wait_for
 from treestroke.api.connections import Connection
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
-PATIENCE_SECONDS = 10.0
+PATIENCE_SECONDS = 120.0
+"""Emergency exit of what is waited for."""
+HEAD_SECONDS, LATE_SECONDS = 2.0, 2.5
+"""A limit that no stall of a busy machine reaches, and what takes longer."""
+
+
+released = threading.Event()
+"""Set when the application may answer what is held."""
 
 
 async def application(scope: Scope, receive: Receive, send: Send) -> None:
@@ -27,7 +34,9 @@ async def application(scope: Scope, receive: Receive, send: Send) -> None:
         while (await receive()).get("more_body"):
             pass
     if path == "/late":
-        await asyncio.sleep(1)
+        await asyncio.sleep(LATE_SECONDS)
+    while path == "/held" and not released.is_set():
+        await asyncio.sleep(0.01)
     size = {"/large": 20_000_000, "/medium": 1_000_000, "/small": 90_000}.get(path, size)
     await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"%d" % size)]})
     await send({"type": "http.response.body", "body": bytes(size)})
@@ -98,7 +107,7 @@ def serving(keep_alive_s: int = 30, **limits: Any) -> Iterator[Served]:
         log_config=None,
         ws="none",
         timeout_keep_alive=keep_alive_s,
-        http=partial(Connection, **{"limit": 100, **limits}),  # type: ignore[arg-type]
+        http=partial(Connection, **{"limit": 100, "head_s": PATIENCE_SECONDS, **limits}),  # type: ignore[arg-type]
     )
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run)
@@ -142,22 +151,22 @@ def test_a_head_that_comes_byte_by_byte_is_given_up(before: bytes) -> None:
 
 
 def test_a_connection_that_rests_between_requests_stays() -> None:
-    with serving(head_s=0.1) as served:
+    with serving(head_s=HEAD_SECONDS) as served:
         line = served.line(GET + b"\r\n")
         for _ in range(2):
             assert answer(line).startswith(b"HTTP/1.1 200 ")
-            time.sleep(0.3)
+            time.sleep(LATE_SECONDS)
             line.sendall(GET + b"\r\n")
         assert answer(line).startswith(b"HTTP/1.1 200 ")
 
 
 def test_an_answer_may_take_longer_than_a_head() -> None:
-    with serving(head_s=0.1) as served:
+    with serving(head_s=HEAD_SECONDS) as served:
         assert served.ask(b"/late").startswith(b"HTTP/1.1 200 ")
 
 
 def test_a_body_that_nobody_wants_does_not_hold_a_connection() -> None:
-    with serving(head_s=0.2) as served:
+    with serving(head_s=HEAD_SECONDS) as served:
         line = served.line(b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n")
         assert answer(line).startswith(b"HTTP/1.1 200 ")
         wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")
@@ -186,12 +195,12 @@ def test_a_client_that_reads_a_little_now_and_then_is_given_up() -> None:
 
 
 def test_a_client_that_reads_slowly_and_fast_enough_gets_all() -> None:
-    with serving(stalled_s=0.5, behind_s=0.1, min_rate=1000) as served:
+    with serving(stalled_s=HEAD_SECONDS, behind_s=0.1, min_rate=1000) as served:
         line = served.line(GET.replace(b"/ ", b"/medium ", 1) + b"Connection: close\r\n\r\n")
         got = 0
         while part := line.recv(50_000):
             got += len(part)
-            time.sleep(0.05)
+            time.sleep(LATE_SECONDS / 20)
         assert got > 1_000_000
 
 
@@ -226,10 +235,12 @@ def test_an_upload_under_way_makes_room_only_where_nobody_is_silent() -> None:
 
 
 def test_where_every_request_is_whole_one_more_is_told_to_come_again() -> None:
+    released.clear()
     with serving(limit=2) as served:
-        lines = [served.line(GET.replace(b"/ ", b"/late ", 1) + b"\r\n") for _ in range(2)]
+        lines = [served.line(GET.replace(b"/ ", b"/held ", 1) + b"\r\n") for _ in range(2)]
         wait_for(lambda: served.answering == 2, PATIENCE_SECONDS, "both requests")
         refused = rest(served.line())
+        released.set()
         assert refused.startswith(b"HTTP/1.1 503 ")
         assert b"retry-after: 1" in refused.lower()
         assert all(answer(line).startswith(b"HTTP/1.1 200 ") for line in lines)

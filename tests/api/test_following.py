@@ -10,8 +10,8 @@ from treestroke.service import stored_models
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.database import Database
 
-SECONDS = 10.0
-"""What news may take on a busy machine."""
+SECONDS = 60.0
+"""Emergency exit of what is waited for."""
 
 
 def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable[None]]) -> None:

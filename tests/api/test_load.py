@@ -6,17 +6,16 @@ from concurrent.futures import ThreadPoolExecutor
 import httpx
 import pytest
 from tests.api import drawn
-from tests.api.conftest import Service, running
+from tests.api.conftest import PATIENCE_SECONDS, Service, running
 from tests.api.test_hostile_json import probing
 
-pytestmark = pytest.mark.alone
 LONG = {"iterations": 2000, "leaf_density": 3}
 
 
 @pytest.fixture(scope="module")
 def hasty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A service that gives a tracing no time, with one process for it."""
-    yield from running(tmp_path_factory.mktemp("hasty"), trace_seconds=0.2, tracers=1, workers=0)
+    """A service that gives a tracing little time, with one process for it."""
+    yield from running(tmp_path_factory.mktemp("hasty"), trace_seconds=1.0, tracers=1, workers=0)
 
 
 def test_tracing_goes_on_while_models_grow(service: Service, photo: str) -> None:
@@ -26,23 +25,22 @@ def test_tracing_goes_on_while_models_grow(service: Service, photo: str) -> None
 
     def draw(hand: int) -> list[int]:
         """Add strokes to a photo, six times."""
-        with httpx.Client(base_url=service.url, timeout=60) as client:
+        with httpx.Client(base_url=service.url, timeout=PATIENCE_SECONDS) as client:
             place = f"/v1/photos/{photos[hand % len(photos)]}/trace"
             return [client.post(place, json={**drawn.STROKES, "rev": rev}).status_code for rev in range(6)]
 
-    with probing(service) as slowest, ThreadPoolExecutor(8) as hands:
+    with probing(service, most_s=0.2), ThreadPoolExecutor(8) as hands:
         statuses = Counter(status for answers in hands.map(draw, range(8)) for status in answers)
     for place in places:
         service.client.post(f"{place}/cancel")
     assert statuses == {200: 48}
-    assert slowest() < 0.2
 
 
 def test_more_than_can_wait_is_told_to_come_again(service: Service, photo: str) -> None:
     heavy = {**drawn.STROKES, "branches": [{"points": [[100, 230 - at / 10] for at in range(1000)]}] * 10}
 
     def ask(_: int) -> httpx.Response:
-        with httpx.Client(base_url=service.url, timeout=60) as client:
+        with httpx.Client(base_url=service.url, timeout=PATIENCE_SECONDS) as client:
             return client.post(f"/v1/photos/{photo}/trace", json=heavy)
 
     with ThreadPoolExecutor(30) as many:
@@ -68,7 +66,7 @@ def test_what_takes_too_long_is_stopped_and_the_next_is_answered(hasty: Service)
 
 def _patiently(service: Service, content: bytes) -> str:
     """Upload a photo until its decoding was quick enough."""
-    deadline = time.monotonic() + 20
+    deadline = time.monotonic() + PATIENCE_SECONDS
     while time.monotonic() < deadline:
         answer = service.client.post("/v1/photos", content=content)
         if answer.status_code == 201:

@@ -1,7 +1,6 @@
 import asyncio
 import json
 import socket
-import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import suppress
 from typing import Any
@@ -11,8 +10,9 @@ import pytest
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.types import Message, Receive, Scope, Send
-from tests.api import drawn
+from tests.api import drawn, jumping_clock
 from tests.api.conftest import Service
+from tests.promises import kept
 
 from treestroke.api.middleware import BodyLimitMiddleware
 
@@ -240,10 +240,9 @@ def test_slow_bodies_hold_nobody_up(service: Service) -> None:
     try:
         for line in lines:
             line.sendall(head + b"1")
-        began = time.monotonic()
-        assert service.client.get("/v1/models").status_code == 200
-        assert service.client.post("/v1/photos", content=drawn.encoded()).status_code == 201
-        assert time.monotonic() - began < 2
+        with kept(2.0):
+            assert service.client.get("/v1/models").status_code == 200
+            assert service.client.post("/v1/photos", content=drawn.encoded()).status_code == 201
     finally:
         for line in lines:
             line.close()
@@ -296,7 +295,7 @@ def test_all_bodies_together_are_bounded() -> None:
         await asyncio.gather(come(), come())
         await come()  # what was held is free again
 
-    asyncio.run(crowd())
+    jumping_clock.run(crowd())
     assert sorted(outcomes[:2]) == [200, 503]
     assert outcomes[2] == 200
 
@@ -309,7 +308,7 @@ def test_a_body_that_came_fast_and_fell_silent_is_given_up_as_soon_as_any_other(
     async def speak() -> tuple[int, bytes]:
         return await asyncio.wait_for(_speak(bodies(), slowest=10.0), PATIENCE_SECONDS / 2)
 
-    assert asyncio.run(speak())[0] == 408
+    assert jumping_clock.run(speak())[0] == 408
 
 
 def test_silent_halves_of_bodies_make_room_for_one_that_comes() -> None:
@@ -343,7 +342,7 @@ def test_silent_halves_of_bodies_make_room_for_one_that_comes() -> None:
         assert not second.done()
         await second
 
-    asyncio.run(crowd())
+    jumping_clock.run(crowd())
     assert outcomes == {"early": 503, "whole": 200, "first": 408, "second": 408}
 
 
@@ -376,9 +375,12 @@ async def _pieces(count: int, size: int, pause_s: float) -> AsyncIterator[bytes]
 def test_a_body_is_counted_and_given_up_where_it_hardly_comes(
     pieces: tuple[int, int, float], wanted: tuple[int, bytes]
 ) -> None:
-    began = time.monotonic()
-    assert asyncio.run(_speak(_pieces(*pieces))) == wanted
-    assert time.monotonic() - began < 2
+    async def speak() -> tuple[tuple[int, bytes], float]:
+        return await _speak(_pieces(*pieces)), asyncio.get_running_loop().time()
+
+    outcome, took_s = jumping_clock.run(speak())
+    assert outcome == wanted
+    assert took_s < 2
 
 
 def test_a_problem_says_what_to_do(client: httpx.Client) -> None:

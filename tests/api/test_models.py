@@ -7,6 +7,7 @@ import httpx
 import pytest
 from tests.api import drawn
 from tests.api.conftest import Service
+from tests.promises import kept
 
 LONG = {"iterations": 2000, "leaf_density": 3}
 WAIT = {"Prefer": "wait=60"}
@@ -16,7 +17,7 @@ def asked(client: httpx.Client, key: str | None = None, **request: Any) -> httpx
     return client.post("/v1/models", headers={} if key is None else {"Idempotency-Key": key}, **request)
 
 
-def test_a_model_is_accepted_and_made(client: httpx.Client, photo: str) -> None:
+def test_a_model_is_accepted_and_made(service: Service, client: httpx.Client, photo: str) -> None:
     answer = asked(client, json=drawn.request(photo, name="First", seed=11))
     told = answer.json()
     assert answer.status_code == 202
@@ -24,10 +25,7 @@ def test_a_model_is_accepted_and_made(client: httpx.Client, photo: str) -> None:
     assert told["status"] in ("queued", "running")
     assert (told["name"], told["seed"], told["attempt"] <= 1, told["error"]) == ("First", 11, True, None)
     assert told["settings"]["iterations"] == drawn.QUICK["iterations"]
-    deadline = time.monotonic() + 60
-    while told["status"] in ("queued", "running") and time.monotonic() < deadline:
-        time.sleep(0.1)
-        told = client.get(answer.headers["location"]).json()
+    told = service.finished(answer)
     assert (told["status"], told["progress"], told["attempt"]) == ("succeeded", 1.0, 1)
     assert set(told["files"]) == {"tree.glb", "preview.png", "strokes.json", "project"}
     assert told["score"] == told["report"]["score"]
@@ -192,13 +190,12 @@ def test_a_deleted_model_is_gone_until_it_is_restored(service: Service, photo: s
     assert client.get(f"{place}/tree.glb").status_code == 200
 
 
-def test_a_running_model_is_canceled(client: httpx.Client, photo: str) -> None:
-    place = asked(client, json=drawn.request(photo, seed=18, settings=LONG)).headers["location"]
-    began = time.monotonic()
-    assert client.post(f"{place}/cancel").status_code == 200
-    while (told := client.get(place).json())["status"] not in ("canceled", "succeeded"):
-        assert time.monotonic() < began + 20
-        time.sleep(0.1)
+def test_a_running_model_is_canceled(service: Service, client: httpx.Client, photo: str) -> None:
+    answer = asked(client, json=drawn.request(photo, seed=18, settings=LONG))
+    place = answer.headers["location"]
+    with kept(20.0):
+        assert client.post(f"{place}/cancel").status_code == 200
+        told = service.finished(answer)
     assert told["status"] == "canceled"
     assert set(told["files"]) == {"strokes.json", "project"}
     assert client.get(f"{place}/tree.glb").json()["code"] == "file_not_found"

@@ -105,17 +105,17 @@ def test_a_picture_of_another_kind_is_refused_by_name_however_it_is_sent(
     assert raw.json() == form.json() == asked.json()
 
 
-def test_what_was_mended_in_a_photo_is_told_wherever_it_is_used(client: httpx.Client) -> None:
+def test_what_was_mended_in_a_photo_is_told_wherever_it_is_used(service: Service, client: httpx.Client) -> None:
     whole = drawn.encoded("JPEG", seed=31)
     photo = client.post("/v1/photos", content=whole[:-2]).json()
     warnings = photo["warnings"]
     assert [(one["code"], one["stroke"]) for one in warnings] == [("photo_cut_short", "photo")]
     assert client.get(f"/v1/photos/{photo['id']}").json()["warnings"] == warnings
     assert client.post(f"/v1/photos/{photo['id']}/trace", json=drawn.STROKES).json()["warnings"] == warnings
-    wait = {"Prefer": "wait=60"}
-    made = client.post("/v1/models", json=drawn.request(photo["id"]), headers=wait).json()
-    brought = client.post("/v1/models", **drawn.form(whole[:-2]), headers=wait).json()
-    of_whole = client.post("/v1/models", **drawn.form(whole), headers=wait).json()
+    made = service.make(**drawn.request(photo["id"]))
+    brought, of_whole = (
+        service.finished(client.post("/v1/models", **drawn.form(content))) for content in (whole[:-2], whole)
+    )
     assert made["report"]["warnings"] == warnings
     assert brought["report"]["warnings"] == warnings
     assert of_whole["report"]["warnings"] == []  # though its pixels are the same

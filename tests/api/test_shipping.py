@@ -94,9 +94,9 @@ def test_a_leaf_of_one_s_own_is_borne(service: Service, client: httpx.Client, ph
 def test_a_leaf_comes_by_a_form_too(service: Service, client: httpx.Client) -> None:
     form = drawn.form(drawn.encoded())
     form["files"]["leaf"] = ("leaf.png", leaf_png())
-    answer = client.post("/v1/models", **form, headers={"Prefer": "wait=60"})
-    assert answer.json()["status"] == "succeeded"
-    assert magenta(client.get(answer.json()["files"]["tree.glb"]).content) > 0.5
+    model = service.finished(client.post("/v1/models", **form))
+    assert model["status"] == "succeeded"
+    assert magenta(client.get(model["files"]["tree.glb"]).content) > 0.5
 
 
 def text_of(png: bytes) -> str:

@@ -2,8 +2,8 @@ import base64
 import hashlib
 import io
 import json
-import time
 import zipfile
+from collections.abc import Callable
 from typing import Any
 
 import httpx
@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 from tests.api import corpora, drawn, sketched
 from tests.api.conftest import Service
+from tests.promises import kept
 
 import treestroke
 
@@ -39,9 +40,8 @@ def tree(service: Service) -> dict[str, Any]:
 
 def test_sketches_are_traced_while_they_are_drawn(client: httpx.Client) -> None:
     client.post(TRACE, json=BOTH)
-    began = time.monotonic()
-    answer = client.post(TRACE, json={**BOTH, "rev": 5})
-    assert time.monotonic() - began < 1.0
+    with kept(1.0):
+        answer = client.post(TRACE, json={**BOTH, "rev": 5})
     told = answer.json()
     assert (answer.status_code, told["rev"], told["warnings"]) == (200, 5, [])
     assert set(told) == {"rev", "front", "side", "warnings"}
@@ -95,8 +95,13 @@ def test_what_is_wrong_in_a_sketch_is_pointed_at(
     assert [fault["pointer"] for fault in told["errors"]] == [pointer]
 
 
-@pytest.mark.parametrize("picture", [sketched.png(sketched.FRONT)[:200], corpora.flat_png(16_384, 16_384), b"\x89PNG"])
-def test_a_hostile_picture_is_refused_and_the_next_is_answered(client: httpx.Client, picture: bytes) -> None:
+@pytest.mark.parametrize(
+    "make",
+    [lambda: sketched.png(sketched.FRONT)[:200], lambda: corpora.flat_png(16_384, 16_384), lambda: b"\x89PNG"],
+    ids=["cut", "flat", "short"],
+)
+def test_a_hostile_picture_is_refused_and_the_next_is_answered(client: httpx.Client, make: Callable[[], bytes]) -> None:
+    picture = make()
     answer = client.post(TRACE, json={"front": {"picture": base64.b64encode(picture).decode()}})
     assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/front/picture")
     assert asked(client, **form(front=picture)).status_code in (400, 422)
@@ -107,11 +112,11 @@ def test_noise_is_no_sketch_and_says_so_before_long(client: httpx.Client) -> Non
     out = io.BytesIO()
     Image.fromarray(np.random.default_rng(0).integers(0, 2, (800, 800), dtype=np.uint8) * 255).save(out, "PNG")
     picture = {"picture": base64.b64encode(out.getvalue()).decode()}
-    began = time.monotonic()
-    for answer in (client.post(TRACE, json={"front": picture}), asked(client, json={"sketches": {"front": picture}})):
+    with kept(10.0):
+        answers = client.post(TRACE, json={"front": picture}), asked(client, json={"sketches": {"front": picture}})
+    for answer in answers:
         assert answer.status_code == 422, answer.text
         assert answer.json()["errors"][0]["pointer"].endswith("/front")
-    assert time.monotonic() - began < 10
 
 
 def test_a_model_of_sketches_is_made_and_gives_them_back(client: httpx.Client, tree: dict[str, Any]) -> None:
@@ -171,13 +176,12 @@ def test_a_key_gives_the_first_model_and_no_other_request(client: httpx.Client) 
 
 def test_one_picture_alone_makes_a_tree_that_says_what_was_assumed(service: Service) -> None:
     picture = sketched.png(sketched.FRONT, note="secret")
-    answer = service.client.post("/v1/models", **form(front=picture), headers={"Prefer": "wait=60"})
-    told = answer.json()
-    assert (answer.status_code, told["status"]) == (200, "succeeded"), told
+    told = service.finished(asked(service.client, **form(front=picture)))
+    assert told["status"] == "succeeded", told
     assert "side_assumed" in [warning["code"] for warning in told["report"]["warnings"]]
-    kept = service.client.get(told["files"]["front.png"])
-    assert kept.headers["content-type"] == "image/png"
-    assert b"secret" not in kept.content
+    stored = service.client.get(told["files"]["front.png"])
+    assert stored.headers["content-type"] == "image/png"
+    assert b"secret" not in stored.content
 
 
 def test_sketches_over_a_stored_photo_outlive_it(service: Service) -> None:
@@ -193,9 +197,8 @@ def test_sketches_over_a_stored_photo_outlive_it(service: Service) -> None:
 
 def test_a_photo_that_came_along_lends_its_colours_to_sketches(service: Service) -> None:
     files = {"photo": drawn.encoded(seed=32), "front": json.dumps(sketched.FRONT).encode()}
-    answer = service.client.post("/v1/models", **form(**files), headers={"Prefer": "wait=60"})
-    told = answer.json()
-    assert (answer.status_code, told["status"]) == (200, "succeeded"), told
+    told = service.finished(asked(service.client, **form(**files)))
+    assert told["status"] == "succeeded", told
     assert told["photo"].startswith("pho_")
     assert "strokes.json" not in told["files"]
 

@@ -1,11 +1,12 @@
 import importlib.util
 import re
-import time
 from dataclasses import fields
 from typing import Any
 
 import httpx
 import pytest
+from tests.api.conftest import PATIENCE_SECONDS
+from tests.faults.processes import wait_for
 
 from treestroke import __version__
 from treestroke.core.pipeline.settings import FILES, Choice, ModelSettings, Several, Span
@@ -25,10 +26,9 @@ def operations(document: dict[str, Any]) -> dict[str, Any]:
 
 def test_the_service_lives_and_is_ready(client: httpx.Client) -> None:
     assert client.get("/livez").json() == {"status": "ok", "checks": {}}
-    deadline = time.monotonic() + 30  # the worker says that it lives a moment after the web process does
-    while (answer := client.get("/readyz")).json()["status"] != "ok" and time.monotonic() < deadline:
-        time.sleep(0.2)
-    assert (answer.status_code, answer.json()["status"]) == (200, "ok")
+    # The worker says that it lives a moment after the web process does.
+    wait_for(lambda: client.get("/readyz").json()["status"] == "ok", PATIENCE_SECONDS, "a service that is ready", 0.2)
+    assert client.get("/readyz").status_code == 200
 
 
 def test_the_limits_are_told(client: httpx.Client) -> None:

@@ -5,6 +5,7 @@ import httpx
 import numpy as np
 import pytest
 from tests.api import drawn, sketched
+from tests.api.conftest import Service
 
 from treestroke import trace
 
@@ -60,10 +61,9 @@ def test_points_outside_the_photo_are_clamped(client: httpx.Client, photo: str) 
     assert first["foliage"] == second["foliage"]
 
 
-def test_a_grown_tree_is_the_one_that_the_model_grows(client: httpx.Client, photo: str) -> None:
+def test_a_grown_tree_is_the_one_that_the_model_grows(service: Service, client: httpx.Client, photo: str) -> None:
     grown = traced(client, photo, grow=True)
-    request = {"photo": photo, "strokes": drawn.STROKES}
-    model = client.post("/v1/models", json=request, headers={"Prefer": "wait=60"}).json()
+    model = service.make(photo=photo, strokes=drawn.STROKES)
     told = client.get(f"/v1/models/{model['id']}/events").text
     preview = told.split("event: preview\ndata: ")[1].split("\n")[0]
     assert json.loads(preview) == grown["grown"]

@@ -78,7 +78,7 @@ def torment(service: Service, seconds: float, jobs: int, seed: int) -> Outcome:
     asking.join()
     for timer in later:
         timer.join()
-    rows = service.finish(service.accepted[before:], seconds=120 + 5 * jobs)
+    rows = service.finish(service.accepted[before:], seconds=300 + 10 * jobs)
     violations = [f"{row['id']} {row['error']}" for row in rows if not (succeeded(row) or lost_thrice(row))]
     if len(rows) != jobs:
         violations.append(f"{jobs} jobs were asked for, {len(rows)} were taken")

@@ -3,40 +3,34 @@
 from collections.abc import Iterator
 
 import pytest
-from tests.faults.harness import Service
+from tests.faults.harness import POISONED, Service
 from tests.faults.redis_server import RedisServer, need_redis
 
 
 @pytest.fixture(scope="session", params=["files", "redis"])
-def broker_url(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+def broker(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RedisServer | None]:
+    """A Redis; nothing where the queue is a folder."""
     if request.param == "files":
-        yield ""
+        yield None
         return
     need_redis()
     server = RedisServer(tmp_path_factory.mktemp("broker") / "redis")
     try:
-        yield server.url
+        yield server
     finally:
         server.kill()
 
 
 @pytest.fixture(scope="session")
-def service(broker_url: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """Web process and worker as `treestroke serve` starts them."""
-    with Service(tmp_path_factory.mktemp("service"), broker_url=broker_url) as service:
-        service.wait_for_workers(1)
-        yield service
-        service.finish()
-        service.check_invariants()
+def broker_url(broker: RedisServer | None) -> str:
+    return broker.url if broker else ""
 
 
 @pytest.fixture(scope="session")
-def poisoned(broker_url: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A web process, and beside it a worker for two models that knows poisoned jobs."""
-    folder = tmp_path_factory.mktemp("poisoned")
-    # On a Redis they take turns: the messages of one service mean nothing to the other.
-    with Service(folder, broker_url=broker_url.replace("/0", "/1"), workers=0, model_seconds=7) as service:
-        service.run("tests.faults.poisoned_worker", TREESTROKE_WORKERS=2)
+def service(broker_url: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
+    """Web process and worker as `treestroke serve` starts them, but that jobs may be poisoned."""
+    folder = tmp_path_factory.mktemp("service")
+    with Service(folder, program=POISONED, broker_url=broker_url, workers=2, model_seconds=1) as service:
         service.wait_for_workers(1)
         yield service
         service.finish()

@@ -20,7 +20,9 @@ from typing import Any, Self
 
 import cv2
 import httpx
+from tests.faults.held import released
 from tests.faults.processes import Process, end_sessions, processes, wait_for
+from tests.running import FAR_LIMITS
 
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
@@ -32,9 +34,12 @@ ROOT = Path(__file__).parents[2]
 PHOTO = ROOT / "tests" / "data" / "beech_round.jpg"
 SHRUNK = 0.35
 QUICK: dict[str, object] = {"iterations": 0, "foliage": "bare"}
-LONGER: dict[str, object] = {"iterations": 2000, "foliage": "leaves"}
-"""Of a model that is under way for some seconds: a quick one may be finished before it can be struck."""
-"""A job of about a second."""
+"""Of a model that takes about a second."""
+ENDLESS: dict[str, object] = {"iterations": 2000, "foliage": "leaves", "variants": 16}
+"""Of a model that is still under way when a test stops it."""
+PATIENCE_SECONDS = 300.0
+"""Emergency exit of what a test waits for: nothing is expected to take this long, however busy the machine is."""
+POISONED = "tests.faults.poisoned_serve"
 Row = dict[str, Any]
 
 
@@ -92,13 +97,17 @@ class History:
 
 
 class Service:
-    """One service and all that a test starts beside it; leaving it kills whatever still runs."""
+    """One service and all that a test starts beside it; leaving it kills whatever still runs.
 
-    def __init__(self, folder: Path, data: Path | None = None, **settings: object) -> None:
+    ``program`` is `treestroke`, or `POISONED` for one whose worker knows poisoned jobs.
+    """
+
+    def __init__(self, folder: Path, data: Path | None = None, program: str = "treestroke", **settings: object) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.data = data or folder / "data"
         self.log_path = folder / "log.txt"
-        self._settings = {"workers": 1, "tracers": 1, "memory_mb": 2048, **settings}
+        self._program = program
+        self._settings = {**FAR_LIMITS, "workers": 1, "tracers": 1, "memory_mb": 2048, **settings}
         self._started: list[subprocess.Popen[bytes]] = []
         self._seeds = count()
         self._photo: str | None = None
@@ -125,12 +134,14 @@ class Service:
     def start(self) -> None:
         """Run `treestroke serve` and wait until it answers."""
         begins = len(self.log())
-        self.launcher = self.run("treestroke", "serve", "--data", str(self.data), "--port", "0")
+        self.launcher = self.run(self._program, "serve", "--data", str(self.data), "--port", "0")
         pattern = re.compile(r"open (\S+) in a browser")
-        found = wait_for(lambda: pattern.search(self.log()[begins:]), 30, f"the service's address in {self.log_path}")
+        found = wait_for(
+            lambda: pattern.search(self.log()[begins:]), PATIENCE_SECONDS, f"the service's address in {self.log_path}"
+        )
         # Each request has a connection of its own: one that is open already dies with the process at its other end.
         limits = httpx.Limits(max_keepalive_connections=0)
-        self.client = httpx.Client(base_url=found[1], timeout=30, trust_env=False, limits=limits)
+        self.client = httpx.Client(base_url=found[1], timeout=PATIENCE_SECONDS, trust_env=False, limits=limits)
 
     def run(self, module: str, *arguments: str, **environment: object) -> subprocess.Popen[bytes]:
         """Start a module of Python beside the service, in a session of its own."""
@@ -191,15 +202,15 @@ class Service:
             with closing(sqlite3.connect(f"file:{self.data / 'treestroke.sqlite3'}?mode=ro", uri=True)) as connection:
                 return [str(row[0]) for row in connection.execute("SELECT id FROM workers")]
 
-        wait_for(lambda: len(names()) >= number, 30, f"{number} workers")
+        wait_for(lambda: len(names()) >= number, PATIENCE_SECONDS, f"{number} workers")
         return names()
 
-    def stop(self, seconds: float = 12) -> float:
+    def stop(self) -> float:
         """Tell the launcher to stop and wait until all its processes are gone; say how long that took."""
         assert self.launcher is not None
-        began = time.monotonic()
+        began, session = time.monotonic(), {self.launcher.pid}
         self.launcher.send_signal(signal.SIGTERM)
-        wait_for(lambda: not processes({self.launcher.pid}), seconds, "the end of all processes")  # type: ignore[union-attr]
+        wait_for(lambda: not processes(session), PATIENCE_SECONDS, "the end of all processes")
         self.launcher.wait()
         return time.monotonic() - began
 
@@ -232,6 +243,11 @@ class Service:
     def ask_for(self, number: int, name: str = "", **settings: object) -> list[str]:
         return [self.ask(name, **settings) for _ in range(number)]
 
+    def release(self, *ids: str) -> None:
+        """Let jobs named "held" go on."""
+        for id in ids:
+            released(self.data, id).touch()
+
     def get(self, id: str) -> Row:
         answer = self.client.get(f"/v1/models/{id}")
         answer.raise_for_status()
@@ -240,7 +256,7 @@ class Service:
     def row(self, id: str) -> Row:
         return next(row for row in self.history.rows() if row["id"] == id)
 
-    def wait_until(self, id: str, what: Callable[[Row], bool], seconds: float = 30) -> Row:
+    def wait_until(self, id: str, what: Callable[[Row], bool], seconds: float = PATIENCE_SECONDS) -> Row:
         """Wait for a state of a model's row."""
 
         def look() -> Row | None:
@@ -251,11 +267,11 @@ class Service:
 
         return wait_for(look, seconds, f"the state of {id} (now {self.row(id)})")
 
-    def wait_running(self, id: str, seconds: float = 30) -> Row:
+    def wait_running(self, id: str) -> Row:
         """Wait until a model is well under way."""
-        return self.wait_until(id, lambda row: row["status"] == "running" and bool(row["phase"]), seconds)
+        return self.wait_until(id, lambda row: row["status"] == "running" and bool(row["phase"]))
 
-    def finish(self, ids: Iterable[str] | None = None, seconds: float = 60) -> list[Row]:
+    def finish(self, ids: Iterable[str] | None = None, seconds: float = PATIENCE_SECONDS) -> list[Row]:
         """Wait until models are finished, each way; give their rows."""
         return [self.wait_until(id, lambda row: row["status"] in TERMINAL, seconds) for id in ids or self.accepted]
 
@@ -264,7 +280,7 @@ class Service:
     def check_invariants(self) -> None:
         """Check all that the service promises, once every model has ended."""
         rows = {row["id"]: row for row in self.history.rows()}
-        wait_for(lambda: self._followed(rows), 5, "the history's last line")
+        wait_for(lambda: self._followed(rows), PATIENCE_SECONDS, "the history's last line")
         assert set(self.accepted) <= set(rows)
         assert {row["id"]: row["status"] for row in rows.values() if row["status"] not in TERMINAL} == {}
         for id, changes in self.history.changes.items():

@@ -1,21 +1,31 @@
-"""A worker for tests that is what `treestroke.worker` is, but for jobs whose name says what goes wrong in them.
+"""A worker for tests that is what `treestroke.worker` is, but for jobs whose name says what happens to them.
 
-Run it with `python -m tests.faults.poisoned_worker` beside a service; the product knows nothing of this.
+The first word of a name is one of `_POISONS`, for the first attempt alone with "at first"; a name with "instant" stands
+for small files instead of a tree. `tests.faults.poisoned_serve` runs it; the product knows nothing of this.
 """
 
 import ctypes
 import os
 import signal
+import sqlite3
 import sys
 import time
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+from celery import signals
+from celery.worker.request import Request
+from tests.faults.held import released
 
 from treestroke import queue, worker
 from treestroke.codec.inputs import Inputs
 from treestroke.service import jobs
-from treestroke.service.jobs import Heartbeat
+from treestroke.service.jobs import Assignment, Heartbeat
+from treestroke.settings import read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import ModelPart, ModelRow
@@ -23,63 +33,68 @@ from treestroke.store.tables import ModelPart, ModelRow
 CHUNK = 64 * 2**20
 GRACE_SECONDS = 2
 """The hard limit comes this long after the soft one, so that a test need not wait as long as people do."""
-_make, _publish = jobs._make, jobs._publish
+LIMITED = ("loop", "hang", "deaf")
+"""Jobs that run into the service's limit, which a test sets low."""
+PATIENT_SECONDS = 600.0
+"""The limit of all others: they must end well on a busy machine too."""
+_make, _publish, _grow = jobs._make, jobs._publish, worker.grow_model
 
 
-def _segfault(_: Heartbeat) -> NoReturn:
+def _segfault(*_: object) -> NoReturn:
     ctypes.string_at(0)
     raise AssertionError
 
 
-def _memory(_: Heartbeat) -> NoReturn:
+def _memory(*_: object) -> NoReturn:
     """Take addresses and write nothing there: they are what is limited, and writing 2 GB takes seconds."""
     taken = []
     while True:
         taken.append(np.empty(CHUNK, np.uint8))
 
 
-def _loop(heartbeat: Heartbeat) -> NoReturn:
+def _loop(heartbeat: Heartbeat, *_: object) -> NoReturn:
     while True:
         heartbeat.report("foliage", 0.5)
         time.sleep(0.01)
 
 
-def _hang(_: Heartbeat) -> NoReturn:
+def _hang(*_: object) -> NoReturn:
     while True:
         time.sleep(1)
 
 
-def _deaf(_: Heartbeat) -> NoReturn:
+def _deaf(*_: object) -> NoReturn:
     """Hold Python's lock, so that nothing else in the process runs, as a library may that never comes back."""
     ctypes.PyDLL(None).sleep(10_000)
     raise AssertionError
 
 
-def _slow(heartbeat: Heartbeat) -> None:
-    for step in range(15):
-        heartbeat.report("foliage", step / 15)
-        time.sleep(0.2)
+def _held(heartbeat: Heartbeat, release: Path) -> None:
+    """Be under way until the test has seen what it wants to see."""
+    while not release.exists():
+        heartbeat.report("foliage", 0.5)
+        time.sleep(0.01)
 
 
-_POISONS: dict[str, Any] = {
+_POISONS: dict[str, Callable[[Heartbeat, Path], None]] = {
     "segfault": _segfault,
     "memory": _memory,
     "loop": _loop,
     "hang": _hang,
     "deaf": _deaf,
-    "slow": _slow,
+    "held": _held,
 }
 
 
 def _make_or_break(
     database: Database, blobs: Blobs, job: ModelRow, inputs: Inputs[ModelPart], heartbeat: Heartbeat
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
-    kind = job.name.partition(" ")[0]
-    if kind == "instant":
+    words = job.name.split()
+    if words and words[0] in _POISONS and not (job.attempt > 1 and "at first" in job.name):
+        _POISONS[words[0]](heartbeat, released(database.path.parent, job.id))
+    if "instant" in words:
         heartbeat.report("preview", 1.0)
         return _instant(blobs, job)
-    if kind in _POISONS and not (job.attempt > 1 and "at first" in job.name):
-        _POISONS[kind](heartbeat)
     return _make(database, blobs, job, inputs, heartbeat)
 
 
@@ -101,7 +116,26 @@ def _publish_or_die(
         os.kill(os.getpid(), signal.SIGKILL)
 
 
+def _name_of(folder: Path, model: str) -> str:
+    with closing(sqlite3.connect(f"file:{folder / 'treestroke.sqlite3'}?mode=ro", uri=True, timeout=30)) as database:
+        found = database.execute("SELECT name FROM models WHERE id = ?", (model,)).fetchone()
+    return str(found[0]) if found else ""
+
+
+def _grow_patiently(database: Database, blobs: Blobs, assignment: Assignment) -> None:
+    if _name_of(database.path.parent, assignment.model) not in LIMITED:
+        assignment = replace(assignment, seconds=PATIENT_SECONDS)
+    _grow(database, blobs, assignment)
+
+
+def _wait_patiently(request: Request, **_: object) -> None:
+    """Lift the hard limit of a job before it goes to a child."""
+    if _name_of(read_settings().folder, str((*request.args, "")[0])) not in LIMITED:
+        request.time_limits = (PATIENT_SECONDS + GRACE_SECONDS, None)
+
+
 if __name__ == "__main__":
-    jobs._make, jobs._publish = _make_or_break, _publish_or_die
+    jobs._make, jobs._publish, worker.grow_model = _make_or_break, _publish_or_die, _grow_patiently
     queue._GRACE_SECONDS = GRACE_SECONDS
+    signals.task_received.connect(_wait_patiently, weak=False)
     sys.exit(worker.main())

@@ -48,7 +48,7 @@ def end_sessions(sessions: set[int]) -> None:
             process.hit()
         return not left
 
-    wait_for(gone, 10, "the sessions' end")
+    wait_for(gone, 60, "the sessions' end")
 
 
 def wait_for(look: Callable[[], T], seconds: float, what: str, every_s: float = 0.02) -> T:

@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 from tests.api import drawn
+from tests.faults.harness import PATIENCE_SECONDS
 from tests.faults.processes import wait_for
 from tests.running import serving
 
@@ -24,7 +25,7 @@ class TooManyFollowers:
         self._at = urlsplit(url)
 
     def line(self, said: str = "") -> socket.socket:
-        line = socket.create_connection((self._at.hostname, self._at.port), timeout=10)
+        line = socket.create_connection((self._at.hostname, self._at.port), timeout=PATIENCE_SECONDS)
         line.sendall(said.replace("HOST", self._at.netloc).encode())
         return self._lines.enter_context(line)
 
@@ -43,18 +44,20 @@ def test_silent_connections_leave_everybody_else_answered(crowded: TooManyFollow
         crowded.line("GET / HT" if number % 2 else "")
     photos, pages = [], []
     for _ in range(5):  # each with a connection of its own
-        photos.append(httpx.post(f"{crowded.url}/v1/photos", content=drawn.encoded(), timeout=30))
-        pages.append(httpx.get(f"{crowded.url}/v1/models", timeout=30))
+        photos.append(httpx.post(f"{crowded.url}/v1/photos", content=drawn.encoded(), timeout=PATIENCE_SECONDS))
+        pages.append(httpx.get(f"{crowded.url}/v1/models", timeout=PATIENCE_SECONDS))
     assert [answer.status_code for answer in photos] == [201] * 5
     assert [answer.status_code for answer in pages] == [200] * 5
-    traced = httpx.post(f"{crowded.url}/v1/photos/{photos[0].json()['id']}/trace", json=drawn.STROKES, timeout=30)
+    traced = httpx.post(
+        f"{crowded.url}/v1/photos/{photos[0].json()['id']}/trace", json=drawn.STROKES, timeout=PATIENCE_SECONDS
+    )
     assert traced.status_code == 200
     assert len(crowded.logged()) < 10
     assert not {"request_failed", "storage_failed"} & set(crowded.logged())
 
 
 def test_streams_beyond_the_bound_are_told_to_come_again(crowded: TooManyFollowers) -> None:
-    with httpx.Client(base_url=crowded.url, timeout=30) as client:
+    with httpx.Client(base_url=crowded.url, timeout=PATIENCE_SECONDS) as client:
         photo = client.post("/v1/photos", content=drawn.encoded()).json()["id"]
         place = client.post("/v1/models", json=drawn.request(photo)).headers["location"]
         followers = client.get("/v1/limits").json()["followers"]
@@ -74,4 +77,4 @@ def test_streams_beyond_the_bound_are_told_to_come_again(crowded: TooManyFollowe
             with client.stream("GET", f"{place}/events") as stream:
                 return stream.status_code == 200
 
-        wait_for(followed, 20, "the place of a stream that is over", every_s=0.2)
+        wait_for(followed, PATIENCE_SECONDS, "its place", every_s=0.2)

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import httpx
 import pytest
-from tests.faults.harness import LONGER, Service, small_tree
+from tests.faults.harness import PATIENCE_SECONDS, POISONED, Service, small_tree
+from tests.faults.processes import wait_for
 
 from treestroke.queue import make_queue, send_job_message
 from treestroke.settings import Settings
@@ -55,8 +56,9 @@ def stored(service: Service) -> set[str]:
 
 
 def test_a_full_disk_refuses_uploads_and_serves_nothing_half_made(tmp_path: Path, small_disk: Path) -> None:
+    """Takes over 20 s: nothing can be written of an attempt that finds no room, and so its lease runs out."""
     disk = Filler(small_disk)
-    with Service(tmp_path / "service", data=small_disk / "data") as service:
+    with Service(tmp_path / "service", data=small_disk / "data", program=POISONED) as service:
         service.wait_for_workers(1)
         body, before = service.body(), stored(service)
         disk.fill()
@@ -66,16 +68,20 @@ def test_a_full_disk_refuses_uploads_and_serves_nothing_half_made(tmp_path: Path
         assert stored(service) == before
         assert service.client.get(f"/v1/photos/{body['photo']}/image").status_code == 200
         disk.free()
-        id = service.ask(**LONGER)
+        id = service.ask("held")
         service.wait_running(id)
         disk.fill()
-        with suppress(AssertionError):
-            service.finish([id], 4)
+        service.release(id)
+        wait_for(lambda: attempt_over(service, id), PATIENCE_SECONDS, "the end of an attempt that finds no room")
         disk.free()
         (row,) = service.finish([id])
         assert row["status"] == "succeeded" or json.loads(row["error"])["code"] == "storage_full"
         assert {row["status"] for row in service.finish(service.ask_for(2))} == {"succeeded"}
         service.check_invariants()
+
+
+def attempt_over(service: Service, id: str) -> bool:
+    return service.row(id)["status"] != "running" or any(map(service.logged, ("job_broke", "database_failed")))
 
 
 def refused_for_space(answer: httpx.Response) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from celery import Celery
 from redis import Redis
-from tests.faults.harness import Service
+from tests.faults.harness import PATIENCE_SECONDS, Service
 from tests.faults.processes import wait_for
 
 from treestroke.queue import TASK, make_queue, send_job_message
@@ -38,7 +38,9 @@ def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(servi
     for id in ids:
         send_job_message(queue, id)
     wait_for(
-        lambda: len(service.logged("job_message_ignored")) >= ignored + 2, 20, "two more messages that are ignored"
+        lambda: len(service.logged("job_message_ignored")) >= ignored + 2,
+        PATIENCE_SECONDS,
+        "two more messages that are ignored",
     )
     assert [(row["status"], row["attempt"]) for row in before] == [("succeeded", 1)] * 2
     assert [service.row(id) for id in ids] == before
@@ -90,8 +92,9 @@ def old_form(id: str) -> bytes:
 
 def test_a_queue_whose_folder_is_removed_takes_messages(tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
-    shutil.rmtree(tmp_path / "queue")
     send_job_message(queue, "mdl_1")
+    shutil.rmtree(tmp_path / "queue")
+    send_job_message(queue, "mdl_2")
     assert len(list((tmp_path / "queue" / "messages").glob("*.msg"))) == 1
 
 

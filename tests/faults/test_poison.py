@@ -9,10 +9,10 @@ def code(row: Row) -> str | None:
     return json.loads(row["error"])["code"] if row["error"] else None
 
 
-def test_poisoned_jobs_end_and_their_neighbours_succeed(poisoned: Service) -> None:
+def test_poisoned_jobs_end_and_their_neighbours_succeed(service: Service) -> None:
     names = ["segfault", "memory", "loop", "hang", "deaf", "dies before the commit", "dies after the commit", "", ""]
-    ids = [poisoned.ask(name) for name in names]
-    rows = poisoned.finish(ids, 60)
+    ids = [service.ask(name) for name in names]
+    rows = service.finish(ids)
     assert [(row["status"], code(row), row["attempt"]) for row in rows] == [
         ("failed", "worker_lost", 3),
         ("failed", "out_of_memory", 1),
@@ -26,6 +26,6 @@ def test_poisoned_jobs_end_and_their_neighbours_succeed(poisoned: Service) -> No
     ]
 
 
-def test_a_worker_whose_children_were_killed_takes_the_next_job(poisoned: Service) -> None:
-    rows = poisoned.finish(poisoned.ask_for(3))
+def test_a_worker_whose_children_were_killed_takes_the_next_job(service: Service) -> None:
+    rows = service.finish(service.ask_for(3))
     assert [(row["status"], row["attempt"]) for row in rows] == [("succeeded", 1)] * 3

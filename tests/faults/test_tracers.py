@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import httpx
-from tests.faults.harness import Service, small_tree
+from tests.faults.harness import PATIENCE_SECONDS, Service, small_tree
 from tests.faults.processes import Process, wait_for
 
 
@@ -30,7 +30,7 @@ def kill_below(service: Service, web: Process) -> None:
     for one in service.alive():
         if one.pid in doomed:
             one.hit()
-    wait_for(lambda: not doomed & {one.pid for one in service.alive()}, 5, "their end")
+    wait_for(lambda: not doomed & {one.pid for one in service.alive()}, PATIENCE_SECONDS, "their end")
 
 
 @contextmanager
@@ -59,7 +59,7 @@ def test_tracers_that_are_killed_with_all_that_starts_them_are_started_again(ser
 def test_without_descriptors_uploads_are_to_come_again_and_then_succeed(service: Service) -> None:
     service.upload()
     web = web_of(service)
-    with httpx.Client(base_url=service.client.base_url, timeout=30, trust_env=False) as client:
+    with httpx.Client(base_url=service.client.base_url, timeout=PATIENCE_SECONDS, trust_env=False) as client:
         assert client.get("/readyz").json()["checks"]["tracers"] == "ok"  # and its connection stays
         for _ in range(3):
             with no_descriptors(web):
@@ -69,4 +69,4 @@ def test_without_descriptors_uploads_are_to_come_again_and_then_succeed(service:
                 assert answer.headers["retry-after"] == "1"
                 assert "Too many open files" in client.get("/readyz").json()["checks"]["tracers"]
             assert upload(service, client).status_code == 201
-        wait_for(lambda: client.get("/readyz").json()["status"] == "ok", 10, "a service that is well")
+        wait_for(lambda: client.get("/readyz").json()["status"] == "ok", PATIENCE_SECONDS, "it to be well")

@@ -2,6 +2,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from tests.running import FAR_LIMITS
 
 from treestroke.service.photos import Resources
 from treestroke.service.tracing_pool import TracingPool
@@ -11,7 +12,7 @@ from treestroke.store.database import Database
 
 @pytest.fixture(scope="module")
 def tracers() -> Iterator[TracingPool]:
-    pool = TracingPool(1, 20, 2048)
+    pool = TracingPool(1, FAR_LIMITS["trace_seconds"], 2048)
     yield pool
     pool.close()
 

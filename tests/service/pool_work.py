@@ -3,6 +3,7 @@
 import ctypes
 import os
 import time
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -30,9 +31,10 @@ def hang() -> None:
     time.sleep(60)
 
 
-def nap() -> int:
-    """Take a moment."""
-    time.sleep(0.15)
+def wait_for_file(path: Path) -> int:
+    """Wait until a file is there."""
+    while not path.exists():
+        time.sleep(0.01)
     return 1
 
 

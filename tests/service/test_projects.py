@@ -19,7 +19,8 @@ from treestroke.service.stored_models import StoredModel
 from treestroke.service.tracing_pool import Overloaded
 from treestroke.store.blobs import Damaged
 
-SECONDS = 30
+SECONDS = 300
+"""Emergency exit of what is waited for."""
 
 
 @pytest.fixture

@@ -2,19 +2,22 @@ import multiprocessing
 import os
 import resource
 import signal
-import threading
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
+from pathlib import Path
 
 import pytest
+from tests.faults.processes import wait_for
+from tests.promises import kept
 from tests.service import pool_work as work
 
 from treestroke.core.errors import PhotoError
 from treestroke.service.tracing_pool import WAITING, CannotStart, Crashed, Overloaded, TracingPool
 
-SECONDS = 1.0
+SECONDS = 60.0
+"""Time limit of calls, which those that are to end well do not reach on a busy machine."""
 
 
 @pytest.fixture(scope="module")
@@ -48,11 +51,15 @@ def test_a_process_that_dies_is_replaced(tracers: TracingPool, crash: object) ->
     assert not alive(before)
 
 
-def test_a_process_that_hangs_is_ended_at_the_limit(tracers: TracingPool) -> None:
-    before, began = tracers("c", work.process), time.monotonic()
-    with pytest.raises(Crashed, match="slow"):
-        tracers("c", work.hang)
-    assert SECONDS <= time.monotonic() - began < SECONDS + 3
+def test_a_process_that_hangs_is_ended_at_the_limit(tracers: TracingPool, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, limit_s = tracers("c", work.process), 0.5
+    with monkeypatch.context() as short:
+        for child in tracers._children:
+            short.setattr(child, "_seconds", limit_s)
+        began = time.monotonic()
+        with kept(limit_s + 3), pytest.raises(Crashed, match="slow"):
+            tracers("c", work.hang)
+        assert time.monotonic() - began >= limit_s
     assert tracers("c", work.process) != before
     assert not alive(before)
 
@@ -69,9 +76,10 @@ def test_a_neighbour_goes_on_while_a_process_dies(tracers: TracingPool) -> None:
 
 
 def test_a_process_that_is_killed_between_two_calls_is_replaced(tracers: TracingPool) -> None:
-    os.kill(tracers("e", work.process), signal.SIGKILL)
-    time.sleep(0.5)
-    assert tracers("e", work.process) != os.getpid()
+    before = tracers("e", work.process)
+    os.kill(before, signal.SIGKILL)
+    os.waitid(os.P_PID, before, os.WEXITED | os.WNOWAIT)
+    assert tracers("e", work.process) not in (before, os.getpid())
 
 
 def test_memory_is_bounded_and_the_process_lives_on(tracers: TracingPool) -> None:
@@ -88,19 +96,16 @@ def test_errors_of_the_input_come_back_whole(tracers: TracingPool) -> None:
     assert (caught.value.code, caught.value.pointer) == ("photo_unreadable", "/photo")
 
 
-def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: TracingPool) -> None:
-    begun = threading.Barrier(WAITING + 1)
-
-    def wait(at: int) -> int:
-        begun.wait()
-        return tracers(f"h{at % 2}", work.nap)
-
+def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: TracingPool, tmp_path: Path) -> None:
+    over = tmp_path / "over"
     with ThreadPoolExecutor(WAITING) as many:
-        waiting = [many.submit(wait, at) for at in range(WAITING)]
-        begun.wait()
-        time.sleep(0.05)
-        with pytest.raises(Overloaded):
-            tracers("i", work.process)
+        waiting = [many.submit(tracers, f"h{at % 2}", work.wait_for_file, over) for at in range(WAITING)]
+        try:
+            wait_for(lambda: sum(tracers._busy) == WAITING, SECONDS, "all calls")
+            with pytest.raises(Overloaded):
+                tracers("i", work.process)
+        finally:
+            over.touch()
         assert {future.result() for future in waiting} == {1}
     assert tracers("i", work.process)
 
@@ -154,8 +159,7 @@ def test_a_process_that_ends_before_it_is_ready_is_no_process() -> None:
 def test_all_processes_are_started_before_they_are_asked_for_anything() -> None:
     others, pool = set(multiprocessing.active_children()), TracingPool(2, SECONDS, 1536)
     pool.start()
-    deadline = time.monotonic() + 30
-    while len(started := set(multiprocessing.active_children()) - others) < 2 and time.monotonic() < deadline:
-        time.sleep(0.02)
+    wait_for(lambda: len(set(multiprocessing.active_children()) - others) == 2, SECONDS, "two processes")
+    started = set(multiprocessing.active_children()) - others
     assert {pool(f"key {at}", work.process) for at in range(4)} == {child.pid for child in started}
     pool.close()

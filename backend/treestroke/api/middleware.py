@@ -2,7 +2,6 @@
 
 import asyncio
 import math
-import time
 from collections.abc import Callable
 from functools import partial
 from http import HTTPStatus
@@ -118,7 +117,8 @@ class _Body:
 
     async def receive_piece(self) -> Message:
         """Return the next piece; each byte adds to the time that is left, up to the time at the start."""
-        began = time.monotonic()
+        clock = asyncio.get_running_loop().time
+        began = clock()
         try:
             async with asyncio.timeout(self._left_s) as self._wait:
                 message = await self._receive()
@@ -129,7 +129,7 @@ class _Body:
         finally:
             self._wait = None
         size = len(message.get("body", b""))
-        left_s = self._left_s - (time.monotonic() - began) + size / self._min_rate
+        left_s = self._left_s - (clock() - began) + size / self._min_rate
         self._left_s = min(left_s, self._patience_s)
         self.received += size
         self.complete = not message.get("more_body", False)

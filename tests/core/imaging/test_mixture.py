@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from sklearn.mixture import GaussianMixture
 
 from treestroke.core.imaging.mixture import (
     Mixture,
@@ -96,6 +95,8 @@ def test_every_colour_finds_its_cell_in_the_table() -> None:
 
 
 def test_fits_are_as_likely_as_those_of_scikit_learn(maple_photo: Path) -> None:
+    from sklearn.mixture import GaussianMixture  # takes seconds, which every run of other tests would spend too
+
     colours = cv2.imread(str(maple_photo)).reshape(-1, 3)
     learnt, unseen = colours[::400], colours[200::400].astype(float)
     oracle = GaussianMixture(8, reg_covar=4.0, tol=3e-3, random_state=0).fit(learnt.astype(float))

@@ -16,7 +16,7 @@ from treestroke.core.strokes import Stroke, Strokes
 from treestroke.service.loading import load_photo, load_strokes
 
 TREMOR = 0.007
-JITTERS = 10
+HANDS = pytest.mark.parametrize("hands", [4, pytest.param(10, marks=pytest.mark.nightly)])
 OAK, MAPLE, OSAGE = (EXAMPLES / name for name in ("burr_oak_dusk", "sugar_maple_autumn", "osage_orange_autumn"))
 FORKED = DATA / "bigleaf_maple_bare"
 """A photo on which a branch without stroke is found."""
@@ -30,11 +30,11 @@ def shaken(strokes: Strokes, amount_px: float, rng: np.random.Generator) -> Stro
 
 
 @cache
-def traces(tree: Path) -> tuple[PhotoTrace, list[PhotoTrace]]:
-    """Trace a photo once as drawn and ten times with a shaking hand."""
+def traces(tree: Path, hands: int) -> tuple[PhotoTrace, list[PhotoTrace]]:
+    """Trace a photo once as drawn and several times with a shaking hand."""
     photo, strokes = load_photo(tree.with_suffix(".jpg")), load_strokes(tree.with_suffix(".strokes.json"))
     rng, amount = np.random.default_rng(0), TREMOR * max(photo.shape[:2])
-    return trace_photo(photo, strokes), [trace_photo(photo, shaken(strokes, amount, rng)) for _ in range(JITTERS)]
+    return trace_photo(photo, strokes), [trace_photo(photo, shaken(strokes, amount, rng)) for _ in range(hands)]
 
 
 def walked(skeleton: Skeleton | None) -> np.ndarray:
@@ -44,15 +44,16 @@ def walked(skeleton: Skeleton | None) -> np.ndarray:
     return np.concatenate([resample(np.stack(edge), 1.0)[1:] for edge in edges])
 
 
+@HANDS
 @pytest.mark.parametrize("tree", [OAK, MAPLE, OSAGE], ids=lambda tree: tree.name)
-def test_a_shaking_hand_finds_the_same_foliage(tree: Path) -> None:
-    steady, others = traces(tree)
+def test_a_shaking_hand_finds_the_same_foliage(tree: Path, hands: int) -> None:
+    steady, others = traces(tree, hands)
     assert np.median([overlap(other.foliage, steady.foliage) for other in others]) >= 0.95
 
 
 @pytest.mark.parametrize("tree", [OAK, MAPLE, OSAGE, FORKED], ids=lambda tree: tree.name)
-def test_a_shaking_hand_traces_the_same_branches(tree: Path) -> None:
-    steady, others = traces(tree)
+def test_a_shaking_hand_traces_the_same_branches(tree: Path, hands: int) -> None:
+    steady, others = traces(tree, hands)
     line = walked(steady.skeleton)
     height_px = line[:, 1].max() - np.flatnonzero(steady.foliage.any(axis=1))[0]
     near = [(cKDTree(walked(o.skeleton)).query(line)[0] <= 0.01 * height_px).mean() for o in others]
@@ -60,4 +61,4 @@ def test_a_shaking_hand_traces_the_same_branches(tree: Path) -> None:
 
 
 def test_a_branch_without_stroke_is_found_on_a_photo() -> None:
-    assert (traces(FORKED)[0].stroke < 0).any()
+    assert (traces(FORKED, 4)[0].stroke < 0).any()
