@@ -82,13 +82,13 @@ function ViewButtons({ hidden, view, choose }: ViewProps) {
   )
 }
 
-/** The switch between the live skeleton and the grown tree; shown where there are both. */
-export function ShowsSwitch() {
+/** The switch between the live skeleton and the grown tree; hidden unless both can be shown. */
+export function ShowsSwitch({ webgl }: Pick<PreviewStatus, 'webgl'>) {
   const { store } = useStudio()
   const shows = useStore(state => state.shows)
   const hasBoth = useStore(({ liveTree, model }) => liveTree !== null && Boolean(model?.glb))
   return (
-    <div class="overlay shows" role="group" aria-label={text.preview.shows} hidden={!hasBoth}>
+    <div class="overlay shows" role="group" aria-label={text.preview.shows} hidden={!hasBoth || webgl === 'absent'}>
       {(['live', 'model'] as const).map(choice => (
         <button
           type="button"

@@ -34,7 +34,7 @@ export function TreePane() {
         <PreviewButtons status={status} preview={preview} />
         <div class="stage-foot">
           <AssumedNote />
-          <ShowsSwitch />
+          <ShowsSwitch webgl={status.webgl} />
           <VariantChoice />
           <WindSwitch status={status} preview={preview} toSettings={() => settings.open('file')} />
         </div>

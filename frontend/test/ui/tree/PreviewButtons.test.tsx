@@ -97,10 +97,12 @@ test('where no tree is shown there is neither', () => {
 
 test('live skeleton and grown tree can be switched where there are both', () => {
   const both = new Studio()
-  const shows = () => mount(both, <ShowsSwitch />).querySelector<HTMLElement>('.shows')!
+  const shows = (webgl: PreviewStatus['webgl'] = 'ok') =>
+    mount(both, <ShowsSwitch webgl={webgl} />).querySelector<HTMLElement>('.shows')!
   both.store.set({ liveTree: grown() })
   expect(shows().hidden).toBe(true)
   both.store.set({ model: shownModel({ status: 'succeeded' }, { glb: new ArrayBuffer(4) }), shows: 'model' })
+  expect(shows('absent').hidden).toBe(true)
   const buttons = [...shows().querySelectorAll('button')]
   expect(buttons.map(one => one.getAttribute('aria-pressed'))).toEqual(['false', 'true'])
   void act(() => buttons[0]!.click())
