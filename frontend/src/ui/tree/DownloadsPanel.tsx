@@ -1,4 +1,5 @@
 import type { ButtonHTMLAttributes, ComponentChildren } from 'preact'
+import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
 import type { Model } from '../../api/types'
 import { isDrawn, isPaper, SHEET_NAMES, sheetOf } from '../../sheets'
 import type { State } from '../../state'
@@ -11,13 +12,14 @@ import { aloneOf, treeOf, variantsOf } from '../../studio/variants'
 import { text } from '../../text'
 import { Icon } from '../parts/Icon'
 import { ICONS } from '../parts/icons'
-import { saveFile, saveProject } from '../parts/saving'
+import { copyText, saveFile, saveProject } from '../parts/saving'
 import { useStore, useStudio } from '../parts/useStore'
-import { CopyLink, DownloadText } from './CopyLink'
 import { type Download, downloadsOf } from './downloadList'
 import { Panel } from './Panel'
 import './downloadsPanel.css'
 
+/** How long the link is said to be copied. */
+const COPIED_MS = 2500
 const GROUP_ICONS = { tree: ICONS.tree, levels: ICONS.layers, formats: ICONS.paper, skeleton: ICONS.bones } as const
 
 interface Props {
@@ -151,6 +153,54 @@ function SaveButton({ icon, words: [label, about], ...attributes }: SaveButtonPr
       <Icon path={icon} />
       <DownloadText label={label} about={about} />
     </button>
+  )
+}
+
+/** The entry that copies a link to a model, or shows it where the browser does not let it be copied. */
+function CopyLink({ id }: { readonly id: string }) {
+  const { store } = useStudio()
+  const [isCopied, setCopied] = useState(false)
+  const [refusals, setRefusals] = useState(0)
+  const field = useRef<HTMLInputElement>(null)
+  const link = `${location.origin}/#${id}`
+  const [label, about] = text.files.link
+  useEffect(() => {
+    if (!isCopied) return
+    const timer = setTimeout(() => setCopied(false), COPIED_MS)
+    return () => clearTimeout(timer)
+  }, [isCopied])
+  useLayoutEffect(() => {
+    if (!refusals) return
+    field.current?.focus()
+    field.current?.select()
+  }, [refusals])
+  const copy = async () => {
+    if (!(await copyText(link))) return setRefusals(count => count + 1)
+    setRefusals(0)
+    setCopied(true)
+    store.announce(text.files.copied)
+  }
+  return (
+    <div>
+      <button type="button" class="download" onClick={() => void copy()}>
+        <Icon path={ICONS.link} />
+        <DownloadText label={isCopied ? text.files.copied : label} about={about} />
+      </button>
+      <div class="link-refused" hidden={refusals === 0}>
+        <p>{text.files.copyYourself}</p>
+        <input class="link-field" readOnly aria-label={text.files.copyYourself} value={link} ref={field} />
+      </div>
+    </div>
+  )
+}
+
+/** A download's name and, below it, what it is. */
+function DownloadText({ label, about }: { readonly label: string; readonly about: string }) {
+  return (
+    <span class="download-text">
+      <span class="download-label">{label}</span>
+      <span class="download-about">{about}</span>
+    </span>
   )
 }
 

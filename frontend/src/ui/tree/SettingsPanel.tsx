@@ -1,17 +1,16 @@
-import { Fragment, type RefObject } from 'preact'
+import { type ComponentProps, Fragment, type RefObject } from 'preact'
 import { useRef, useState } from 'preact/hooks'
-import type { Limits } from '../../api/types'
+import type { Limits, Settings } from '../../api/types'
 import type { State } from '../../state'
 import { text } from '../../text'
 import type { Span } from '../parts/spans'
 import { useStore, useStudio } from '../parts/useStore'
-import { NumberField } from './fields'
+import { type Choice, NumberField, SelectField, SeveralField, ToggleField } from './fields'
 import { AnotherButton } from './growButtons'
 import { growthStatusOf } from './growthStatus'
 import { OwnPicture } from './OwnPicture'
 import { Panel } from './Panel'
-import { SettingField } from './SettingField'
-import { defaultsOf, FIRST_GROUP, type Group, groupsOf } from './settingGroups'
+import { type Allowed, defaultsOf, FIRST_GROUP, type Group, groupsOf, readable, type Value } from './settingGroups'
 import { type Tab, Tabs } from './Tabs'
 import './settingsPanel.css'
 
@@ -77,6 +76,34 @@ function GroupFields({ name, settings }: Group) {
       {name === FIRST_GROUP && <SeedField />}
     </>
   )
+}
+
+interface FieldProps {
+  readonly name: string
+  readonly allowed: Allowed
+}
+
+/** The field for one setting, by what the service says of it. */
+function SettingField({ name, allowed }: FieldProps) {
+  const { store } = useStudio()
+  const settings = useStore(state => state.settings) as Settings & Record<string, Value>
+  const chosen = settings[name] ?? allowed.default
+  const choose = (value: Value) => store.set({ settings: { ...store.state.settings, [name]: value } })
+  const { min = 0, max = 1, whole = false, names, several, toggle } = allowed
+  const words = { name, ...(text.settings.known[name] ?? { label: readable(name), why: allowed.meaning }) }
+  const choices = (names ?? []).map((key): Choice => [key, words.names?.[key] ?? readable(key)])
+  if (toggle) return <ToggleField {...words} chosen={chosen === true} choose={choose} />
+  if (several) return <SeveralField {...words} choices={choices} chosen={chosen as readonly string[]} choose={choose} />
+  if (names) return <SelectField {...words} choices={choices} chosen={String(chosen)} choose={choose} />
+  const Field = name === 'height' ? HeightField : NumberField
+  return <Field {...words} span={{ min, max, whole }} chosen={Number(chosen)} choose={choose} since={settings} />
+}
+
+/** The field for the height; a measured line takes its place. */
+function HeightField(props: ComponentProps<typeof NumberField>) {
+  const scale = useStore(state => state.history.present.scale)
+  const note = scale ? text.settings.heightMeasured(text.metres(scale.metres)) : ''
+  return <NumberField {...props} disabled={scale !== null} note={note} />
 }
 
 function SeedField() {
