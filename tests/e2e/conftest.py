@@ -17,7 +17,24 @@ from tests.running import serving
 from treestroke.api.routes.page import PAGE
 
 HERE = Path(__file__).parent
+_FEATURES_OFF = (
+    "WebUIOmniboxPopup",  # two renderers beside each page, for an address bar that nobody sees
+    "WebUIOmniboxAimPopup",
+    # Chromium takes the last list of these alone, so Playwright's own, as far as it matters here, stands here again.
+    "AimEnabled",
+    "AvoidUnnecessaryBeforeUnloadCheckSync",
+    "DestroyProfileOnBrowserClose",
+    "HttpsFirstBalancedModeAutoEnable",
+    "HttpsUpgrades",
+    "LensOverlay",
+    "MediaRouter",
+    "NetworkTimeServiceQuerying",
+    "OptimizationHints",
+    "PaintHolding",
+    "PreconnectToSearch",
+)
 FLAGS = (
+    f"--disable-features={','.join(_FEATURES_OFF)}",
     "--enable-unsafe-swiftshader",  # for WebGL only: the page itself is put together without it, which is quicker
     "--disable-quic",
     "--no-first-run",

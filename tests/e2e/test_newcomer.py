@@ -102,11 +102,11 @@ def test_one_click_on_an_example_shows_a_tree_drawn_in_few_calls_and_only_when_s
 def test_with_shadows_a_tree_takes_no_more_than_six_calls(open_page: OpenPage) -> None:
     visitor = open_page(viewport=(900, 440), script=GPU)
     visitor.page.get_by_role("button", name="Osage orange").click()
-    visitor.wait_for_preview("model", timeout_ms=150_000)
+    visitor.wait_for_preview("model")
     visitor.page.get_by_role("combobox", name="View").select_option("side")
     for _ in range(2):
         visitor.page.get_by_role("button", name="Leaves").click()
-        visitor.wait_for_rest(timeout_ms=150_000)
+        visitor.wait_for_rest()
     visitor.shot("shadows")
     assert visitor.page.evaluate("mostCalls") == MOST_CALLS
 

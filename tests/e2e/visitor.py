@@ -14,8 +14,8 @@ from playwright.sync_api import ConsoleMessage, Locator, Page, Request, expect
 ROOT = Path(__file__).parents[2]
 SHOTS = ROOT / "out" / "e2e"
 AXE = ROOT / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
-PATIENCE_MS = 60_000
-"""For one thing to happen: without a GPU a frame of a tree takes seconds."""
+PATIENCE_MS = 150_000
+"""For one thing to happen: without a GPU a frame of a tree takes seconds, and on a busy machine a tree a minute."""
 REST_MS = 250
 """By the page's clock: longer than the preview waits before it draws its last frame again, with all pixels."""
 STILL_MS = 100
@@ -123,21 +123,21 @@ class Visitor:
         """What shows the tree; it says how it stands."""
         return self.page.locator("[data-state]")
 
-    def wait_for_preview(self, state: str, timeout_ms: float = PATIENCE_MS) -> None:
+    def wait_for_preview(self, state: str) -> None:
         """Wait until the preview is empty, live, growing or a model."""
-        expect(self.preview).to_have_attribute("data-state", state, timeout=timeout_ms)
+        expect(self.preview).to_have_attribute("data-state", state)
 
     def drawn(self) -> tuple[int, int]:
         """Count the frames that the preview has drawn so far, and the draw calls of the last."""
         frames, calls = (self.preview.get_attribute(f"data-{name}") for name in ("frames", "calls"))
         return int(frames or 0), int(calls or 0)
 
-    def wait_for_rest(self, timeout_ms: float = PATIENCE_MS) -> None:
+    def wait_for_rest(self) -> None:
         """Wait until the preview has drawn what it has to draw."""
         began = time.monotonic()
         before = (-1, 0)
         while self.drawn() != before:
-            assert time.monotonic() - began < timeout_ms / 1000, "the preview draws on and on"
+            assert time.monotonic() - began < PATIENCE_MS / 1000, "the preview draws on and on"
             before = self.drawn()
             self.pause(REST_MS)
 
