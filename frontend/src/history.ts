@@ -16,7 +16,7 @@ export function advance<T>(history: History<T>, next: T): History<T> {
 }
 
 /** Return the history with every value replaced by what `change` returns for it. */
-export function throughout<T>({ past, present, future }: History<T>, change: (value: T) => T): History<T> {
+export function mapHistory<T>({ past, present, future }: History<T>, change: (value: T) => T): History<T> {
   return { past: past.map(change), present: change(present), future: future.map(change) }
 }
 

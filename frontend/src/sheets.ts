@@ -83,7 +83,7 @@ export function commonLevels(state: Open & Pick<State, 'history'>, sheet: SheetN
 }
 
 /** Return the side's own levels if they differ from the front's, to which its drawing will be scaled; else null. */
-export function strayLevels(state: Open & Pick<State, 'history'>): Levels | null {
+export function differingLevels(state: Open & Pick<State, 'history'>): Levels | null {
   const common = commonLevels(state, 'side')
   const own = levelsOf(onSheet(state.history.present, 'side'))
   if (!common || !own) return null

@@ -1,5 +1,5 @@
 import type { TracedSkeleton } from './api/types'
-import { along, cross, distance, distanceToPiece, type Piece } from './plane'
+import { along, distance, distanceToSegment, intersect, type Segment } from './plane'
 import type { Line, Point } from './strokes'
 
 /** Where a branch's first step may be cut, as shares of the step; of equally free places the first is used. */
@@ -10,7 +10,7 @@ const HALF_LENGTH = 0.5
 const continuations = new WeakMap<TracedSkeleton, readonly boolean[]>()
 
 /** Return which joints continue their parent's branch; the others begin a new one. */
-export function continues(skeleton: TracedSkeleton): readonly boolean[] {
+export function continuationsOf(skeleton: TracedSkeleton): readonly boolean[] {
   const cached = continuations.get(skeleton)
   if (cached) return cached
   const found = findContinuations(skeleton)
@@ -20,7 +20,7 @@ export function continues(skeleton: TracedSkeleton): readonly boolean[] {
 
 /** Return the first joint of a joint's traced branch (stroke -1): the one after the fork where the branch starts. */
 export function firstJoint(skeleton: TracedSkeleton, joint: number): number {
-  const continued = continues(skeleton)
+  const continued = continuationsOf(skeleton)
   let first = joint
   while (continued[first]) first = skeleton.parents[first]!
   return first
@@ -37,19 +37,20 @@ export function branchAt(skeleton: TracedSkeleton, joint: number): number[] {
 }
 
 /** Return the segment from a joint's parent to the joint; a root's has no length. */
-export function pieceTo({ points, parents }: TracedSkeleton, joint: number): Piece {
+export function segmentTo({ points, parents }: TracedSkeleton, joint: number): Segment {
   const end = points[joint]!
   return [points[parents[joint]!] ?? end, end]
 }
 
 /** Return an erase stroke that removes a joint's branch: a short line across the joint's segment and no other. */
 export function eraseLine(skeleton: TracedSkeleton, joint: number): Line {
-  const piece = pieceTo(skeleton, joint)
-  const pieces = [...skeleton.points.keys()].filter(other => other !== joint).map(other => pieceTo(skeleton, other))
-  const room = (point: Point) => Math.min(distance(...piece), ...pieces.map(other => distanceToPiece(other, point)))
+  const segment = segmentTo(skeleton, joint)
+  const segments = [...skeleton.points.keys()].filter(other => other !== joint).map(other => segmentTo(skeleton, other))
+  const room = (point: Point) =>
+    Math.min(distance(...segment), ...segments.map(other => distanceToSegment(other, point)))
   const step = firstStep(skeleton, joint)
-  const [cut] = CUTS.map(share => along(piece, share * step)).toSorted((one, other) => room(other) - room(one))
-  return shrunk(cut!, piece, HALF_LENGTH * room(cut!), pieces)
+  const [cut] = CUTS.map(share => along(segment, share * step)).toSorted((one, other) => room(other) - room(one))
+  return shrunk(cut!, segment, HALF_LENGTH * room(cut!), segments)
 }
 
 /**
@@ -60,18 +61,18 @@ function firstStep(skeleton: TracedSkeleton, joint: number): number {
   const { parents, stroke } = skeleton
   let root = joint
   while (stroke[parents[root]!] === -1) root = parents[root]!
-  return Math.min(distance(...pieceTo(skeleton, root)) / distance(...pieceTo(skeleton, joint)), 1) || 1
+  return Math.min(distance(...segmentTo(skeleton, root)) / distance(...segmentTo(skeleton, joint)), 1) || 1
 }
 
 /** Return a line across a segment, `halfLength` to either side, halved until it crosses no other segment. */
-function shrunk(middle: Point, piece: Piece, halfLength: number, others: readonly Piece[]): Line {
-  const line = across(middle, piece, halfLength)
-  return halfLength > 1e-3 && others.some(other => cross(line, other))
-    ? shrunk(middle, piece, halfLength / 2, others)
+function shrunk(middle: Point, segment: Segment, halfLength: number, others: readonly Segment[]): Line {
+  const line = across(middle, segment, halfLength)
+  return halfLength > 1e-3 && others.some(other => intersect(line, other))
+    ? shrunk(middle, segment, halfLength / 2, others)
     : line
 }
 
-function across([x, y]: Point, [from, to]: Piece, halfLength: number): Piece {
+function across([x, y]: Point, [from, to]: Segment, halfLength: number): Segment {
   const length = distance(from, to) || 1
   const [right, down] = [(-(to[1] - from[1]) / length) * halfLength, ((to[0] - from[0]) / length) * halfLength]
   return [
@@ -96,7 +97,7 @@ function findContinuations(skeleton: TracedSkeleton): boolean[] {
 /** Return the longest path from each joint's parent outward through the joint. */
 function lengthsBeyond(skeleton: TracedSkeleton): number[] {
   const { parents } = skeleton
-  const lengths = parents.map((_, joint) => distance(...pieceTo(skeleton, joint)))
+  const lengths = parents.map((_, joint) => distance(...segmentTo(skeleton, joint)))
   const beyond = [...lengths]
   for (let joint = parents.length - 1; joint > 0; joint--) {
     const parent = parents[joint]!

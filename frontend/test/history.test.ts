@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { advance, begin, redo, throughout, undo } from '../src/history'
+import { advance, begin, mapHistory, redo, undo } from '../src/history'
 
 const steps = (count: number) => Array.from({ length: count }, (_, step) => step + 1)
 const walked = (count: number) => steps(count).reduce(advance<number>, begin(0))
@@ -33,6 +33,6 @@ test('advancing to the same value is no step', () => {
 })
 
 test('a change throughout the history applies to everything that can be undone and redone', () => {
-  const doubled = throughout(undo(walked(3)), step => 2 * step)
+  const doubled = mapHistory(undo(walked(3)), step => 2 * step)
   expect(doubled).toEqual({ past: [0, 2], present: 4, future: [6] })
 })

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { begin } from '../src/history'
-import { brushWidth, commonLevels, fittedTo, isDrawn, isPaper, levelsOf, paper, strayLevels } from '../src/sheets'
+import { brushWidth, commonLevels, differingLevels, fittedTo, isDrawn, isPaper, levelsOf, paper } from '../src/sheets'
 import { EMPTY, type State } from '../src/state'
 import { type Line, NO_STROKES, type Strokes, withSheet, withStroke } from '../src/strokes'
 import { photo, photoSheets, sketchSheets } from './builders'
@@ -44,9 +44,9 @@ test('both sheets have the same levels: where a tree is expected, then those of 
 })
 
 test('a side of another height has levels of its own, one of the same height none', () => {
-  expect(strayLevels(state(both(trunk(1100, 100), trunk(1110, 90))))).toBeNull()
-  expect(strayLevels(state(both(trunk(1100, 100), trunk(1100, 300))))).toEqual({ root: 1100, top: 300 })
-  expect(strayLevels(state(trunk(1100, 100)))).toBeNull()
+  expect(differingLevels(state(both(trunk(1100, 100), trunk(1110, 90))))).toBeNull()
+  expect(differingLevels(state(both(trunk(1100, 100), trunk(1100, 300))))).toEqual({ root: 1100, top: 300 })
+  expect(differingLevels(state(trunk(1100, 100)))).toBeNull()
 })
 
 test('a drawing that is fitted to another sheet keeps its shape, and its brushes are scaled with it', () => {

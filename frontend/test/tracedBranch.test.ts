@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest'
 import type { TracedSkeleton } from '../src/api/types'
-import { cross, distance, type Piece } from '../src/plane'
-import { branchAt, continues, eraseLine, firstJoint, pieceTo } from '../src/tracedBranch'
+import { distance, intersect, type Segment } from '../src/plane'
+import { branchAt, continuationsOf, eraseLine, firstJoint, segmentTo } from '../src/tracedBranch'
 import { TREE } from './sketch/tree'
 
 const traced = (skeleton: TracedSkeleton) => [...skeleton.points.keys()].filter(joint => skeleton.stroke[joint]! < 0)
@@ -29,7 +29,7 @@ test('a branch begins after its fork from a stroke or from a thicker branch', ()
 })
 
 test('the thickest child continues a branch, and of equally thick ones the longest', () => {
-  expect(continues(TREE)).toEqual([false, true, true, false, true, true, false, true, false])
+  expect(continuationsOf(TREE)).toEqual([false, true, true, false, true, true, false, true, false])
   const even = { ...TREE, radii: TREE.radii.map(() => 2) }
   expect(firstJoint(even, 7)).toBe(3)
   expect(firstJoint(even, 5)).toBe(5)
@@ -45,13 +45,13 @@ test.each([
   { name: 'a small tree', skeleton: TREE },
   { name: 'a dense bush', skeleton: bush(120) },
 ])('in $name an erase stroke crosses the segment to its joint and no other', ({ skeleton }) => {
-  const pieces = [...skeleton.points.keys()].map(joint => pieceTo(skeleton, joint))
+  const pieces = [...skeleton.points.keys()].map(joint => segmentTo(skeleton, joint))
   for (const joint of traced(skeleton)) {
     const own = pieces[joint]!
     // Where two branches lie on each other no line can tell them apart.
     if (pieces.some((piece, other) => other !== joint && crossesInside(own, piece))) continue
-    const line = eraseLine(skeleton, joint) as unknown as Piece
-    expect(pieces.flatMap((piece, other) => (cross(line, piece) ? [other] : []))).toEqual([joint])
+    const line = eraseLine(skeleton, joint) as unknown as Segment
+    expect(pieces.flatMap((piece, other) => (intersect(line, piece) ? [other] : []))).toEqual([joint])
     expect(distance(...line)).toBeGreaterThan(0.01)
     const [dx, dy, ex, ey] = [
       line[1][0] - line[0][0],
@@ -68,11 +68,11 @@ test('an erase stroke lies within the first step, so that no stump is left', () 
   for (const joint of [4, 5, 6, 7]) {
     const [from, to] = eraseLine(long, joint)
     const middle = [(from![0] + to![0]) / 2, (from![1] + to![1]) / 2] as const
-    expect(distance(middle, pieceTo(long, joint)[0])).toBeLessThan(distance(...pieceTo(long, 3)))
+    expect(distance(middle, segmentTo(long, joint)[0])).toBeLessThan(distance(...segmentTo(long, 3)))
   }
 })
 
-function crossesInside(one: Piece, other: Piece): boolean {
+function crossesInside(one: Segment, other: Segment): boolean {
   const touch = one.some(end => other.some(place => distance(end, place) < 1e-9))
-  return !touch && cross(one, other)
+  return !touch && intersect(one, other)
 }

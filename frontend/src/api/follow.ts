@@ -36,6 +36,6 @@ export function follow(id: string, listener: Following): () => void {
 }
 
 /** Return whether a model is finished: it succeeded, failed or was canceled. */
-export function isOver(model: Model): boolean {
+export function isFinished(model: Model): boolean {
   return FINISHED.some(status => status === model.status)
 }

@@ -5,8 +5,6 @@ import { probeWebgl } from './software'
 import { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
 import { Viewer, type ViewerOptions } from './viewer'
 
-export { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
-
 export interface PreviewOptions {
   /** Names of the wipe and of the canvas, for screen readers. */
   labels: { wipe: string; canvas: string }
@@ -71,8 +69,8 @@ export class Preview {
   }
 
   /** Play a wind of the file, by its name; null for none. */
-  blow(wind: string | null): void {
-    this.viewer?.blow(wind)
+  setWind(wind: string | null): void {
+    this.viewer?.setWind(wind)
   }
 
   /** Turn the camera by radians: `azimuth` to the right, `polar` downwards. */

@@ -17,7 +17,7 @@ export class Sway {
   }
 
   /** Play a wind, by its name, in place of another; without one the tree stands still at once. */
-  blow(wind: string | null): void {
+  setWind(wind: string | null): void {
     const next = (wind === null ? null : this.actions.get(wind)) ?? null
     if (next === this.playing) return
     const before = this.playing

@@ -153,7 +153,7 @@ export class Viewer {
     this.requestFrame()
   }
 
-  blow(wind: string | null): void {
+  setWind(wind: string | null): void {
     this.wind = wind
     this.applyWind()
     this.stage.updateShadow()
@@ -207,7 +207,7 @@ export class Viewer {
     const sway = this.content?.sway
     if (!sway) return
     if (this.wind !== null && !sway.winds.includes(this.wind)) this.wind = sway.winds[0] ?? null
-    sway.blow(this.wind)
+    sway.setWind(this.wind)
   }
 
   private applyLeaves(): void {
@@ -297,7 +297,7 @@ export class Viewer {
     if (this.timedFrames === 1 || performance.now() - start < SLOW_FRAME) return
     this.software = true
     this.stage.setSoftware(true)
-    this.blow(null)
+    this.setWind(null)
     this.reportStatus()
     this.requestFrame()
   }

@@ -1,7 +1,7 @@
 import type { TraceAnswer, TracedSkeleton } from '../api/types'
-import { distance, type Piece } from '../plane'
+import { distance, type Segment } from '../plane'
 import type { Line } from '../strokes'
-import { continues, pieceTo } from '../tracedBranch'
+import { continuationsOf, segmentTo } from '../tracedBranch'
 import { WIDTH } from './ink'
 
 const smoothPaths = new WeakMap<Line, Path2D>()
@@ -60,16 +60,16 @@ export function foliagePath(answer: TraceAnswer): Path2D {
 /** Return branches as tapering wood; each radius is raised to `minRadius`, then widened by `extra`, sheet px. */
 export function woodPath(skeleton: TracedSkeleton, joints: Iterable<number>, minRadius: number, extra: number): Path2D {
   const path = new Path2D()
-  const continued = continues(skeleton)
+  const continued = continuationsOf(skeleton)
   const roots = skeleton.points.filter((_, joint) => skeleton.parents[joint]! < 0)
   const radius = (joint: number) => Math.max(skeleton.radii[joint]!, minRadius) + extra
   for (const joint of joints) {
     const [parent, end] = [skeleton.parents[joint]!, radius(joint)]
     if (parent < 0) continue
-    const piece = pieceTo(skeleton, joint)
-    addTaper(path, piece, [continued[joint] ? radius(parent) : end, end], skeleton.parents[parent]! < 0)
+    const segment = segmentTo(skeleton, joint)
+    addTaper(path, segment, [continued[joint] ? radius(parent) : end, end], skeleton.parents[parent]! < 0)
     // No disc may reach below the level foot.
-    for (const point of piece) addDisc(path, point, Math.min(end, ...roots.map(root => distance(root, point))))
+    for (const point of segment) addDisc(path, point, Math.min(end, ...roots.map(root => distance(root, point))))
   }
   return path
 }
@@ -100,7 +100,7 @@ export function woodAt(skeleton: TracedSkeleton, scale: number): Wood {
 }
 
 /** Add a tapering segment. All have the same winding, so that they are filled as one; a root's has a level foot. */
-function addTaper(path: Path2D, [from, to]: Piece, [start, end]: readonly [number, number], isRoot: boolean): void {
+function addTaper(path: Path2D, [from, to]: Segment, [start, end]: readonly [number, number], isRoot: boolean): void {
   const length = distance(from, to)
   if (length === 0) return
   const [across, down] = [(to[1] - from[1]) / length, (from[0] - to[0]) / length]

@@ -2,7 +2,7 @@ import type { TracedSkeleton } from '../api/types'
 import { along, distance, distanceToLine, nearestShare } from '../plane'
 import type { Selection } from '../state'
 import { lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
-import { firstJoint, pieceTo } from '../tracedBranch'
+import { firstJoint, segmentTo } from '../tracedBranch'
 
 /** Return what lies within `tolerance` sheet px of a point: the nearest stroke, else the nearest traced branch. */
 export function pick(
@@ -45,6 +45,6 @@ function pickTraced(strokes: Strokes, skeleton: TracedSkeleton, at: Point, toler
 
 /** Return how far a point lies outside the wood between a joint and its parent, sheet px; negative inside. */
 function distanceToWood(skeleton: TracedSkeleton, joint: number, at: Point): number {
-  const piece = pieceTo(skeleton, joint)
-  return distance(along(piece, nearestShare(piece, at)), at) - skeleton.radii[joint]!
+  const segment = segmentTo(skeleton, joint)
+  return distance(along(segment, nearestShare(segment, at)), at) - skeleton.radii[joint]!
 }

@@ -3,12 +3,12 @@ import { doubtIn } from '../doubts'
 import {
   brushWidth,
   commonLevels,
+  differingLevels,
   type Extent,
   isPaper,
   type Levels,
   openSheets,
   sheetOf,
-  strayLevels,
 } from '../sheets'
 import type { Selection, Sheet, State, Tool } from '../state'
 import { type Line, onSheet, type SheetName, type StrokeRef, type Strokes } from '../strokes'
@@ -51,7 +51,7 @@ export function viewOf(state: State, name: SheetName): SheetView {
     traced: onPaper || !strokes.crown ? null : (traced?.answer ?? null),
     assumedCrown: onPaper && !strokes.crown && strokes.branches.length ? (traced?.crowns?.[name] ?? null) : null,
     levels: state.sheets?.side || state.sheets?.source === 'sketch' ? commonLevels(state, name) : null,
-    stray: name === 'side' ? strayLevels(state) : null,
+    stray: name === 'side' ? differingLevels(state) : null,
   }
 }
 

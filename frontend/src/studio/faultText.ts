@@ -4,12 +4,12 @@ import { strokeAt } from '../strokes'
 import { text } from '../text'
 
 /** A fault that the page itself finds; its message is a sentence for the user. */
-export class Unusable extends Error {}
+export class PageFault extends Error {}
 
 /** Return an error as a sentence for the user; any unexpected error is thrown again. */
 export function faultOf(error: unknown): Fault {
   if (error instanceof Unreachable) return { text: text.faults.unreachable }
-  if (error instanceof Unusable) return { text: error.message }
+  if (error instanceof PageFault) return { text: error.message }
   if (!(error instanceof Refused)) throw error
   const stroke = strokeAt(error.pointer)
   return { text: textFor(error.code) ?? sentenceOf(error.message), ...(stroke && { stroke }) }

@@ -1,5 +1,5 @@
 import type { Client } from '../api/client'
-import { isOver } from '../api/follow'
+import { isFinished } from '../api/follow'
 import type { Model } from '../api/types'
 import type { State, Store } from '../state'
 import { faultOf } from './faultText'
@@ -15,7 +15,7 @@ export class Gallery {
   constructor(
     private readonly store: Store,
     private readonly client: Client,
-    private readonly grower: Pick<Grower, 'leave'>,
+    private readonly grower: Pick<Grower, 'stopFollowing'>,
   ) {}
 
   get hasMore(): boolean {
@@ -48,7 +48,7 @@ export class Gallery {
       const { model, shows } = this.store.state
       if (model?.info.id !== id) return true
       this.#deleted = { model, shows }
-      this.grower.leave()
+      this.grower.stopFollowing()
       this.store.set({ model: null, shows: 'live' })
       return true
     })
@@ -65,8 +65,8 @@ export class Gallery {
   }
 
   /** Return the model's present state; null where the service does not answer. */
-  async look(model: Model): Promise<Model | null> {
-    return isOver(model) ? model : await this.client.getModel(model.id).catch(() => null)
+  async refresh(model: Model): Promise<Model | null> {
+    return isFinished(model) ? model : await this.client.getModel(model.id).catch(() => null)
   }
 
   /** Return what a call returns, or put its error among the faults and return null. */

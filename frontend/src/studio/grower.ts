@@ -1,5 +1,5 @@
 import { type Client, Unreachable } from '../api/client'
-import { follow, isOver } from '../api/follow'
+import { follow, isFinished } from '../api/follow'
 import type { Model } from '../api/types'
 import type { OwnPictures, Store } from '../state'
 import type { Strokes } from '../strokes'
@@ -50,12 +50,12 @@ export class Grower {
   /** Whether a model was requested and is not finished. */
   get isGrowing(): boolean {
     const { asking, model } = this.store.state
-    return asking || (model !== null && !isOver(model.info))
+    return asking || (model !== null && !isFinished(model.info))
   }
 
   /** Show a model that was made of these strokes and own pictures, and follow it until it is finished. */
   show(info: Model, strokes: Strokes, { leaf, fruit }: OwnPictures): void {
-    this.leave()
+    this.stopFollowing()
     this.#trees.clear()
     this.store.set({ model: { info, strokes, leaf, fruit, variant: 1, growth: null, glb: null }, shows: 'model' })
     this.#stopFollowing = follow(info.id, {
@@ -78,7 +78,7 @@ export class Grower {
   }
 
   /** Stop following the model. */
-  leave(): void {
+  stopFollowing(): void {
     this.#stopFollowing()
     this.#stopFollowing = () => {}
   }
@@ -124,7 +124,7 @@ export class Grower {
   }
 
   #forget(): void {
-    this.leave()
+    this.stopFollowing()
     this.store.set({ model: null, shows: 'live' })
     this.store.fault('grow', { text: text.faults.modelGone })
   }

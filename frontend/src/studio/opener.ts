@@ -8,12 +8,12 @@ import { fromWire, NO_STROKES, onSheet, type SheetName, type Strokes, withSheet 
 import { text } from '../text'
 import type { DraftStore, DraftWithPictures } from './draftStore'
 import type { Example, SketchExample } from './examples'
-import { faultOf, Unusable } from './faultText'
+import { faultOf, PageFault } from './faultText'
 import type { Grower } from './grower'
-import { pictureOf, uploaded } from './photos'
+import { pictureOf, upload } from './photos'
 import { isProject, type Project, readProject } from './project'
-import { redrawn } from './sheetActions'
-import { correctionsOn, type Drawn, paired, type SketchFile } from './sketches'
+import { replaceDrawing } from './sheetActions'
+import { correctionsOn, type Drawn, pairSketches, type SketchFile } from './sketches'
 import { readSketch } from './sketchPicture'
 
 /** A drawing to open in place of the present one. */
@@ -60,7 +60,7 @@ export class Opener {
   /** Open a sketch of a tree's front, from JSON or a picture, to draw on. */
   openSketch(file: File): Promise<void> {
     return this.#opening(async () => {
-      const drawn = await this.#onSheets({ photo: null, ...paired(await this.#readSketch(file), null) })
+      const drawn = await this.#onSheets({ photo: null, ...pairSketches(await this.#readSketch(file), null) })
       return () => this.#show({ ...drawn, name: stem(file.name) })
     })
   }
@@ -71,7 +71,7 @@ export class Opener {
       const sketch = await this.#readSketch(file)
       return () => {
         if (!sheetOf(this.store.state, sheet)) return
-        this.store.set(redrawn(this.store.state, sheet, sketch))
+        this.store.set(replaceDrawing(this.store.state, sheet, sketch))
         this.#showCorrections(correctionsOn(sheet, sketch))
       }
     })
@@ -85,7 +85,7 @@ export class Opener {
       const [frontSketch, sideSketch] = await Promise.all(
         files.slice(0, 2).map(async file => file && this.#readSketch(file)),
       )
-      const drawn = await this.#onSheets({ photo: null, ...paired(frontSketch!, sideSketch ?? null) })
+      const drawn = await this.#onSheets({ photo: null, ...pairSketches(frontSketch!, sideSketch ?? null) })
       const own = { leaf: files[2] ?? null, fruit: files[3] ?? null }
       const chosen = { settings: { ...DEFAULT_SETTINGS, ...settings }, ...own }
       return () => this.#openAndGrow({ ...drawn, ...chosen, name: text.examples[name] ?? name })
@@ -106,7 +106,7 @@ export class Opener {
   openDraft(id: string): Promise<void> {
     return this.#opening(async () => {
       const found = await this.drafts.find(id)
-      if (!found) throw new Unusable(text.faults.draftGone)
+      if (!found) throw new PageFault(text.faults.draftGone)
       const { draft, leaf, fruit } = found
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
       const sheets = await this.#sheetsOf(found)
@@ -126,7 +126,7 @@ export class Opener {
   openModel(id: string): Promise<void> {
     return this.#opening(async () => {
       const model = await this.#find(id)
-      if (!model) throw new Unusable(text.faults.modelGone)
+      if (!model) throw new PageFault(text.faults.modelGone)
       const project = await this.#readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
       const { leaf, fruit = null } = project
@@ -140,7 +140,7 @@ export class Opener {
 
   /** Close the drawing, whose draft is kept, and show the start again. */
   close(): void {
-    this.grower.leave()
+    this.grower.stopFollowing()
     this.drafts.begin(null)
     this.store.set(closed(this.store.state))
   }
@@ -180,7 +180,7 @@ export class Opener {
   }
 
   #upload(file: Blob): Promise<PhotoSheet> {
-    return uploaded(file, this.client, this.store.state.limits)
+    return upload(file, this.client, this.store.state.limits)
   }
 
   /** Return a draft's sheets; if the service no longer has the photo, tracing will notice. */
@@ -226,7 +226,7 @@ export class Opener {
   #show(drawing: Drawing, draft: string | null = null): void {
     const { sheets, name, history } = drawing
     const { settings = DEFAULT_SETTINGS, seed = 0, leaf = null, fruit = null } = drawing
-    this.grower.leave()
+    this.grower.stopFollowing()
     this.drafts.begin(draft)
     const tool = history.present.crown || sheets.source === 'sketch' ? 'branch' : 'crown'
     const opened = { sheets, name, history, settings, seed, leaf, fruit, tool } as const

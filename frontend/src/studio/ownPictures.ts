@@ -1,16 +1,16 @@
 import type { OwnPictures, Store } from '../state'
+import { readCutOut } from './cutOut'
 import { faultOf } from './faultText'
-import { readLeaf } from './leafPicture'
 
 /** Sets a person's own pictures of a leaf and a fruit; faults go to the state. */
 export class OwnPictureActions {
   constructor(
     private readonly store: Store,
-    private readonly read: (file: Blob, mostBytes: number) => Promise<Blob> = readLeaf,
+    private readonly read: (file: Blob, mostBytes: number) => Promise<Blob> = readCutOut,
   ) {}
 
   /** Use a picture in place of the last one, which stays if the new one cannot be used. */
-  async take(file: Blob, kind: keyof OwnPictures = 'leaf'): Promise<void> {
+  async use(file: Blob, kind: keyof OwnPictures = 'leaf'): Promise<void> {
     const { sheets, limits } = this.store.state
     try {
       const picture = await this.read(file, limits?.leaf_bytes ?? Number.POSITIVE_INFINITY)

@@ -2,7 +2,7 @@ import type { Client } from '../api/client'
 import type { Limits } from '../api/types'
 import type { PhotoSheet } from '../state'
 import { text } from '../text'
-import { sentenceOf, Unusable } from './faultText'
+import { PageFault, sentenceOf } from './faultText'
 
 /** Media types of the photos that the service reads, by file ending; each type's usual ending comes first. */
 export const TYPES: Readonly<Record<string, string>> = {
@@ -29,7 +29,7 @@ export function typeOf(file: File): string {
 }
 
 /** Send a photo to the service, and return its sheet. */
-export async function uploaded(chosen: Blob, client: Client, limits: Limits | null): Promise<PhotoSheet> {
+export async function upload(chosen: Blob, client: Client, limits: Limits | null): Promise<PhotoSheet> {
   const file = typed(chosen)
   const { id, width, height, image, warnings } = await send(file, client, limits)
   const corrections = warnings?.map(({ detail }) => sentenceOf(detail)).join(' ')
@@ -38,7 +38,7 @@ export async function uploaded(chosen: Blob, client: Client, limits: Limits | nu
 }
 
 /** Return a photo that the browser cannot show, as a picture converted by the service, which does not keep the photo. */
-export async function drawable(file: Blob, client: Client, limits: Limits | null): Promise<Blob> {
+export async function convertPicture(file: Blob, client: Client, limits: Limits | null): Promise<Blob> {
   const { id, image } = await send(file, client, limits)
   const picture = await client.getFile(image)
   await client.deletePhoto(id)
@@ -56,7 +56,7 @@ export async function pictureOf(file: Blob, size: { width: number; height: numbe
 
 async function send(file: Blob, client: Client, limits: Limits | null) {
   const most = limits?.photo_bytes ?? Number.POSITIVE_INFINITY
-  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size, most))
+  if (file.size > most) throw new PageFault(text.faults.fileTooLarge(file.size, most))
   return client.addPhoto(file)
 }
 

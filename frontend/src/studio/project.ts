@@ -4,9 +4,9 @@ import type { Settings } from '../api/types'
 import { isDrawn } from '../sheets'
 import { fromWire, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
 import { text } from '../text'
-import { Unusable } from './faultText'
+import { PageFault } from './faultText'
 import { TYPES } from './photos'
-import { type Drawn, paired, type SketchFile, sketchFrom, sketchToWire } from './sketches'
+import { type Drawn, pairSketches, type SketchFile, sketchFrom, sketchToWire } from './sketches'
 
 /** What a project file holds. */
 export interface Project extends Drawn {
@@ -72,7 +72,7 @@ function jsonBytes(value: unknown): Uint8Array {
 /** Reads a sketch that is a picture. */
 type ReadPicture = (picture: Blob) => Promise<SketchFile>
 
-/** Return what a project file holds; throws `Unusable` where it is damaged or no project. */
+/** Return what a project file holds; throws `PageFault` where it is damaged or no project. */
 export async function readProject(file: Blob, readPicture: ReadPicture): Promise<Project> {
   const members = await unzip(file)
   const photo = Object.keys(members).find(name => /^photo\.\w+$/.test(name))
@@ -95,8 +95,8 @@ async function drawingOf(
 ): Promise<Drawn> {
   const json = members['strokes.json']
   const [front, side] = await Promise.all(SHEETS.map(sheet => sketchOf(members, sheet, readPicture)))
-  if (!front && !(json && hasPhoto)) throw new Unusable(text.faults.projectIncomplete)
-  return paired(front ?? { strokes: strokesOf(json!) }, side ?? null)
+  if (!front && !(json && hasPhoto)) throw new PageFault(text.faults.projectIncomplete)
+  return pairSketches(front ?? { strokes: strokesOf(json!) }, side ?? null)
 }
 
 async function sketchOf(
@@ -118,7 +118,7 @@ async function unzip(file: Blob): Promise<Record<string, Uint8Array>> {
   try {
     return unzipSync(bytes)
   } catch {
-    throw new Unusable(text.faults.projectUnreadable)
+    throw new PageFault(text.faults.projectUnreadable)
   }
 }
 
@@ -130,7 +130,7 @@ function parsed<T>(json: Uint8Array, read: (value: unknown) => T): T {
   try {
     return read(JSON.parse(strFromU8(json)))
   } catch {
-    throw new Unusable(text.faults.projectUnreadable)
+    throw new PageFault(text.faults.projectUnreadable)
   }
 }
 
@@ -139,6 +139,6 @@ function settingsOf(json: Uint8Array | undefined): Partial<Settings> & { seed?: 
   try {
     return json ? JSON.parse(strFromU8(json)) : {}
   } catch {
-    throw new Unusable(text.faults.projectUnreadable)
+    throw new PageFault(text.faults.projectUnreadable)
   }
 }

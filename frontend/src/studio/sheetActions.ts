@@ -1,10 +1,10 @@
 import type { Client } from '../api/client'
-import { advance, throughout } from '../history'
+import { advance, mapHistory } from '../history'
 import { type Extent, fittedTo, isDrawn, openSheets, paper, replaceSheet, sheetOf, sheetOfSize } from '../sheets'
 import type { PhotoSheet, Sheet, State, Store } from '../state'
 import { NO_STROKES, onSheet, type SheetName, withSheet } from '../strokes'
 import { faultOf } from './faultText'
-import { drawable, uploaded } from './photos'
+import { convertPicture, upload } from './photos'
 import type { SketchFile } from './sketches'
 
 /** Opens, closes and activates sheets, and changes the pictures under their strokes. */
@@ -72,21 +72,21 @@ export class SheetActions {
   }
 
   #upload(file: Blob): Promise<PhotoSheet> {
-    return uploaded(file, this.client, this.store.state.limits)
+    return upload(file, this.client, this.store.state.limits)
   }
 
   /** Return a sheet with a picture that stays in the browser; one that it cannot show is converted by the service. */
   async #local(chosen: Blob): Promise<Sheet> {
     const { limits } = this.store.state
     const decoded = await this.sizeOf(chosen).catch(() => null)
-    const file = decoded ? chosen : await drawable(chosen, this.client, limits)
+    const file = decoded ? chosen : await convertPicture(chosen, this.client, limits)
     const size = decoded ?? (await this.sizeOf(file))
     return { ...sheetOfSize(size), file, url: URL.createObjectURL(file) }
   }
 }
 
 /** Return the state with a sketch in place of a sheet's strokes; paper without a picture takes the sketch's size. */
-export function redrawn(state: State, name: SheetName, { strokes, size }: SketchFile): Partial<State> {
+export function replaceDrawing(state: State, name: SheetName, { strokes, size }: SketchFile): Partial<State> {
   const before = sheetOf(state, name)!
   const sheet = before.url ? before : sheetOfSize(size)
   const { history, sheets } = { ...state, ...withSheetUnder(state, name, sheet) }
@@ -103,7 +103,7 @@ function withSheetUnder(
   const before = sheets![name]!
   const open = replaceSheet(sheets!, name, sheet)
   if (before.width === sheet.width && before.height === sheet.height) return { sheets: open }
-  const fitted = throughout(history, strokes =>
+  const fitted = mapHistory(history, strokes =>
     isDrawn(strokes, name)
       ? withSheet(strokes, name, { ...NO_STROKES, ...fittedTo(onSheet(strokes, name), before, sheet) })
       : strokes,

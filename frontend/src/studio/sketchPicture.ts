@@ -4,7 +4,7 @@ import type { Limits, StrokeWarning, TracedSkeleton } from '../api/types'
 import { distance, simplified } from '../plane'
 import { type Branch, type Line, NO_STROKES } from '../strokes'
 import { text } from '../text'
-import { sentenceOf, Unusable } from './faultText'
+import { PageFault, sentenceOf } from './faultText'
 import { isPng } from './png'
 import { type SketchFile, sketchFrom } from './sketches'
 
@@ -13,11 +13,11 @@ const MAX_BRANCHES = 199
 /** How far a simplified stroke may lie from the line that was read, as a share of the picture's longer side. */
 const TOLERANCE = 0.0004
 
-/** Return the sketch in a file, a PNG of its strokes or JSON; throws `Unusable` where it is neither. */
+/** Return the sketch in a file, a PNG of its strokes or JSON; throws `PageFault` where it is neither. */
 export async function readSketch(file: Blob, client: Client, limits: Limits | null): Promise<SketchFile> {
   if (!(await isPng(file))) return fromJson(file)
   const most = limits?.sketch_bytes ?? Number.POSITIVE_INFINITY
-  if (file.size > most) throw new Unusable(text.faults.fileTooLarge(file.size, most))
+  if (file.size > most) throw new PageFault(text.faults.fileTooLarge(file.size, most))
   const { front, warnings } = await client.traceDrawing(file)
   return sketchIn(
     front,
@@ -42,7 +42,7 @@ async function fromJson(file: Blob): Promise<SketchFile> {
   try {
     return sketchFrom(JSON.parse(await file.text()))
   } catch {
-    throw new Unusable(text.faults.sketchUnreadable)
+    throw new PageFault(text.faults.sketchUnreadable)
   }
 }
 

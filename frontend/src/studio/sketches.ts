@@ -38,7 +38,7 @@ export function sketchFrom(value: unknown): SketchFile {
 }
 
 /** Return the strokes of both sheets; a front without a size was drawn over a photo. */
-export function paired(front: Pick<SketchFile, 'strokes'> & Partial<SketchFile>, side: SketchFile | null): Drawn {
+export function pairSketches(front: Pick<SketchFile, 'strokes'> & Partial<SketchFile>, side: SketchFile | null): Drawn {
   const sizes = { ...(front.size && { front: front.size }), ...(side && { side: side.size }) }
   const strokes = side ? withSheet(front.strokes, 'side', side.strokes) : front.strokes
   const corrections = [correctionsOn('front', front), side && correctionsOn('side', side)].filter(Boolean).join(' ')

@@ -47,7 +47,7 @@ export class StrokeActions {
   }
 
   /** Choose a tool. */
-  hold(tool: Tool): void {
+  chooseTool(tool: Tool): void {
     this.store.set({ tool, ...(tool !== 'select' && { selection: null }) })
   }
 

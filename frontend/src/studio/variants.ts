@@ -35,7 +35,7 @@ export function treeOf(model: Model, variant: number): string | undefined {
 }
 
 /** Return a model with the score and counts of one of its trees, by its number from 1. */
-export function aloneOf(model: Model, variant: number): Model {
+export function withVariant(model: Model, variant: number): Model {
   const { variants, files } = (model.report ?? {}) as Report
   const tree = variants?.[variant - 1]
   if (!tree || variant === 1) return model

@@ -20,39 +20,39 @@ beforeEach(() => {
 test('a still tree does not move, and one in the wind does', () => {
   expect(sway.winds).toEqual(['breeze', 'gust'])
   expect([sway.step(1), bone.quaternion.z]).toEqual([false, 0])
-  sway.blow('breeze')
+  sway.setWind('breeze')
   expect(sway.step(1)).toBe(true)
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
 })
 
 test('wind repeats', () => {
-  sway.blow('breeze')
+  sway.setWind('breeze')
   sway.step(1)
   sway.step(2)
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
 })
 
 test('without wind the tree stands as it was', () => {
-  sway.blow('breeze')
+  sway.setWind('breeze')
   sway.step(1)
-  sway.blow(null)
+  sway.setWind(null)
   expect([sway.step(0.1), bone.quaternion.toArray()]).toEqual([false, [0, 0, 0, 1]])
 })
 
 test('one wind changes to another, and back', () => {
-  sway.blow('breeze')
+  sway.setWind('breeze')
   sway.step(1)
-  sway.blow('gust')
+  sway.setWind('gust')
   sway.step(0.7)
   sway.step(0.3)
   expect(bone.quaternion.x).toBeCloseTo(HALF, 6)
-  sway.blow('breeze')
+  sway.setWind('breeze')
   sway.step(0.7)
   sway.step(0.3)
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
 })
 
 test('a wind that the file does not have moves nothing', () => {
-  sway.blow('storm')
+  sway.setWind('storm')
   expect(sway.step(1)).toBe(false)
 })

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { Refused, Unreachable } from '../../src/api/client'
-import { faultOf, Unusable } from '../../src/studio/faultText'
+import { faultOf, PageFault } from '../../src/studio/faultText'
 
 test("the service's message becomes a sentence without the field's path", () => {
   const fault = faultOf(new Refused(422, 'other', 'settings/height: 900 is too high; give 0.1 to 150', null))
@@ -9,7 +9,7 @@ test("the service's message becomes a sentence without the field's path", () => 
 
 test('a service that does not answer has another sentence than one that refuses', () => {
   expect(faultOf(new Unreachable()).text).toContain('Your drawing is safe')
-  expect(faultOf(new Unusable('Draw it longer.')).text).toBe('Draw it longer.')
+  expect(faultOf(new PageFault('Draw it longer.')).text).toBe('Draw it longer.')
 })
 
 test('an error of the page itself is not hidden', () => {

@@ -17,7 +17,7 @@ function serve({ method, path, body }: Call): Response {
 
 function begin() {
   const store = new Store()
-  const grower = { leave: vi.fn() }
+  const grower = { stopFollowing: vi.fn() }
   return { store, grower, gallery: new Gallery(store, new Client(), grower) }
 }
 
@@ -49,7 +49,7 @@ test('the shown model disappears when it is deleted, the strokes stay, and undo 
   store.set({ model: shownModel({ status: 'succeeded' }, { strokes: drawn, glb }), shows: 'model' })
   await gallery.remove('mdl_1')
   expect([store.state.model, store.strokes]).toEqual([null, drawn])
-  expect(grower.leave).toHaveBeenCalledOnce()
+  expect(grower.stopFollowing).toHaveBeenCalledOnce()
   await gallery.restore('mdl_1')
   expect([store.state.model?.info.id, store.state.model?.glb, store.state.model?.strokes]).toEqual([
     'mdl_1',
@@ -64,7 +64,7 @@ test('deleting another model leaves the shown one', async () => {
   store.set({ model: shownModel({ id: 'mdl_9' }) })
   await gallery.remove('mdl_1')
   expect(store.state.model?.info.id).toBe('mdl_9')
-  expect(grower.leave).not.toHaveBeenCalled()
+  expect(grower.stopFollowing).not.toHaveBeenCalled()
 })
 
 test('renaming the shown model renames the drawing', async () => {

@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest'
 import { Store } from '../../src/state'
-import { Unusable } from '../../src/studio/faultText'
+import { PageFault } from '../../src/studio/faultText'
 import { OwnPictureActions } from '../../src/studio/ownPictures'
 import { photo, photoSheets } from '../builders'
 
@@ -10,13 +10,13 @@ test('a leaf’s picture is used, and one that cannot be used leaves it with a f
   const store = new Store()
   let good = true
   const pictures = new OwnPictureActions(store, async file => {
-    if (!good) throw new Unusable('It is no PNG.')
+    if (!good) throw new PageFault('It is no PNG.')
     return file
   })
-  await pictures.take(leaf)
+  await pictures.use(leaf)
   expect(store.state.leaf).toBe(leaf)
   good = false
-  await pictures.take(new Blob(['other']))
+  await pictures.use(new Blob(['other']))
   expect([store.state.leaf, store.state.faults.leaf?.text]).toEqual([leaf, 'It is no PNG.'])
   pictures.remove()
   expect([store.state.leaf, store.state.faults.leaf]).toEqual([null, undefined])
@@ -25,7 +25,7 @@ test('a leaf’s picture is used, and one that cannot be used leaves it with a f
 test('a picture that is still being read does not go to another drawing', async () => {
   const store = new Store()
   store.set({ sheets: photoSheets() })
-  const taking = new OwnPictureActions(store, async file => file).take(leaf)
+  const taking = new OwnPictureActions(store, async file => file).use(leaf)
   store.set({ sheets: photoSheets(photo({ id: 'pho_2' })) })
   await taking
   expect(store.state.leaf).toBeNull()

@@ -98,7 +98,7 @@ test('corrections of a picture under the front are shown until something is draw
 
 test('choosing a brush chooses the branch tool, and each stroke on paper gets the brush’s width', () => {
   const { store, actions, strokes } = begin()
-  strokes.hold('crown')
+  strokes.chooseTool('crown')
   actions.chooseBrush(0.02)
   expect(store.state.tool).toBe('branch')
   strokes.draw('branch', TRUNK)

@@ -15,7 +15,7 @@ beforeEach(() => {
 test('after the first crown the branch tool is chosen', () => {
   strokes.draw('crown', CROWN)
   expect(store.state.tool).toBe('branch')
-  strokes.hold('crown')
+  strokes.chooseTool('crown')
   strokes.draw('crown', LIMB)
   expect(store.state.tool).toBe('crown')
 })

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { aloneOf, treeFiles, treeOf, variantsOf } from '../../src/studio/variants'
+import { treeFiles, treeOf, variantsOf, withVariant } from '../../src/studio/variants'
 import { model } from '../builders'
 
 const files = {
@@ -34,11 +34,11 @@ test('one of several trees has its own score and counts, and what they have in c
     score: { silhouette_iou: 0.9 },
     report: { seconds: { grow: 1 }, variants: trees, files: { 'tree.v2.glb': 7 } },
   })
-  const second = aloneOf(grown, 2)
+  const second = withVariant(grown, 2)
   expect([second.score, second.report?.counts, second.report?.seconds]).toEqual([
     { silhouette_iou: 0.8 },
     { leaves: 20, bytes: 7 },
     { grow: 1 },
   ])
-  expect(aloneOf(grown, 3)).toBe(grown)
+  expect(withVariant(grown, 3)).toBe(grown)
 })

@@ -63,7 +63,7 @@ function ToolButton({ tool }: { readonly tool: Tool }) {
       aria-keyshortcuts={KEYS[tool]}
       aria-pressed={isChosen}
       hidden={tool === 'scale' && isSketch} // lengths are measured on photos only
-      onClick={() => strokes.hold(tool)}
+      onClick={() => strokes.chooseTool(tool)}
     >
       <Icon path={ICONS[tool]} />
       <span class="tool-label">{text.tools[tool]}</span>

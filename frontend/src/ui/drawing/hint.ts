@@ -1,4 +1,4 @@
-import { isOver } from '../../api/follow'
+import { isFinished } from '../../api/follow'
 import { doubtIn, remarksOn, type StrokeRemark } from '../../doubts'
 import { isPaper } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
@@ -81,7 +81,7 @@ function sideStep({ sheets, history }: State, how: string): Hint | null {
 
 function laterStep({ tool, history, liveTree, model, sheets }: State, pointer: PointerKind): Hint {
   if (tool === 'select') return stepTo(text.hints.select, text.hints.how[pointer].select)
-  if (model && !isOver(model.info)) return stepTo(text.hints.growing)
+  if (model && !isFinished(model.info)) return stepTo(text.hints.growing)
   if (model?.info.status === 'succeeded' && model.strokes === history.present) return stepTo(text.hints.done)
   if (!liveTree) return stepTo(text.hints.waiting)
   return stepTo(sheets?.source === 'sketch' ? text.sheets.hints.refine : text.hints.refine)

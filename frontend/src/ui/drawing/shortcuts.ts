@@ -28,10 +28,10 @@ function commandsOf(studio: Studio, zoom: Zoom, turnToOther: () => void): Readon
   const brush = (steps: number) =>
     isPaper(store.state, store.state.active) && sheets.chooseBrush(nextBrush(store.state.brush, steps))
   return {
-    crown: () => strokes.hold('crown'),
-    branch: () => strokes.hold('branch'),
-    scale: () => strokes.hold('scale'),
-    select: () => strokes.hold('select'),
+    crown: () => strokes.chooseTool('crown'),
+    branch: () => strokes.chooseTool('branch'),
+    scale: () => strokes.chooseTool('scale'),
+    select: () => strokes.chooseTool('select'),
     other: turnToOther,
     thinner: () => brush(-1),
     thicker: () => brush(1),

@@ -2,7 +2,7 @@ import { useRef } from 'preact/hooks'
 import type { Client } from '../../api/client'
 import { fromWire } from '../../strokes'
 import type { Example, SketchExample } from '../../studio/examples'
-import { paired, sketchFrom } from '../../studio/sketches'
+import { pairSketches, sketchFrom } from '../../studio/sketches'
 import { text } from '../../text'
 import { PairPicture, SheetPicture } from '../parts/drawn'
 import { mayLeave } from '../parts/files'
@@ -62,7 +62,7 @@ function Lines({ example: { front, side } }: { readonly example: SketchExample }
   const { client } = useStudio()
   const drawn = useLoaded(async () => {
     const [ahead, left] = await Promise.all([sketchAt(front, client), side ? sketchAt(side, client) : null])
-    return { front: ahead.size, strokes: paired(ahead, left).strokes, side: left?.size ?? null }
+    return { front: ahead.size, strokes: pairSketches(ahead, left).strokes, side: left?.size ?? null }
   }, [front, side])
   return drawn && <PairPicture {...drawn} />
 }

@@ -1,5 +1,5 @@
 import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
-import { isOver } from '../../api/follow'
+import { isFinished } from '../../api/follow'
 import type { Model } from '../../api/types'
 import { Gallery } from '../../studio/gallery'
 import { text } from '../../text'
@@ -90,10 +90,10 @@ function usePages(gallery: Gallery) {
     void load()
   }, [])
   useEffect(() => {
-    const growing = entries.filter(({ model, deleted }) => !deleted && !isOver(model))
+    const growing = entries.filter(({ model, deleted }) => !deleted && !isFinished(model))
     if (!growing.length) return
     const look = async () => {
-      const found = await Promise.all(growing.map(({ model }) => gallery.look(model)))
+      const found = await Promise.all(growing.map(({ model }) => gallery.refresh(model)))
       const latest = new Map(found.map(model => [model?.id, model]))
       setEntries(now => now.map(entry => ({ ...entry, model: latest.get(entry.model.id) ?? entry.model })))
     }

@@ -1,4 +1,4 @@
-import { isOver } from '../../api/follow'
+import { isFinished } from '../../api/follow'
 import type { State, Store } from '../../state'
 import { text } from '../../text'
 
@@ -13,7 +13,7 @@ export function followTitle(store: Store): void {
 export function titleOf({ sheets, name, asking, model }: Pick<State, 'sheets' | 'name' | 'asking' | 'model'>): string {
   if (!sheets) return text.app
   const named = name || text.header.untitled
-  const growing = asking || (model !== null && !isOver(model.info))
+  const growing = asking || (model !== null && !isFinished(model.info))
   const progress = asking ? 0 : (model?.info.progress ?? 0)
   return growing ? text.header.growing(Math.floor(progress * 100) / 100, named) : text.header.title(named)
 }

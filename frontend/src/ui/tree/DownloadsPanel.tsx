@@ -8,7 +8,7 @@ import { canTrace } from '../../studio/inputs'
 import { fileName } from '../../studio/project'
 import { sketchToWire } from '../../studio/sketches'
 import type { Studio } from '../../studio/studio'
-import { aloneOf, treeOf, variantsOf } from '../../studio/variants'
+import { treeOf, variantsOf, withVariant } from '../../studio/variants'
 import { text } from '../../text'
 import { Icon } from '../parts/Icon'
 import { ICONS } from '../parts/icons'
@@ -104,7 +104,7 @@ function treeUrl({ model }: State): string | null {
 /** The files of one tree, group by group. */
 function TreeDownloads({ model, variant }: { readonly model: Model; readonly variant: number }) {
   const count = variantsOf(model)
-  const downloads = downloadsOf(aloneOf(model, variant), variant)
+  const downloads = downloadsOf(withVariant(model, variant), variant)
   const groups = [...new Set(downloads.map(({ group }) => group))]
   return (
     <>

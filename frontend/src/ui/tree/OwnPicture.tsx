@@ -13,7 +13,7 @@ export function OwnPicture({ kind }: { readonly kind: keyof OwnPictures }) {
   const words = text.settings.ownPictures[kind]
   const id = `setting-${kind}`
   const take = async (file: File) => {
-    await ownPictures.take(file, kind)
+    await ownPictures.use(file, kind)
     if (!store.state.faults[kind]) store.announce(words.added)
   }
   const remove = () => {

@@ -18,7 +18,7 @@ const MOST_BUTTONS = 6
 
 interface Props {
   readonly status: PreviewStatus
-  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'blow'>
+  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'setWind'>
 }
 
 /** The buttons that turn the tree to its views, hide its leaves and zoom; hidden while there is no tree. */
@@ -155,14 +155,14 @@ export function WindSwitch({ status, preview, toSettings }: Props & { toSettings
   const isTree = status.shows === 'model' && status.webgl !== 'absent'
   const hasWind = isTree && status.winds.length > 0
   const names = [STILL, ...status.winds]
-  const blowing = status.wind ?? STILL
-  const blow = (name: string) => preview().blow(name === STILL ? null : name)
+  const chosen = status.wind ?? STILL
+  const setWind = (name: string) => preview().setWind(name === STILL ? null : name)
   return (
     <div class="wind">
       <div class="overlay winds" role="group" aria-label={words.group} hidden={!hasWind}>
         <Icon path={ICONS.wind} />
         {names.map(name => (
-          <button type="button" class="button" key={name} aria-pressed={name === blowing} onClick={() => blow(name)}>
+          <button type="button" class="button" key={name} aria-pressed={name === chosen} onClick={() => setWind(name)}>
             {windName(name)}
           </button>
         ))}
@@ -171,8 +171,8 @@ export function WindSwitch({ status, preview, toSettings }: Props & { toSettings
         class="overlay wind-choice"
         aria-label={words.group}
         hidden={!hasWind}
-        value={blowing}
-        onChange={event => blow(event.currentTarget.value)}
+        value={chosen}
+        onChange={event => setWind(event.currentTarget.value)}
       >
         {names.map(name => (
           <option value={name} key={name}>

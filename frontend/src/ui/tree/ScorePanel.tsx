@@ -1,5 +1,5 @@
 import { useMemo } from 'preact/hooks'
-import { aloneOf } from '../../studio/variants'
+import { withVariant } from '../../studio/variants'
 import { text } from '../../text'
 import { useStore } from '../parts/useStore'
 import { type Figure, figuresOfModel, judgementOf } from './figures'
@@ -14,7 +14,7 @@ const LONG = 20
 export function ScorePanel() {
   const info = useStore(state => state.model?.info ?? null)
   const variant = useStore(state => state.model?.variant ?? 1)
-  const shown = useMemo(() => info && aloneOf(info, variant), [info, variant])
+  const shown = useMemo(() => info && withVariant(info, variant), [info, variant])
   const measures = shown ? measuresOf(shown) : []
   const { title, lead } = text.score.measures
   return (

@@ -1,4 +1,4 @@
-import { isOver } from '../../api/follow'
+import { isFinished } from '../../api/follow'
 import type { ShownModel, State } from '../../state'
 import { isOfFile, sameValue } from './settingGroups'
 
@@ -28,7 +28,7 @@ const INCOMPLETE: readonly GrowthStatus[] = ['noPhoto', 'noCrown', 'noTrunk', 'n
 export function growthStatusOf(state: State): GrowthStatus {
   const { asking, model, sheets, faults } = state
   if (asking) return 'asking'
-  if (model && !isOver(model.info)) return model.info.status === 'queued' ? 'queued' : 'growing'
+  if (model && !isFinished(model.info)) return model.info.status === 'queued' ? 'queued' : 'growing'
   if (!sheets) return 'noPhoto'
   const { crown, branches } = state.history.present
   if (sheets.source === 'sketch' && !branches.length) return 'noFront'

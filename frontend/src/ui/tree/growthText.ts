@@ -1,6 +1,6 @@
 import type { Model } from '../../api/types'
 import type { State } from '../../state'
-import { aloneOf } from '../../studio/variants'
+import { withVariant } from '../../studio/variants'
 import { text } from '../../text'
 import { percent } from '../../text/numbers'
 import { judgementOf, makingOf, matchOf } from './figures'
@@ -18,7 +18,7 @@ export function sentenceOf(state: State): string {
   const { faults, sheets, model } = state
   if (faults.grow && sheets) return faults.grow.text
   const status = growthStatusOf(state)
-  if (status === 'grown') return matchOf(aloneOf(model!.info, model!.variant))
+  if (status === 'grown') return matchOf(withVariant(model!.info, model!.variant))
   return stepOf(state) ?? text.grow.status[status as keyof typeof text.grow.status]
 }
 
@@ -28,7 +28,7 @@ export function detailsOf(state: State): string {
   const status = growthStatusOf(state)
   if (!model || faults.grow) return ''
   if (status === 'growing') return online ? progressOf(model.info) : ''
-  return status === 'grown' ? makingOf(aloneOf(model.info, model.variant)) : ''
+  return status === 'grown' ? makingOf(withVariant(model.info, model.variant)) : ''
 }
 
 /** Return how growing ended; empty where nothing needs to be said. */

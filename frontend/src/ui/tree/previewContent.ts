@@ -1,4 +1,4 @@
-import { isOver } from '../../api/follow'
+import { isFinished } from '../../api/follow'
 import type { Grown } from '../../api/types'
 import type { Preview } from '../../preview/preview'
 import type { State, Store } from '../../state'
@@ -84,7 +84,7 @@ class Follower {
 
   follow(state: State): void {
     const info = state.model?.info
-    if (info && !isOver(info)) this.#awaited = info.id
+    if (info && !isFinished(info)) this.#awaited = info.id
     const next = contentOf(state, info !== undefined && info.id === this.#awaited)
     if (isSame(next, this.#content)) return
     const before = this.#content

@@ -43,7 +43,12 @@ test('many trees are chosen from a list', () => {
 
 const TREE = { ...NOTHING_SHOWN, shows: 'model', winds: ['breeze', 'gust'], wind: null } as const
 let blown: (string | null)[]
-const preview = { view: () => {}, setLeaves: () => {}, zoom: () => {}, blow: (wind: string | null) => blown.push(wind) }
+const preview = {
+  view: () => {},
+  setLeaves: () => {},
+  zoom: () => {},
+  setWind: (wind: string | null) => blown.push(wind),
+}
 let settings: number
 let host: HTMLElement
 const studio = new Studio()
@@ -59,7 +64,7 @@ function show(status: PreviewStatus): void {
     view: () => {},
     setLeaves: () => {},
     zoom: () => {},
-    blow: (wind: string | null) => blown.push(wind),
+    setWind: (wind: string | null) => blown.push(wind),
   }
   redraw(host, studio, <WindSwitch status={status} preview={() => preview} toSettings={() => settings++} />)
 }

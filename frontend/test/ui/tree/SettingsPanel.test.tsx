@@ -185,7 +185,7 @@ test('a leaf of one’s own is chosen, seen, refused with a reason, and removed'
     ['Replace', 'Remove'],
     false,
   ])
-  await act(() => studio.ownPictures.take(new File(['no'], 'leaf.png')))
+  await act(() => studio.ownPictures.use(new File(['no'], 'leaf.png')))
   expect(panel.querySelector('[aria-labelledby=setting-leaf] .setting-wrong')!.textContent).toContain('not a PNG')
   expect(studio.store.state.leaf).toBe(leaf)
   void act(() => buttons()[1]!.click())

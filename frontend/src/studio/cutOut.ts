@@ -1,23 +1,23 @@
 import { text } from '../text'
-import { Unusable } from './faultText'
+import { PageFault } from './faultText'
 import { isPng } from './png'
 
 /** Side of the copy in which transparency is looked for, px. */
 const SIDE = 128
 
-/** Return a picture as a PNG cut-out; throws `Unusable` unless it is a PNG that is partly transparent. */
-export async function readLeaf(
+/** Return a picture as a PNG cut-out; throws `PageFault` unless it is a PNG that is partly transparent. */
+export async function readCutOut(
   file: Blob,
   mostBytes: number,
   alphaOf: (file: Blob) => Promise<Uint8Array> = decodedAlpha,
 ): Promise<Blob> {
-  if (!(await isPng(file))) throw new Unusable(text.faults.ownPicture.notPng)
-  if (file.size > mostBytes) throw new Unusable(text.faults.fileTooLarge(file.size, mostBytes))
+  if (!(await isPng(file))) throw new PageFault(text.faults.ownPicture.notPng)
+  if (file.size > mostBytes) throw new PageFault(text.faults.fileTooLarge(file.size, mostBytes))
   const alpha = await alphaOf(file).catch(() => {
-    throw new Unusable(text.faults.ownPicture.unreadable)
+    throw new PageFault(text.faults.ownPicture.unreadable)
   })
-  if (alpha.every(opacity => opacity === 255)) throw new Unusable(text.faults.ownPicture.opaque)
-  if (alpha.every(opacity => opacity === 0)) throw new Unusable(text.faults.ownPicture.empty)
+  if (alpha.every(opacity => opacity === 255)) throw new PageFault(text.faults.ownPicture.opaque)
+  if (alpha.every(opacity => opacity === 0)) throw new PageFault(text.faults.ownPicture.empty)
   return file.slice(0, file.size, 'image/png')
 }
 

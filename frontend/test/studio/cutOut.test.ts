@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { readLeaf } from '../../src/studio/leafPicture'
+import { readCutOut } from '../../src/studio/cutOut'
 
 const HEAD = new Uint8Array([137, 80, 78, 71, 13, 10, 26, 10])
 const png = (bytes = 0) => new Blob([HEAD, new Uint8Array(bytes)])
@@ -9,7 +9,7 @@ const alpha =
     Uint8Array.from(pixels)
 
 test('a PNG that is partly transparent is used as it is', async () => {
-  const leaf = await readLeaf(png(20), 4e6, alpha(255, 0, 255))
+  const leaf = await readCutOut(png(20), 4e6, alpha(255, 0, 255))
   expect([leaf.type, leaf.size]).toEqual(['image/png', 28])
 })
 
@@ -21,5 +21,5 @@ test.each([
   ['a picture of nothing', png(), alpha(0, 0), 'fully transparent'],
   ['a damaged picture', png(), () => Promise.reject(new Error('broken')), 'damaged'],
 ])('%s is refused with a reason', async (_, file, alphaOf, reason) => {
-  await expect(readLeaf(file, 4e6, alphaOf)).rejects.toThrow(reason)
+  await expect(readCutOut(file, 4e6, alphaOf)).rejects.toThrow(reason)
 })
