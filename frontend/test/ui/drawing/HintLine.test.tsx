@@ -6,7 +6,7 @@ import { Studio } from '../../../src/studio/studio'
 import { text } from '../../../src/text'
 import { HintLine } from '../../../src/ui/drawing/HintLine'
 import { CROWN, photoSheets, TRUNK } from '../../builders'
-import { mount } from './mount'
+import { mount } from '../mount'
 
 let studio: Studio
 const said = () => document.querySelector('.hint-text')!.textContent!
@@ -18,7 +18,7 @@ async function on(device: 'phone' | 'desk'): Promise<void> {
   vi.stubGlobal('matchMedia', (query: string) => ({ matches: query.includes('fine') === (device === 'desk') }))
   studio = new Studio()
   studio.store.set({ sheets: photoSheets() })
-  await mount(studio, <HintLine />)
+  mount(studio, <HintLine />)
 }
 
 /** Press somewhere with a pointer of a type. */

@@ -5,7 +5,7 @@ import { beforeEach, expect, test } from 'vitest'
 import { Studio } from '../../../src/studio/studio'
 import { LengthField } from '../../../src/ui/drawing/LengthField'
 import { TRUNK } from '../../builders'
-import { mount } from './mount'
+import { mount } from '../mount'
 
 let studio: Studio
 const canvas = () => document.getElementById('canvas')!
@@ -22,7 +22,7 @@ const write = (value: string) =>
 
 beforeEach(async () => {
   studio = new Studio()
-  await mount(
+  mount(
     studio,
     <>
       <button type="button" id="canvas" />

@@ -5,7 +5,7 @@ import { beforeEach, expect, test } from 'vitest'
 import type { Line, StrokeKind } from '../../../src/strokes'
 import { Studio } from '../../../src/studio/studio'
 import { Toolbar } from '../../../src/ui/drawing/Toolbar'
-import { mount } from './mount'
+import { mount } from '../mount'
 
 const LINE: Line = [
   [0, 0],
@@ -22,7 +22,7 @@ const click = (button: HTMLElement) => act(() => button.click())
 
 beforeEach(async () => {
   studio = new Studio()
-  await mount(studio, <Toolbar />)
+  mount(studio, <Toolbar />)
 })
 
 test('one tool is chosen, and a click chooses another', async () => {

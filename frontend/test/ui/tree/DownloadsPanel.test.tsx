@@ -6,7 +6,7 @@ import { Studio } from '../../../src/studio/studio'
 import { DownloadsPanel } from '../../../src/ui/tree/DownloadsPanel'
 import { shownModel } from '../../builders'
 import { settle } from '../../service'
-import { mount } from './mount'
+import { mount } from '../mount'
 
 let studio: Studio
 let panel: HTMLElement

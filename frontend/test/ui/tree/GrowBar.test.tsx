@@ -6,7 +6,7 @@ import type { State } from '../../../src/state'
 import { Studio } from '../../../src/studio/studio'
 import { GrowBar } from '../../../src/ui/tree/GrowBar'
 import { CROWN, photoSheets, shownModel, TRUNK } from '../../builders'
-import { mount } from './mount'
+import { mount } from '../mount'
 
 let studio: Studio
 let bar: HTMLElement

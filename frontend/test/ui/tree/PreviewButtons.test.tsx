@@ -7,7 +7,7 @@ import { paper } from '../../../src/sheets'
 import { Studio } from '../../../src/studio/studio'
 import { PreviewButtons, ShowsSwitch, VariantChoice, WindSwitch } from '../../../src/ui/tree/PreviewButtons'
 import { grown, shownModel, sketchSheets } from '../../builders'
-import { mount, redraw } from './mount'
+import { mount, redraw } from '../mount'
 
 function choiceOf(count: number) {
   const names = Array.from({ length: count }, (_, at) => (at ? `tree.v${at + 1}.glb` : 'tree.glb'))

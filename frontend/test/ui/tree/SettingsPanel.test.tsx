@@ -7,7 +7,7 @@ import type { State } from '../../../src/state'
 import { Studio } from '../../../src/studio/studio'
 import { SettingsPanel, useSettingsView } from '../../../src/ui/tree/SettingsPanel'
 import { CROWN, photoSheets, shownModel, TRUNK } from '../../builders'
-import { mount } from './mount'
+import { mount } from '../mount'
 
 const FILES = ['obj', 'usdz', 'moss']
 const settings: Limits['settings'] = {
