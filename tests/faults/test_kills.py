@@ -58,13 +58,15 @@ def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: 
             heartbeat(session, held, None, 0.0, 0.0)
         return any(one.pid != here.pid and service.name_of(one) for one in service.workers())
 
-    wait_for(another, PATIENCE_SECONDS, "another worker", every_s=0.5)
-    row = service.row(held.id)
-    assert (row["status"], row["worker"], row["attempt"]) == ("running", name, 1)
-    with database.writing() as session:
-        session.execute(delete(ModelRow).where(ModelRow.id == held.id))
-        session.execute(delete(Worker).where(Worker.id == name))
-    database.close()
+    try:
+        wait_for(another, PATIENCE_SECONDS, "another worker", every_s=0.5)
+        row = service.row(held.id)
+        assert (row["status"], row["worker"], row["attempt"]) == ("running", name, 1)
+    finally:  # a model whose files do not exist breaks what is promised of all
+        with database.writing() as session:
+            session.execute(delete(ModelRow).where(ModelRow.id == held.id))
+            session.execute(delete(Worker).where(Worker.id == name))
+        database.close()
 
 
 def test_a_worker_that_dies_leaves_no_process_behind(service: Service) -> None:
