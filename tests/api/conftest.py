@@ -86,23 +86,23 @@ def running(folder: Path, **settings: object) -> Iterator[Service]:
         yield Service(url, folder / "data", client)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     yield from running(tmp_path_factory.mktemp("service"), workers=2)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def client(service: Service) -> httpx.Client:
     return service.client
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def photo(service: Service) -> str:
     """A stored photo that no test deletes."""
     return service.add_photo(drawn.encoded())
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def made(service: Service, photo: str) -> dict[str, Any]:
     """A finished model that no test changes."""
     model = service.make(**drawn.request(photo, name="The old oak"))

@@ -7,7 +7,7 @@ from tests.faults.harness import POISONED, Service
 from tests.faults.redis_server import RedisServer, need_redis
 
 
-@pytest.fixture(scope="session", params=["files", "redis"])
+@pytest.fixture(scope="package", params=["files", "redis"])
 def broker(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[RedisServer | None]:
     """A Redis; nothing where the queue is a folder."""
     if request.param == "files":
@@ -21,12 +21,12 @@ def broker(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
         server.kill()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def broker_url(broker: RedisServer | None) -> str:
     return broker.url if broker else ""
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def service(broker_url: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
     """Web process and worker as `treestroke serve` starts them, but that jobs may be poisoned."""
     folder = tmp_path_factory.mktemp("service")

@@ -30,7 +30,7 @@ def inject(service: Service, broker_url: str, message: bytes) -> None:
 
 def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(service: Service, broker_url: str) -> None:
     queue = queue_of(service, broker_url)
-    ids = service.ask_for(2)
+    ids = service.ask_for(2, "instant")
     for id in (*ids, *ids, "mdl_nobody"):
         send_job_message(queue, id)
     before = service.finish(ids)
@@ -54,7 +54,7 @@ def test_a_worker_survives_messages_that_are_not_for_it(service: Service, broker
     queue.send_task(TASK, args=[], retry=False)
     queue.send_task(TASK, args=[["not", "an", "id"]], retry=False)
     inject(service, broker_url, old_form("mdl_1"))
-    (row,) = service.finish([service.ask()])
+    (row,) = service.finish([service.ask("instant")])
     assert (row["status"], row["attempt"]) == ("succeeded", 1)
     assert [one.pid for one in service.workers()] == workers
 
@@ -65,7 +65,7 @@ def test_a_worker_survives_files_that_are_no_messages(service: Service, broker_u
     workers = [one.pid for one in service.workers()]
     for garbage in (b"", b"{", b"[]", b"\xff\xfe", b'{"body": "", "headers": {}, "properties"'):
         inject(service, broker_url, garbage)
-    (row,) = service.finish([service.ask()])
+    (row,) = service.finish([service.ask("instant")])
     assert row["status"] == "succeeded"
     assert [one.pid for one in service.workers()] == workers
 

@@ -51,6 +51,7 @@ def test_a_shaking_hand_finds_the_same_foliage(tree: Path, hands: int) -> None:
     assert np.median([overlap(other.foliage, steady.foliage) for other in others]) >= 0.95
 
 
+@HANDS
 @pytest.mark.parametrize("tree", [OAK, MAPLE, OSAGE, FORKED], ids=lambda tree: tree.name)
 def test_a_shaking_hand_traces_the_same_branches(tree: Path, hands: int) -> None:
     steady, others = traces(tree, hands)
