@@ -213,6 +213,7 @@ def test_on_a_phone_one_sheet_is_seen_at_a_time(open_page: OpenPage) -> None:
     chooser = page.get_by_role("group", name="What is shown")
     chooser.get_by_role("button", name="Left side").click()
     visitor.sheet = "side"
+    visitor.wait_until_still()
     visitor.touch(SIDE[0])
     visitor.until(lambda: len(branches(visitor, "side")) == 1)
     expect(page.get_by_label("Paper to draw the front on")).to_be_hidden()
