@@ -173,10 +173,10 @@ def test_a_stored_photo_may_be_larger_than_an_upload(maple_photo: Path) -> None:
     assert np.array_equal(decode_stored(stored), UPRIGHT)
 
 
-@pytest.mark.parametrize("tile", [(1, 1500), (1, 700), (40, 50), (700, 1), (1, 12_000)])
+@pytest.mark.parametrize("tile", [(1, 1500), (1, 700), (40, 50), (300, 1), (1, 12_000)])
 def test_what_is_small_as_an_upload_is_not_stored_a_hundred_times_as_large(tile: tuple[int, int]) -> None:
     noise = np.random.default_rng(0).integers(0, 256, (*tile, 3), dtype=np.uint8)
-    height, width = (700 if tile[0] == 700 else 300), max(1500, tile[1])
+    height, width = 300, max(1500, tile[1])
     picture = np.ascontiguousarray(np.tile(noise, (height, -(-width // tile[1]), 1))[:height, :width])
     stored = encode_stored(picture)
     assert np.array_equal(decode_stored(stored), picture)
