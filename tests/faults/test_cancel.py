@@ -31,7 +31,8 @@ def test_a_job_that_waits_is_canceled_at_once(service: Service) -> None:
 def test_a_real_job_under_way_is_canceled_within_two_seconds(service: Service) -> None:
     id = service.ask(**ENDLESS)
     service.wait_running(id)
-    assert [cancel(service, id), cancel(service, id)] == ["running", "running"]
+    assert cancel(service, id) == "running"
+    assert cancel(service, id) in ("running", "canceled")  # it may have ended meanwhile
     with kept(PROMISED_SECONDS):
         (row,) = service.finish([id])
     assert row["status"] == "canceled"
