@@ -1,4 +1,5 @@
-import { LANGUAGE } from './plural'
+/** The page's language, which numbers and plurals follow. */
+export const LANGUAGE = 'en'
 
 const wholes = new Intl.NumberFormat(LANGUAGE, { maximumFractionDigits: 0 })
 const hundredths = new Intl.NumberFormat(LANGUAGE, { minimumFractionDigits: 2, maximumFractionDigits: 2 })

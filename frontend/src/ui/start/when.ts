@@ -1,5 +1,5 @@
 import { text } from '../../text'
-import { LANGUAGE } from '../../text/plural'
+import { LANGUAGE } from '../../text/numbers'
 
 const STEPS = [
   ['minute', 60],
