@@ -14,8 +14,8 @@ const button = (label: string) =>
   [...document.querySelectorAll('button')].find(({ textContent }) => textContent === label)!
 
 /** Show the line on a device whose main pointer is a finger, or is none. */
-async function on(device: 'phone' | 'desk'): Promise<void> {
-  vi.stubGlobal('matchMedia', (query: string) => ({ matches: query.includes('fine') === (device === 'desk') }))
+async function on(device: 'phone' | 'computer'): Promise<void> {
+  vi.stubGlobal('matchMedia', (query: string) => ({ matches: query.includes('fine') === (device === 'computer') }))
   studio = new Studio()
   studio.store.set({ sheets: photoSheets() })
   mount(studio, <HintLine />)
@@ -28,10 +28,10 @@ function press(pointerType: string): Promise<void> {
   })
 }
 
-beforeEach(() => on('desk'))
+beforeEach(() => on('computer'))
 afterEach(() => vi.unstubAllGlobals())
 
-test('a phone says how to draw with a finger, whatever was pressed, and a desk how with the mouse', async () => {
+test('a phone says how to draw with a finger, whatever was pressed, and a computer how with the mouse', async () => {
   expect(said()).toContain(text.hints.how.mouse.crown)
   await on('phone')
   expect(said()).toContain('with your finger')
