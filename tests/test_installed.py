@@ -65,6 +65,7 @@ def pip(*arguments: object) -> None:
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    """Takes over 20 s: pip makes an environment of requirements.txt alone."""
     place = tmp_path_factory.mktemp("installed")
     source, environment, folder = (place / name for name in ("source", "environment", "folder"))
     for path in (source, folder):
@@ -145,6 +146,7 @@ def redis(tmp_path: Path) -> Iterator[RedisServer]:
 
 
 def test_a_model_grows_through_a_redis_and_the_doctor_finds_all_well(installed: Installed, redis: RedisServer) -> None:
+    """May take over 20 s on a busy machine: a service, a worker, a Redis and the doctor are started."""
     settings = {"data": installed.folder / "data", "broker_url": redis.url, "tracers": 1}
     serve = ("treestroke", "serve", "--port", "0")
     with (
