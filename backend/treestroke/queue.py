@@ -72,6 +72,10 @@ class _FolderChannel(filesystem.Channel):
     A file that is not a message is removed: it would end the worker that reads it.
     """
 
+    def _queue_bind(self, *arguments: Any) -> None:
+        self.control_folder.mkdir(mode=0o700, parents=True, exist_ok=True)  # kombu's own mkdir needs the parent folder
+        super()._queue_bind(*arguments)
+
     def _put(self, queue: str, payload: Any, **_: Any) -> None:  # type: ignore[override]
         name = f"{time.time_ns():020d}-{secrets.token_hex(8)}"
         unfinished = Path(self.data_folder_out) / f"{name}.part"

@@ -90,9 +90,11 @@ def old_form(id: str) -> bytes:
     ).encode()
 
 
-def test_a_queue_whose_folder_is_removed_takes_messages(tmp_path: Path) -> None:
+@pytest.mark.parametrize("sent", [0, 1])
+def test_a_queue_whose_folder_is_removed_takes_messages(sent: int, tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
-    send_job_message(queue, "mdl_1")
+    for _ in range(sent):
+        send_job_message(queue, "mdl_1")
     shutil.rmtree(tmp_path / "queue")
     send_job_message(queue, "mdl_2")
     assert len(list((tmp_path / "queue" / "messages").glob("*.msg"))) == 1
