@@ -44,6 +44,7 @@ def test_a_tree_that_is_canceled_stops_and_the_strokes_stay(visitor: Visitor, se
     visitor.shot("canceled")
     assert service.models()[0]["status"] == "canceled"
     expect(visitor.page.get_by_role("button", name="Grow again")).to_be_enabled()
+    expect(visitor.page.get_by_role("button", name="Grow again")).to_be_focused()
 
 
 def test_a_lost_connection_is_told_and_mends_itself(visitor: Visitor) -> None:

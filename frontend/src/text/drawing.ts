@@ -54,6 +54,7 @@ export const drawingText = {
     delete: (name: string) => `Delete ${name}`,
     selected: (name: string) => `Selected: ${name}.`,
     drawn: (name: string) => `Drawn: ${name}.`,
+    moved: (name: string) => `Moved: ${name}.`,
     deleted: (name: string) => `Deleted: ${name}.`,
     cleared: 'All strokes cleared.',
     undone: 'Undone.',

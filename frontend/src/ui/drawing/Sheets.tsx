@@ -72,8 +72,14 @@ function SheetTools({ name }: Named) {
   const onPaper = useStore(state => isPaper(state, name))
   const hasPicture = Boolean(sheet?.url)
   const isHidden = Boolean(sheet?.hidden)
+  const tools = useRef<HTMLDivElement>(null)
+  // Found before the buttons of the picture change: one that is hidden has lost the focus at once.
+  const hasFocus = tools.current?.contains(document.activeElement)
+  useLayoutEffect(() => {
+    if (hasFocus) tools.current!.querySelector<HTMLElement>('.of-picture:not([hidden])')?.focus()
+  }, [hasPicture])
   return (
-    <div class="sheet-tools">
+    <div class="sheet-tools" ref={tools}>
       <IconButton
         label={words.openDrawing}
         icon={ICONS.drawing}
@@ -81,12 +87,14 @@ function SheetTools({ name }: Named) {
         onClick={() => chooseSketch(file => void opener.openOn(name, file))}
       />
       <IconButton
+        class="of-picture"
         label={words.addPicture}
         icon={ICONS.photo}
         hidden={!onPaper || hasPicture}
         onClick={() => choosePicture(file => void sheets.addPicture(name, file))}
       />
       <IconButton
+        class="of-picture"
         label={isHidden ? words.show : words.hide}
         icon={ICONS.eye}
         hidden={!onPaper || !hasPicture}

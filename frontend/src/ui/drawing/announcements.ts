@@ -1,7 +1,7 @@
 import type { TracedSkeleton } from '../../api/types'
 import type { History } from '../../history'
-import type { Sheet, State, Store } from '../../state'
-import { isEmpty, lineOf, type Point, type StrokeRef, type Strokes, strokeRefs } from '../../strokes'
+import type { Selection, Sheet, State, Store } from '../../state'
+import { isEmpty, lineOf, type Point, type Scale, type StrokeRef, type Strokes, strokeRefs } from '../../strokes'
 import { text } from '../../text'
 import { strokeName } from './strokeTexts'
 
@@ -34,7 +34,7 @@ export function announceDrawing(store: Store): () => void {
     ),
     say(
       state => state.selection,
-      selection => selection && text.strokes.selected(strokeName(selection)),
+      (now, before) => (now && !isSame(now, before) ? text.strokes.selected(strokeName(now)) : null),
     ),
   ]
   return () => {
@@ -55,13 +55,24 @@ export function editText(before: History<Strokes>, now: History<Strokes>): strin
   if (now.past.at(-1) !== before.present) return null
   if (before.future[0] === now.present) return text.strokes.redone
   if (isEmpty(now.present)) return text.strokes.cleared
-  const { scale } = now.present
-  if (scale && before.present.scale?.points === scale.points && before.present.scale !== scale)
-    return text.strokes.measured(text.metres(scale.metres))
+  const scaleText = scaleEditText(before.present.scale, now.present.scale)
+  if (scaleText) return scaleText
   const [gone] = missing(before.present, now.present)
   const [come, more] = missing(now.present, before.present)
   if (come) return more ? text.sheets.opened : text.strokes.drawn(strokeName(come))
   return gone ? text.strokes.deleted(strokeName(gone)) : null
+}
+
+function isSame(one: Selection, other: Selection | null): boolean {
+  return JSON.stringify(one) === JSON.stringify(other)
+}
+
+/** Return what became of the measured line: another length, or another end; null where it is new, gone or as it was. */
+function scaleEditText(before: Scale | null, now: Scale | null): string | null {
+  if (!before || !now || before === now) return null
+  if (before.points === now.points) return text.strokes.measured(text.metres(now.metres))
+  const isMoved = now.points.some(end => before.points.includes(end))
+  return isMoved ? text.strokes.moved(text.strokes.scale) : null
 }
 
 /** List the strokes that others lack; more than one at once were opened, not drawn. */

@@ -22,16 +22,24 @@ export function followSession(studio: Studio): void {
   const { store, drafts } = studio
   store.watch(
     state => state.model?.info.id ?? null,
-    id => history.replaceState(null, '', id ? `#${id}` : location.pathname + location.search),
+    id => writeAddress(id),
   )
   store.watch(
     state => state.sheets?.front,
     front => remember(front ? drafts.id : null),
   )
-  addEventListener('hashchange', () => modelInAddress() && resume(studio))
+  addEventListener('hashchange', async () => {
+    if (!modelInAddress()) return
+    await resume(studio)
+    writeAddress(store.state.model?.info.id ?? null) // it may have named a tree that is not there
+  })
   addEventListener('beforeunload', event => {
     if (!store.state.kept && store.state.sheets && !isEmpty(store.strokes)) event.preventDefault()
   })
+}
+
+function writeAddress(model: string | null): void {
+  history.replaceState(null, '', model ? `#${model}` : location.pathname + location.search)
 }
 
 function modelInAddress(): string | null {

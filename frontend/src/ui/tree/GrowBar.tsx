@@ -131,8 +131,10 @@ interface LineButtonProps extends ButtonHTMLAttributes {
 
 function LineButton({ shown, next, ...attributes }: LineButtonProps) {
   const own = useRef<HTMLButtonElement>(null)
+  // Found while it is still shown: a button that is hidden has lost the focus at once.
+  const hasFocus = own.current !== null && own.current === document.activeElement
   useLayoutEffect(() => {
-    if (!shown && own.current === document.activeElement) next.current?.focus()
-  }, [shown, next])
+    if (!shown && hasFocus) next.current?.focus()
+  }, [shown])
   return <button type="button" class="button outlined" ref={own} hidden={!shown} {...attributes} />
 }

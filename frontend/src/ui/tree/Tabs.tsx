@@ -18,14 +18,26 @@ interface Props {
   choose(name: string): void
 }
 
-const STEPS: Readonly<Record<string, number>> = { ArrowLeft: -1, ArrowRight: 1 }
+/** Return the place of the tab that a key leads to; the arrows go round. */
+function nextTab(key: string, at: number, count: number): number | undefined {
+  const places: Readonly<Record<string, number>> = {
+    ArrowLeft: (at - 1 + count) % count,
+    ArrowRight: (at + 1) % count,
+    Home: 0,
+    End: count - 1,
+  }
+  return places[key]
+}
 
-/** Tabs above their parts; arrow keys go from one to the next. */
+/** Tabs above their parts; arrow keys go from one to the next, Home and End to the first and the last. */
 export function Tabs({ id, label, tabs, chosen, choose }: Props) {
   const step = ({ key, currentTarget: bar }: KeyboardEvent & { readonly currentTarget: HTMLElement }) => {
-    if (!STEPS[key]) return
-    const at = tabs.findIndex(({ name }) => name === chosen)
-    const next = (at + STEPS[key] + tabs.length) % tabs.length
+    const next = nextTab(
+      key,
+      tabs.findIndex(({ name }) => name === chosen),
+      tabs.length,
+    )
+    if (next === undefined) return
     choose(tabs[next]!.name)
     ;(bar.children[next] as HTMLElement).focus()
   }

@@ -50,10 +50,14 @@ test('nothing is said of another drawing', () => {
 test('a measured line is named, and its length when it is entered', () => {
   const lined = advance(trunked, withScale(trunked.present, [...TRUNK], 1))
   const measured = advance(lined, withScale(lined.present, lined.present.scale!.points, 1.8))
-  expect([editText(trunked, lined), editText(lined, measured)]).toEqual([
+  const moved = advance(measured, withScale(measured.present, [TRUNK[0]!, [1, 1]], 1.8))
+  const branchedToo = advance(moved, withStroke(moved.present, 'branch', [...TRUNK]))
+  expect([editText(trunked, lined), editText(lined, measured), editText(measured, moved)]).toEqual([
     'Drawn: Measured line.',
     'The measured line is 1.8 m long.',
+    'Moved: Measured line.',
   ])
+  expect(editText(moved, branchedToo)).toBe('Drawn: Branch 2.')
 })
 
 test('a stroke on the other sheet is named with its sheet', () => {

@@ -75,13 +75,16 @@ test('what is in the address and is no model is left alone', async () => {
   expect(openModel).not.toHaveBeenCalled()
 })
 
-test('address and memory follow what is open', () => {
+test('address and memory follow what is open', async () => {
   const { studio } = studioWith([])
   followSession(studio)
   studio.drafts.begin('mine')
   studio.store.set({ sheets: photoSheets(), model: shownModel({ id: MODEL }) })
   expect(location.hash).toBe(`#${MODEL}`)
   expect(sessionStorage.getItem('draft')).toBe('mine')
+  history.replaceState(null, '', '#mdl_000000000000000000000000')
+  dispatchEvent(new Event('hashchange'))
+  await vi.waitFor(() => expect(location.hash).toBe(`#${MODEL}`)) // no tree was opened by that address
   studio.store.set({ sheets: null, model: null })
   expect(location.hash).toBe('')
   expect(sessionStorage.getItem('draft')).toBeNull()

@@ -133,6 +133,8 @@ test('settings lie in groups, of which one is shown', () => {
   fire(tabs[0]!, new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }))
   expect(shown().map(part => part.contains(field('season')))).toEqual([true])
   expect(document.activeElement).toBe(tabs[1])
+  fire(tabs[1]!, new KeyboardEvent('keydown', { key: 'End', bubbles: true }))
+  expect(document.activeElement).toBe(tabs[2])
 })
 
 test('a yes or no, and several names at once, can be chosen', () => {
