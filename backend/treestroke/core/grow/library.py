@@ -8,7 +8,7 @@ import numpy as np
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
-from treestroke.core.types import Floats, FoliageKind, Indices
+from treestroke.core.types import CONIFEROUS, Floats, FoliageKind, Indices
 
 Order = Literal["any", "stem", "limb"]
 """Which branches a subtree may replace."""
@@ -216,6 +216,6 @@ def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton) -> tuple[Su
         return visible[:MOST_SUBTREES] or predefined["both"]
     if name != "auto":
         raise ValueError(f"the library is auto, visible, type1, type2 or both, not {name!r}")
-    if kind == "needles":
+    if kind in CONIFEROUS:
         return WHORLS + SPRAYS + TYPE_1[:2] + TYPE_2
     return ((visible[:2] if len(visible) >= ENOUGH_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]

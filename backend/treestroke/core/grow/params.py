@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from treestroke.core.types import FoliageKind
+from treestroke.core.types import CONIFEROUS, FoliageKind
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class GrowthParams:
 
 def growth_for(kind: FoliageKind, iterations: int = 300) -> GrowthParams:
     """Return the parameters for a kind of foliage: conifers have one leader and many whorls, bare trees finer twigs."""
-    if kind == "needles":
+    if kind in CONIFEROUS:
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":
         return GrowthParams(
