@@ -21,6 +21,7 @@ from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import TreeModel, finish
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.taken import Taken
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.survey.measures import Scale, Stature
@@ -143,7 +144,7 @@ def view_of(camera: PerspectiveCamera, colour: tuple[int, int, int]) -> View:
 def dressed(grown: Grown) -> GrownTree:
     views = tuple(view_of(camera, colour) for camera, colour in zip(CAMERAS, (GREEN, RED), strict=True))
     return GrownTree(
-        kind="leaves",
+        taken=Taken("leaves", "round", 1.0),
         grown=grown,
         volume=VOLUME,
         appearance=Appearance(views, shows_leaves=True),
@@ -151,7 +152,7 @@ def dressed(grown: Grown) -> GrownTree:
         expected_cover=outline_of(FRONT),
         stature=Stature(8.0, Scale(0.0125, False, 0.0), True, VOLUME),
         score={},
-        reading=Reading("a volume made by hand", 1.0, ()),
+        reading=Reading("a volume made by hand", ()),
         warnings=(),
     )
 

@@ -14,8 +14,6 @@ from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.lift.spread import FrontCrown, lift
-from treestroke.core.paint.seasons import LEAFY
-from treestroke.core.paint.species import AUTO, SPECIES
 from treestroke.core.pipeline.crowns import (
     CLOSED_SHARE,
     LEAFED_SHARE,
@@ -28,10 +26,11 @@ from treestroke.core.pipeline.crowns import (
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
+from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
-from treestroke.core.segment.kind import UNSURE, foliage_kind
+from treestroke.core.segment.kind import KindOdds, kind_odds
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths
@@ -42,7 +41,7 @@ from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Statu
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
-from treestroke.core.types import FOLIAGE_KINDS, FoliageKind, Indices, Mask, Picture
+from treestroke.core.types import FoliageKind, Indices, Mask, Picture
 
 JOINT_SHARE = 0.015
 """Distance between joints, as a share of the tree's height, so that growth can split a straight trunk anywhere."""
@@ -59,7 +58,6 @@ UNCLEAR = StrokeWarning(
 )
 DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
 """Codes of warnings after which the strokes may not describe a tree."""
-_KINDS: dict[str, FoliageKind] = {kind: kind for kind in FOLIAGE_KINDS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +82,16 @@ class PhotoEvidence:
     def height_px(self) -> float:
         """The tree's height, px of the working copy."""
         return self.working.height_px(self.foliage.mask)
+
+    @property
+    def odds(self) -> KindOdds:
+        """Probability of each kind of foliage by the photo."""
+        trunk_px = self.working.strokes.branches[0].points
+        return kind_odds(self.foliage.look, self.foliage.sureness, self.foliage.mask, trunk_px)
+
+    def taken(self, settings: ModelSettings) -> Taken:
+        """Return what the tree is taken for; a branch stroke is needed."""
+        return taken_for(self.odds, "round", settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +192,8 @@ def grow_tree(
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
     report("lift", 0.0)
-    crown = _crown_of(evidence, traced, settings)
+    taken = evidence.taken(settings)
+    crown = _crown_of(evidence, traced, taken.foliage, settings)
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
     method = Replacement(
@@ -195,7 +204,7 @@ def grow_tree(
     tree = leafy | crown.wood
     grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
-        kind=crown.kind,
+        taken=taken,
         grown=grown,
         volume=crown.volume,
         appearance=_appearance(evidence, traced, crown, lifted, leafy),
@@ -203,16 +212,14 @@ def grow_tree(
         expected_cover=tree,
         stature=_stature(evidence, traced, crown),
         score={"attractors_reached": grown.attractors_reached, **lifted.score},
-        reading=_reading(evidence, settings),
+        reading=_reading(evidence, taken),
         warnings=evidence.warnings,
     )
 
 
-def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) -> _PhotoCrown:
-    """Close the foliage to a crown and make a volume of it."""
-    foliage = evidence.foliage
-    shown = _shown_kind(evidence.working, foliage, settings)
-    kind = grown_kind(shown, settings)
+def _crown_of(evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settings: ModelSettings) -> _PhotoCrown:
+    """Close the foliage to a crown and make a volume of it; ``kind`` is what its twigs are to bear."""
+    foliage, shown = evidence.foliage, shown_kind(evidence.odds, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
     shows_leaves = shown != "bare" or kind == "bare"
     mask = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
@@ -289,30 +296,7 @@ def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Sta
     return Stature(float(camera.metres_from_pixels(evidence.height_px)), scale, trunk_seen, crown.as_seen)
 
 
-def _reading(evidence: PhotoEvidence, settings: ModelSettings) -> Reading:
+def _reading(evidence: PhotoEvidence, taken: Taken) -> Reading:
     """Return what was read in the photo, and what makes that doubtful."""
-    chosen = settings.foliage != "auto" or settings.season in LEAFY
-    sureness = 1.0 if chosen else evidence.foliage.sureness
     doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
-    return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
-
-
-def _shown_kind(working: WorkingCopy, foliage: Foliage, settings: ModelSettings) -> FoliageKind:
-    """Return the kind that the settings name, or else the one that the picture shows."""
-    if settings.foliage == "auto" or settings.season in LEAFY:
-        return foliage_kind(foliage.look, foliage.mask, working.strokes.branches[0].points)
-    return _KINDS[settings.foliage]
-
-
-def grown_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
-    """Return what the twigs bear: by the settings, else by season, species and photo, in this order."""
-    species = SPECIES.get(settings.species, AUTO)
-    if settings.season == "bare" or settings.foliage == "bare":
-        return "bare"
-    if settings.foliage != "auto":
-        return _KINDS[settings.foliage]
-    if shown == "bare" and settings.season not in LEAFY and not species.evergreen:
-        return "bare"
-    if species == AUTO:
-        return "leaves" if shown == "bare" else shown
-    return "leaves" if species.needles is None else "needles"
+    return Reading(READ, tuple(doubts + ["kind_unsure"] * taken.ask))
