@@ -13,3 +13,4 @@ Picture = NDArray[np.uint8]
 """(h, w, 3) sRGB, or (h, w, 4) with straight alpha."""
 FoliageKind = Literal["leaves", "needles", "bare"]
 """What twigs bear."""
+TreeForm = Literal["round", "spire", "columnar", "umbrella", "weeping", "vase", "multi_stem"]

@@ -50,7 +50,7 @@ def tied(crown: GrowthSpace, make: type[CompiledEvaluator] | type[PlainEvaluator
     params = GrowthParams()
     evaluator = make(crown, TYPE_2[:1] * 3, rules_for(params, crown.unit))
     base = np.array([[160.0, 260.0, 0.0], [160.0, 260.0, 0.0]])
-    evaluator.add_branches(base, base - [[0, 60.0, 0]], np.array([[0.0, 1.0, 1.0]] * 2))
+    evaluator.add_branches(base, base - [[0, 60.0, 0]], np.array([[0.0, 1.0, 1.0]] * 2), np.array([[1.0, 0.0]] * 2))
     evaluator.add_attractors(crown.grid(400))
     return evaluator
 
