@@ -33,7 +33,7 @@ def flags_of(command: str, capsys: pytest.CaptureFixture[str]) -> set[str]:
 
 
 def test_the_settings_are_the_table() -> None:
-    lists = {"species": "Species", "files": "More files"}
+    lists = {"form": "Form", "species": "Species", "foliage": "Foliage", "files": "More files"}
     found = [(*named(name), *rest) for name, *rest in rows(text_of("docs/settings.md").split("\n## ")[0])]
     plain = {False: "false", (): "none"}
     table = [
@@ -48,7 +48,9 @@ def test_the_settings_are_the_table() -> None:
     assert found == table
 
 
-@pytest.mark.parametrize(("name", "heading"), [("species", "Species"), ("files", "More files")])
+@pytest.mark.parametrize(
+    ("name", "heading"), [("form", "Form"), ("species", "Species"), ("foliage", "Foliage"), ("files", "More files")]
+)
 def test_a_setting_s_long_list_of_names_is_complete(name: str, heading: str) -> None:
     (allowed,) = (f.metadata["allowed"] for f in fields(ModelSettings) if f.name == name)
     assert isinstance(allowed, Choice | Several)

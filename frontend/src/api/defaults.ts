@@ -6,6 +6,7 @@ export const DEFAULT_SETTINGS: Required<components['schemas']['ModelSettings']> 
   library: 'auto',
   iterations: 300,
   variants: 1,
+  form: 'auto',
   species: 'auto',
   season: 'photo',
   foliage: 'auto',

@@ -929,6 +929,13 @@ export interface components {
              */
             variants: number;
             /**
+             * Form
+             * @description how limbs grow where the photo shows none
+             * @default auto
+             * @enum {string}
+             */
+            form: "auto" | "round" | "spire" | "columnar" | "umbrella" | "weeping" | "vase" | "multi_stem";
+            /**
              * Species
              * @description shape and place of leaves, relief of bark
              * @default auto
@@ -948,7 +955,7 @@ export interface components {
              * @default auto
              * @enum {string}
              */
-            foliage: "auto" | "leaves" | "needles" | "bare";
+            foliage: "auto" | "leaves" | "needles" | "scales" | "palm" | "bare";
             /**
              * Leaf Size
              * @description factor on the size of the leaves

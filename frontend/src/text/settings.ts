@@ -72,6 +72,20 @@ export const settingsText = {
       unit: 'trees',
       why: 'How many different trees to grow. Each needs the same time.',
     },
+    form: {
+      label: 'Form',
+      why: 'How limbs grow where the photo shows none.',
+      names: {
+        auto: 'As in the photo',
+        round: 'Round',
+        spire: 'Spire (fir)',
+        columnar: 'Column (poplar)',
+        umbrella: 'Umbrella (acacia)',
+        weeping: 'Weeping (willow)',
+        vase: 'Vase (elm)',
+        multi_stem: 'Several stems',
+      },
+    },
     species: {
       label: 'Species',
       why: 'Sets the shape and arrangement of the leaves, and the bark.',
@@ -110,7 +124,14 @@ export const settingsText = {
     foliage: {
       label: 'Foliage',
       why: 'What grows on the twigs.',
-      names: { auto: 'As in the photo', leaves: 'Leaves', needles: 'Needles', bare: 'Nothing (winter)' },
+      names: {
+        auto: 'As in the photo',
+        leaves: 'Leaves',
+        needles: 'Needles',
+        scales: 'Scales (cypress)',
+        palm: 'Palm fronds',
+        bare: 'Nothing (winter)',
+      },
     },
     leaf_size: { label: 'Leaf size', unit: '×', why: '1 is the size that suits the tree.' },
     leaf_density: {

@@ -5,11 +5,12 @@ from tests.core.grow.crowns import limbed_case
 
 from treestroke.core.grow.library import SPRAYS, TYPE_1, TYPE_2, WHORLS, Subtree, choose_library, visible_subtrees
 from treestroke.core.grow.placements import turn_library
+from treestroke.core.types import FOLIAGE_KINDS
 
 NAMES = ("auto", "visible", "type1", "type2", "both")
 
 
-@pytest.mark.parametrize("kind", ["leaves", "needles", "bare"])
+@pytest.mark.parametrize("kind", FOLIAGE_KINDS)
 @pytest.mark.parametrize("name", NAMES)
 def test_every_choice_holds_one_to_eight_subtrees(name: str, kind: str) -> None:
     for skeleton in (stick(), oak(), limbed_case().skeleton):

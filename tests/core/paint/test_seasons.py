@@ -20,7 +20,7 @@ def coloured(photo, mask, colour) -> np.ndarray:
 def recoloured(photo, mask, season, species="auto") -> np.ndarray:
     """Return the mean colour (3,) of a season's leaves, without drawing them."""
     palette, kind = foliage_palette(photo, mask, 16, np.random.default_rng(0)), SPECIES.get(species, AUTO)
-    recolour = recolour_for(season, kind, palette, kind.needles is not None)
+    recolour = recolour_for(season, kind, palette, "needles" if kind.needles else "leaves")
     if recolour is not None:
         palette = recolour.palette(palette, 16, np.random.default_rng(0))
     return palette.centres.T @ palette.shares
@@ -123,7 +123,11 @@ def test_a_bare_photo_gives_the_season_s_colours_and_none_of_its_own(photo, mask
 
 
 def test_spring_has_fewer_and_smaller_leaves_and_evergreens_have_all():
-    assert size_and_density("spring", AUTO, False) == (0.8, 0.6)
-    assert size_and_density("autumn", SPECIES["oak"], False) == (1.0, 0.85)
-    assert size_and_density("summer", AUTO, False) == size_and_density("photo", AUTO, False) == (1.0, 1.0)
-    assert size_and_density("spring", SPECIES["pine"], True) == size_and_density("autumn", AUTO, True) == (1.0, 1.0)
+    assert size_and_density("spring", AUTO, "leaves") == (0.8, 0.6)
+    assert size_and_density("autumn", SPECIES["oak"], "leaves") == (1.0, 0.85)
+    assert size_and_density("summer", AUTO, "leaves") == size_and_density("photo", AUTO, "leaves") == (1.0, 1.0)
+    assert (
+        size_and_density("spring", SPECIES["pine"], "needles")
+        == size_and_density("autumn", AUTO, "needles")
+        == (1.0, 1.0)
+    )

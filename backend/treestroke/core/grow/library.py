@@ -8,7 +8,7 @@ import numpy as np
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
-from treestroke.core.types import Floats, FoliageKind, Indices, TreeForm
+from treestroke.core.types import CONIFEROUS, Floats, FoliageKind, Indices, TreeForm
 
 Order = Literal["any", "stem", "limb"]
 """Which branches a subtree may replace."""
@@ -218,8 +218,6 @@ def choose_library(
         return visible[:MOST_SUBTREES] or predefined["both"]
     if name != "auto":
         raise ValueError(f"the library is auto, visible, type1, type2 or both, not {name!r}")
-    if form == "umbrella":
-        return TYPE_1
-    if kind == "needles" or form == "spire":
+    if kind in CONIFEROUS or form == "spire":
         return WHORLS + SPRAYS + TYPE_1[:2] + TYPE_2
     return ((visible[:2] if len(visible) >= ENOUGH_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Literal
 
 from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit
-from treestroke.core.types import FoliageKind, TreeForm
+from treestroke.core.types import CONIFEROUS, FoliageKind, TreeForm
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ _OF_FORM: Mapping[TreeForm, Mapping[str, float]] = {
 
 def _growth_of_kind(kind: FoliageKind, iterations: int) -> GrowthParams:
     """Return the parameters for a kind of foliage on a tree of no particular form."""
-    if kind == "needles":
+    if kind in CONIFEROUS:
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":
         return GrowthParams(

@@ -24,7 +24,7 @@ from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.types import Floats, FoliageKind, Indices
+from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices
 
 LAYERS = 10.0
 """Cards' opaque area over the foliage's area in the picture, at density 1 (a leaf area index)."""
@@ -57,7 +57,7 @@ class LeafParams:
     def __post_init__(self) -> None:
         if not 0 <= self.density <= 3:
             raise ValueError(f"density must be 0 to 3, got {self.density}")
-        if self.max_cards < 0 or self.kind not in ("leaves", "needles", "bare"):
+        if self.max_cards < 0 or self.kind not in FOLIAGE_KINDS:
             raise ValueError(f"max_cards must not be negative and kind one of FoliageKind, got {self}")
 
 
@@ -81,7 +81,7 @@ def place_leaves(
         return no_leaves()
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind == "needles")
+    weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind in CONIFEROUS)
     along = _on_branches(seats_along(skeleton, weights, count, rng), crown, rng)
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)

@@ -11,7 +11,7 @@ from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
 from treestroke.core.paint.seasons import LEAFY, Recolour, grey_palette, recolour_for, recolour_grey
 from treestroke.core.paint.species import AUTO, Species
 from treestroke.core.paint.sprays import SprayKind, draw_spray
-from treestroke.core.types import Floats, FoliageKind
+from treestroke.core.types import CONIFEROUS, EVERGREEN, Floats, FoliageKind
 
 COLUMNS = 4
 """Tiles in a row; the atlas has as many rows."""
@@ -142,14 +142,14 @@ def _in_flower(palette: Palette, kind: FoliageKind, style: LeafStyle) -> bool:
     pale = (np.hypot(red, yellow) < BLOSSOM_CHROMA) & (lightness > BLOSSOM_LIGHTNESS)
     pink = (red > 8) & (yellow < 6) & (lightness > 45)
     may_bloom = style.season == "spring" and (style.species.flowers or style.species == AUTO)
-    blooms = style.shown and kind != "needles" and (style.season not in LEAFY or may_bloom)
+    blooms = style.shown and kind not in EVERGREEN and (style.season not in LEAFY or may_bloom)
     return bool(blooms and palette.shares[pale | pink].sum() > BLOSSOM_SHARE)
 
 
 def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: bool) -> list[SprayKind]:
     """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
-    if kind == "needles":
-        return ["needles"]
+    if kind in EVERGREEN:
+        return ["needles" if kind in CONIFEROUS else "broad"]
     if style.species.flowers and style.season == "spring":
         return ["blossom"]
     return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]
@@ -160,8 +160,8 @@ def _recolour(palette: Palette, kind: FoliageKind, style: LeafStyle) -> Recolour
     if style.picture is not None:
         return picture_recolour(style.picture, palette)
     if not style.shown:
-        return recolour_grey(style.season, style.species, kind == "needles")
-    return recolour_for(style.season, style.species, palette, kind == "needles")
+        return recolour_grey(style.season, style.species, kind)
+    return recolour_for(style.season, style.species, palette, kind)
 
 
 def _ignoring_photo(recolour: Recolour | None) -> Recolour | None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from treestroke.core.paint.palette import Palette
 from treestroke.core.paint.species import AUTO, CONIFER, Ramp, Species
-from treestroke.core.types import Floats
+from treestroke.core.types import EVERGREEN, Floats, FoliageKind
 
 SEASONS = ("spring", "summer", "autumn", "bare")
 """Values of the setting `season` apart from `photo`."""
@@ -80,14 +80,14 @@ class Recolour:
         return Palette(np.stack([m.mean(axis=0) for m in members]), shares / shares.sum(), tuple(members))
 
 
-def is_evergreen(species: Species, needles: bool) -> bool:
-    """Tell whether a tree keeps its leaves; needles of an unknown kind are kept."""
-    return species.evergreen or (needles and species.needles is None)
+def is_evergreen(species: Species, kind: FoliageKind) -> bool:
+    """Tell whether a tree keeps its leaves; needles, scales and fronds of an unknown species are kept."""
+    return species.evergreen or (kind in EVERGREEN and species.needles is None)
 
 
-def size_and_density(season: str, species: Species, needles: bool) -> tuple[float, float]:
+def size_and_density(season: str, species: Species, kind: FoliageKind) -> tuple[float, float]:
     """Return the factors on the size and on the number of leaves in a season."""
-    if is_evergreen(species, needles):
+    if is_evergreen(species, kind):
         return 1.0, 1.0
     if season == "spring" and species.flowers:
         return BLOSSOM_SIZE_AND_NUMBER
@@ -101,7 +101,7 @@ def grey_palette(tiles: int, rng: np.random.Generator) -> Palette:
     return Palette(np.stack([m.mean(axis=0) for m in members]), np.full(tiles, 1.0 / tiles), members)
 
 
-def recolour_for(season: str, species: Species, palette: Palette, needles: bool) -> Recolour | None:
+def recolour_for(season: str, species: Species, palette: Palette, kind: FoliageKind) -> Recolour | None:
     """Return the recolouring of a photo's leaves for a season, or None where their colours stay the photo's.
 
     Foliage that is green in the photo keeps its colour in summer, and green needles in summer and autumn. A tree of
@@ -111,23 +111,23 @@ def recolour_for(season: str, species: Species, palette: Palette, needles: bool)
         return None
     mean = (palette.centres * palette.shares[:, None]).sum(axis=0)
     green, warm = mean[1] < GREEN_A and mean[2] > GREEN_B, mean[1] > WARM_A and mean[2] > 2 * WARM_A
-    if is_evergreen(species, needles):
+    if is_evergreen(species, kind):
         if green:
             return Recolour(mean, mean + np.array(SPRING_TIPS), np.ones(3)) if season == "spring" else None
     elif (season == "summer" and green) or (season == "autumn" and warm and species == AUTO):
         return None
-    ramp = _season_ramp(season, species, needles)
+    ramp = _season_ramp(season, species, kind)
     ramp[:, 0] += np.clip(BRIGHTNESS_KEPT * (mean[0] - ramp[:, 0].mean()), -MOST_BRIGHTNESS_KEPT, MOST_BRIGHTNESS_KEPT)
     return Recolour(mean, ramp, np.array([LIGHT_KEPT, HUE_KEPT, HUE_KEPT]))
 
 
-def recolour_grey(season: str, species: Species, needles: bool) -> Recolour:
+def recolour_grey(season: str, species: Species, kind: FoliageKind) -> Recolour:
     """Return the recolouring of `grey_palette` for a season."""
-    return Recolour(np.array(GREY), _season_ramp(season, species, needles), np.ones(3))
+    return Recolour(np.array(GREY), _season_ramp(season, species, kind), np.ones(3))
 
 
-def _season_ramp(season: str, species: Species, needles: bool) -> Floats:
+def _season_ramp(season: str, species: Species, kind: FoliageKind) -> Floats:
     """Colours (k, 3), CIE Lab, between which leaves lie in a season."""
-    if is_evergreen(species, needles):
+    if is_evergreen(species, kind):
         return np.asarray(np.array(CONIFER) + np.array(SPRING_TIPS if season == "spring" else ((0.0, 0.0, 0.0),)))
     return np.array({"spring": species.spring, "autumn": species.autumn}.get(season, species.summer))

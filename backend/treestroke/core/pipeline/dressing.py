@@ -88,7 +88,7 @@ def _leaves(
     style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture)
     atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
-    size, density = size_and_density(settings.season, species, tree.kind == "needles")
+    size, density = size_and_density(settings.season, species, tree.kind)
     crown = leaf_crown(leafy, tree.volume, atlas, max(LEAST_SIZE, size * settings.leaf_size), rng)
     params = LeafParams(density * settings.leaf_density, kind=tree.kind)
     return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas

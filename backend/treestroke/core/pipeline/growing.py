@@ -42,7 +42,7 @@ from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Statu
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
-from treestroke.core.types import FoliageKind, Indices, Mask, Picture
+from treestroke.core.types import FOLIAGE_KINDS, FoliageKind, Indices, Mask, Picture
 
 JOINT_SHARE = 0.015
 """Distance between joints, as a share of the tree's height, so that growth can split a straight trunk anywhere."""
@@ -59,7 +59,7 @@ UNCLEAR = StrokeWarning(
 )
 DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
 """Codes of warnings after which the strokes may not describe a tree."""
-_KINDS: dict[str, FoliageKind] = {"leaves": "leaves", "needles": "needles", "bare": "bare"}
+_KINDS: dict[str, FoliageKind] = {kind: kind for kind in FOLIAGE_KINDS}
 
 
 @dataclass(frozen=True, eq=False)

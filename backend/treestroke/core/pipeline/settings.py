@@ -9,6 +9,7 @@ import numpy as np
 from treestroke.core.errors import SettingsError, shown
 from treestroke.core.paint.seasons import SEASONS
 from treestroke.core.paint.species import SPECIES
+from treestroke.core.types import FOLIAGE_KINDS, TREE_FORMS
 
 MAX_SEED = 2**63 - 1
 FILES = ("gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv")
@@ -112,9 +113,10 @@ class ModelSettings:
     )
     iterations: int = _setting(300, Span(0, 2000, whole=True), "rounds of growth", "tree")
     variants: int = _setting(1, Span(1, 16, whole=True), "trees grown of the photo, each by the next seed", "tree")
+    form: str = _setting("auto", Choice(("auto", *TREE_FORMS)), "how limbs grow where the photo shows none", "tree")
     species: str = _setting("auto", Choice(("auto", *SPECIES)), "shape and place of leaves, relief of bark", "leaves")
     season: str = _setting("photo", Choice(("photo", *SEASONS)), "colour and number of leaves", "leaves")
-    foliage: str = _setting("auto", Choice(("auto", "leaves", "needles", "bare")), "what the twigs bear", "leaves")
+    foliage: str = _setting("auto", Choice(("auto", *FOLIAGE_KINDS)), "what the twigs bear", "leaves")
     leaf_size: float = _setting(1.0, Span(0.3, 3), "factor on the size of the leaves", "leaves")
     leaf_density: float = _setting(1.0, Span(0, 3), "factor on the number of leaves", "leaves")
     wind: str = _setting(
