@@ -12,6 +12,9 @@ from typing import NamedTuple
 
 from treestroke.core.types import TreeForm
 
+STEERED = 3
+"""Generations of branches that a form steers; finer shoots fill what these leave empty."""
+
 
 class Rise(NamedTuple):
     """How steep shoots are: the share of their own rise that is kept, and the rise that is added.
@@ -55,7 +58,8 @@ class Habit:
 
     def steering(self, generation: int, height: float) -> tuple[float, float]:
         """Return how a branch steers its shoots (`placements.Evaluator`): by its generation, 1 on a stem, and height."""
-        return (self.limbs if generation == 1 else self.outer).at(min(max(height, 0.0), 1.0))
+        rise = Rise() if generation > STEERED else self.limbs if generation == 1 else self.outer
+        return rise.at(min(max(height, 0.0), 1.0))
 
 
 UNSTEERED = Habit()

@@ -42,7 +42,7 @@ from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Statu
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
-from treestroke.core.types import FOLIAGE_KINDS, FoliageKind, Indices, Mask, Picture
+from treestroke.core.types import FOLIAGE_KINDS, FoliageKind, Indices, Mask, Picture, TreeForm
 
 JOINT_SHARE = 0.015
 """Distance between joints, as a share of the tree's height, so that growth can split a straight trunk anywhere."""
@@ -187,8 +187,10 @@ def grow_tree(
     crown = _crown_of(evidence, traced, settings)
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
+    form: TreeForm = "round" if settings.form == "auto" else settings.form
     method = Replacement(
-        choose_library(settings.library, crown.kind, lifted.tree), growth_for(crown.kind, settings.iterations)
+        choose_library(settings.library, crown.kind, lifted.tree, form),
+        growth_for(crown.kind, settings.iterations, form),
     )
     grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
     leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
