@@ -33,6 +33,10 @@ class Rise(NamedTuple):
         return self.kept, self.low + (self.high - self.low) * height
 
 
+AS_GROWN = Rise()
+"""Shoots stay as they are."""
+
+
 @dataclass(frozen=True)
 class Habit:
     """How the unseen limbs of a tree grow.
@@ -49,16 +53,16 @@ class Habit:
         Weights of sagging where a shoot starts, and of turning up at its tip; negative ones arch it and let it hang.
     """
 
-    limbs: Rise = Rise()
-    outer: Rise = Rise()
+    limbs: Rise = AS_GROWN
+    outer: Rise = AS_GROWN
     leave: tuple[float, float] = (-math.inf, math.inf)
     stretch: float = 0.0
     sag: float = 0.22
     turn_up: float = 0.38
 
     def steering(self, generation: int, height: float) -> tuple[float, float]:
-        """Return how a branch steers its shoots (`placements.Evaluator`): by its generation, 1 on a stem, and height."""
-        rise = Rise() if generation > STEERED else self.limbs if generation == 1 else self.outer
+        """Return the steering of `placements.Evaluator` for a branch's generation, 1 on a stem, and height, 0 to 1."""
+        rise = AS_GROWN if generation > STEERED else self.limbs if generation == 1 else self.outer
         return rise.at(min(max(height, 0.0), 1.0))
 
 
@@ -68,11 +72,11 @@ HABITS: Mapping[TreeForm, Habit] = MappingProxyType(
     {
         "round": UNSTEERED,
         "spire": Habit(Rise(0.3, -0.3, 0.25), Rise(0.2, -0.12, 0.05), sag=0.1, turn_up=0.15),
-        "columnar": Habit(Rise(0.6, 1.6, 1.6), Rise(0.7, 0.9, 0.9), stretch=0.4),
+        "columnar": Habit(Rise(0.6, 1.3, 1.3), Rise(0.8, 0.4, 0.4), stretch=0.4),
         "umbrella": Habit(Rise(0.5, 1.0, 0.5), Rise(0.15, 0.1, 0.1), (-math.inf, 0.5), 0.8, sag=-0.2, turn_up=0.0),
         "weeping": Habit(Rise(0.6, 0.5, 0.5), Rise(0.3, -1.6, -1.6), sag=-0.5, turn_up=-0.9),
         "vase": Habit(Rise(0.5, 1.1, 0.9), Rise(0.8, 0.2, 0.0), (-math.inf, 0.35), 0.9, sag=-0.35, turn_up=-0.3),
-        "multi_stem": Habit(Rise(0.5, 2.0, 1.5), Rise(0.8, 0.5, 0.4), (-math.inf, 0.3), 1.0, sag=0.1, turn_up=0.5),
+        "multi_stem": Habit(Rise(0.5, 1.8, 1.3), Rise(0.8, 0.25, 0.2), (-math.inf, 0.3), 1.0, sag=0.1, turn_up=0.5),
     }
 )
 """Judged on renders from four sides of an oak, an aspen and a pine."""

@@ -196,9 +196,7 @@ def _subtree_of(skeleton: Skeleton, chain: Indices, children: list[Indices]) -> 
     return Subtree(np.full(len(children), -1), np.clip(fractions, 0.05, 1.0), local)
 
 
-def choose_library(
-    name: str, kind: FoliageKind, skeleton: Skeleton, form: TreeForm = "round"
-) -> tuple[Subtree, ...]:
+def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton, form: TreeForm = "round") -> tuple[Subtree, ...]:
     """Choose at most 8 subtrees by the setting's name, the kind of foliage, the visible tree (3D, metres) and the form.
 
     ``auto`` takes two visible subtrees beside the predefined ones if at least three are visible, else none;

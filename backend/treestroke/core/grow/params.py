@@ -1,8 +1,8 @@
 """Parameters of growth, and their values for each kind of foliage."""
 
-from dataclasses import dataclass, replace
 from collections.abc import Mapping
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
 from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit
 from treestroke.core.types import CONIFEROUS, FoliageKind, TreeForm
@@ -73,17 +73,7 @@ class GrowthParams:
             raise ValueError(f"keep share, inward cosine or leader is out of range in {self}")
 
 
-def growth_for(kind: FoliageKind, iterations: int = 300, form: TreeForm = "round") -> GrowthParams:
-    """Return the parameters for a kind of foliage and a form.
-
-    Conifers and spires have one leader and many whorls, bare trees finer twigs; limbs that hang, or leave a stem low
-    down to fill the whole crown, may grow inward.
-    """
-    params = replace(_growth_of_kind(kind, iterations), habit=HABITS[form])
-    return replace(params, **_OF_FORM.get(form, {}))
-
-
-_OF_FORM: Mapping[TreeForm, Mapping[str, float]] = {
+_OF_FORM: Mapping[TreeForm, Mapping[str, Any]] = {
     "spire": {"stem_piece": 0.07, "leader": 0.98, "inward_cosine": -0.35},
     "columnar": {"stem_piece": 0.12, "leader": 0.9},
     "umbrella": {"leader": 0.3, "inward_cosine": -0.2},
@@ -92,6 +82,16 @@ _OF_FORM: Mapping[TreeForm, Mapping[str, float]] = {
     "multi_stem": {"stem_piece": 0.08, "leader": 0.3},
 }
 """Parameters of growth that a form changes."""
+
+
+def growth_for(kind: FoliageKind, iterations: int = 300, form: TreeForm = "round") -> GrowthParams:
+    """Return the parameters for a kind of foliage and a form.
+
+    Conifers and spires have one leader and many whorls, bare trees finer twigs; limbs that hang, or leave a stem low
+    down to fill the whole crown, may grow inward.
+    """
+    params = replace(_growth_of_kind(kind, iterations), habit=HABITS[form])
+    return replace(params, **_OF_FORM.get(form, {}))
 
 
 def _growth_of_kind(kind: FoliageKind, iterations: int) -> GrowthParams:

@@ -49,7 +49,7 @@ def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
 
 
 def _steered(along: Floats, steering: Floats) -> Floats:
-    """Turn shoots (..., 3) by a branch's steering (2,): the share of their rise that is kept, the rise that is added."""
+    """Turn shoots (..., 3) by a branch's steering (2,): the share of rise that is kept, and the rise that is added."""
     kept, added = steering.tolist()
     if kept == 1 and added == 0:
         return along
@@ -139,7 +139,9 @@ class PlainEvaluator:
         side, axis, other, length = _frame(chord)
         v = turned.vectors
         size = (length * self._scales[branch])[:, None, None, None]
-        along = _steered(((v[..., 0:1] * side + v[..., 1:2] * axis) + v[..., 2:3] * other) * size, self._steering[branch])
+        along = _steered(
+            ((v[..., 0:1] * side + v[..., 1:2] * axis) + v[..., 2:3] * other) * size, self._steering[branch]
+        )
         samples = self._sample_counts(along)
         bases, kept = np.zeros_like(along), np.zeros_like(samples)
         for s, k in zip(*np.nonzero(np.arange(v.shape[2]) < turned.counts[:, None]), strict=True):

@@ -42,7 +42,7 @@ from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Statu
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
-from treestroke.core.types import FOLIAGE_KINDS, FoliageKind, Indices, Mask, Picture, TreeForm
+from treestroke.core.types import FOLIAGE_KINDS, TREE_FORMS, FoliageKind, Indices, Mask, Picture, TreeForm
 
 JOINT_SHARE = 0.015
 """Distance between joints, as a share of the tree's height, so that growth can split a straight trunk anywhere."""
@@ -60,6 +60,7 @@ UNCLEAR = StrokeWarning(
 DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
 """Codes of warnings after which the strokes may not describe a tree."""
 _KINDS: dict[str, FoliageKind] = {kind: kind for kind in FOLIAGE_KINDS}
+_FORMS: dict[str, TreeForm] = {form: form for form in TREE_FORMS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +188,7 @@ def grow_tree(
     crown = _crown_of(evidence, traced, settings)
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
-    form: TreeForm = "round" if settings.form == "auto" else settings.form
+    form = _FORMS.get(settings.form, "round")
     method = Replacement(
         choose_library(settings.library, crown.kind, lifted.tree, form),
         growth_for(crown.kind, settings.iterations, form),
