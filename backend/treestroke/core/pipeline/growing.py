@@ -197,7 +197,8 @@ def grow_tree(
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
     method = Replacement(
-        choose_library(settings.library, crown.kind, lifted.tree), growth_for(crown.kind, settings.iterations)
+        choose_library(settings.library, crown.kind, lifted.tree, taken.form),
+        growth_for(crown.kind, settings.iterations, taken.form),
     )
     grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
     leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
