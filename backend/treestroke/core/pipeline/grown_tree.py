@@ -43,11 +43,14 @@ class Reading:
         Probability, 0 to 1, that the foliage's kind is right; 1 where the settings name it.
     doubts
         Codes of what makes the reading doubtful.
+    completed
+        Edges of the photo, left, right or top, beyond which the crown was completed.
     """
 
     against: str
     kind_sureness: float
     doubts: tuple[str, ...]
+    completed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
