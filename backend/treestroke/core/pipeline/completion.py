@@ -34,9 +34,8 @@ ELLIPSE_SHARE = 0.3
 19 trees without 10, 20 and 35 % of their width: 0.3 to 0.5 are alike, either axis alone is worse.)"""
 STEADY = 0.02
 """Standard deviation, as a share of the crown's size, over which its far outline is averaged."""
-DISPLACEMENT, DISPLACEMENTS = 0.05, (5, 5)
-"""How far what is added is moved along the edge, as a share of the crown's size; the waves of that, by rows and
-columns."""
+DISPLACEMENT, WAVE = 0.04, 0.3
+"""How far what is added is moved along the edge, and over what length that changes, as shares of the crown's size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,7 +232,7 @@ def _reach(cut: _Cut, middle: float | None, pointed: bool) -> Floats:
     arc = inward if pointed else np.sqrt(inward * (2 - inward))
     chord_px = float(cut.end - cut.start)
     if middle is None:
-        furthest = min(_point(cut), 2 * chord_px) if pointed else min(_dome(cut), chord_px / 2)
+        furthest = min(_point(cut), chord_px) if pointed else min(_dome(cut), chord_px / 2)
         return np.asarray(min(furthest, MOST_REACH * cut.depth) * arc)
     furthest = min(max(cut.depth - 2 * middle, 0.0), MOST_REACH * cut.depth)
     return np.minimum(np.maximum(cut.far - 2 * middle, 0.0), furthest * arc)
@@ -252,9 +251,14 @@ def _margin(cut: _Cut, reach: Floats, middle: float | None, source: Indices) -> 
     else:
         stretch = np.maximum(cut.far - middle, 1.0) / (middle + reach)
         columns = middle + (middle + away) * stretch[:, None]
-    coarse = np.random.default_rng(0).standard_normal(DISPLACEMENTS)
-    waves = cv2.resize(coarse, (count, height), interpolation=cv2.INTER_CUBIC)
-    moved = DISPLACEMENT * cut.size * waves * np.minimum(away / (DISPLACEMENT * cut.size), 1.0)
-    row = np.clip(np.floor(np.arange(height)[:, None] + moved), 0, height - 1).astype(np.int64)
+    rows = np.arange(height)[:, None] + _waves((height, count), cut.size) * np.minimum(away / (WAVE * cut.size), 1.0)
+    row = np.clip(np.floor(rows), 0, height - 1).astype(np.int64)
     column = np.clip(np.floor(columns), 0, width - 1).astype(np.int64)
     return source[row, column], np.asarray(away <= reach[:, None])
+
+
+def _waves(shape: tuple[int, int], size: int) -> Floats:
+    """Return by how much each pixel (h, w) of a margin is moved, px; ``size`` is the crown's."""
+    coarse = tuple(2 + round(side / (WAVE * size)) for side in shape)
+    waves = cv2.resize(np.random.default_rng(0).standard_normal(coarse), shape[::-1], interpolation=cv2.INTER_CUBIC)
+    return np.asarray(DISPLACEMENT * size * waves, dtype=np.float64)
