@@ -274,6 +274,7 @@ def _appearance(
         camera=crown.camera,
         picture=evidence.working.photo,
         leaves_from=_leaves_from(evidence.foliage, traced, crown, lifted, leafy),
+        opacity=evidence.foliage.alpha if crown.shows_leaves else leafy.astype(np.float32),
         leaf_coloured=evidence.foliage.pure,
         tree=leafy | crown.wood,
         stem=StemPixels(

@@ -225,19 +225,19 @@ def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels)
 
     Returns what the twigs bear, the view of the foliage alone, and whether it shows leaves.
     """
-    leaves_from = np.where(leafy, -np.inf, np.inf).astype(np.float32)
+    leaves_from, opacity = np.where(leafy, -np.inf, np.inf).astype(np.float32), leafy.astype(np.float32)
     photo = frame.evidence.photo
     if photo is None:
         season = "summer" if settings.season == "photo" else settings.season
         kind = grown_kind("bare", replace(settings, season=season))
         blank = np.full((*leafy.shape, 3), 255, dtype=np.uint8)
         unseen_stem = replace(stem, radii_px=np.zeros(len(stem.radii_px)))
-        return kind, View(frame.camera, blank, leaves_from, leafy, leafy, unseen_stem), False
+        return kind, View(frame.camera, blank, leaves_from, opacity, leafy, leafy, unseen_stem), False
     if frame.scale != 1.0:
         photo = np.asarray(cv2.resize(photo, leafy.shape[::-1], interpolation=cv2.INTER_AREA), dtype=np.uint8)
     foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
     shown = foliage_kind(foliage.look, foliage.mask, stem.points_px)
-    view = View(frame.camera, photo, leaves_from, foliage.pure, leafy, stem)
+    view = View(frame.camera, photo, leaves_from, opacity, foliage.pure, leafy, stem)
     return grown_kind(shown, settings), view, shown != "bare"
 
 
