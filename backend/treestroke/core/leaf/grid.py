@@ -97,7 +97,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
     box = (slice(top, bottom), slice(left, right))
     part = mask[box].astype(np.uint8)
     foliage = cv2.bitwise_and(view.picture[box], view.picture[box], mask=part)
-    share = _padded(cv2.resize(part * np.uint8(255), size, interpolation=shrink) / np.float32(255))
+    share = _padded(cv2.resize(part * view.opacity[box], size, interpolation=shrink))
     total = _padded(cv2.resize(foliage, size, interpolation=shrink).reshape(*size[::-1], 3))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
     fine, broad = (_mean_labs(total, share, sigma, inside) for sigma in (LOCAL_CELLS, BROAD_CELLS))

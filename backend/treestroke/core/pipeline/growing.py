@@ -205,9 +205,9 @@ def grow_tree(
         growth_for(crown.kind, settings.iterations, taken.form),
     )
     grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
-    leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
+    leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
-    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(tree, crown.camera))
+    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(foliage.mask | tree, crown.camera))
     return GrownTree(
         taken=taken,
         grown=grown,
