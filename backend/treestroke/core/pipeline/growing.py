@@ -161,7 +161,7 @@ def read_photo(
     report: Report = silent,
     side: Sketch | None = None,
 ) -> PhotoEvidence:
-    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3), sRGB.
+    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3 or 4), sRGB.
 
     Raises
     ------
@@ -172,7 +172,9 @@ def read_photo(
     report("foliage", 0.0)
     working = working_copy(photo, strokes)
     report("foliage", 0.05)
-    foliage = known or segment_foliage(working.photo, working.strokes.crown.points, report=report)
+    foliage = known or segment_foliage(
+        working.photo, working.strokes.crown.points, report=report, cut_out=working.cut_out
+    )
     if not strokes.branches:
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
