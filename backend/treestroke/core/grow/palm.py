@@ -1,8 +1,8 @@
 """Palms: no branches, but a crown of fronds from the top of each stem.
 
 Fronds leave the stem's top one after another, each turned by the golden angle from the one before (phyllotaxis). The
-youngest stand, the older ones lie, the oldest hang. Each bends down along its length, is as long as the crown lets it
-be, and goes where it fills most of what the photo shows (the cost E2D of Tan et al. 2008, section 3.2). A frond's
+young ones stand, the old ones hang. Each bends down along its length, is as long as the crown lets it be, and goes
+where it fills most of what the photo shows (the cost E2D of Tan et al. 2008, section 3.2). A frond's
 midrib is a limb of the skeleton; leaves hang on it.
 """
 
@@ -19,18 +19,17 @@ from treestroke.core.types import Floats
 GOLDEN_RAD = np.pi * (3 - np.sqrt(5.0))
 FRONDS = 40
 """Fronds of a stem (a coconut palm bears 25 to 35, a date palm many more)."""
-ELEVATIONS = (np.radians(85.0), np.radians(-55.0))
-"""Rise of the youngest and of the oldest frond where it leaves the stem."""
-DROOPS, SWINGS, LIFTS = (
-    tuple(np.radians(angles)) for angles in ((45.0, 75.0, 110.0), (0.0, -18.0, 18.0), (0.0, 14.0, 30.0))
+RISES, DROOPS, SWINGS = (
+    np.radians(angles)
+    for angles in ((82.0, 62.0, 42.0, 22.0, 2.0, -18.0, -38.0, -55.0), (15.0, 50.0, 90.0), (0.0, -8.0, 8.0))
 )
-"""Angles by which a frond may bend down along its length, turn aside and stand higher; the curve that fills most of the
-crown is taken."""
+"""Angles by which a frond may rise where it leaves the stem, bend down along its length and turn aside; of these the
+curve that fills most of the crown is taken."""
 SHARES = np.arange(20, 3, -1) / 20
 """Lengths that are tried, as shares of the way from the stem's top to the crown's far end, the longest first."""
 FREE = 0.25
 """Share of a frond at its foot that may lie outside the crown: the stem's top need not lie in it."""
-GAPS = 500
+GAPS = 250
 """About how many points of the crown fronds are to come near."""
 PIECES = 12
 """Joints of a frond."""
@@ -62,6 +61,13 @@ def grow_palm(skeleton: Skeleton, crown: CrownToFill, rng: np.random.Generator) 
     return Grown(tree, born, np.zeros((0, 3), dtype=np.int64))
 
 
+def is_forked(grown: Grown) -> bool:
+    """Tell whether a grown palm's stems fork: true palms do not, dracaenas and yuccas do, and these bear straps."""
+    tree, visible = grown.skeleton, grown.born == 0
+    stems = Skeleton(tree.points[visible], tree.radii[visible], tree.parents[visible])
+    return len(_tops(stems)) > int((stems.parents < 0).sum())
+
+
 def _known_radii(skeleton: Skeleton) -> Floats:
     """Return the radii (n,), metres; joints of unknown radius have their parent's, or that of the thickest joint."""
     radii = skeleton.radii.copy()
@@ -80,22 +86,29 @@ def _tops(tree: Skeleton) -> list[int]:
 
 
 class _Gaps:
-    """Points all over the crown as the photo shows it, and how far each is from the nearest frond so far, px."""
+    """Points all over the crown as the photo shows it, and how far each is from the nearest frond so far, px.
 
-    def __init__(self, crown: CrownToFill) -> None:
+    Each counts twice: as fronds are seen, and as if all were turned into the picture's plane, to the side that they
+    point to, so that those that point to the viewer and away spread over the crown, too.
+    """
+
+    def __init__(self, crown: CrownToFill, top: Floats) -> None:
         step = max(1, round(float(np.sqrt(crown.front.mask.sum() / GAPS))))
         rows, columns = np.nonzero(crown.front.mask[::step, ::step])
         self.points = step * np.stack([columns, rows], axis=1) + 0.5
-        self.camera = crown.front.camera
-        self.away = np.full(len(self.points), 4.0 * step * np.sqrt(GAPS))
+        self.camera, self.top = crown.front.camera, top
+        self.away = np.full((2, len(self.points)), 4.0 * step * np.sqrt(GAPS))
 
     def choose(self, curves: Floats) -> int:
         """Choose the curve, of (k, PIECES, 3) metres, that shortens the distances most, and take it."""
-        spots = self.camera.pixels_from_world(curves.reshape(-1, 3)).reshape(len(curves), -1, 1, 2)
-        way = spots - self.points
-        nearest = np.sqrt((way[..., 0] ** 2 + way[..., 1] ** 2).min(axis=1))
-        best = int(np.argmax(np.maximum(self.away - nearest, 0).sum(axis=1)))
-        self.away = np.minimum(self.away, nearest[best])
+        way = curves[:, 1::2] - self.top
+        side = np.where(way[:, -1:, 0] < 0, -1.0, 1.0)
+        turned = np.stack([side * np.hypot(way[..., 0], way[..., 2]), way[..., 1], np.zeros(way.shape[:2])], axis=-1)
+        spots = self.camera.pixels_from_world((np.stack([way, turned]) + self.top).reshape(-1, 3))
+        apart = spots.reshape(2, *way.shape[:2], 1, 2) - self.points
+        nearest = np.sqrt((apart[..., 0] ** 2 + apart[..., 1] ** 2).min(axis=2))
+        best = int(np.argmax(np.maximum(self.away[:, None] - nearest, 0).sum(axis=(0, 2))))
+        self.away = np.minimum(self.away, nearest[:, best])
         return best
 
 
@@ -103,29 +116,28 @@ def _fronds(top: Floats, crown: CrownToFill, rng: np.random.Generator) -> Floats
     """Draw the fronds (f, PIECES, 3), metres, that leave a stem's top (3,); those without room are left out."""
     low, high = crown.volume.bounds
     reach = float(np.linalg.norm(np.maximum(np.abs(low - top), np.abs(high - top))))
-    start, gaps = rng.uniform(0, 2 * np.pi), _Gaps(crown)
+    start, gaps = rng.uniform(0, 2 * np.pi), _Gaps(crown, top)
     found = []
     for number in range(FRONDS):
-        age = (number + 0.5) / FRONDS
-        rise = ELEVATIONS[0] + (ELEVATIONS[1] - ELEVATIONS[0]) * age + rng.normal(0, 0.06)
-        curves = _longest(_curves(top, start + number * GOLDEN_RAD, rise, reach), crown)
+        curves = _curves(top, start + number * GOLDEN_RAD, reach)
+        curves = _longest(curves, crown)
         if len(curves):
             found.append(curves[gaps.choose(curves)])
     return np.array(found).reshape(-1, PIECES, 3)
 
 
-def _curves(top: Floats, azimuth: float, rise: float, reach: float) -> Floats:
+def _curves(top: Floats, azimuth: float, reach: float) -> Floats:
     """Draw the curves (shares, k, PIECES, 3), metres, that a frond may take, the longest first."""
-    droop, swing, lift = (axis.ravel()[:, None] for axis in np.meshgrid(DROOPS, SWINGS, LIFTS, indexing="ij"))
+    rise, droop, swing = (axis.ravel()[:, None] for axis in np.meshgrid(RISES, DROOPS, SWINGS, indexing="ij"))
     along = (np.arange(PIECES) + 0.5) / PIECES
-    pitch = np.clip(rise + lift - droop * along, -0.49 * np.pi, 0.49 * np.pi)
+    pitch = np.maximum(rise - droop * along, -0.49 * np.pi)
     level, turn = np.cos(pitch), azimuth + swing
     steps = np.stack([level * np.cos(turn), np.sin(pitch), level * np.sin(turn)], axis=-1)
     return np.asarray(top + (SHARES * reach / PIECES)[:, None, None, None] * np.cumsum(steps, axis=1))
 
 
 def _longest(curves: Floats, crown: CrownToFill) -> Floats:
-    """Choose of each of k curves the longest (m, PIECES, 3) that lies in the crown, of several lengths (shares, k, ...).
+    """Choose of each of k curves the longest (m, PIECES, 3) that lies in the crown, of those given (shares, k).
 
     The foot may lie outside. Curves that never fit are left out.
     """
