@@ -20,7 +20,7 @@ def maple(maple_photo: Path, maple_strokes: Path) -> Model:
 def test_the_report_has_the_contract_s_fields(maple: Model) -> None:
     report = maple.report
     needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
-    assert set(report) == needed | {"measures", "variants", "files", "reading"}
+    assert set(report) == needed | {"measures", "variants", "files", "reading", "taken"}
     assert set(report["seconds"]) == set(STAGES) - {"levels"}
     assert set(report["counts"]) == {"iterations", "branches", "leaves", "triangles", "bytes"}
     assert set(report["score"]) == {"silhouette_iou", "attractors_reached", "depth_over_width"}
@@ -38,7 +38,7 @@ def test_auto_foliage_is_named(maple: Model) -> None:
 def test_the_report_says_what_the_score_is_measured_against(maple: Model) -> None:
     reading = maple.report["reading"]
     assert reading["against"] == "the foliage and branches as they were read in the photo"
-    assert reading["kind_sureness"] > 0.8
+    assert maple.report["taken"]["sureness"] > 0.8
     assert list(reading["doubts"]) == []
 
 

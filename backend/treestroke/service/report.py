@@ -11,6 +11,7 @@ from treestroke.core.geometry.silhouette import overlap, silhouette
 from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
+from treestroke.core.pipeline.taken import Taken
 from treestroke.core.survey.measures import Measures
 from treestroke.service.engine_version import engine_version
 from treestroke.service.execution import Stopwatch
@@ -36,7 +37,8 @@ def tree_report(
     return {
         "engine": engine_version(),
         "seed": seed,
-        "settings": {**plain_settings(settings), "foliage": tree.foliage_kind},
+        "settings": {**plain_settings(settings), "foliage": tree.taken.foliage},
+        "taken": plain_taken(tree.taken),
         "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},
         "counts": {**counts[0], "bytes": next(iter(files.values()))},
         "score": scores[0],
@@ -48,6 +50,16 @@ def tree_report(
         ],
         "files": files,
         "warnings": [asdict(warning) for warning in tree.warnings],
+    }
+
+
+def plain_taken(taken: Taken) -> dict[str, Any]:
+    """Return what a tree is taken for as plain values, the sureness rounded to 2 digits."""
+    return {
+        "foliage": taken.foliage,
+        "form": taken.form,
+        "sureness": round(taken.sureness, 2),
+        "ask": taken.ask,
     }
 
 

@@ -49,7 +49,7 @@ def test_an_autumn_tree_is_green_in_summer() -> None:
 def test_no_tree_has_leaves_when_the_season_is_bare() -> None:
     bare = modelled(MAPLE, season="bare")
     assert bare.tree.leaf is None
-    assert bare.tree.foliage_kind == "bare"
+    assert bare.tree.taken.foliage == "bare"
     assert bare.tree.branches > 2 * modelled(MAPLE).tree.branches
 
 
@@ -74,9 +74,9 @@ def test_spring_has_fewer_leaves_for_their_area_than_summer() -> None:
 
 
 def test_a_conifer_s_name_gives_needles_and_a_broad_leaved_one_s_leaves() -> None:
-    assert modelled(MAPLE, species="pine").tree.foliage_kind == "needles"
-    assert modelled(MAPLE, species="oak").tree.foliage_kind == "leaves"
-    assert modelled(MAPLE, species="pine", foliage="leaves").tree.foliage_kind == "leaves"
+    assert modelled(MAPLE, species="pine").tree.taken.foliage == "needles"
+    assert modelled(MAPLE, species="oak").tree.taken.foliage == "leaves"
+    assert modelled(MAPLE, species="pine", foliage="leaves").tree.taken.foliage == "leaves"
 
 
 def test_foliage_that_is_asked_to_be_bare_stays_so_in_summer() -> None:

@@ -21,6 +21,7 @@ from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.finishing import TreeModel, finish
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.taken import Taken
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.survey.measures import Scale, Stature
@@ -137,13 +138,14 @@ def view_of(camera: PerspectiveCamera, colour: tuple[int, int, int]) -> View:
     leaves_from = np.where(np.isnan(wood), np.where(crown, -np.inf, np.inf), wood).astype(np.float32)
     picture = np.clip(picture + noise, 0, 255).astype(np.uint8)
     foliage = np.isneginf(leaves_from)
-    return View(camera, picture, leaves_from, foliage, crown | ~np.isnan(wood), StemPixels(stem_px, radii_px))
+    seen = (foliage.astype(np.float32), foliage, crown | ~np.isnan(wood))
+    return View(camera, picture, leaves_from, *seen, StemPixels(stem_px, radii_px))
 
 
 def dressed(grown: Grown) -> GrownTree:
     views = tuple(view_of(camera, colour) for camera, colour in zip(CAMERAS, (GREEN, RED), strict=True))
     return GrownTree(
-        kind="leaves",
+        taken=Taken("leaves", "round", 1.0),
         grown=grown,
         volume=VOLUME,
         appearance=Appearance(views, shows_leaves=True),
@@ -151,7 +153,7 @@ def dressed(grown: Grown) -> GrownTree:
         expected_cover=outline_of(FRONT),
         stature=Stature(8.0, Scale(0.0125, False, 0.0), True, VOLUME),
         score={},
-        reading=Reading("a volume made by hand", 1.0, ()),
+        reading=Reading("a volume made by hand", ()),
         warnings=(),
     )
 

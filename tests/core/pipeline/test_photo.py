@@ -117,12 +117,12 @@ def test_a_tree_without_leaves_has_none(settings: ModelSettings) -> None:
     ids=["pine", "bare"],
 )
 def test_the_kind_is_seen(tree: Path, kind: str) -> None:
-    assert modelled(tree, ModelSettings(iterations=0, leaf_density=0)).foliage_kind == kind
+    assert modelled(tree, ModelSettings(iterations=0, leaf_density=0)).taken.foliage == kind
 
 
 def test_the_kind_can_be_overruled(maple: TreeModel) -> None:
-    assert maple.foliage_kind == "leaves"
-    assert modelled(MAPLE, ModelSettings(iterations=0, leaf_density=0, foliage="needles")).foliage_kind == "needles"
+    assert maple.taken.foliage == "leaves"
+    assert modelled(MAPLE, ModelSettings(iterations=0, leaf_density=0, foliage="needles")).taken.foliage == "needles"
 
 
 def test_progress_names_the_stages_in_order() -> None:

@@ -8,7 +8,7 @@ from tests.pictures import disc, leaves_on_sky, ring, wood_mask, wood_photo
 
 from treestroke.codec.image import decode_photo
 from treestroke.core.segment.foliage import segment_foliage
-from treestroke.core.segment.kind import UNSURE, foliage_kind, foliage_look
+from treestroke.core.segment.kind import foliage_look, kind_odds, likeliest
 from treestroke.core.types import FoliageKind
 from treestroke.service.loading import load_strokes
 
@@ -18,7 +18,7 @@ SHORT_TRUNK = np.array([[150.0, 290.0], [150.0, 230.0]])
 
 
 def kind_of(photo: np.ndarray, mask: np.ndarray, crown: np.ndarray, trunk: np.ndarray) -> FoliageKind:
-    return foliage_kind(foliage_look(photo, mask, crown)[0], mask, trunk)
+    return likeliest(kind_odds(*foliage_look(photo, mask, crown), mask, trunk))
 
 
 def spire(half_width: float = 55.0) -> np.ndarray:
@@ -100,7 +100,7 @@ def test_the_judgement_is_as_sure_as_its_cues_are_clear() -> None:
     _, bare = foliage_look(wood_photo(fan()), fan(), disc(300, 125))
     assert sure > 0.8
     assert bluish == 0.0
-    assert bare > UNSURE
+    assert bare > 0.2
 
 
 @pytest.mark.parametrize(
@@ -109,4 +109,4 @@ def test_the_judgement_is_as_sure_as_its_cues_are_clear() -> None:
 def test_a_photo_near_the_limit_is_unsure(name: str, unsure: bool) -> None:
     photo = decode_photo((DATA / f"{name}.jpg").read_bytes(), name)
     foliage = segment_foliage(photo, load_strokes(DATA / f"{name}.strokes.json").crown.points)
-    assert (foliage.sureness < UNSURE) == unsure
+    assert (foliage.sureness < 0.2) == unsure

@@ -13,11 +13,12 @@ from treestroke.core.paint.atlas import Atlas
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.taken import Taken
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Measures, measure_tree
-from treestroke.core.types import Floats, FoliageKind, Mask
+from treestroke.core.types import Floats, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +37,8 @@ class TreeModel:
         What the leaf surface was made from; both None where there is none.
     expected_cover
         (h, w), at the working size, what the front view should cover: visible foliage and branches.
+    taken
+        What the tree is taken for.
     """
 
     camera: OrthographicCamera
@@ -45,7 +48,7 @@ class TreeModel:
     cards: Leaves | None
     atlas: Atlas | None
     expected_cover: Mask
-    foliage_kind: FoliageKind
+    taken: Taken
     iterations: int
     branches: int
     measures: Measures
@@ -91,7 +94,7 @@ def finish(
         cards=leaf_cards,
         atlas=atlas,
         expected_cover=tree.expected_cover,
-        foliage_kind=tree.kind,
+        taken=tree.taken,
         iterations=settings.iterations,
         branches=_branch_count(tree.grown.skeleton),
         measures=_measures(tree, leaf_cards, atlas),

@@ -1,6 +1,6 @@
 """The first half of a photo's recipe, for live trees and models: from photo and strokes to a grown tree."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +15,7 @@ from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.lift.spread import FrontCrown, lift
-from treestroke.core.paint.seasons import LEAFY
-from treestroke.core.paint.species import AUTO, SPECIES
+from treestroke.core.pipeline.completion import completed
 from treestroke.core.pipeline.crowns import (
     CLOSED_SHARE,
     LEAFED_SHARE,
@@ -29,10 +28,11 @@ from treestroke.core.pipeline.crowns import (
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
+from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
-from treestroke.core.segment.kind import UNSURE, foliage_kind
+from treestroke.core.segment.kind import KindOdds, kind_odds
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths
@@ -43,7 +43,7 @@ from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Statu
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
-from treestroke.core.types import FOLIAGE_KINDS, TREE_FORMS, FoliageKind, Indices, Mask, Picture, TreeForm
+from treestroke.core.types import FoliageKind, Indices, Mask, Picture
 
 JOINT_SHARE = 0.015
 """Distance between joints, as a share of the tree's height, so that growth can split a straight trunk anywhere."""
@@ -60,32 +60,43 @@ UNCLEAR = StrokeWarning(
 )
 DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
 """Codes of warnings after which the strokes may not describe a tree."""
-_KINDS: dict[str, FoliageKind] = {kind: kind for kind in FOLIAGE_KINDS}
-_FORMS: dict[str, TreeForm] = {form: form for form in TREE_FORMS}
 
 
 @dataclass(frozen=True, eq=False)
 class PhotoEvidence:
     """What photo and strokes show, at the working size, and a sketch of the tree's left side where there is one.
 
-    Nothing is traced without a branch stroke.
+    Nothing is traced without a branch stroke. ``completed`` names the photo's edges beyond which the crown was
+    completed.
     """
 
     working: WorkingCopy
     foliage: Foliage
     traced: Traced | None
     side: Drawing | None = None
+    completed: tuple[str, ...] = ()
 
     @property
     def warnings(self) -> tuple[StrokeWarning, ...]:
         """What was mended, and what makes the reading doubtful."""
         unclear = () if self.foliage.clear else (UNCLEAR,)
-        return (*self.working.warnings, *unclear, *(() if self.side is None else self.side.warnings))
+        beyond = (_completion_notice(self.completed),) if self.completed else ()
+        return (*self.working.warnings, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
 
     @property
     def height_px(self) -> float:
         """The tree's height, px of the working copy."""
         return self.working.height_px(self.foliage.mask)
+
+    @property
+    def odds(self) -> KindOdds:
+        """Probability of each kind of foliage by the photo."""
+        trunk_px = self.working.strokes.branches[0].points
+        return kind_odds(self.foliage.look, self.foliage.sureness, self.foliage.mask, trunk_px)
+
+    def taken(self, settings: ModelSettings) -> Taken:
+        """Return what the tree is taken for; a branch stroke is needed."""
+        return taken_for(self.odds, "round", settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,17 +193,17 @@ def grow_tree(
     ValueError
         Nothing was traced.
     """
+    report("lift", 0.0)
+    taken, evidence = evidence.taken(settings), _completed(evidence, settings)
     traced, foliage = evidence.traced, evidence.foliage
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
-    report("lift", 0.0)
-    crown = _crown_of(evidence, traced, settings)
+    crown = _crown_of(evidence, traced, taken.foliage, settings)
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
-    form = _FORMS.get(settings.form, "round")
     method = Replacement(
-        choose_library(settings.library, crown.kind, lifted.tree, form),
-        growth_for(crown.kind, settings.iterations, form),
+        choose_library(settings.library, crown.kind, lifted.tree, taken.form),
+        growth_for(crown.kind, settings.iterations, taken.form),
     )
     room = CrownToFill(crown.volume, crown.front)
     palm = crown.kind == "palm"
@@ -201,24 +212,42 @@ def grow_tree(
     tree = leafy | crown.wood
     grown = grown if crown.kind in ("bare", "palm") else trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
-        kind=crown.kind,
+        taken=taken,
         grown=grown,
         volume=crown.volume,
         appearance=_appearance(evidence, traced, crown, lifted, leafy),
         camera=evidence.working.full_size_camera(crown.camera),
-        expected_cover=tree,
+        expected_cover=evidence.working.in_photo(tree),
         stature=_stature(evidence, traced, crown),
         score={"attractors_reached": grown.attractors_reached, **lifted.score},
-        reading=_reading(evidence, settings),
+        reading=_reading(evidence, taken),
         warnings=evidence.warnings,
     )
 
 
-def _crown_of(evidence: PhotoEvidence, traced: Traced, settings: ModelSettings) -> _PhotoCrown:
-    """Close the foliage to a crown and make a volume of it."""
-    foliage = evidence.foliage
-    shown = _shown_kind(evidence.working, foliage, settings)
-    kind = grown_kind(shown, settings)
+def _completed(evidence: PhotoEvidence, settings: ModelSettings) -> PhotoEvidence:
+    """Return the evidence with the crown completed beyond the photo's edges, if the settings want it."""
+    traced = evidence.traced
+    if traced is None or settings.edge == "cut":
+        return evidence
+    shown = shown_kind(evidence.odds, settings)
+    crown = closed(evidence.foliage.mask, CLOSED_SHARE[shown])
+    whole = completed(evidence.working, evidence.foliage, traced, crown, shown == "needles")
+    if whole is None:
+        return evidence
+    return replace(evidence, working=whole.working, foliage=whole.foliage, traced=whole.traced, completed=whole.sides)
+
+
+def _completion_notice(sides: tuple[str, ...]) -> StrokeWarning:
+    """Say beyond which of the photo's edges the crown was completed."""
+    edges = f"{' and '.join(sides)} edge{'s' * (len(sides) > 1)}"
+    detail = f"the photo's {edges} cut it, and it was completed there; with the setting edge at cut it is left as it is"
+    return StrokeWarning("edge_completed", "crown", detail)
+
+
+def _crown_of(evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settings: ModelSettings) -> _PhotoCrown:
+    """Close the foliage to a crown and make a volume of it; ``kind`` is what its twigs are to bear."""
+    foliage, shown = evidence.foliage, shown_kind(evidence.odds, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
     shows_leaves = shown != "bare" or kind == "bare"
     mask = closed(foliage.mask | (wood & foliage.region), CLOSED_SHARE[shown] if shows_leaves else LEAFED_SHARE)
@@ -255,6 +284,7 @@ def _appearance(
         camera=crown.camera,
         picture=evidence.working.photo,
         leaves_from=_leaves_from(evidence.foliage, traced, crown, lifted, leafy),
+        opacity=evidence.foliage.alpha if crown.shows_leaves else leafy.astype(np.float32),
         leaf_coloured=evidence.foliage.pure,
         tree=leafy | crown.wood,
         stem=StemPixels(
@@ -295,30 +325,7 @@ def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Sta
     return Stature(float(camera.metres_from_pixels(evidence.height_px)), scale, trunk_seen, crown.as_seen)
 
 
-def _reading(evidence: PhotoEvidence, settings: ModelSettings) -> Reading:
+def _reading(evidence: PhotoEvidence, taken: Taken) -> Reading:
     """Return what was read in the photo, and what makes that doubtful."""
-    chosen = settings.foliage != "auto" or settings.season in LEAFY
-    sureness = 1.0 if chosen else evidence.foliage.sureness
     doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
-    return Reading(READ, sureness, tuple(doubts + ["kind_unsure"] * (sureness < UNSURE)))
-
-
-def _shown_kind(working: WorkingCopy, foliage: Foliage, settings: ModelSettings) -> FoliageKind:
-    """Return the kind that the settings name, or else the one that the picture shows."""
-    if settings.foliage == "auto" or settings.season in LEAFY:
-        return foliage_kind(foliage.look, foliage.mask, working.strokes.branches[0].points)
-    return _KINDS[settings.foliage]
-
-
-def grown_kind(shown: FoliageKind, settings: ModelSettings) -> FoliageKind:
-    """Return what the twigs bear: by the settings, else by season, species and photo, in this order."""
-    species = SPECIES.get(settings.species, AUTO)
-    if settings.season == "bare" or settings.foliage == "bare":
-        return "bare"
-    if settings.foliage != "auto":
-        return _KINDS[settings.foliage]
-    if shown == "bare" and settings.season not in LEAFY and not species.evergreen:
-        return "bare"
-    if species == AUTO:
-        return "leaves" if shown == "bare" else shown
-    return "leaves" if species.needles is None else "needles"
+    return Reading(READ, tuple(doubts + ["kind_unsure"] * taken.ask), evidence.completed)

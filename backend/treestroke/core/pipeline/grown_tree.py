@@ -6,6 +6,7 @@ from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.grow.grown import Grown
+from treestroke.core.pipeline.taken import Taken
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Stature
@@ -39,15 +40,15 @@ class Reading:
     ----------
     against
         The target in words, for the report.
-    kind_sureness
-        Probability, 0 to 1, that the foliage's kind is right; 1 where the settings name it.
     doubts
         Codes of what makes the reading doubtful.
+    completed
+        Edges of the photo, left, right or top, beyond which the crown was completed.
     """
 
     against: str
-    kind_sureness: float
     doubts: tuple[str, ...]
+    completed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +57,8 @@ class GrownTree:
 
     Attributes
     ----------
-    kind
-        What the twigs bear.
+    taken
+        What the tree is taken for.
     grown
         The whole tree.
     volume
@@ -78,7 +79,7 @@ class GrownTree:
         What was mended or assumed.
     """
 
-    kind: FoliageKind
+    taken: Taken
     grown: Grown
     volume: CrownVolume
     appearance: Appearance
@@ -88,6 +89,11 @@ class GrownTree:
     score: dict[str, float]
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
+
+    @property
+    def kind(self) -> FoliageKind:
+        """What the twigs bear."""
+        return self.taken.foliage
 
     @property
     def live(self) -> LiveTree:

@@ -15,7 +15,6 @@ from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.lift.spread import FrontCrown, lift
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
-from treestroke.core.pipeline.growing import grown_kind
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import (
@@ -26,16 +25,17 @@ from treestroke.core.pipeline.sides import (
     stroke_height,
     with_depth,
 )
+from treestroke.core.pipeline.taken import Taken, taken_for
 from treestroke.core.pipeline.working_copy import WORKING_SIDE
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import segment_foliage
-from treestroke.core.segment.kind import foliage_kind
+from treestroke.core.segment.kind import UNJUDGED, kind_odds, likeliest
 from treestroke.core.skeleton.branched import Branched
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, Scale, Stature
 from treestroke.core.trace.drawing import Drawing
-from treestroke.core.types import FoliageKind, Mask, Picture
+from treestroke.core.types import Mask, Picture
 
 WORKING_HEIGHT = 1000.0
 """Height, px, to which a tree is scaled."""
@@ -43,7 +43,7 @@ SMALL_BRANCHES = 8
 """Small branches for each round of growth that the settings allow."""
 LEAFED_SHARE = 0.035
 """Leaves of a sketched crown lie within this share of the tree's height from its branches."""
-AS_DRAWN = Reading("the strokes as they were drawn", 1.0, ())
+AS_DRAWN = Reading("the strokes as they were drawn", ())
 ONE_SIDE = StrokeWarning(
     "side_assumed",
     "side",
@@ -197,10 +197,10 @@ def _grown_tree(
     wood = seen_from_front(Skeleton(main.skeleton.points, radii, main.skeleton.parents), camera)
     stem = main.branch == 0
     leafy = _leafy(frame, grown, rng)
-    kind, view, shows_leaves = _view(frame, settings, leafy, StemPixels(wood.points[stem], wood.radii[stem]))
-    tree = (leafy & (kind != "bare")) | drawn(wood, leafy.shape)
+    taken, view, shows_leaves = _view(frame, settings, leafy, StemPixels(wood.points[stem], wood.radii[stem]))
+    tree = (leafy & (taken.foliage != "bare")) | drawn(wood, leafy.shape)
     return GrownTree(
-        kind=kind,
+        taken=taken,
         grown=grown,
         volume=lifted.volume,
         appearance=Appearance((replace(view, tree=tree),), shows_leaves),
@@ -220,25 +220,24 @@ def _leafy(frame: _Frame, grown: Grown, rng: np.random.Generator) -> Mask:
     return np.asarray(frayed(frame.crown.mask, rng, np.inf) & (away <= LEAFED_SHARE * WORKING_HEIGHT))
 
 
-def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels) -> tuple[FoliageKind, View, bool]:
+def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels) -> tuple[Taken, View, bool]:
     """Take colours from the photo that the front was drawn over; on white they are the species' own.
 
-    Returns what the twigs bear, the view of the foliage alone, and whether it shows leaves.
+    Returns what the tree is taken for, the view of the foliage alone, and whether it shows leaves.
     """
-    leaves_from = np.where(leafy, -np.inf, np.inf).astype(np.float32)
+    leaves_from, opacity = np.where(leafy, -np.inf, np.inf).astype(np.float32), leafy.astype(np.float32)
     photo = frame.evidence.photo
     if photo is None:
-        season = "summer" if settings.season == "photo" else settings.season
-        kind = grown_kind("bare", replace(settings, season=season))
         blank = np.full((*leafy.shape, 3), 255, dtype=np.uint8)
         unseen_stem = replace(stem, radii_px=np.zeros(len(stem.radii_px)))
-        return kind, View(frame.camera, blank, leaves_from, leafy, leafy, unseen_stem), False
+        taken = taken_for(UNJUDGED, "round", settings)
+        return taken, View(frame.camera, blank, leaves_from, opacity, leafy, leafy, unseen_stem), False
     if frame.scale != 1.0:
         photo = np.asarray(cv2.resize(photo, leafy.shape[::-1], interpolation=cv2.INTER_AREA), dtype=np.uint8)
     foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
-    shown = foliage_kind(foliage.look, foliage.mask, stem.points_px)
-    view = View(frame.camera, photo, leaves_from, foliage.pure, leafy, stem)
-    return grown_kind(shown, settings), view, shown != "bare"
+    odds = kind_odds(foliage.look, foliage.sureness, foliage.mask, stem.points_px)
+    view = View(frame.camera, photo, leaves_from, opacity, foliage.pure, leafy, stem)
+    return taken_for(odds, "round", settings), view, likeliest(odds) != "bare"
 
 
 def _stature(frame: _Frame, volume: CrownVolume) -> Stature:

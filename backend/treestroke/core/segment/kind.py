@@ -1,6 +1,6 @@
 """What a tree's twigs bear, judged by its picture: leaves, needles or nothing."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import cv2
@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import distances_to_segment
 from treestroke.core.imaging.histogram import median_of_bytes
-from treestroke.core.types import Floats, FoliageKind, Mask
+from treestroke.core.types import FOLIAGE_KINDS, Floats, FoliageKind, Mask
+
+KindOdds = Mapping[FoliageKind, float]
+"""Probability of each kind of foliage; together they are 1."""
+UNJUDGED: KindOdds = {kind: float(kind == "leaves") for kind in FOLIAGE_KINDS}
+"""Where there is no picture to judge by, a tree is in leaf."""
 
 FoliageLook = Literal["bare", "dull", "fresh"]
 """Twigs alone; dull dark green; anything else."""
@@ -20,8 +25,6 @@ TWIG_CONTRAST = 85.0
 """Mean contrast of fine lines with what is behind them, 0 to 510, above which a colourless crown is bare."""
 COLOURLESS, WHITE = 0.25, 0.15
 """Greatest tint of twigs, green or red over blue, and greatest share of white in a crown that is not in blossom."""
-UNSURE = 0.2
-"""Sureness below which the kind of foliage may be wrong (28 photos; all wrong ones are below)."""
 DARKNESS = 95.0
 """Greatest median brightness of needles, 0 to 255."""
 TALLNESS = 1.2
@@ -52,15 +55,26 @@ def foliage_look(photo: NDArray[np.uint8], mask: Mask, crown: Mask) -> tuple[Fol
     return "dull" if _is_dull_green(colours) else "fresh", 0.0 if tint < 0.0 else min(-bareness, 1.0)
 
 
-def foliage_kind(look: FoliageLook, mask: Mask, trunk_px: Floats) -> FoliageKind:
+def likeliest(odds: KindOdds) -> FoliageKind:
+    """Return the most probable kind of foliage."""
+    return max(FOLIAGE_KINDS, key=odds.__getitem__)
+
+
+def kind_odds(look: FoliageLook, sureness: float, mask: Mask, trunk_px: Floats) -> KindOdds:
     """Judge what twigs bear by the foliage's look, its mask (h, w) and the trunk stroke (n, 2), px.
 
     Needles: dull dark green, in a crown that is tall or tapers to a top above a trunk that runs through it. The rules
     are ours, judged on 28 photos.
     """
+    kind: FoliageKind = "leaves"
     if look == "bare":
-        return "bare"
-    return "needles" if look == "dull" and _is_spire(mask, trunk_px) else "leaves"
+        kind = "bare"
+    elif look == "dull" and _is_spire(mask, trunk_px):
+        kind = "needles"
+    odds = dict.fromkeys(FOLIAGE_KINDS, 0.0)
+    odds[kind] = 0.5 + 0.5 * sureness
+    odds["leaves" if kind == "bare" else "bare"] = 0.5 - 0.5 * sureness
+    return odds
 
 
 def _thinness(mask: Mask, crown: Mask) -> float:

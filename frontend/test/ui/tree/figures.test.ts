@@ -38,7 +38,7 @@ test('the judgement falls with the fit', () => {
 })
 
 test('a doubtful reading is not praised, but explained', () => {
-  const reading = { against: 'the foliage', kind_sureness: 0.1, doubts: ['crown_unclear', 'kind_unsure'] }
+  const reading = { against: 'the foliage', doubts: ['crown_unclear', 'kind_unsure'] }
   const doubted = model({ score: { silhouette_iou: 0.96 }, report: { reading } })
   expect(matchOf(doubted)).toBe('96% match, but the photo was hard to read')
   expect(judgementOf(doubted)).toContain('The crown looks much like what is around it.')
