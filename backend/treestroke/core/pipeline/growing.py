@@ -10,6 +10,7 @@ from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.library import choose_library
+from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
@@ -206,10 +207,13 @@ def grow_tree(
         choose_library(settings.library, crown.kind, lifted.tree, taken.form),
         growth_for(crown.kind, settings.iterations, taken.form),
     )
-    grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
+    room = CrownToFill(crown.volume, crown.front)
+    palm = crown.kind == "palm"
+    grown = grow_palm(lifted.tree, room, rng) if palm else grow(lifted.tree, room, method, rng, report)
     leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
-    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(foliage.mask | tree, crown.camera))
+    if crown.kind not in ("bare", "palm"):
+        grown = trimmed(grown, Silhouette(foliage.mask | tree, crown.camera))
     return GrownTree(
         taken=taken,
         grown=grown,
