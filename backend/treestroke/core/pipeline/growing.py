@@ -193,7 +193,7 @@ def grow_tree(
     grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
     leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
-    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(foliage.mask | tree, crown.camera))
+    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
         kind=crown.kind,
         grown=grown,
