@@ -213,7 +213,7 @@ def grow_tree(
     leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
     if crown.kind not in ("bare", "palm"):
-        grown = trimmed(grown, Silhouette(foliage.mask | tree, crown.camera))
+        grown = trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
         taken=taken,
         grown=grown,
