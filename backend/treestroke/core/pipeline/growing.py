@@ -206,8 +206,10 @@ def grow_tree(
         growth_for(crown.kind, settings.iterations, taken.form),
     )
     room = CrownToFill(crown.volume, crown.front)
-    palm = crown.kind == "palm"
-    grown = grow_palm(lifted.tree, room, rng) if palm else grow(lifted.tree, room, method, rng, report)
+    if crown.kind == "palm":
+        grown = grow_palm(lifted.tree, room, settings.iterations, rng)
+    else:
+        grown = grow(lifted.tree, room, method, rng, report)
     leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
     grown = grown if crown.kind in ("bare", "palm") else trimmed(grown, Silhouette(tree, crown.camera))
