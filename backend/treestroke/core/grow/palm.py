@@ -2,8 +2,8 @@
 
 Fronds leave the stem's top one after another, each turned by the golden angle from the one before (phyllotaxis). The
 young ones stand, the old ones hang. Each bends down along its length, is as long as the crown lets it be, and goes
-where it fills most of what the photo shows (the cost E2D of Tan et al. 2008, section 3.2). A frond's
-midrib is a limb of the skeleton; leaves hang on it.
+where it fills most of what the photo shows (the cost E2D of Tan et al. 2008, section 3.2). A frond's midrib is a limb
+of the skeleton; leaves hang on it.
 """
 
 import numpy as np
@@ -39,15 +39,15 @@ MIDRIB = (0.22, 0.02)
 """Radius of a midrib at its foot and at its tip, as a share of the stem's at its top."""
 
 
-def grow_palm(skeleton: Skeleton, crown: CrownToFill, rng: np.random.Generator) -> Grown:
-    """Set fronds on the stems of a lifted palm (3D, metres); its own joints stay where they are.
+def grow_palm(skeleton: Skeleton, crown: CrownToFill, rounds: int, rng: np.random.Generator) -> Grown:
+    """Set a frond a round, `FRONDS` at most, on each stem of a lifted palm (3D, metres); its own joints stay.
 
     A stem is every visible limb of some length. Radii are those that were measured, and taper along the midribs.
     """
     radii = _known_radii(skeleton)
     tree, born = Skeleton(skeleton.points, radii, skeleton.parents), np.zeros(len(skeleton), dtype=np.int64)
     for top in _tops(tree):
-        fronds = _fronds(tree.points[top], crown, rng)
+        fronds = _fronds(tree.points[top], crown, min(rounds, FRONDS), rng)
         first, count = len(tree), len(fronds)
         parents = np.arange(first - 1, first - 1 + count * PIECES).reshape(count, PIECES)
         parents[:, 0] = top
@@ -112,15 +112,14 @@ class _Gaps:
         return best
 
 
-def _fronds(top: Floats, crown: CrownToFill, rng: np.random.Generator) -> Floats:
-    """Draw the fronds (f, PIECES, 3), metres, that leave a stem's top (3,); those without room are left out."""
+def _fronds(top: Floats, crown: CrownToFill, most: int, rng: np.random.Generator) -> Floats:
+    """Draw the fronds (f, PIECES, 3), metres, that leave a stem's top (3,): ``most``, without those that lack room."""
     low, high = crown.volume.bounds
     reach = float(np.linalg.norm(np.maximum(np.abs(low - top), np.abs(high - top))))
     start, gaps = rng.uniform(0, 2 * np.pi), _Gaps(crown, top)
     found = []
-    for number in range(FRONDS):
-        curves = _curves(top, start + number * GOLDEN_RAD, reach)
-        curves = _longest(curves, crown)
+    for number in range(most):
+        curves = _longest(_curves(top, start + number * GOLDEN_RAD, reach), crown)
         if len(curves):
             found.append(curves[gaps.choose(curves)])
     return np.array(found).reshape(-1, PIECES, 3)

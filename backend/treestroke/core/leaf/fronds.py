@@ -36,7 +36,7 @@ def set_fronds(skeleton: Skeleton, crown: LeafCrown, density: float, rng: np.ran
     along, length, frond = _places(skeleton, midribs)
     weights = midribs * (along >= BARE_FOOT)
     wood = float((edge_lengths(skeleton) * weights).sum())
-    count = round(density * wood / (SPACING * float(length[midribs].mean())))
+    count = round(density * wood / max(SPACING * float(length[midribs].mean()), 1e-9))
     seats = seats_along(skeleton, weights.astype(np.float64), count, rng)
     half_sizes = HALF_SIDE * length[seats.joints] * np.interp(along[seats.joints], *PROFILE)
     order, found = np.arange(len(seats)), []

@@ -208,8 +208,10 @@ def grow_tree(
         growth_for(crown.kind, settings.iterations, taken.form),
     )
     room = CrownToFill(crown.volume, crown.front)
-    palm = crown.kind == "palm"
-    grown = grow_palm(lifted.tree, room, rng) if palm else grow(lifted.tree, room, method, rng, report)
+    if crown.kind == "palm":
+        grown = grow_palm(lifted.tree, room, settings.iterations, rng)
+    else:
+        grown = grow(lifted.tree, room, method, rng, report)
     leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
     if crown.kind not in ("bare", "palm"):
