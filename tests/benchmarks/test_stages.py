@@ -116,7 +116,7 @@ def test_drawing_the_leaf_atlas_and_hanging_the_leaves(benchmark: BenchmarkFixtu
     photo, mask, kind = subject.photo, subject.trace.foliage, subject.tree.taken.foliage
     leaves_from = np.where(mask, -np.inf, np.inf).astype(np.float32)
     stem = StemPixels(np.zeros((2, 2)), np.zeros(2))
-    view = View(subject.crown.front.camera, photo, leaves_from, mask, mask, stem)
+    view = View(subject.crown.front.camera, photo, leaves_from, mask.astype(np.float32), mask, mask, stem)
 
     def run() -> int:
         rng = np.random.default_rng(0)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.types import Floats, Mask, Picture
+from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +38,8 @@ class View:
     leaves_from
         (h, w) depth in this camera, metres, from which on leaves may lie: minus infinity in the foliage, the wood's
         depth where wood is seen, infinity elsewhere.
+    opacity
+        (h, w) share of each pixel that foliage covers.
     leaf_coloured
         (h, w) pixels that by their own colour are leaves.
     tree
@@ -49,15 +51,17 @@ class View:
     camera: Camera
     picture: Picture
     leaves_from: NDArray[np.float32]
+    opacity: Opacity
     leaf_coloured: Mask
     tree: Mask
     stem: StemPixels
 
     def __post_init__(self) -> None:
         shape = (self.camera.height, self.camera.width)
-        maps = self.leaves_from.shape, self.leaf_coloured.shape, self.tree.shape, self.picture.shape[:2]
-        if any(found != shape for found in maps):
-            raise ValueError(f"a view's maps must be of its camera's size {shape}, got {maps}")
+        maps = (self.picture, self.leaves_from, self.opacity, self.leaf_coloured, self.tree)
+        sizes = [found.shape[:2] for found in maps]
+        if any(size != shape for size in sizes):
+            raise ValueError(f"a view's maps must be of its camera's size {shape}, got {sizes}")
 
     @property
     def foliage(self) -> Mask:

@@ -985,6 +985,13 @@ export interface components {
              */
             foliage: "auto" | "leaves" | "needles" | "scales" | "palm" | "bare";
             /**
+             * Edge
+             * @description what the photo's edge cuts off is completed, or cut
+             * @default complete
+             * @enum {string}
+             */
+            edge: "complete" | "cut";
+            /**
              * Leaf Size
              * @description factor on the size of the leaves
              * @default 1

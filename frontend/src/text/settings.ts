@@ -133,6 +133,11 @@ export const settingsText = {
         bare: 'Bare',
       },
     },
+    edge: {
+      label: 'At the photo’s edge',
+      why: 'What to do with a crown that the photo cuts off.',
+      names: { complete: 'Complete the crown', cut: 'End the tree there' },
+    },
     leaf_size: { label: 'Leaf size', unit: '×', why: '1 is the size that suits the tree.' },
     leaf_density: {
       label: 'Leaf density',

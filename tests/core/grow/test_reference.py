@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.core.grow.crowns import limbed_case
@@ -6,11 +8,12 @@ from treestroke.core.grow.compiled import CompiledEvaluator
 from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.grow.library import TYPE_1, TYPE_2, visible_subtrees
-from treestroke.core.grow.params import GrowthParams
+from treestroke.core.grow.params import GrowthParams, growth_for
 from treestroke.core.grow.placements import Evaluator
 from treestroke.core.grow.reference import PlainEvaluator
 from treestroke.core.grow.stem import foot_of
 from treestroke.core.progress import silent
+from treestroke.core.types import TreeForm
 
 EVALUATORS = (CompiledEvaluator, PlainEvaluator)
 
@@ -34,6 +37,16 @@ def test_the_engine_chooses_what_the_plain_reference_chooses(mode: str, seed: in
     np.testing.assert_array_equal(fast.tips[: fast.count], plain.tips[: plain.count])
 
 
+@pytest.mark.parametrize("form", ["spire", "weeping", "vase"])
+def test_both_steer_shoots_alike(form: TreeForm) -> None:
+    params = replace(growth_for("leaves", 20, form), attractors=500, candidates=6)
+    fast, plain = (growing(params, make) for make in EVALUATORS)
+    chosen, expected = (growth.run(np.random.default_rng(0), silent) for growth in (fast, plain))
+    assert chosen == expected
+    assert len(chosen) >= 15
+    np.testing.assert_array_equal(fast.tips[: fast.count], plain.tips[: plain.count])
+
+
 def test_both_measure_the_same_gains_and_distances() -> None:
     growths = [growing(GrowthParams(6, attractors=300, candidates=3), make) for make in EVALUATORS]
     for growth in growths:
@@ -50,7 +63,7 @@ def tied(crown: GrowthSpace, make: type[CompiledEvaluator] | type[PlainEvaluator
     params = GrowthParams()
     evaluator = make(crown, TYPE_2[:1] * 3, rules_for(params, crown.unit))
     base = np.array([[160.0, 260.0, 0.0], [160.0, 260.0, 0.0]])
-    evaluator.add_branches(base, base - [[0, 60.0, 0]], np.array([[0.0, 1.0, 1.0]] * 2))
+    evaluator.add_branches(base, base - [[0, 60.0, 0]], np.array([[0.0, 1.0, 1.0]] * 2), np.array([[1.0, 0.0]] * 2))
     evaluator.add_attractors(crown.grid(400))
     return evaluator
 

@@ -15,7 +15,8 @@ def view_of(
 ) -> View:
     """The view that shows foliage in a mask, and wood where ``leaves_from`` has a depth."""
     depth = np.where(mask, -np.inf, np.inf) if leaves_from is None else leaves_from
-    return View(camera, photo, depth.astype(np.float32), mask, mask, StemPixels(np.zeros((2, 2)), np.zeros(2)))
+    stem = StemPixels(np.zeros((2, 2)), np.zeros(2))
+    return View(camera, photo, depth.astype(np.float32), mask.astype(np.float32), mask, mask, stem)
 
 
 @pytest.fixture(scope="session")

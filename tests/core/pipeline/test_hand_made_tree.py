@@ -138,7 +138,8 @@ def view_of(camera: PerspectiveCamera, colour: tuple[int, int, int]) -> View:
     leaves_from = np.where(np.isnan(wood), np.where(crown, -np.inf, np.inf), wood).astype(np.float32)
     picture = np.clip(picture + noise, 0, 255).astype(np.uint8)
     foliage = np.isneginf(leaves_from)
-    return View(camera, picture, leaves_from, foliage, crown | ~np.isnan(wood), StemPixels(stem_px, radii_px))
+    seen = (foliage.astype(np.float32), foliage, crown | ~np.isnan(wood))
+    return View(camera, picture, leaves_from, *seen, StemPixels(stem_px, radii_px))
 
 
 def dressed(grown: Grown) -> GrownTree:

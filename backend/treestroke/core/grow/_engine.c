@@ -30,7 +30,8 @@ typedef struct { double x, y, z; } Vec;
 typedef struct { Vec base, step; int samples, kept; } Segment;
 typedef struct { double *x, *y, *z, *d; int n, room; } Points;
 typedef struct { uint16_t *kept; double *bound[2]; int *fresh[2], *exact[2]; int seen[2], placed; Vec centre; double radius; } Visit;
-typedef struct { int parent; double fraction, root; Vec lever; } Shoot;
+typedef struct { int parent; double fraction, root, reach; Vec lever; } Shoot;
+typedef struct { double kept, added; } Steer;
 typedef struct { int branch, placement; double gain; } Found;
 typedef struct { double *x, *y, *low, *high, *slope, *sum, *size; int n; } Groups;
 typedef struct { Visit *visit; Points near; int branch, gathered, top; double bound; } Slot;
@@ -41,6 +42,7 @@ typedef struct {
     uint8_t *mask;
     double *middle, *radius, *scale, spacing, closeness, keep, cosine;
     Vec foot, *turned, *base, *tip;
+    Steer *steer;
     int *count;
     Shoot *library;
     Points points[2]; /* 0 in the image, 1 in space */
@@ -101,6 +103,16 @@ static int kept_samples(const Engine *e, const Segment *s, Vec along) {
 
 /* ---- placements ---- */
 
+static int steers(Steer s) { return s.kept != 1 || s.added != 0; }
+
+/* Steer a shoot: keep a share of its rise, add to it, and give the shoot its length back. */
+static Vec steered(Vec along, Steer s) {
+    double length = norm(along);
+    Vec v = {along.x, along.y * s.kept - length * s.added, along.z};
+    double turned = norm(v);
+    return turned > 0 ? times(v, length / turned) : along;
+}
+
 static void frame(const Engine *e, int branch, Vec *u, Vec *a, Vec *v, double *length) {
     Vec d = sub(e->tip[branch], e->base[branch]);
     *length = norm(d);
@@ -126,6 +138,7 @@ static void compute_shoots(const Engine *e, int branch, int placement, uint16_t 
         along[i].x = ((t.x * u.x + t.y * a.x) + t.z * v.x) * size;
         along[i].y = ((t.x * u.y + t.y * a.y) + t.z * v.y) * size;
         along[i].z = ((t.x * u.z + t.y * a.z) + t.z * v.z) * size;
+        if (steers(e->steer[branch])) along[i] = steered(along[i], e->steer[branch]);
         Vec parent = p < 0 ? sub(e->tip[branch], e->base[branch]) : along[p];
         out[i] = segment(e, add(p < 0 ? e->base[branch] : out[p].base, times(parent, shoot->fraction)), along[i]);
         if (!known) {
@@ -159,16 +172,17 @@ static Visit *new_visit(const Engine *e) {
     return v;
 }
 
-/* The sphere about a branch's middle that contains every placement on it. */
+/* The sphere about a branch's middle that contains every placement on it; steered shoots may point anywhere. */
 static void bounding_sphere(const Engine *e, int branch, Vec *centre, double *radius) {
     Vec d = sub(e->tip[branch], e->base[branch]);
     double length = norm(d), far = 0.5;
     for (int s = 0; s < e->subtrees; s++)
         for (int i = 0; i < e->count[s]; i++) {
             const Shoot *shoot = &e->library[s * e->shoots + i];
-            Vec end = times(shoot->lever, e->scale[(size_t)branch * e->subtrees + s]);
+            double size = e->scale[(size_t)branch * e->subtrees + s];
+            Vec end = times(shoot->lever, size);
             end.y += shoot->root - 0.5;
-            far = fmax(far, norm(end));
+            far = fmax(far, steers(e->steer[branch]) ? fabs(shoot->root - 0.5) + size * shoot->reach : norm(end));
         }
     *centre = add(e->base[branch], times(d, 0.5));
     *radius = far * length * (1 + 1e-9) + 1e-9;
@@ -580,10 +594,12 @@ static void build_levers(Engine *e) {
             const Vec *turned = &e->turned[(size_t)s * e->angles * e->shoots];
             shoot->root = shoot->fraction;
             shoot->lever = turned[i];
+            shoot->reach = norm(turned[i]);
             if (shoot->parent < 0) continue;
             const Shoot *p = &all[shoot->parent];
             shoot->root = p->root;
             shoot->lever = add(turned[i], sub(p->lever, times(turned[shoot->parent], 1 - shoot->fraction)));
+            shoot->reach += p->reach - (1 - shoot->fraction) * norm(turned[shoot->parent]);
         }
 }
 
@@ -640,7 +656,7 @@ static void engine_free(PyObject *self) {
         Groups *g = i ? &e->near_groups : &e->groups;
         free(g->x); free(g->y); free(g->low); free(g->high); free(g->slope); free(g->sum); free(g->size);
     }
-    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->scale, e->turned, e->base, e->tip, e->count, e->library, e->segments,
+    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->scale, e->steer, e->turned, e->base, e->tip, e->count, e->library, e->segments,
                      e->visits, e->grid, e->next, e->slots, e->best, e->gain, e->found};
     for (size_t i = 0; i < sizeof(owned) / sizeof(*owned); i++) free(owned[i]);
     PyTypeObject *type = Py_TYPE(self);
@@ -653,8 +669,9 @@ static int room_for_branches(Engine *e, int n) {
     int room = n * 2 + 64;
     struct { void **at; size_t size; } columns[] = {
         {(void **)&e->base, sizeof(Vec)}, {(void **)&e->tip, sizeof(Vec)}, {(void **)&e->segments, sizeof(Segment)},
-        {(void **)&e->visits, sizeof(Visit *)}, {(void **)&e->scale, sizeof(double) * e->subtrees}};
-    for (int i = 0; i < 5; i++) {
+        {(void **)&e->visits, sizeof(Visit *)}, {(void **)&e->scale, sizeof(double) * e->subtrees},
+        {(void **)&e->steer, sizeof(Steer)}};
+    for (int i = 0; i < 6; i++) {
         void *grown = realloc(*columns[i].at, columns[i].size * room);
         if (!grown) return failed();
         *columns[i].at = grown;
@@ -663,13 +680,14 @@ static int room_for_branches(Engine *e, int n) {
     return 0;
 }
 
-static int add_branch(Engine *e, const double *base, const double *tip, const double *scale) {
+static int add_branch(Engine *e, const double *base, const double *tip, const double *scale, Steer steer) {
     int b = e->branches;
     if (room_for_branches(e, b + 1)) return -1;
     e->base[b] = (Vec){base[0], base[1], base[2]};
     e->tip[b] = (Vec){tip[0], tip[1], tip[2]};
     e->segments[b] = segment(e, e->base[b], sub(e->tip[b], e->base[b]));
     e->visits[b] = NULL;
+    e->steer[b] = steer;
     memcpy(e->scale + (size_t)b * e->subtrees, scale, sizeof(double) * e->subtrees);
     e->branches++;
     for (int k = 1; k <= e->segments[b].samples; k++)
@@ -691,16 +709,18 @@ static int update_distances(Engine *e, int first) {
 
 static PyObject *add_branches(PyObject *self, PyObject *args) {
     Engine *e = (Engine *)self;
-    PyObject *bases, *tips, *scales;
+    PyObject *bases, *tips, *scales, *steering;
     Py_ssize_t n = 0;
-    if (!PyArg_ParseTuple(args, "OOO", &bases, &tips, &scales)) return NULL;
-    double *base = copied(bases, 8, -1, &n), *tip = NULL, *scale = NULL;
-    int good = base && (tip = copied(tips, 8, n, NULL)) && (scale = copied(scales, 8, n / 3 * e->subtrees, NULL));
+    if (!PyArg_ParseTuple(args, "OOOO", &bases, &tips, &scales, &steering)) return NULL;
+    double *base = copied(bases, 8, -1, &n), *tip = NULL, *scale = NULL, *steer = NULL;
+    int good = base && (tip = copied(tips, 8, n, NULL)) && (scale = copied(scales, 8, n / 3 * e->subtrees, NULL))
+        && (steer = copied(steering, 8, n / 3 * 2, NULL));
     int first = e->branches;
     for (int i = 0; good && i < n / 3; i++)
-        good = !add_branch(e, base + 3 * i, tip + 3 * i, scale + (size_t)i * e->subtrees);
+        good = !add_branch(e, base + 3 * i, tip + 3 * i, scale + (size_t)i * e->subtrees,
+                           (Steer){steer[2 * i], steer[2 * i + 1]});
     good = good && !update_distances(e, first);
-    free(base); free(tip); free(scale);
+    free(base); free(tip); free(scale); free(steer);
     if (!good) return NULL;
     Py_RETURN_NONE;
 }
@@ -800,7 +820,7 @@ static PyObject *distances(PyObject *self, PyObject *Py_UNUSED(args)) {
 }
 
 static PyMethodDef methods[] = {
-    {"add_branches", add_branches, METH_VARARGS, "Add branches: bases and tips (k, 3), px; factors (k, subtrees)."},
+    {"add_branches", add_branches, METH_VARARGS, "Add branches: bases and tips (k, 3), px; factors (k, subtrees); steering (k, 2)."},
     {"add_attractors", add_attractors, METH_VARARGS, "Add attractors (m, 3), px, in space or in the image."},
     {"group", group, METH_VARARGS, "Set the groups of image attractors: first indices, then their number."},
     {"best", best, METH_VARARGS, "Find (branch, subtree, angle, gain) of the best placement; branch -1 without gain."},

@@ -26,8 +26,8 @@ class Engine:
     ) -> None:
         """Take a crown: size (h, w), mask (h, w), sections (h,) px, foot; `Rules`; and a `TurnedLibrary`."""
 
-    def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
-        """Add branches: bases and tips (k, 3), px; factors (k, s)."""
+    def add_branches(self, bases: Floats, tips: Floats, scales: Floats, steering: Floats) -> None:
+        """Add branches: bases and tips (k, 3), px; factors (k, s); steering (k, 2) as in `Evaluator`."""
 
     def add_attractors(self, points: Floats, in_space: bool) -> None:
         """Add attractors (m, 3), px, in space or, with z = 0, in the image."""

@@ -48,9 +48,9 @@ class CompiledEvaluator:
             turned.vectors,
         )
 
-    def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
-        """Add branches, bases and tips (k, 3) px, factors (k, subtrees); see `Evaluator`."""
-        self._engine.add_branches(_contiguous(bases), _contiguous(tips), _contiguous(scales))
+    def add_branches(self, bases: Floats, tips: Floats, scales: Floats, steering: Floats) -> None:
+        """Add branches, bases and tips (k, 3) px, factors (k, subtrees), steering (k, 2); see `Evaluator`."""
+        self._engine.add_branches(*map(_contiguous, (bases, tips, scales, steering)))
 
     def add_attractors(self, points: Floats) -> None:
         """Add attractors, px, in space (m, 3), or, once at the start, those of the image (m, 2)."""

@@ -13,14 +13,14 @@ import numpy as np
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.grow.branches import Chain
 from treestroke.core.grow.growth_space import GrowthSpace, in_mask
+from treestroke.core.grow.habit import UNSTEERED, Habit
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Mask
 
 UP_IN_PICTURE = UP * np.array([1.0, -1.0, 1.0])
 """The world's `UP` in the picture frame (px: x right, y down, z toward the viewer)."""
-FOLLOW, SAG, RISE = 0.3, 0.22, 0.38
-"""Weights of the parent's direction and of sagging at a shoot's start, and of rising at its end, relative to 1 for the
-shoot's own direction."""
+FOLLOW = 0.3
+"""Weight of the parent's direction at a shoot's start, relative to 1 for the shoot's own."""
 WAVE = 0.035
 """Amplitude of a shoot's waves (standard deviation), as a share of its length."""
 PIECE_PX, MAX_PIECES = 15.0, 14
@@ -100,18 +100,26 @@ class _Spots(NamedTuple):
     fork: Indices
 
 
-def curve_shoots(visible: VisibleTree, table: BranchTable, space: GrowthSpace, rng: np.random.Generator) -> Form:
-    """Bend the shoots and join them with the visible tree, whose joints stay where they are.
+def curve_shoots(
+    visible: VisibleTree,
+    table: BranchTable,
+    space: GrowthSpace,
+    rng: np.random.Generator,
+    habit: Habit = UNSTEERED,
+) -> Form:
+    """Bend the shoots as the tree's habit has it and join them with the visible tree, whose joints stay where they are.
 
     Joints that extend the visible stem count as grown in the first iteration. Joints of shoots that would leave the
     foliage are left out.
     """
-    curves = _bend(visible, table, space, rng)
+    curves = _bend(visible, table, space, rng, habit)
     spots = _spots(table, len(visible.chains), curves, space.unit)
     return _join(visible, table, curves, spots, space.mask)
 
 
-def _bend(visible: VisibleTree, table: BranchTable, space: GrowthSpace, rng: np.random.Generator) -> _Curves:
+def _bend(
+    visible: VisibleTree, table: BranchTable, space: GrowthSpace, rng: np.random.Generator, habit: Habit
+) -> _Curves:
     """Bend level after level, as a shoot's base lies on its parent's curve."""
     count = len(table.parent)
     curves = _Curves(*np.zeros((6, count, 3)))
@@ -128,18 +136,18 @@ def _bend(visible: VisibleTree, table: BranchTable, space: GrowthSpace, rng: np.
             for at in (fraction, nearby, nearby + 0.05)
         )
         curves.base[shoots], curves.chord[shoots] = base, table.tips[shoots] - base
-        _bend_level(curves, shoots, unit(after - before), noise[:, shoots])
+        _bend_level(curves, shoots, unit(after - before), noise[:, shoots], habit)
         _straighten(curves, shoots, space)
     return curves
 
 
-def _bend_level(curves: _Curves, shoots: Indices, parent_direction: Floats, noise: Floats) -> None:
+def _bend_level(curves: _Curves, shoots: Indices, parent_direction: Floats, noise: Floats, habit: Habit) -> None:
     """Set the bend of shoots (m,) with a known base and chord that leave parents in unit directions (m, 3)."""
     chord = curves.chord[shoots]
     length, direction = np.sqrt((chord**2).sum(axis=1, keepdims=True)), unit(chord)
     upright = np.abs(direction[:, 1:2])
-    start = unit(direction + FOLLOW * parent_direction - SAG * (1 - upright) * UP_IN_PICTURE)
-    end = unit(direction + RISE * (1 - upright) * UP_IN_PICTURE)
+    start = unit(direction + FOLLOW * parent_direction - habit.sag * (1 - upright) * UP_IN_PICTURE)
+    end = unit(direction + habit.turn_up * (1 - upright) * UP_IN_PICTURE)
     across = noise - (noise * direction).sum(axis=-1, keepdims=True) * direction
     curves.start[shoots] = start * length / 3 - chord / 3
     curves.end[shoots] = chord / 3 - end * length / 3

@@ -78,7 +78,22 @@ class Growing:
             middle = (self.bases[i] + self.tips[i]) / 2
             grows = in_mask(np.array([self.tips[i], middle]), self.space.mask).all()
             self.open[i] = grows and self._is_long(i) and not self._under_the_crown(float(middle[1]))
+        self._close_stems()
         self.born[: self.count] = 0
+
+    def _close_stems(self) -> None:
+        """Let limbs leave the stems only where the habit lets them, unless none could then."""
+        low, high = self.params.habit.leave
+        stems = np.flatnonzero(self.open & (self.generation == 1))
+        height = np.array([self._height(branch) for branch in stems.tolist()])
+        bare = (height < low) | (height > high)
+        if not bare.all():
+            self.open[stems[bare]] = False
+
+    def _height(self, branch: int) -> float:
+        """Return the height of a branch's middle in the crown: 0 where the stem enters it, 1 at its top."""
+        foot, top = float(self.space.foot[1]), float(np.argmax(self.space.radius > 0))
+        return (foot - float(self.bases[branch, 1] + self.tips[branch, 1]) / 2) / max(foot - top, 1.0)
 
     def _is_long(self, branch: int) -> bool:
         """Tell whether a branch is at least two samples long, so that it may be replaced."""
@@ -140,13 +155,21 @@ class Growing:
         scales = np.array([[tree.replaces != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
         for stem in np.flatnonzero(self.generation[new] == 1).tolist():
             scales[stem] = self._stem_scales(first + stem)
-        self.evaluator.add_branches(self.bases[new], self.tips[new], scales)
+        habit = self.params.habit
+        steering = [
+            habit.steering(int(self.generation[branch]), self._height(branch)) for branch in range(first, self.count)
+        ]
+        self.evaluator.add_branches(self.bases[new], self.tips[new], scales, np.array(steering).reshape(-1, 2))
 
     def _stem_scales(self, branch: int) -> Floats:
-        """Stretch each subtree (s,) on a stem so that its longest shoot would reach the crown's edge; 0 forbids it."""
+        """Stretch each subtree (s,) on a stem so that its longest shoot would reach the crown's edge; 0 forbids it.
+
+        Where the habit lets limbs rise far, they reach for a share of the height above them.
+        """
         middle, chord = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
         row = int(np.clip(middle[1], 0, len(self.space.radius) - 1))
-        reach = float(self.space.radius[row]) / max(math.sqrt(float(chord @ chord)), 1e-9)
+        above = self.params.habit.stretch * (row - int(np.argmax(self.space.radius > 0)))
+        reach = max(float(self.space.radius[row]), above) / max(math.sqrt(float(chord @ chord)), 1e-9)
         stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
         return np.where([tree.replaces != "limb" for tree in self.library], stretch, 0.0)
 

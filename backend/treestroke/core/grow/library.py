@@ -8,7 +8,7 @@ import numpy as np
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
-from treestroke.core.types import CONIFEROUS, Floats, FoliageKind, Indices
+from treestroke.core.types import CONIFEROUS, Floats, FoliageKind, Indices, TreeForm
 
 Order = Literal["any", "stem", "limb"]
 """Which branches a subtree may replace."""
@@ -196,8 +196,8 @@ def _subtree_of(skeleton: Skeleton, chain: Indices, children: list[Indices]) -> 
     return Subtree(np.full(len(children), -1), np.clip(fractions, 0.05, 1.0), local)
 
 
-def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton) -> tuple[Subtree, ...]:
-    """Choose at most 8 subtrees by the setting's name, the kind of foliage and the visible tree (3D, metres).
+def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton, form: TreeForm = "round") -> tuple[Subtree, ...]:
+    """Choose at most 8 subtrees by the setting's name, the kind of foliage, the visible tree (3D, metres) and the form.
 
     ``auto`` takes two visible subtrees beside the predefined ones if at least three are visible, else none;
     ``visible`` falls back to the predefined ones where nothing visible forks. A conifer gets whorls and sprays and both
@@ -216,6 +216,6 @@ def choose_library(name: str, kind: FoliageKind, skeleton: Skeleton) -> tuple[Su
         return visible[:MOST_SUBTREES] or predefined["both"]
     if name != "auto":
         raise ValueError(f"the library is auto, visible, type1, type2 or both, not {name!r}")
-    if kind in CONIFEROUS:
+    if kind in CONIFEROUS or form == "spire":
         return WHORLS + SPRAYS + TYPE_1[:2] + TYPE_2
     return ((visible[:2] if len(visible) >= ENOUGH_VISIBLE else ()) + predefined["both"])[:MOST_SUBTREES]

@@ -1,9 +1,11 @@
 """Parameters of growth, and their values for each kind of foliage."""
 
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any, Literal
 
-from treestroke.core.types import CONIFEROUS, FoliageKind
+from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit
+from treestroke.core.types import CONIFEROUS, FoliageKind, TreeForm
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ class GrowthParams:
         Radius of the thinnest twigs.
     twigs
         Greatest number of twigs added to the grown branches.
+    habit
+        How the tree's form steers its limbs.
     """
 
     iterations: int = 300
@@ -56,6 +60,7 @@ class GrowthParams:
     leader: float = 0.65
     tip_px: float = 0.5
     twigs: int = 0
+    habit: Habit = UNSTEERED
 
     def __post_init__(self) -> None:
         if min(self.iterations, self.twigs) < 0 or min(self.attractors, self.candidates, self.angles) < 1:
@@ -68,8 +73,29 @@ class GrowthParams:
             raise ValueError(f"keep share, inward cosine or leader is out of range in {self}")
 
 
-def growth_for(kind: FoliageKind, iterations: int = 300) -> GrowthParams:
-    """Return the parameters for a kind of foliage: conifers have one leader and many whorls, bare trees finer twigs."""
+_OF_FORM: Mapping[TreeForm, Mapping[str, Any]] = {
+    "spire": {"stem_piece": 0.07, "leader": 0.98, "inward_cosine": -0.35},
+    "columnar": {"stem_piece": 0.12, "leader": 0.9},
+    "umbrella": {"leader": 0.3, "inward_cosine": -0.2},
+    "weeping": {"inward_cosine": -1.0},
+    "vase": {"stem_piece": 0.08, "leader": 0.3},
+    "multi_stem": {"stem_piece": 0.08, "leader": 0.3},
+}
+"""Parameters of growth that a form changes."""
+
+
+def growth_for(kind: FoliageKind, iterations: int = 300, form: TreeForm = "round") -> GrowthParams:
+    """Return the parameters for a kind of foliage and a form.
+
+    Conifers and spires have one leader and many whorls, bare trees finer twigs; limbs that hang, or leave a stem low
+    down to fill the whole crown, may grow inward.
+    """
+    params = replace(_growth_of_kind(kind, iterations), habit=HABITS[form])
+    return replace(params, **_OF_FORM.get(form, {}))
+
+
+def _growth_of_kind(kind: FoliageKind, iterations: int) -> GrowthParams:
+    """Return the parameters for a kind of foliage on a tree of no particular form."""
     if kind in CONIFEROUS:
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":

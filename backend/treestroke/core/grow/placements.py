@@ -58,8 +58,12 @@ class Shoot(NamedTuple):
 class Evaluator(Protocol):
     """Keeps the tree's samples and the attractors' distances; branches count from 0 in the order they were added."""
 
-    def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
-        """Add branches from bases to tips (k, 3), px; the factors (k, subtrees) stretch each subtree, 0 forbids it."""
+    def add_branches(self, bases: Floats, tips: Floats, scales: Floats, steering: Floats) -> None:
+        """Add branches from bases to tips (k, 3), px; the factors (k, subtrees) stretch each subtree, 0 forbids it.
+
+        ``steering`` (k, 2) turns each shoot that a branch gets toward or away from the vertical: the share of its rise
+        that is kept, and the rise that is added, relative to its length, which stays; (1, 0) turns nothing.
+        """
 
     def add_attractors(self, points: Floats) -> None:
         """Add attractors, px: those of the image (m, 2), or in space (m, 3)."""

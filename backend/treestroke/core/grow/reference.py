@@ -48,6 +48,18 @@ def _frame(chord: Floats) -> tuple[Floats, Floats, Floats, float]:
     return side, along, _cross(along, side), length
 
 
+def _steered(along: Floats, steering: Floats) -> Floats:
+    """Turn shoots (..., 3) by a branch's steering (2,): the share of rise that is kept, and the rise that is added."""
+    kept, added = steering.tolist()
+    if kept == 1 and added == 0:
+        return along
+    length = np.sqrt(_dot(along, along))
+    turned = np.stack([along[..., 0], along[..., 1] * kept - length * added, along[..., 2]], axis=-1)
+    new = np.sqrt(_dot(turned, turned))
+    factor = length / np.where(new > 0, new, 1.0)
+    return np.where((new > 0)[..., None], turned * factor[..., None], along)
+
+
 class PlainEvaluator:
     """An `Evaluator` that keeps each attractor's distance and nothing else."""
 
@@ -56,15 +68,16 @@ class PlainEvaluator:
         self._library = turn_library(library, rules.angles)
         self._bases = self._tips = np.zeros((0, 3))
         self._scales = np.zeros((0, len(library)))
+        self._steering = np.zeros((0, 2))
         self._wood = np.zeros((0, 3))
         self._points = {False: np.zeros((0, 2)), True: np.zeros((0, 3))}
         self._distances = {False: np.zeros(0), True: np.zeros(0)}
         self.pairs = 0
 
-    def add_branches(self, bases: Floats, tips: Floats, scales: Floats) -> None:
-        """Add branches, bases and tips (k, 3) px, factors (k, subtrees); see `Evaluator`."""
+    def add_branches(self, bases: Floats, tips: Floats, scales: Floats, steering: Floats) -> None:
+        """Add branches, bases and tips (k, 3) px, factors (k, subtrees), steering (k, 2); see `Evaluator`."""
         self._bases, self._tips = np.vstack([self._bases, bases]), np.vstack([self._tips, tips])
-        self._scales = np.vstack([self._scales, scales])
+        self._scales, self._steering = np.vstack([self._scales, scales]), np.vstack([self._steering, steering])
         chords = tips - bases
         samples = self._sample_counts(chords)
         new = [
@@ -126,7 +139,9 @@ class PlainEvaluator:
         side, axis, other, length = _frame(chord)
         v = turned.vectors
         size = (length * self._scales[branch])[:, None, None, None]
-        along = ((v[..., 0:1] * side + v[..., 1:2] * axis) + v[..., 2:3] * other) * size
+        along = _steered(
+            ((v[..., 0:1] * side + v[..., 1:2] * axis) + v[..., 2:3] * other) * size, self._steering[branch]
+        )
         samples = self._sample_counts(along)
         bases, kept = np.zeros_like(along), np.zeros_like(samples)
         for s, k in zip(*np.nonzero(np.arange(v.shape[2]) < turned.counts[:, None]), strict=True):

@@ -77,7 +77,7 @@ def grow(
     evaluator = evaluator_for(space, method.library, rules_for(params, space.unit))
     growth = Growing(visible, space, method.library, params, evaluator)
     choices = growth.run(rng, report)
-    form = curve_shoots(VisibleTree(visible, len(skeleton), growth.chains), growth.table(), space, rng)
+    form = curve_shoots(VisibleTree(visible, len(skeleton), growth.chains), growth.table(), space, rng, params.habit)
     form = with_twigs(form, space, params.twigs if choices else 0, rng)
     radii = pipe_radii(form.points, form.parents, form.measured, params.tip_px * space.unit)
     distances = growth.evaluator.image_distances()

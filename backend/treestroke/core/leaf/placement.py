@@ -18,6 +18,7 @@ from treestroke.core.leaf.arrangement import (
     pose_on_branches,
     seats_along,
 )
+from treestroke.core.leaf.conifer_sprays import POSTURES, pose_conifer_sprays
 from treestroke.core.leaf.gaps import GapParams, cover_gaps
 from treestroke.core.leaf.leaf_crown import LeafCrown
 from treestroke.core.leaf.leaf_density import leaf_weights
@@ -82,7 +83,7 @@ def place_leaves(
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind in CONIFEROUS)
-    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, rng)
+    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params.kind, rng)
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
@@ -105,10 +106,12 @@ def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Gene
     return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
 
 
-def _on_branches(seats: Seats, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
+def _on_branches(seats: Seats, crown: LeafCrown, kind: FoliageKind, rng: np.random.Generator) -> Leaves:
     """Hang a card on each seat where it fits the foliage."""
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
+        if kind in POSTURES:
+            return pose_conifer_sprays(seats, half_sizes, crown.middle, POSTURES[kind], rng)
         return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
 
     return _fitted(seats, pose, crown, rng)[0]

@@ -11,7 +11,7 @@ from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
 from treestroke.core.paint.seasons import LEAFY, Recolour, grey_palette, recolour_for, recolour_grey
 from treestroke.core.paint.species import AUTO, Species
 from treestroke.core.paint.sprays import SprayKind, draw_spray
-from treestroke.core.types import CONIFEROUS, EVERGREEN, Floats, FoliageKind
+from treestroke.core.types import EVERGREEN, Floats, FoliageKind
 
 COLUMNS = 4
 """Tiles in a row; the atlas has as many rows."""
@@ -148,8 +148,11 @@ def _in_flower(palette: Palette, kind: FoliageKind, style: LeafStyle) -> bool:
 
 def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: bool) -> list[SprayKind]:
     """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
-    if kind in EVERGREEN:
-        return ["needles" if kind in CONIFEROUS else "broad"]
+    match kind:
+        case "needles" | "scales":
+            return [kind]
+        case "palm":
+            return ["frond"]
     if style.species.flowers and style.season == "spring":
         return ["blossom"]
     return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]

@@ -1,4 +1,4 @@
-"""Sprays of needles: those of a pine, spruce or larch, or brushes where the species is unknown."""
+"""Sprays of needles: those of a pine, spruce or larch, or a flat spray where the species is unknown."""
 
 import numpy as np
 
@@ -7,8 +7,10 @@ from treestroke.core.paint.shoots import along, angle_of, draw_shoots, heading
 from treestroke.core.paint.species import NeedleArrangement
 from treestroke.core.types import Floats, Picture
 
-BRUSH_NEEDLES = 120
-"""Needles of a shoot where the species is unknown."""
+FEATHER_SHOOTS = 12
+"""Side shoots of a spray where the species is unknown."""
+NEEDLES_PER_SIDE = 300.0
+"""Needles on a shoot as long as the spray's side."""
 PINE_NEEDLES, SPRUCE_NEEDLES = 42, 90
 """Needles of a shoot."""
 LARCH_TUFTS, TUFT_NEEDLES = 6, 18
@@ -102,35 +104,50 @@ def _larch_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
     return _bowed(foot, ahead + spread, length, rng.normal(0, 0.2, len(shoot)))
 
 
-def draw_needle_brushes(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
-    """Draw a twig and a few shoots as brushes of long, thin needles that point forward, frayed at the outline.
+def draw_flat_spray(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
+    """Draw a flat spray as firs and spruces have it: a feather of shoots with short needles, narrow toward its tip.
+
+    Its outline is frayed, pointed and longer than wide, so that it does not read as a leaf where it is a few pixels
+    wide.
 
     Returns
     -------
     (side, side, 4) uint8, sRGB with straight alpha, in colours drawn from (m, 3), CIE Lab.
     """
-    shoots = draw_shoots(rng, int(rng.integers(3, 6)), 0.8)
-    canvas = Canvas(side, colours, BRUSH_NEEDLES * len(shoots), rng)
-    needles = _brush_needles(shoots, rng.uniform(0.19, 0.24), rng)
-    canvas.lines(shoots, canvas.wood, 0.012)
-    paints = canvas.paints.reshape(len(shoots), BRUSH_NEEDLES, *canvas.paints.shape[1:])
-    for brush, paint in zip(needles, paints, strict=True):
-        fitting = brush[fits_canvas(brush)]
-        for start in range(12):
-            canvas.lines(fitting[start::12], paint[start, (DARK, PLAIN, LIGHT)[start // 4]], 0.013)
+    shoots = _feather_shoots(rng)
+    needles = _feather_needles(shoots, rng)
+    canvas = Canvas(side, colours, len(needles), rng)
+    canvas.lines(shoots[:1], canvas.wood, 0.012)
+    canvas.lines(shoots[1:], canvas.wood, 0.007)
+    _draw_by_lightness(canvas, needles[fits_canvas(needles)], 0.0075, rng)
     return canvas.tile()
 
 
-def _brush_needles(shoots: Floats, length: float, rng: np.random.Generator) -> Floats:
-    """Place needles (m, BRUSH_NEEDLES, 2, 2) on shoots (m, 9, 2), pointing forward, shorter toward a shoot's tip.
+def _feather_shoots(rng: np.random.Generator) -> Floats:
+    """Draw a bowed twig and shoots to both sides, the longest at a third of it: (m, 9, 2)."""
+    t, bow = np.linspace(0, 1, 9), rng.uniform(-0.07, 0.07)
+    twig = np.stack([0.5 + bow * np.sin(np.pi * t), 0.97 - 0.9 * t], axis=1)
+    share = np.linspace(0.04, 0.9, FEATHER_SHOOTS) + rng.uniform(-0.015, 0.015, FEATHER_SHOOTS)
+    turn = np.where((np.arange(FEATHER_SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
+    angle = turn * rng.uniform(0.7, 1.0, FEATHER_SHOOTS) * (1.1 - 0.35 * share)
+    outline = np.interp(share, [0.0, 0.3, 1.0], [0.42, 0.62, 0.12])
+    length = outline * rng.uniform(0.6, 1.05, FEATHER_SHOOTS)
+    bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.4, (FEATHER_SHOOTS, 1)) * t
+    foot = along(twig, share)
+    return np.concatenate([twig[None], foot[:, None] + (length[:, None] * t)[..., None] * heading(bent)])
 
-    Each shoot becomes a narrow brush: where a card is a few pixels wide, single needles vanish but brushes do not.
+
+def _feather_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
+    """Place short needles (p, 3, 2) to both sides of each shoot (m, 9, 2), pointing forward, in proportion to length.
+
+    They become shorter toward the shoot's tip, which ends in a point.
     """
-    share = np.sort(rng.uniform(0.06, 1.0, (len(shoots), BRUSH_NEEDLES)), axis=1)
-    lines = np.repeat(shoots[:, None], BRUSH_NEEDLES, axis=1)
-    foot = along(lines, share)
-    ahead = foot - along(lines, share - 0.1)
-    spread = rng.choice([-1.0, 1.0], share.shape) * rng.uniform(0.25, 0.9, share.shape) * (1.1 - 0.5 * share)
-    angle = angle_of(ahead) + spread
-    tip = foot + (length * (1.15 - 0.4 * share) * rng.uniform(0.7, 1.1, share.shape))[..., None] * heading(angle)
-    return np.stack([foot, tip], axis=2)
+    lengths = np.sqrt((np.diff(shoots, axis=1) ** 2).sum(axis=2)).sum(axis=1)
+    count = np.maximum(np.rint(NEEDLES_PER_SIDE * lengths), 4).astype(np.int64)
+    shoot = np.repeat(np.arange(len(shoots)), count)
+    share = rng.random(len(shoot))
+    foot = along(shoots[shoot], share)
+    ahead = angle_of(along(shoots[shoot], share + 0.06) - along(shoots[shoot], share - 0.06))
+    spread = rng.choice([-1.0, 1.0], len(shoot)) * rng.uniform(0.25, 0.85, len(shoot))
+    length = rng.uniform(0.032, 0.05, len(shoot)) * (1.1 - 0.5 * share)
+    return _bowed(foot, ahead + spread, length, -0.4 * spread)

@@ -1,4 +1,4 @@
-"""Drawings of sprays: leaves, needles or flowers on a twig, on a transparent square."""
+"""Drawings of sprays: leaves, needles, scales or flowers on a twig, or a piece of a frond, on a transparent square."""
 
 from typing import Literal
 
@@ -6,13 +6,17 @@ import numpy as np
 
 from treestroke.core.paint.broad_leaves import draw_ovate_leaves, draw_species_leaves
 from treestroke.core.paint.canvas import DARK, HEART, LIGHT, PLAIN, Canvas, fits_canvas
-from treestroke.core.paint.needles import draw_needle_brushes, draw_species_needles
+from treestroke.core.paint.fronds import draw_frond_piece
+from treestroke.core.paint.needles import draw_flat_spray, draw_species_needles
+from treestroke.core.paint.scales import draw_scale_spray
 from treestroke.core.paint.shoots import along, draw_twig, heading
 from treestroke.core.paint.species import AUTO, Species
-from treestroke.core.types import Floats, Picture
+from treestroke.core.types import Floats, FoliageKind, Picture
 
-SprayKind = Literal["broad", "needles", "blossom"]
+SprayKind = Literal["broad", "needles", "scales", "frond", "blossom"]
 
+CARD_SIZE: dict[FoliageKind, float] = {"leaves": 1.0, "needles": 1.8, "scales": 1.4, "palm": 1.0, "bare": 1.0}
+"""Size of the card that shows a spray, relative to one of broad leaves: a conifer's spray has many more parts."""
 FLOWERS = 220
 """Flowers tried for a spray; those that would hide others or leave the square are left out."""
 
@@ -34,7 +38,11 @@ def draw_spray(
         case "needles" if species.needles is not None:
             return draw_species_needles(species.needles, side, colours, rng)
         case "needles":
-            return draw_needle_brushes(side, colours, rng)
+            return draw_flat_spray(side, colours, rng)
+        case "scales":
+            return draw_scale_spray(side, colours, rng)
+        case "frond":
+            return draw_frond_piece(side, colours, rng)
         case "blossom":
             return _draw_blossom(side, colours, rng)
 

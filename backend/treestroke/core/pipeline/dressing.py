@@ -10,7 +10,7 @@ from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
-from treestroke.core.leaf.leaf_crown import LEAST_SIZE, leaf_crown
+from treestroke.core.leaf.leaf_crown import LEAST_SIZE, MOST_SIZE, leaf_crown
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
@@ -21,6 +21,7 @@ from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
 from treestroke.core.paint.cut_outs import opaque_part, reduced
 from treestroke.core.paint.seasons import size_and_density
 from treestroke.core.paint.species import AUTO, SPECIES
+from treestroke.core.paint.sprays import CARD_SIZE
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
@@ -89,7 +90,13 @@ def _leaves(
     atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)
-    crown = leaf_crown(leafy, tree.volume, atlas, max(LEAST_SIZE, size * settings.leaf_size), rng)
+    crown = leaf_crown(
+        leafy,
+        tree.volume,
+        atlas,
+        float(np.clip(size * CARD_SIZE[tree.kind] * settings.leaf_size, LEAST_SIZE, MOST_SIZE)),
+        rng,
+    )
     params = LeafParams(density * settings.leaf_density, kind=tree.kind)
     return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas
 

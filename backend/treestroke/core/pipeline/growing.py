@@ -1,6 +1,6 @@
 """The first half of a photo's recipe, for live trees and models: from photo and strokes to a grown tree."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.lift.spread import FrontCrown, lift
+from treestroke.core.pipeline.completion import completed
 from treestroke.core.pipeline.crowns import (
     CLOSED_SHARE,
     LEAFED_SHARE,
@@ -64,19 +65,22 @@ DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
 class PhotoEvidence:
     """What photo and strokes show, at the working size, and a sketch of the tree's left side where there is one.
 
-    Nothing is traced without a branch stroke.
+    Nothing is traced without a branch stroke. ``completed`` names the photo's edges beyond which the crown was
+    completed.
     """
 
     working: WorkingCopy
     foliage: Foliage
     traced: Traced | None
     side: Drawing | None = None
+    completed: tuple[str, ...] = ()
 
     @property
     def warnings(self) -> tuple[StrokeWarning, ...]:
         """What was mended, and what makes the reading doubtful."""
         unclear = () if self.foliage.clear else (UNCLEAR,)
-        return (*self.working.warnings, *unclear, *(() if self.side is None else self.side.warnings))
+        beyond = (_completion_notice(self.completed),) if self.completed else ()
+        return (*self.working.warnings, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
 
     @property
     def height_px(self) -> float:
@@ -188,16 +192,17 @@ def grow_tree(
     ValueError
         Nothing was traced.
     """
+    report("lift", 0.0)
+    taken, evidence = evidence.taken(settings), _completed(evidence, settings)
     traced, foliage = evidence.traced, evidence.foliage
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
-    report("lift", 0.0)
-    taken = evidence.taken(settings)
     crown = _crown_of(evidence, traced, taken.foliage, settings)
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)
     method = Replacement(
-        choose_library(settings.library, crown.kind, lifted.tree), growth_for(crown.kind, settings.iterations)
+        choose_library(settings.library, crown.kind, lifted.tree, taken.form),
+        growth_for(crown.kind, settings.iterations, taken.form),
     )
     grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
     leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
@@ -209,12 +214,32 @@ def grow_tree(
         volume=crown.volume,
         appearance=_appearance(evidence, traced, crown, lifted, leafy),
         camera=evidence.working.full_size_camera(crown.camera),
-        expected_cover=tree,
+        expected_cover=evidence.working.in_photo(tree),
         stature=_stature(evidence, traced, crown),
         score={"attractors_reached": grown.attractors_reached, **lifted.score},
         reading=_reading(evidence, taken),
         warnings=evidence.warnings,
     )
+
+
+def _completed(evidence: PhotoEvidence, settings: ModelSettings) -> PhotoEvidence:
+    """Return the evidence with the crown completed beyond the photo's edges, if the settings want it."""
+    traced = evidence.traced
+    if traced is None or settings.edge == "cut":
+        return evidence
+    shown = shown_kind(evidence.odds, settings)
+    crown = closed(evidence.foliage.mask, CLOSED_SHARE[shown])
+    whole = completed(evidence.working, evidence.foliage, traced, crown, shown == "needles")
+    if whole is None:
+        return evidence
+    return replace(evidence, working=whole.working, foliage=whole.foliage, traced=whole.traced, completed=whole.sides)
+
+
+def _completion_notice(sides: tuple[str, ...]) -> StrokeWarning:
+    """Say beyond which of the photo's edges the crown was completed."""
+    edges = f"{' and '.join(sides)} edge{'s' * (len(sides) > 1)}"
+    detail = f"the photo's {edges} cut it, and it was completed there; with the setting edge at cut it is left as it is"
+    return StrokeWarning("edge_completed", "crown", detail)
 
 
 def _crown_of(evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settings: ModelSettings) -> _PhotoCrown:
@@ -256,6 +281,7 @@ def _appearance(
         camera=crown.camera,
         picture=evidence.working.photo,
         leaves_from=_leaves_from(evidence.foliage, traced, crown, lifted, leafy),
+        opacity=evidence.foliage.alpha if crown.shows_leaves else leafy.astype(np.float32),
         leaf_coloured=evidence.foliage.pure,
         tree=leafy | crown.wood,
         stem=StemPixels(
@@ -299,4 +325,4 @@ def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Sta
 def _reading(evidence: PhotoEvidence, taken: Taken) -> Reading:
     """Return what was read in the photo, and what makes that doubtful."""
     doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
-    return Reading(READ, tuple(doubts + ["kind_unsure"] * taken.ask))
+    return Reading(READ, tuple(doubts + ["kind_unsure"] * taken.ask), evidence.completed)

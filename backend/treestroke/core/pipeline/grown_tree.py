@@ -42,10 +42,13 @@ class Reading:
         The target in words, for the report.
     doubts
         Codes of what makes the reading doubtful.
+    completed
+        Edges of the photo, left, right or top, beyond which the crown was completed.
     """
 
     against: str
     doubts: tuple[str, ...]
+    completed: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -117,6 +117,9 @@ class ModelSettings:
     species: str = _setting("auto", Choice(("auto", *SPECIES)), "shape and place of leaves, relief of bark", "leaves")
     season: str = _setting("photo", Choice(("photo", *SEASONS)), "colour and number of leaves", "leaves")
     foliage: str = _setting("auto", Choice(("auto", *FOLIAGE_KINDS)), "what the twigs bear", "leaves")
+    edge: str = _setting(
+        "complete", Choice(("complete", "cut")), "what the photo's edge cuts off is completed, or cut", "tree"
+    )
     leaf_size: float = _setting(1.0, Span(0.3, 3), "factor on the size of the leaves", "leaves")
     leaf_density: float = _setting(1.0, Span(0, 3), "factor on the number of leaves", "leaves")
     wind: str = _setting(

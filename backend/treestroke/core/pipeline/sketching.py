@@ -225,18 +225,18 @@ def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels)
 
     Returns what the tree is taken for, the view of the foliage alone, and whether it shows leaves.
     """
-    leaves_from = np.where(leafy, -np.inf, np.inf).astype(np.float32)
+    leaves_from, opacity = np.where(leafy, -np.inf, np.inf).astype(np.float32), leafy.astype(np.float32)
     photo = frame.evidence.photo
     if photo is None:
         blank = np.full((*leafy.shape, 3), 255, dtype=np.uint8)
         unseen_stem = replace(stem, radii_px=np.zeros(len(stem.radii_px)))
         taken = taken_for(UNJUDGED, "round", settings)
-        return taken, View(frame.camera, blank, leaves_from, leafy, leafy, unseen_stem), False
+        return taken, View(frame.camera, blank, leaves_from, opacity, leafy, leafy, unseen_stem), False
     if frame.scale != 1.0:
         photo = np.asarray(cv2.resize(photo, leafy.shape[::-1], interpolation=cv2.INTER_AREA), dtype=np.uint8)
     foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
     odds = kind_odds(foliage.look, foliage.sureness, foliage.mask, stem.points_px)
-    view = View(frame.camera, photo, leaves_from, foliage.pure, leafy, stem)
+    view = View(frame.camera, photo, leaves_from, opacity, foliage.pure, leafy, stem)
     return taken_for(odds, "round", settings), view, likeliest(odds) != "bare"
 
 

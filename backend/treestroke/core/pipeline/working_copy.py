@@ -1,6 +1,6 @@
 """The working copy of a photo and its strokes, and its camera."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.stroke_rules import mend_strokes
 from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
-from treestroke.core.types import Mask, Picture
+from treestroke.core.types import Floats, Mask, Picture
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
@@ -18,7 +18,8 @@ WORKING_SIDE = 1600
 class WorkingCopy:
     """The working copy of a photo: reduced by ``scale`` (1 or less), with mended strokes to match.
 
-    ``size`` is the photo's own width and height, px.
+    ``size`` is the photo's own width and height, px. Where the crown is completed beyond the photo's edges, ``photo``
+    is a larger canvas with the photo at ``corner`` (x, y), px.
     """
 
     photo: Picture
@@ -26,6 +27,7 @@ class WorkingCopy:
     scale: float
     size: tuple[int, int]
     warnings: tuple[StrokeWarning, ...]
+    corner: tuple[int, int] = (0, 0)
 
     def height_px(self, mask: Mask) -> float:
         """Measure the tree, px, from its root to the foliage's top (h, w), or to the crown's where there is no leaf."""
@@ -46,7 +48,17 @@ class WorkingCopy:
 
     def full_size_camera(self, camera: OrthographicCamera) -> OrthographicCamera:
         """Return the same camera for the photo at its own size."""
-        return camera.enlarged(self.scale, self.size)
+        return camera.cropped(self.corner, _reduced(self.size, self.scale)).enlarged(self.scale, self.size)
+
+    def on_canvas(self, canvas: Picture, corner: tuple[int, int]) -> "WorkingCopy":
+        """Return the copy on a larger ``canvas`` (h, w, 3), which shows it at a ``corner`` (x, y), px."""
+        strokes = _moved(self.strokes, 1.0, np.array(corner, dtype=np.float64))
+        return replace(self, photo=canvas, strokes=strokes, corner=corner)
+
+    def in_photo(self, mask: Mask) -> Mask:
+        """Return the part of a canvas's mask (h, w) that the photo shows."""
+        (x, y), (width, height) = self.corner, _reduced(self.size, self.scale)
+        return mask[y : y + height, x : x + width]
 
 
 def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
@@ -62,13 +74,22 @@ def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
     scale = min(1.0, WORKING_SIDE / max(height, width))
     if scale == 1.0:
         return WorkingCopy(photo, mended.strokes, 1.0, (width, height), mended.warnings)
-    size = (max(1, round(width * scale)), max(1, round(height * scale)))
-    small = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+    small = cv2.resize(photo, _reduced((width, height), scale), interpolation=cv2.INTER_AREA)
+    fitted = _moved(mended.strokes, scale, np.zeros(2))
+    return WorkingCopy(np.asarray(small, dtype=np.uint8), fitted, scale, (width, height), mended.warnings)
 
-    def reduced(strokes: tuple[Stroke, ...]) -> tuple[Stroke, ...]:
-        return tuple(Stroke(s.points * scale, None if s.width is None else s.width * scale) for s in strokes)
 
-    full = mended.strokes
-    known = None if full.scale is None else Length(full.scale.points * scale, full.scale.metres)
-    fitted = Strokes(reduced((full.crown,))[0], reduced(full.branches), reduced(full.erase), known)
-    return WorkingCopy(small, fitted, scale, (width, height), mended.warnings)
+def _reduced(size: tuple[int, int], scale: float) -> tuple[int, int]:
+    """Return the width and height, px, of a reduced photo."""
+    return max(1, round(size[0] * scale)), max(1, round(size[1] * scale))
+
+
+def _moved(strokes: Strokes, scale: float, shift: Floats) -> Strokes:
+    """Return strokes scaled, and then moved by a ``shift`` (2,), px."""
+
+    def moved(strokes: tuple[Stroke, ...]) -> tuple[Stroke, ...]:
+        return tuple(Stroke(s.points * scale + shift, None if s.width is None else s.width * scale) for s in strokes)
+
+    known = strokes.scale
+    length = None if known is None else Length(known.points * scale + shift, known.metres)
+    return Strokes(moved((strokes.crown,))[0], moved(strokes.branches), moved(strokes.erase), length)

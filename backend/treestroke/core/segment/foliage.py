@@ -6,9 +6,11 @@ twigs work too.
 """
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.imaging.grid_cut import cut_grid
 from treestroke.core.imaging.histogram import median_of_bytes
@@ -24,7 +26,8 @@ from treestroke.core.segment.leaf_odds import (
     log_odds_by_place,
     refitted_models,
 )
-from treestroke.core.types import Floats, Mask, Picture
+from treestroke.core.segment.matte import matte
+from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 REFERENCE_SIDE = 1500
 """Long side of a photo, px, for which the paper gives its pixel constants."""
@@ -32,8 +35,13 @@ BLUR_PX = 2.0
 """Standard deviation of the blur of log odds before models are refitted, px: a cheap substitute for the cut."""
 GLARE = 4.0
 """Brightness relative to the foliage's median above which a pixel is not foliage."""
+HALF = 0.5
+"""Opacity from which on a pixel counts as foliage."""
 PURE_ODDS = 0.0
 """Log odds above which a pixel is a leaf by its colour alone."""
+
+
+Kind = TypeVar("Kind", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -81,6 +89,8 @@ class Foliage:
     ----------
     mask
         (h, w) foliage pixels; twigs, if the tree is bare.
+    alpha
+        (h, w) share of each pixel that foliage covers.
     pure
         (h, w) foliage pixels that are leaves by their own colour, with nothing shining through.
     region
@@ -96,6 +106,7 @@ class Foliage:
     """
 
     mask: Mask
+    alpha: Opacity
     pure: Mask
     region: Mask
     leaf: Mixture
@@ -106,11 +117,16 @@ class Foliage:
 
 
 def segment_foliage(
-    photo: Picture, crown_px: Floats, params: FoliageParams = FoliageParams(), report: Report = silent
+    photo: Picture,
+    crown_px: Floats,
+    params: FoliageParams = FoliageParams(),
+    report: Report = silent,
+    cut_out: Opacity | None = None,
 ) -> Foliage:
     """Find the foliage inside a crown stroke (n, 2), px, 3 points at least, on a photo (h, w, 3), sRGB.
 
-    The mask is never empty: where nothing looks like a leaf it is the inside of the stroke.
+    The mask is never empty: where nothing looks like a leaf it is the inside of the stroke. ``cut_out`` (h, w) is the
+    opacity of a tree that was cut out of its photo: what it covers is taken as it is, and only colours are told apart.
 
     Source: Tan et al. 2008, section 2; docs/papers.md lists where we differ.
     """
@@ -124,22 +140,27 @@ def segment_foliage(
     report("foliage", 0.2)
     place = log_odds_by_place(inside)
     odds = log_odds_by_colour(leaf, ground, pixels)
+    known = None if cut_out is None else np.where(region, cut_out[box], np.float32(0))
     for refit in range(params.refits):
-        leaves = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0)
+        leaves = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0 if known is None else known > HALF)
         if not leaves.any() or leaves.all():
             break
         leaf, ground = refitted_models(pixels, leaves, params.components, params.samples)
         odds = log_odds_by_height(leaf, ground, pixels, leaves)
         report("foliage", 0.2 + 0.5 * (refit + 1) / params.refits)
-    found = cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels)
+    found = (
+        cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels) if known is None else known > HALF
+    )
     report("foliage", 0.9)
     pure = _without_glare(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
-    found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
+    if known is None:
+        found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
     look, sureness = foliage_look(pixels, found, region)
+    alpha = np.where(region, matte(pixels, found), np.float32(0)) if known is None else known
     mask, pure, region = (_in_frame(part, box, crown.shape) for part in (found, pure, region))
     report("foliage", 1.0)
     clear = stands_out(pixels, inside, max(height, width))
-    return Foliage(mask, pure, region, leaf, ground, look, sureness, clear)
+    return Foliage(mask, _in_frame(alpha, box, crown.shape), pure, region, leaf, ground, look, sureness, clear)
 
 
 def _without_glare(foliage: Mask, pixels: Picture) -> Mask:
@@ -154,9 +175,9 @@ def _bluish(pixels: Picture) -> Mask:
     return np.asarray(pixels[..., 2] > 1.04 * np.maximum(pixels[..., 0], pixels[..., 1]))
 
 
-def _in_frame(part: Mask, box: tuple[slice, slice], shape: tuple[int, ...]) -> Mask:
-    """Place the mask of a box in an empty mask of the whole photo's shape."""
-    whole = np.zeros(shape, dtype=np.bool_)
+def _in_frame(part: NDArray[Kind], box: tuple[slice, slice], shape: tuple[int, ...]) -> NDArray[Kind]:
+    """Place the map of a box in an empty map of the whole photo's shape."""
+    whole = np.zeros(shape, dtype=part.dtype)
     whole[box] = part
     return whole
 

@@ -1,0 +1,82 @@
+"""Habits: how the limbs of each form of tree grow where the photo shows none.
+
+Weber and Penn 1995 describe a tree's form by its branches' angles and their vertical attraction; so do we, but the
+branches are still chosen by what fills the crown (`replacement`).
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import NamedTuple
+
+from treestroke.core.types import TreeForm
+
+STEERED = 3
+"""Generations of branches that a form steers; finer shoots fill what these leave empty."""
+
+
+class Rise(NamedTuple):
+    """How steep shoots are: the share of their own rise that is kept, and the rise that is added.
+
+    What is added is relative to a shoot's length, which stays: (1, 0, 0) leaves shoots as they are, a great positive
+    number makes them stand, a great negative one makes them hang. It runs from ``low``, where the stem enters the
+    crown, to ``high``, at the crown's top.
+    """
+
+    kept: float = 1.0
+    low: float = 0.0
+    high: float = 0.0
+
+    def at(self, height: float) -> tuple[float, float]:
+        """Return the share that is kept, and what is added at a height in the crown, 0 to 1."""
+        return self.kept, self.low + (self.high - self.low) * height
+
+
+AS_GROWN = Rise()
+"""Shoots stay as they are."""
+
+
+@dataclass(frozen=True)
+class Habit:
+    """How the unseen limbs of a tree grow.
+
+    Attributes
+    ----------
+    limbs, outer
+        How steep the limbs are that leave a stem, and all branches that leave a limb.
+    leave
+        Heights in the crown, 0 where the stem enters it to 1 at its top, between which limbs leave a stem.
+    stretch
+        How far limbs from a stem reach at least, as a share of the crown's height above their start.
+    sag, turn_up
+        Weights of sagging where a shoot starts, and of turning up at its tip; negative ones arch it and let it hang.
+    """
+
+    limbs: Rise = AS_GROWN
+    outer: Rise = AS_GROWN
+    leave: tuple[float, float] = (-math.inf, math.inf)
+    stretch: float = 0.0
+    sag: float = 0.22
+    turn_up: float = 0.38
+
+    def steering(self, generation: int, height: float) -> tuple[float, float]:
+        """Return the steering of `placements.Evaluator` for a branch's generation, 1 on a stem, and height, 0 to 1."""
+        rise = AS_GROWN if generation > STEERED else self.limbs if generation == 1 else self.outer
+        return rise.at(min(max(height, 0.0), 1.0))
+
+
+UNSTEERED = Habit()
+"""Limbs grow wherever they fill the crown."""
+HABITS: Mapping[TreeForm, Habit] = MappingProxyType(
+    {
+        "round": UNSTEERED,
+        "spire": Habit(Rise(0.3, -0.3, 0.25), Rise(0.2, -0.12, 0.05), sag=0.1, turn_up=0.15),
+        "columnar": Habit(Rise(0.6, 1.3, 1.3), Rise(0.8, 0.4, 0.4), stretch=0.4),
+        "umbrella": Habit(Rise(0.5, 1.0, 0.5), Rise(0.15, 0.1, 0.1), (-math.inf, 0.5), 0.8, sag=-0.2, turn_up=0.0),
+        "weeping": Habit(Rise(0.6, 0.5, 0.5), Rise(0.3, -1.6, -1.6), sag=-0.5, turn_up=-0.9),
+        "vase": Habit(Rise(0.5, 1.1, 0.9), Rise(0.8, 0.2, 0.0), (-math.inf, 0.35), 0.9, sag=-0.35, turn_up=-0.3),
+        "multi_stem": Habit(Rise(0.5, 1.8, 1.3), Rise(0.8, 0.25, 0.2), (-math.inf, 0.3), 1.0, sag=0.1, turn_up=0.5),
+    }
+)
+"""Judged on renders from four sides of an oak, an aspen and a pine."""

@@ -1,0 +1,79 @@
+"""What a form makes of the limbs that nobody sees: measured on trees grown from a trunk alone."""
+
+import numpy as np
+import pytest
+from tests.core.grow.crowns import trunk_case
+
+from treestroke.core.grow.grown import Grown
+from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit, Rise
+from treestroke.core.grow.library import choose_library
+from treestroke.core.grow.params import growth_for
+from treestroke.core.grow.replacement import Replacement, grow
+from treestroke.core.skeleton.measure import edge_lengths
+from treestroke.core.types import TREE_FORMS, Floats, TreeForm
+
+CASE = trunk_case(top=200.0)
+
+
+def grown(form: TreeForm) -> Grown:
+    method = Replacement(choose_library("auto", "leaves", CASE.skeleton, form), growth_for("leaves", 150, form))
+    return grow(CASE.skeleton, CASE.crown, method, np.random.default_rng(0))
+
+
+GROWN = {form: grown(form) for form in TREE_FORMS}
+
+
+def limbs(form: TreeForm) -> tuple[Floats, Floats]:
+    """Heights (n,), metres, at which limbs leave the stem, and the sine of their rise (n,) over their first stretch."""
+    tree = GROWN[form].skeleton
+    stem = np.hypot(tree.points[:, 0], tree.points[:, 2]) < 0.02
+    first = np.flatnonzero(~stem & stem[np.maximum(tree.parents, 0)] & (tree.parents >= 0))
+    way = tree.points[first] - tree.points[tree.parents[first]]
+    return tree.points[tree.parents[first], 1], way[:, 1] / np.linalg.norm(way, axis=1)
+
+
+def rise(form: TreeForm) -> float:
+    """Mean sine of the rise of all new wood, by its length."""
+    tree = GROWN[form]
+    way = tree.skeleton.points - tree.skeleton.points[tree.skeleton.parents]
+    new = (tree.born > 0) & (np.hypot(way[:, 0], way[:, 2]) > 1e-6)
+    return float(way[new, 1].sum() / edge_lengths(tree.skeleton)[new].sum())
+
+
+def test_a_round_tree_is_not_steered() -> None:
+    assert HABITS["round"] is UNSTEERED
+    assert {UNSTEERED.steering(generation, 0.4) for generation in (1, 2, 3, 4)} == {(1.0, 0.0)}
+
+
+def test_a_form_steers_limbs_by_their_height_and_leaves_the_finest_shoots() -> None:
+    habit = Habit(Rise(0.5, -0.4, 0.4), Rise(0.2, 0.1, 0.1))
+    assert habit.steering(1, 0.75) == pytest.approx((0.5, 0.2))
+    assert habit.steering(2, 0.75) == pytest.approx((0.2, 0.1))
+    assert habit.steering(1, 7.0) == pytest.approx((0.5, 0.4))
+    assert habit.steering(4, 0.75) == (1.0, 0.0)
+
+
+def test_a_spires_limbs_are_flatter_and_its_lowest_the_lowest() -> None:
+    heights, sines = limbs("spire")
+    low = heights < np.median(heights)
+    assert np.abs(sines).mean() < 0.5 * np.abs(limbs("round")[1]).mean()
+    assert sines[low].mean() < sines[~low].mean() - 0.1
+
+
+def test_columns_and_several_stems_stand_and_weeping_trees_hang() -> None:
+    assert limbs("columnar")[1].mean() > limbs("round")[1].mean() + 0.15
+    assert limbs("multi_stem")[1].mean() > limbs("round")[1].mean() + 0.15
+    assert rise("weeping") < -0.2 < rise("round")
+
+
+@pytest.mark.parametrize("form", ["vase", "multi_stem", "umbrella"])
+def test_limbs_leave_the_stem_low_down(form: TreeForm) -> None:
+    assert np.quantile(limbs(form)[0], 0.9) < np.quantile(limbs("round")[0], 0.75)
+
+
+@pytest.mark.parametrize("form", TREE_FORMS)
+def test_every_form_fills_the_crown_and_stays_in_it(form: TreeForm) -> None:
+    tree = GROWN[form]
+    points = tree.skeleton.points[tree.born > 0]
+    assert tree.attractors_reached > 0.6
+    assert np.quantile(CASE.volume.reach(points), 0.999) <= 1.0
