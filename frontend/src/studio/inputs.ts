@@ -8,7 +8,7 @@ import { sketchToWire } from './sketches'
 type Drawn = Pick<State, 'sheets' | 'history'>
 
 /** The settings that change the form of the branches, which is all that a live tree shows. */
-const LIVE_SETTINGS = ['library', 'iterations', 'form', 'species', 'season', 'foliage'] as const
+const LIVE_SETTINGS = ['library', 'iterations', 'form', 'edge', 'species', 'season', 'foliage'] as const
 type LiveSettings = Pick<Settings, (typeof LIVE_SETTINGS)[number]>
 
 /** Return the inputs for a model; null where too little is drawn. */
