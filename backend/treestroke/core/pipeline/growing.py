@@ -180,7 +180,8 @@ def read_photo(
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
     height_px = working.height_px(foliage.mask)
-    surroundings = Surroundings(foliage.leaf, foliage.ground, foliage.region)
+    is_bare = foliage_kind(foliage.look, foliage.mask, working.strokes.branches[0].points) == "bare"
+    surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
     return PhotoEvidence(working, foliage, traced, side_drawing)
 
