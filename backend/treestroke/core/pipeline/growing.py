@@ -32,6 +32,7 @@ from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
+from treestroke.core.segment.form import crown_form
 from treestroke.core.segment.kind import KindOdds, kind_odds, likeliest
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
@@ -91,11 +92,13 @@ class PhotoEvidence:
     @property
     def odds(self) -> KindOdds:
         """Probability of each kind of foliage by the photo."""
-        return _odds(self.foliage, self.working.strokes)
+        return kind_odds(self.foliage.cues)
 
     def taken(self, settings: ModelSettings) -> Taken:
         """Return what the tree is taken for; a branch stroke is needed."""
-        return taken_for(self.odds, "round", settings)
+        branches_px = [branch.points for branch in self.working.strokes.branches]
+        kind = shown_kind(self.odds, settings)
+        return taken_for(self.odds, crown_form(self.foliage.cues, kind, branches_px, self.height_px), settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -179,15 +182,10 @@ def read_photo(
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
     height_px = working.height_px(foliage.mask)
-    is_bare = likeliest(_odds(foliage, working.strokes)) == "bare"
+    is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
     surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
     return PhotoEvidence(working, foliage, traced, side_drawing)
-
-
-def _odds(foliage: Foliage, strokes: Strokes) -> KindOdds:
-    """Return the probability of each kind of foliage; a branch stroke is needed."""
-    return kind_odds(foliage.look, foliage.sureness, foliage.mask, strokes.branches[0].points)
 
 
 def grow_tree(
