@@ -9,6 +9,7 @@ export const DEFAULT_SETTINGS: Required<components['schemas']['ModelSettings']> 
   species: 'auto',
   season: 'photo',
   foliage: 'auto',
+  light: 'photo',
   leaf_size: 1,
   leaf_density: 1,
   wind: 'none',

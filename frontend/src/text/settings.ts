@@ -112,6 +112,11 @@ export const settingsText = {
       why: 'What grows on the twigs.',
       names: { auto: 'As in the photo', leaves: 'Leaves', needles: 'Needles', bare: 'Nothing (winter)' },
     },
+    light: {
+      label: 'Light',
+      why: 'Light and shade of the leaves. Very dark photos are brightened.',
+      names: { photo: 'As in the photo', even: 'Even: without sun and shade' },
+    },
     leaf_size: { label: 'Leaf size', unit: '×', why: '1 is the size that suits the tree.' },
     leaf_density: {
       label: 'Leaf density',

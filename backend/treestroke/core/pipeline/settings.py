@@ -115,6 +115,7 @@ class ModelSettings:
     species: str = _setting("auto", Choice(("auto", *SPECIES)), "shape and place of leaves, relief of bark", "leaves")
     season: str = _setting("photo", Choice(("photo", *SEASONS)), "colour and number of leaves", "leaves")
     foliage: str = _setting("auto", Choice(("auto", "leaves", "needles", "bare")), "what the twigs bear", "leaves")
+    light: str = _setting("photo", Choice(("photo", "even")), "light and shade as in the photo, or evened", "leaves")
     leaf_size: float = _setting(1.0, Span(0.3, 3), "factor on the size of the leaves", "leaves")
     leaf_density: float = _setting(1.0, Span(0, 3), "factor on the number of leaves", "leaves")
     wind: str = _setting(
