@@ -5,9 +5,14 @@ import numpy as np
 
 from treestroke.core.types import Floats, Mask, Picture
 
-LEAST_LIGHTNESS = 26.0
-"""Lightness, CIE Lab, to which the median of a darker tree is brought. The dark trees of 36 photos in good light (holm
-oak, juniper, spruce) lie at 22 to 31, the two taken at dusk at 6 and 7."""
+LIT = 0.75
+"""Quantile of a tree's lightness by which its exposure is judged: leaves and bark that light falls on."""
+LEAST_LIGHTNESS = 32.0
+"""Lightness, CIE Lab, to which a darker tree's lit parts are brought. Those of 13 dark trees in good light (holm oak,
+juniper, spruce, oak) lie at 32 to 44, of three trees at dusk and by night at 12 to 18."""
+FADING = 0.25
+"""How fast colours fade as they are brightened: saturation falls with the gain to minus this power. In the dark, much
+of a hue is the camera's noise and the sky's blue."""
 MOST_GAIN = 16.0
 """Greatest gain: in a darker photo there is little more than the camera's noise."""
 SHADE_REACH = 0.06
@@ -49,17 +54,18 @@ def brightened(linear: Floats, gain: float) -> Floats:
 def exposed(picture: Picture, tree: Mask) -> Picture:
     """Brighten a dark picture (h, w, 3), sRGB, so that the tree on it (h, w) can be seen; others stay as they are.
 
-    One gain in linear light brings the median lightness of the tree's pixels to `LEAST_LIGHTNESS`.
+    One gain in linear light brings the lit parts of the tree to `LEAST_LIGHTNESS`; colours fade a little with it.
     """
     if not tree.any():
         return picture
     linear = _light_table()[picture[tree]]
-    median = max(float(np.median(linear @ LUMINANCE)), 1e-6)
-    wanted = float(luminance_of_lightness(np.array(LEAST_LIGHTNESS)))
-    gain = min(wanted / median, MOST_GAIN)
+    lit = max(float(np.quantile(linear @ LUMINANCE, LIT)), 1e-6)
+    gain = min(float(luminance_of_lightness(np.array(LEAST_LIGHTNESS))) / lit, MOST_GAIN)
     if gain <= 1.0:
         return picture
-    return srgb_light(brightened(_light_table()[picture], gain))
+    bright = brightened(_light_table()[picture], gain)
+    grey = (bright @ LUMINANCE)[..., None]
+    return srgb_light(grey + gain**-FADING * (bright - grey))
 
 
 def evened(picture: Picture, tree: Mask) -> Picture:
