@@ -992,6 +992,13 @@ export interface components {
              */
             edge: "complete" | "cut";
             /**
+             * Light
+             * @description light and shade as in the photo, or evened
+             * @default photo
+             * @enum {string}
+             */
+            light: "photo" | "even";
+            /**
              * Leaf Size
              * @description factor on the size of the leaves
              * @default 1
