@@ -91,7 +91,7 @@ def test_each_photo_s_kind_is_seen(name: str, kind: str) -> None:
     photo = decode_photo((folder / f"{name.split('.')[0]}.jpg").read_bytes(), name)
     strokes = load_strokes(folder / f"{name}.strokes.json")
     found = segment_foliage(photo, strokes.crown.points)
-    assert kind_of(photo, found.mask, found.region, strokes.branches[0].points) == kind
+    assert foliage_kind(found.look, found.mask, strokes.branches[0].points) == kind
 
 
 def test_the_judgement_is_as_sure_as_its_cues_are_clear() -> None:

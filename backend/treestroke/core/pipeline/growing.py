@@ -202,7 +202,7 @@ def grow_tree(
         choose_library(settings.library, crown.kind, lifted.tree), growth_for(crown.kind, settings.iterations)
     )
     grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
-    leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
+    leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
     grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
