@@ -25,6 +25,8 @@ STEM_SHARE = 0.03
 LEAST_RISE = 0.4
 """Least rise of a trunk, as a share of the furthest it goes from its root (on 28 photos: 0.89 and more). A stroke below
 it is level, or was drawn on a photo that was turned since."""
+FOOT = 0.15
+"""Greatest height above the crown's bottom, as a share of the crown's, at which a trunk that is drawn down may end."""
 MOST_OUTSIDE, LOOSE, OUTSIDE_PLACES = 0.15, 0.05, 500
 """Largest share of a stroke that may lie further outside the photo than `LOOSE` of its long side, judged at
 `OUTSIDE_PLACES` places; a stroke around a tree that the edge cuts stays nearer."""
@@ -38,8 +40,9 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     """Return strokes that were checked against a photo of the given size, px, and mended where possible.
 
     Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
-    nearest of them by one more point at its start, with a warning; a second stem starts on the ground; a crown that
-    crosses itself is kept (fill it with `fill_outline`), with a warning.
+    nearest of them by one more point at its start, with a warning; a trunk drawn from its top down to the root is
+    turned, with a warning; a second stem starts on the ground; a crown that crosses itself is kept (fill it with
+    `fill_outline`), with a warning.
 
     Raises
     ------
@@ -63,10 +66,12 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     warnings = ((CROSSING,) if crossing else ()) + _outside(strokes, width, height)
     if not inside.branches:
         return MendedStrokes(inside, warnings)
+    inside, turned = _upward(inside)
     _check_trunk(inside, crown, coarse, max(width, height))
     _check_scale(inside)
     branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
-    return MendedStrokes(replace(inside, branches=branches), warnings + _level(inside.branches[0]) + joined)
+    mended = warnings + turned + _level(inside.branches[0]) + joined
+    return MendedStrokes(replace(inside, branches=branches), mended)
 
 
 def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, ...]:
@@ -94,6 +99,24 @@ def _share_outside(points: Floats, width: int, height: int) -> float:
     places = place_at(near, np.linspace(0.0, arc_lengths(near)[-1], OUTSIDE_PLACES))
     beyond = np.abs(places - np.clip(places, 0.0, (width, height))).max(axis=1)
     return float((beyond > LOOSE * side).mean())
+
+
+def _upward(strokes: Strokes) -> tuple[Strokes, tuple[StrokeWarning, ...]]:
+    """Return the strokes with the trunk from its root up, and a warning where it was drawn from its top down.
+
+    It was drawn so if it runs from the crown down to its foot or below, and leaves it further there than at its top:
+    the strokes of a photo that stands on its head are left as they are.
+    """
+    trunk, rest = strokes.branches[0], strokes.branches[1:]
+    crown = strokes.crown.points[:, 1]
+    top, bottom = float(crown.min()), float(crown.max())
+    above, below = top - trunk.points[0, 1], trunk.points[-1, 1] - bottom
+    runs_down = above > top - bottom and below > max(above, FOOT * (top - bottom))
+    turned = replace(trunk, points=trunk.points[::-1])
+    if not runs_down or not _level(trunk) or _level(turned):
+        return strokes, ()
+    detail = "the trunk was drawn from its top down, and was turned; draw it from the root up"
+    return replace(strokes, branches=(turned, *rest)), (StrokeWarning("stroke_turned", "branches/0", detail),)
 
 
 def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:

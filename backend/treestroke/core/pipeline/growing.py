@@ -160,11 +160,13 @@ class _LiftedTrace:
 def read_photo(
     photo: Picture,
     strokes: Strokes,
-    known: Foliage | None = None,
+    known: PhotoEvidence | None = None,
     report: Report = silent,
     side: Sketch | None = None,
 ) -> PhotoEvidence:
     """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3 or 4), sRGB.
+
+    What an earlier reading knows is kept where it saw the same part of the photo.
 
     Raises
     ------
@@ -175,9 +177,11 @@ def read_photo(
     report("foliage", 0.0)
     working = working_copy(photo, strokes)
     report("foliage", 0.05)
-    foliage = known or segment_foliage(
-        working.photo, working.strokes.crown.points, report=report, cut_out=working.cut_out
-    )
+    if known is not None and known.working.frame == working.frame:
+        foliage = known.foliage
+    else:
+        crown = working.strokes.crown.points
+        foliage = segment_foliage(working.photo, crown, report=report, cut_out=working.cut_out)
     if not strokes.branches:
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
