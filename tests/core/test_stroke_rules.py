@@ -132,6 +132,20 @@ def test_a_second_stem_stands_on_the_ground(start: int, points: list[list[float]
     assert mended.strokes.branches[1].points.tolist() == [*points, [240, 150]]
 
 
+def test_a_stroke_from_the_ground_that_touches_no_other_is_a_stem_of_its_own() -> None:
+    mended = mend(branches=(TRUNK, [[240, 288], [250, 150]], [[270, 291], [270, 140]]))
+    assert mended.warnings == ()
+    assert [stroke.points.tolist() for stroke in mended.strokes.branches[1:]] == [
+        [[240, 290], [240, 288], [250, 150]],
+        [[270, 291], [270, 140]],
+    ]
+
+
+def test_a_stroke_that_starts_well_above_the_ground_is_joined() -> None:
+    mended = mend(branches=(TRUNK, [[240, 260], [280, 150]]))
+    assert [warning.code for warning in mended.warnings] == ["branch_joined"]
+
+
 @pytest.mark.parametrize(
     "trunk",
     [[[110, 100], [290, 95]], [[200, 60], [205, 130]], [[120, 140], [160, 130], [280, 150]]],

@@ -1,5 +1,6 @@
 """Rules that strokes must keep to describe a tree, and how small faults are mended."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,6 +23,9 @@ TREE_HEIGHTS = (0.1, 150.0)
 """Least and greatest height of a tree, metres."""
 STEM_SHARE = 0.03
 """A later stroke that starts this near the root, as a share of the tree's height, is a second stem."""
+GROUND_SHARE = 0.04
+"""A later stroke that starts no further above the root's level than this share of the tree's height starts at the
+ground; if it touches no other, it is a stem with a root of its own."""
 LEAST_RISE = 0.4
 """Least rise of a trunk, as a share of the furthest it goes from its root (on 28 photos: 0.89 and more). A stroke below
 it is level, or was drawn on a photo that was turned since."""
@@ -41,7 +45,7 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
 
     Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
     nearest of them by one more point at its start, with a warning; a trunk drawn from its top down to the root is
-    turned, with a warning; a second stem starts on the ground; a crown that crosses itself is kept (fill it with
+    turned, with a warning; a further stem starts on the ground; a crown that crosses itself is kept (fill it with
     `fill_outline`), with a warning.
 
     Raises
@@ -242,14 +246,14 @@ def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side
 
 def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], tuple[StrokeWarning, ...]]:
     root = strokes.branches[0].points[0]
-    stem_reach = STEM_SHARE * abs(root[1] - strokes.crown.points[:, 1].min())
+    height = abs(float(root[1] - strokes.crown.points[:, 1].min()))
     branches, warnings = [strokes.branches[0]], []
     for index, stroke in enumerate(strokes.branches[1:], start=1):
         start = stroke.points[:1]
         found = [_nearest(earlier.points, start) for earlier in branches]
         parent = int(np.argmin([gap[0] for _, gap in found]))
         joint, gap = found[parent][0][0], float(found[parent][1][0])
-        if np.hypot(*(start[0] - root)) <= stem_reach:
+        if is_stem(stroke, branches, height, reach):
             stroke = _on_the_ground(stroke, float(root[1]))
         elif gap > reach:
             stroke = replace(stroke, points=np.vstack([joint, stroke.points]))
@@ -257,6 +261,21 @@ def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], 
             warnings.append(StrokeWarning("branch_joined", f"branches/{index}", detail))
         branches.append(stroke)
     return tuple(branches), tuple(warnings)
+
+
+def is_stem(stroke: Stroke, earlier: Sequence[Stroke], height: float, reach: float) -> bool:
+    """Return whether a stroke stands on the ground by itself, and does not leave one of those before it (px).
+
+    The first does; so does one that starts beside the first one's root, or at the ground and further than ``reach``
+    from all that is drawn. ``height`` is the tree's.
+    """
+    if not earlier:
+        return True
+    start, root = stroke.points[:1], earlier[0].points[0]
+    if np.hypot(*(start[0] - root)) <= STEM_SHARE * height:
+        return True
+    at_ground = start[0, 1] >= root[1] - GROUND_SHARE * height
+    return bool(at_ground and min(float(_nearest(other.points, start)[1][0]) for other in earlier) > reach)
 
 
 def _on_the_ground(stem: Stroke, ground: float) -> Stroke:

@@ -311,7 +311,7 @@ def _leaves_from(
 ) -> NDArray[np.float32]:
     """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 
-    Pixels that are leaves by their colour hang before the wood.
+    Pixels that are leaves by their colour hang before the wood; none hangs before what is wood by its colour.
     """
     depth, seen = crown.camera.depth(lifted.tree.points), traced.measured[lifted.owner]
     wood, middle = (
@@ -319,7 +319,7 @@ def _leaves_from(
     )
     leaves_from = np.where(np.isnan(wood) | ~foliage.region, np.inf, wood)
     leaves = foliage.pure & ~traced.wood & crown.shows_leaves
-    leaves_from[leafy & (np.isnan(middle) | leaves)] = -np.inf
+    leaves_from[leafy & (np.isnan(wood) | np.isnan(middle) & ~traced.wood | leaves)] = -np.inf
     return leaves_from.astype(np.float32)
 
 
