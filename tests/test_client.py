@@ -153,6 +153,11 @@ def test_a_trace_grows_the_whole_skeleton(client: Client, photo: PhotoInfo) -> N
     found = client.trace(photo, STROKES, grow=True)
     assert found.grown is not None
     assert len(found.grown.points) > len(found.skeleton.points) > 0
+    other = client.trace(photo, STROKES, grow=True, settings={"iterations": 0})
+    assert other.grown is not None
+    assert len(other.grown.points) < len(found.grown.points)
+    assert other.taken == found.taken
+    assert found.taken is not None
 
 
 def test_a_tree_is_followed_to_its_end(client: Client, photo: PhotoInfo) -> None:

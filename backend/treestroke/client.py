@@ -114,19 +114,22 @@ class Client:
         strokes: StrokesLike,
         rev: int | None = None,
         grow: bool = False,
+        *,
         side: SketchLike | None = None,
+        settings: Mapping[str, Any] | None = None,
     ) -> TraceAnswer:
-        """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too.
+        """Find foliage and visible branches; with ``grow`` the whole tree's skeleton too, by ``settings``.
 
         The answer repeats ``rev``. A sketch of the tree's left ``side`` gives the skeleton its depth.
 
         Raises
         ------
         ServiceError
-            There is no such photo, or a stroke cannot be used.
+            There is no such photo, or a stroke or a setting cannot be used.
         """
         body = {**plain_strokes(strokes), "grow": grow} | ({} if rev is None else {"rev": rev})
         body |= {} if side is None else {"side": plain_sketch(side)}
+        body |= {} if settings is None else {"settings": dict(settings)}
         return read(TraceAnswer, self._ask("POST", f"/v1/photos/{_id(photo)}/trace", json=body).content)
 
     def trace_sketches(

@@ -47,12 +47,22 @@ class GrownSkeleton(Wire):
     photo: PhotoFrame
 
 
+class Taken(Wire):
+    """What a photo's tree was taken for; the settings of the same names may say otherwise."""
+
+    foliage: str = Field(description="what the twigs bear")
+    sureness: float = Field(ge=0, le=1, description="probability that ``foliage`` is right")
+    form: str = Field(description="how the limbs grow")
+    ask: bool = Field(description="whether ``foliage`` is so unsure that a person should be asked")
+
+
 class TraceAnswer(Wire):
     """What was found; ``foliage`` is closed rings by the even-odd rule."""
 
     rev: int | None
     foliage: list[list[Point]]
     skeleton: TracedSkeleton
+    taken: Taken | None = Field(description="null without a trunk stroke")
     warnings: list[StrokeWarning]
     grown: GrownSkeleton | None = Field(default=None, description="with ``grow`` and a trunk stroke")
     photo: PhotoFrame | None = Field(default=None, description="with ``grown``")

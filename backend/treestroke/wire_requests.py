@@ -88,6 +88,7 @@ class TraceRequest(Strokes):
     side: Sketch | SkipJsonSchema[None] = Field(
         default=None, description="the tree's left side, for the grown skeleton's depth", json_schema_extra=no_default
     )
+    settings: ModelSettings = Field(default_factory=ModelSettings, description="what the grown skeleton grows by")
 
 
 class SketchTraceRequest(RequestPart):

@@ -3,6 +3,7 @@ import { filesText } from './text/files'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
 import { sheetsText } from './text/sheets'
+import { takenText } from './text/taken'
 import { treeText } from './text/tree'
 import { welcomeText } from './text/welcome'
 
@@ -13,6 +14,7 @@ export const text = {
   ...treeText,
   sheets: sheetsText,
   settings: settingsText,
+  taken: takenText,
   score: scoreText,
   files: filesText,
 } as const

@@ -1,4 +1,4 @@
-import type { Grown, Model, SketchTraceAnswer, TraceAnswer } from '../src/api/types'
+import type { Grown, Model, SketchTraceAnswer, Taken, TraceAnswer } from '../src/api/types'
 import type { PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
 import { type Line, NO_STROKES } from '../src/strokes'
 
@@ -40,9 +40,12 @@ export function shownModel(info: Partial<Model> = {}, changes: Partial<ShownMode
   return { info: model(info), ...made, ...changes }
 }
 
+/** What a photo's tree was taken for. */
+export const TAKEN: Taken = { foliage: 'needles', sureness: 0.83, form: 'spire', ask: false }
+
 export function answer(grown: Grown | null = null): TraceAnswer {
   const skeleton = { points: [], radii: [], parents: [], stroke: [] }
-  return { rev: null, foliage: [], skeleton, warnings: [], grown, photo: null }
+  return { rev: null, foliage: [], skeleton, taken: null, warnings: [], grown, photo: null }
 }
 
 /** An answer about a traced sketch of the front. */

@@ -9,7 +9,7 @@ const LAYERS = [
   ['main'],
   ['ui'],
   ['sketch', 'preview', 'studio'],
-  ['api', 'text', 'tracedBranch', 'doubts'],
+  ['api', 'text', 'tracedBranch', 'doubts', 'taken'],
   ['sheets'],
   ['state'],
   ['plane'],

@@ -8,6 +8,7 @@ from tests.api import drawn, sketched
 from tests.api.conftest import Service
 
 from treestroke import trace
+from treestroke.core.types import FOLIAGE_KINDS, TREE_FORMS
 
 
 def traced(client: httpx.Client, photo: str, **request: Any) -> dict[str, Any]:
@@ -78,6 +79,23 @@ def test_a_side_gives_the_grown_tree_its_depth(client: httpx.Client, photo: str)
     assert traced(client, photo, grow=True)["grown"] == plain["grown"]
 
 
+def test_the_grown_tree_grows_by_the_settings(client: httpx.Client, photo: str) -> None:
+    plain, needles = (traced(client, photo, grow=True, **by) for by in ({}, {"settings": {"foliage": "needles"}}))
+    assert needles["grown"]["points"] != plain["grown"]["points"]
+    assert {**needles, "grown": None, "photo": None} == {**plain, "grown": None, "photo": None}
+    assert traced(client, photo, grow=True)["grown"] == plain["grown"]
+
+
+def test_a_trace_says_what_the_tree_is_taken_for(client: httpx.Client, photo: str) -> None:
+    taken = traced(client, photo)["taken"]
+    assert set(taken) == {"foliage", "form", "sureness", "ask"}
+    assert taken["foliage"] in FOLIAGE_KINDS
+    assert taken["form"] in TREE_FORMS
+    assert 0.0 <= taken["sureness"] <= 1.0
+    assert traced(client, photo, settings={"foliage": "palm", "form": "vase"})["taken"] == taken
+    assert traced(client, photo, branches=[])["taken"] is None
+
+
 def test_an_error_in_a_side_is_led_to(client: httpx.Client, photo: str) -> None:
     body = {**drawn.STROKES, "side": {"branches": [{"points": [[1, 1], [1, 1]]}]}}
     answer = client.post(f"/v1/photos/{photo}/trace", json=body)
@@ -106,6 +124,9 @@ def test_a_grown_tree_needs_a_trunk(client: httpx.Client, photo: str) -> None:
         ({"branches": [{**drawn.STROKES["branches"][0], "width": None}]}, "/branches/0/width", "wrong_type"),
         ({"branches": [drawn.STROKES["branches"][0]] * 200}, "", "too_many_strokes"),
         ({"colour": 1}, "/colour", "unknown_key"),
+        ({"settings": {"foliage": "moss"}}, "/settings/foliage", "setting_not_allowed"),
+        ({"settings": {"folliage": "bare"}}, "/settings/folliage", "unknown_setting"),
+        ({"settings": []}, "/settings", "wrong_type"),
     ],
 )
 def test_strokes_that_cannot_be_used_are_named(

@@ -6,6 +6,7 @@ import pytest
 from tests.api import sketched
 
 import treestroke
+from treestroke.core.errors import SettingsError
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.service.trace import Trace, trace_sketches
 
@@ -68,6 +69,31 @@ def test_what_was_traced_of_the_same_strokes_is_not_traced_again(live: Trace, ma
     assert same(after.grown, live.grown)
 
 
+def test_only_the_tree_is_grown_again_by_other_settings(live: Trace, maple_photo: Path, maple_strokes: Path) -> None:
+    settings = {"foliage": "needles", "iterations": 100}
+    after = treestroke.trace(live.photo, maple_strokes, after=live, grow=True, settings=settings)
+    assert after.photo_trace is live.photo_trace
+    assert not same(after.grown, live.grown)
+    seen: list[LiveTree] = []
+    treestroke.model(maple_photo, maple_strokes, {**settings, "leaf_density": 0}, on_grown=seen.append)
+    assert same(after.grown, seen[0])
+
+
+def test_what_the_photo_shows_is_taken_whatever_the_settings_say(live: Trace, maple_strokes: Path) -> None:
+    chosen = treestroke.trace(live.photo, maple_strokes, after=live, settings={"foliage": "palm", "form": "vase"})
+    assert live.taken is not None
+    assert live.taken.foliage == "leaves"
+    assert chosen.taken == live.taken
+    crown = json.loads(maple_strokes.read_text())["crown"]
+    assert treestroke.trace(live.photo, {"crown": crown}, after=live).taken is None
+
+
+def test_a_setting_that_cannot_be_used_is_refused(live: Trace, maple_strokes: Path) -> None:
+    with pytest.raises(SettingsError) as caught:
+        treestroke.trace(live.photo, maple_strokes, after=live, settings={"foliage": "moss"})
+    assert caught.value.pointer == "/foliage"
+
+
 def test_another_erase_stroke_is_traced(live: Trace, maple_strokes: Path) -> None:
     strokes = json.loads(maple_strokes.read_text())
     erase = {"points": [[5.0, 5.0], [15.0, 15.0]]}
@@ -82,7 +108,7 @@ def test_growing_changes_nothing_of_the_trace(live: Trace, maple_photo: Path, ma
 def test_an_answer_with_a_live_tree_is_plain_json(live: Trace) -> None:
     answer = live.as_dict()
     assert json.loads(json.dumps(answer)) == answer
-    assert set(answer) == {"foliage", "skeleton", "warnings", "grown", "photo"}
+    assert set(answer) == {"foliage", "skeleton", "taken", "warnings", "grown", "photo"}
     assert set(answer["grown"]) == {"points", "radii", "parents", "born", "photo"}
     assert answer["photo"] == answer["grown"]["photo"]
     assert (answer["photo"]["width"], answer["photo"]["height"]) == (live.photo.shape[1], live.photo.shape[0])

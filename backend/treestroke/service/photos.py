@@ -113,7 +113,7 @@ def trace_photo(resources: Resources, id: str, body: bytes) -> bytes:
 
     Raises
     ------
-    NotFound, StrokesError
+    NotFound, StrokesError, SettingsError
         There is no such photo, or the body cannot be used.
     Overloaded, Crashed
         The tracing processes are too busy, or one died over this request.

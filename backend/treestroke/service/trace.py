@@ -8,16 +8,28 @@ from numpy.typing import NDArray
 
 from treestroke.codec.overlay import draw_overlay
 from treestroke.codec.skeleton import plain_grown, plain_skeleton
+from treestroke.core.imaging.opacity import over_white
 from treestroke.core.imaging.outline import rings_of_mask
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
 from treestroke.core.pipeline.photo import PhotoTrace, grow_photo, trace_photo, with_side
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sketching import SketchEvidence, grow_sketches, read_sketches
+from treestroke.core.pipeline.taken import Taken
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
 from treestroke.core.trace.drawing import Drawing
 from treestroke.service.execution import one_thread
-from treestroke.service.loading import PhotoLike, SketchLike, StrokesLike, load_photo, load_sketch, load_strokes
+from treestroke.service.loading import (
+    PhotoLike,
+    SettingsLike,
+    SketchLike,
+    StrokesLike,
+    load_photo,
+    load_settings,
+    load_sketch,
+    load_strokes,
+)
+from treestroke.service.report import plain_taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +57,7 @@ class Trace:
     grow
         Whether a grown tree was asked for.
     grown
-        The tree grown by default settings and seed 0; None where it was not asked for or there is no branch stroke.
+        The tree grown by the given settings and seed 0; None where it was not asked for or there is no branch stroke.
     """
 
     photo: NDArray[np.uint8]
@@ -60,19 +72,25 @@ class Trace:
     grown: LiveTree | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the trace as plain values: ``foliage`` rings (even-odd), ``skeleton`` and ``warnings``.
+        """Return the trace as plain values: ``foliage`` rings (even-odd), ``skeleton``, ``taken`` and ``warnings``.
 
         Where a grown tree was asked for, also ``grown`` and ``photo``, null without a branch stroke.
         """
         values = {
             "foliage": [ring.tolist() for ring in self.rings],
             "skeleton": plain_skeleton(self.skeleton, self.stroke),
+            "taken": None if self.taken is None else plain_taken(self.taken),
             "warnings": [asdict(warning) for warning in self.warnings],
         }
         if not self.grow:
             return values
         grown = None if self.grown is None else plain_grown(self.grown)
         return {**values, "grown": grown, "photo": None if grown is None else grown["photo"]}
+
+    @property
+    def taken(self) -> Taken | None:
+        """What the photo's tree is taken for, whatever the settings say; None without a branch stroke."""
+        return None if self.skeleton is None else self.photo_trace.evidence.taken(ModelSettings())
 
     def overlay(self) -> NDArray[np.uint8]:
         """Return the photo (h, w, 3) uint8 with foliage and skeleton drawn over it."""
@@ -84,22 +102,24 @@ def trace(
     strokes: StrokesLike,
     after: Trace | None = None,
     grow: bool = False,
+    *,
     side: SketchLike | None = None,
+    settings: SettingsLike = None,
 ) -> Trace:
     """Return the foliage inside the crown stroke and the branches near the branch strokes.
 
-    ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
-    mapping or values. Without branch strokes only the foliage is found. ``after`` is the last trace of the same photo:
-    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once; all of it
-    is kept while all strokes do. With ``grow`` the tree that `model` would grow is added; a sketch of its left
-    ``side`` gives that tree its depth.
+    ``photo`` is as `model` takes it; ``strokes`` are a path, JSON bytes, a plain mapping or values. Without branch
+    strokes only the foliage is found. ``after`` is the last trace of the same photo: its foliage is kept while the
+    crown stays the same, so that one more branch stroke is answered at once; all of it is kept while all strokes do.
+    With ``grow`` the tree that `model` would grow by the same ``settings`` is added; a sketch of its left ``side``
+    gives that tree its depth.
 
     Raises
     ------
-    PhotoError, StrokesError
-        The photo or the strokes cannot be used; the message says what, where and how to mend it.
+    PhotoError, StrokesError, SettingsError
+        The photo, the strokes or a setting cannot be used; the message says what, where and how to mend it.
     """
-    drawn, mended = load_strokes(strokes), list[StrokeWarning]()
+    drawn, chosen, mended = load_strokes(strokes), load_settings(settings), list[StrokeWarning]()
     picture = load_photo(photo, warn=mended.append)
     last = after if after is not None and same_stroke(after.strokes.crown, drawn.crown) else None
     with one_thread():
@@ -108,10 +128,10 @@ def trace(
         else:
             traced = trace_photo(picture, drawn, None if last is None else last.photo_trace.evidence.foliage)
         traced = with_side(traced, None if side is None else load_sketch(side, "side"))
-        grown = grow_photo(traced, ModelSettings(), np.random.default_rng(0)) if grow else None
+        grown = grow_photo(traced, chosen, np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(traced.foliage) if last is None else last.rings
     return Trace(
-        photo=picture,
+        photo=over_white(picture),
         foliage=traced.foliage,
         rings=rings,
         strokes=drawn,

@@ -76,14 +76,15 @@ def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] =
 
     Raises
     ------
-    StrokesError
-        The body is not such a request, or its strokes cannot be used.
+    StrokesError, SettingsError
+        The body is not such a request, or its strokes or a setting cannot be used.
     """
     request = checked(TraceRequest, read_body(body), StrokesError)
     strokes = strokes_of(request)
     side = None if request.side is None else _within(("side",), sketch_of, request.side)
+    settings = request.settings.model_dump()
     known = _recall(photo)
-    known.last = trace(known.picture, strokes, known.last, request.grow, side)
+    known.last = trace(known.picture, strokes, known.last, request.grow, side=side, settings=settings)
     answer = known.last.as_dict()
     return _answer(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 

@@ -31,6 +31,16 @@ export interface Inputs {
   readonly sketches?: Sketches
 }
 
+/** What a request to trace a photo asks for beside what its strokes show. */
+interface TraceRequest {
+  /** Whether the live tree is grown too. */
+  readonly grow: boolean
+  /** What the live tree grows by. */
+  readonly settings?: Partial<Settings>
+  /** A sketch of the side, which sets the live tree's depth. */
+  readonly side?: Sketches['side']
+}
+
 /** A request for a model. */
 export interface ModelRequest {
   readonly inputs: Inputs
@@ -62,9 +72,9 @@ export class Client {
     return request('DELETE', `/v1/photos/${id}`)
   }
 
-  /** Trace foliage and visible branches; with `grow` the live tree too, whose depth a sketch of the side may set. */
-  trace(photo: string, strokes: Strokes, grow: boolean, side?: Sketches['side']): Promise<TraceAnswer> {
-    return request('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), grow, ...(side && { side }) }))
+  /** Trace foliage and visible branches, and grow the live tree where it is asked for. */
+  trace(photo: string, strokes: Strokes, asked: TraceRequest): Promise<TraceAnswer> {
+    return request('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), ...asked }))
   }
 
   /** Trace sketches; with `grow` the live tree too. */

@@ -719,6 +719,32 @@ export interface components {
             detail: string;
         };
         /**
+         * Taken
+         * @description What a photo's tree was taken for; the settings of the same names may say otherwise.
+         */
+        Taken: {
+            /**
+             * Foliage
+             * @description what the twigs bear
+             */
+            foliage: string;
+            /**
+             * Sureness
+             * @description probability that ``foliage`` is right
+             */
+            sureness: number;
+            /**
+             * Form
+             * @description how the limbs grow
+             */
+            form: string;
+            /**
+             * Ask
+             * @description whether ``foliage`` is so unsure that a person should be asked
+             */
+            ask: boolean;
+        };
+        /**
          * TraceAnswer
          * @description What was found; ``foliage`` is closed rings by the even-odd rule.
          */
@@ -731,6 +757,8 @@ export interface components {
                 number
             ][][];
             skeleton: components["schemas"]["TracedSkeleton"];
+            /** @description null without a trunk stroke */
+            taken: components["schemas"]["Taken"] | null;
             /** Warnings */
             warnings: components["schemas"]["StrokeWarning"][];
             /** @description with ``grow`` and a trunk stroke */
@@ -1138,6 +1166,8 @@ export interface components {
              * @description the tree's left side, for the grown skeleton's depth
              */
             side?: components["schemas"]["Sketch"];
+            /** @description what the grown skeleton grows by */
+            settings?: components["schemas"]["ModelSettings"];
         };
     };
     responses: never;

@@ -3,6 +3,7 @@ import type { components } from './schema'
 type Schemas = components['schemas']
 export type TraceAnswer = Schemas['TraceAnswer']
 export type SketchTraceAnswer = Schemas['SketchTraceAnswer']
+export type Taken = Schemas['Taken']
 export type TracedSkeleton = Schemas['TracedSkeleton']
 export type StrokeWarning = Schemas['StrokeWarning']
 export type StrokeSketch = Schemas['StrokeSketch']

@@ -41,6 +41,13 @@ export class Grower {
     }
   }
 
+  /** Request a model by the settings as they are now, in place of the one that is shown or under way. */
+  async regrow(): Promise<void> {
+    const { model } = this.store.state
+    if (model && !isFinished(model.info)) await this.cancel()
+    await this.grow()
+  }
+
   /** Request another model of the same strokes, with a random seed. */
   async reroll(): Promise<void> {
     this.store.set({ seed: Math.floor(Math.random() * 1_000_000) })

@@ -6,6 +6,7 @@ import { Opener } from './opener'
 import { OwnPictureActions } from './ownPictures'
 import { SheetActions } from './sheetActions'
 import { StrokeActions } from './strokeActions'
+import { TakenActions } from './takenActions'
 import { Tracer } from './tracer'
 
 /** Everything that can be done on the page, apart from how it looks. */
@@ -17,6 +18,7 @@ export class Studio {
   readonly sheets = new SheetActions(this.store, this.client)
   readonly ownPictures = new OwnPictureActions(this.store)
   readonly grower = new Grower(this.store, this.client)
+  readonly taken = new TakenActions(this.store, this.grower)
   readonly opener = new Opener(this.store, this.client, this.drafts, this.grower)
   readonly tracer = new Tracer(this.store, this.client)
 }

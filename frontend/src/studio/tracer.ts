@@ -1,25 +1,32 @@
 import { type Client, Refused, Unreachable } from '../api/client'
+import type { Grown } from '../api/types'
 import { hasPhoto } from '../sheets'
 import type { PhotoSheet, Sheet, Store, Traced } from '../state'
 import type { Strokes } from '../strokes'
 import { faultOf } from './faultText'
-import { canTrace, traced } from './inputs'
+import { canTrace, liveSettings, traced } from './inputs'
 import { Rounds } from './rounds'
 
 const RETRY_MS = 1500
 
+/** What a live tree is grown of: strokes, and settings as JSON. */
+interface Basis {
+  readonly strokes: Strokes
+  readonly settings: string
+}
+
 /**
- * Traces the strokes whenever they change, and grows the live tree.
+ * Traces the strokes whenever they change, and grows the live tree, also when its settings change.
  *
  * There is one request at a time; then only the latest strokes are traced. The live tree is requested after tracing, if
  * the strokes have not changed again.
  */
 export class Tracer {
   readonly #rounds = new Rounds(() => this.#catchUp())
-  /** Strokes that the service refused: they are not sent again. */
-  #refused: Strokes | null = null
-  /** Strokes whose live tree the service has answered. */
-  #grownOf: Strokes | null = null
+  /** What the service refused: it is not sent again. */
+  #refused: Basis | null = null
+  /** What the service has answered the live tree of. */
+  #grownOf: Basis | null = null
 
   constructor(
     private readonly store: Store,
@@ -34,6 +41,10 @@ export class Tracer {
       state => state.sheets?.front,
       () => this.#rounds.ask(),
     )
+    store.watch(
+      state => state.settings,
+      () => this.#rounds.ask(),
+    )
   }
 
   async #catchUp(): Promise<void> {
@@ -44,39 +55,49 @@ export class Tracer {
     }
   }
 
-  /** Send the next request that the strokes need; returns whether there was one. */
+  /** Send the next request that the strokes and settings need; returns whether there was one. */
   async #step(): Promise<boolean> {
     const { sheets, traced: found, liveTree } = this.store.state
-    const strokes = this.store.strokes
+    const basis = this.#basis()
+    const { strokes } = basis
     if (!strokes.branches.length && liveTree) this.store.set({ liveTree: null })
     if (!strokes.branches.length) this.#grownOf = null
-    if (strokes !== this.#refused) this.#refused = null
+    if (!isSame(basis, this.#refused)) this.#refused = null
     const traceable = canTrace(this.store.state)
     if (!traceable && found) this.store.set({ traced: null, liveTree: null })
-    if (!sheets || !traceable || strokes === this.#refused) return false
+    if (!sheets || !traceable || this.#refused) return false
     const isTraced = found?.of === strokes
-    if (isTraced && (!strokes.branches.length || this.#grownOf === strokes)) return false
+    if (isTraced && (!strokes.branches.length || isSame(basis, this.#grownOf))) return false
     try {
-      await this.#request(sheets.front, strokes, isTraced)
+      await this.#request(sheets.front, basis, isTraced)
     } catch (error) {
-      await this.#recover(error, sheets.front, strokes)
+      await this.#recover(error, sheets.front, basis)
     }
     return true
   }
 
+  #basis(): Basis {
+    return { strokes: this.store.strokes, settings: JSON.stringify(liveSettings(this.store.state)) }
+  }
+
   /** Trace the strokes, or with `grow` request their live tree, and put the answer into the state. */
-  async #request(front: Sheet, strokes: Strokes, grow: boolean): Promise<void> {
+  async #request(front: Sheet, basis: Basis, grow: boolean): Promise<void> {
     if (!grow) this.store.set({ tracing: true })
     const found = await traced(this.client, this.store.state, grow)
     this.store.set({ online: true })
-    if (this.#isStale(front, strokes)) return
+    if (this.#isStale(front, basis.strokes)) return
     this.store.fault('strokes', null)
-    if (!grow) return this.#show({ of: strokes, ...found })
-    this.#grownOf = strokes
-    this.store.set({
-      liveTree: found.answer.grown ?? null,
-      shows: strokes === this.store.state.model?.strokes ? 'model' : 'live',
-    })
+    if (!grow) return this.#show({ of: basis.strokes, ...found })
+    this.#showLive(basis, found.answer.grown ?? null)
+  }
+
+  /** Show the live tree, or the model that was made of the same strokes; other settings alone leave the choice. */
+  #showLive(basis: Basis, liveTree: Grown | null): void {
+    const { model, shows } = this.store.state
+    const isOfModel = basis.strokes === model?.strokes
+    const sameStrokes = basis.strokes === this.#grownOf?.strokes
+    this.#grownOf = basis
+    this.store.set({ liveTree, shows: sameStrokes ? shows : isOfModel ? 'model' : 'live' })
   }
 
   /** Show what was traced, and deselect a traced branch: its joint's number may now be another's. */
@@ -91,15 +112,15 @@ export class Tracer {
   }
 
   /** Wait where the service cannot be reached, send a lost photo again, or show a fault. */
-  async #recover(error: unknown, front: Sheet, strokes: Strokes): Promise<void> {
+  async #recover(error: unknown, front: Sheet, basis: Basis): Promise<void> {
     if (error instanceof Unreachable) {
       this.store.set({ online: false })
       await this.wait(RETRY_MS)
     } else if (error instanceof Refused && error.status === 404 && hasPhoto(front)) {
       await this.#uploadAgain(front)
     } else {
-      this.#refused = strokes
-      if (!this.#isStale(front, strokes)) this.store.fault('strokes', faultOf(error))
+      this.#refused = basis
+      if (!this.#isStale(front, basis.strokes)) this.store.fault('strokes', faultOf(error))
     }
   }
 
@@ -114,4 +135,8 @@ export class Tracer {
       await this.wait(RETRY_MS)
     }
   }
+}
+
+function isSame(one: Basis, other: Basis | null): boolean {
+  return one.strokes === other?.strokes && one.settings === other.settings
 }

@@ -123,14 +123,14 @@ export const settingsText = {
     },
     foliage: {
       label: 'Foliage',
-      why: 'What grows on the twigs.',
+      why: 'What grows on the twigs. The photo may be misread.',
       names: {
         auto: 'As in the photo',
         leaves: 'Leaves',
         needles: 'Needles',
-        scales: 'Scales (cypress)',
-        palm: 'Palm fronds',
-        bare: 'Nothing (winter)',
+        scales: 'Scales (cypress, juniper)',
+        palm: 'Palm',
+        bare: 'Bare',
       },
     },
     edge: {

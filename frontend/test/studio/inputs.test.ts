@@ -53,3 +53,13 @@ test('traced sketches have the form of traced photos, with the crowns of both sh
     crowns: { front: [[20, 10]] },
   })
 })
+
+test('the live tree over a photo grows by the settings of its branches, and one that is sketched by defaults', async () => {
+  const calls = service(call => Response.json(call.path.includes('photos') ? answer() : sketchAnswer()))
+  const settings = { ...EMPTY.settings, form: 'vase', wind: 'all' } as const
+  for (const state of [overPhoto, sketched]) await traced(new Client(), { ...state, settings }, true)
+  await traced(new Client(), { ...overPhoto, settings }, false)
+  expect(calls[0]!.body.settings).toMatchObject({ form: 'vase', foliage: 'auto' })
+  expect(calls[0]!.body.settings).not.toHaveProperty('wind')
+  expect([calls[1]!.body.settings, calls[2]!.body.settings]).toEqual([undefined, undefined])
+})

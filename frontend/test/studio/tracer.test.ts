@@ -1,6 +1,6 @@
 import { afterEach, expect, test, vi } from 'vitest'
 import { Client } from '../../src/api/client'
-import { Store } from '../../src/state'
+import { type State, Store } from '../../src/state'
 import { StrokeActions } from '../../src/studio/strokeActions'
 import { Tracer } from '../../src/studio/tracer'
 import { answer, CROWN, grown, LIMB, photoSheets, shownModel, TRUNK } from '../builders'
@@ -189,4 +189,57 @@ test('strokes that a model was grown of show the model again', async () => {
   strokes.undo()
   await settle()
   expect(store.state.shows).toBe('model')
+})
+
+/** Draw a tree, and let it be traced and grown. */
+async function beginDrawn() {
+  const begun = await begin()
+  begun.strokes.draw('crown', CROWN)
+  begun.strokes.draw('branch', TRUNK)
+  await settle()
+  return begun
+}
+
+function choose(store: Store, changes: Partial<State['settings']>): Promise<void> {
+  store.set({ settings: { ...store.state.settings, ...changes } })
+  return settle()
+}
+
+test('the live tree is grown again by other settings, of what was traced', async () => {
+  const calls = service(traced)
+  const { store } = await beginDrawn()
+  const before = calls.length
+  await choose(store, { foliage: 'needles' })
+  expect(calls.slice(before).map(call => [call.body.grow, call.body.settings.foliage])).toEqual([[true, 'needles']])
+})
+
+test('settings that do not change the branches leave the live tree', async () => {
+  const calls = service(traced)
+  const { store } = await beginDrawn()
+  const before = calls.length
+  await choose(store, { height: 14, leaf_size: 2, wind: 'breeze', files: ['obj'] })
+  expect(calls).toHaveLength(before)
+})
+
+test('other settings leave it to the person whether the live tree or the model is shown', async () => {
+  service(traced)
+  const { store } = await beginDrawn()
+  for (const shows of ['live', 'model'] as const) {
+    store.set({ model: shownModel({}, { strokes: store.strokes }), shows })
+    await choose(store, { form: shows === 'live' ? 'spire' : 'vase' })
+    expect(store.state.shows).toBe(shows)
+  }
+})
+
+test('a setting that the service refuses is told, and the next one is sent', async () => {
+  const calls = service(call =>
+    call.body.settings?.form === 'vase' ? problem(422, 'setting_not_allowed', 'no', '/settings/form') : traced(call),
+  )
+  const { store } = await beginDrawn()
+  await choose(store, { form: 'vase' })
+  expect(store.state.faults.strokes).toBeDefined()
+  const before = calls.length
+  await choose(store, { form: 'spire' })
+  expect(calls).toHaveLength(before + 1)
+  expect(store.state.faults.strokes).toBeUndefined()
 })

@@ -32,7 +32,8 @@ from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
-from treestroke.core.segment.kind import KindOdds, kind_odds
+from treestroke.core.segment.form import crown_form
+from treestroke.core.segment.kind import KindOdds, kind_odds, likeliest
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths
@@ -91,12 +92,13 @@ class PhotoEvidence:
     @property
     def odds(self) -> KindOdds:
         """Probability of each kind of foliage by the photo."""
-        trunk_px = self.working.strokes.branches[0].points
-        return kind_odds(self.foliage.look, self.foliage.sureness, self.foliage.mask, trunk_px)
+        return kind_odds(self.foliage.cues)
 
     def taken(self, settings: ModelSettings) -> Taken:
         """Return what the tree is taken for; a branch stroke is needed."""
-        return taken_for(self.odds, "round", settings)
+        branches_px = [branch.points for branch in self.working.strokes.branches]
+        kind = shown_kind(self.odds, settings)
+        return taken_for(self.odds, crown_form(self.foliage.cues, kind, branches_px, self.height_px), settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +164,7 @@ def read_photo(
     report: Report = silent,
     side: Sketch | None = None,
 ) -> PhotoEvidence:
-    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3), sRGB.
+    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3 or 4), sRGB.
 
     Raises
     ------
@@ -173,12 +175,15 @@ def read_photo(
     report("foliage", 0.0)
     working = working_copy(photo, strokes)
     report("foliage", 0.05)
-    foliage = known or segment_foliage(working.photo, working.strokes.crown.points, report=report)
+    foliage = known or segment_foliage(
+        working.photo, working.strokes.crown.points, report=report, cut_out=working.cut_out
+    )
     if not strokes.branches:
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
     height_px = working.height_px(foliage.mask)
-    surroundings = Surroundings(foliage.leaf, foliage.ground, foliage.region)
+    is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
+    surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
     return PhotoEvidence(working, foliage, traced, side_drawing)
 
@@ -210,9 +215,10 @@ def grow_tree(
         grown = grow_palm(lifted.tree, room, settings.iterations, rng)
     else:
         grown = grow(lifted.tree, room, method, rng, report)
-    leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
+    leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
-    grown = grown if crown.kind in ("bare", "palm") else trimmed(grown, Silhouette(tree, crown.camera))
+    if crown.kind not in ("bare", "palm"):
+        grown = trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
         taken=taken,
         grown=grown,

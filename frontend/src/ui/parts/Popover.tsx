@@ -1,4 +1,4 @@
-import type { ButtonHTMLAttributes, ComponentChildren } from 'preact'
+import type { ButtonHTMLAttributes, ComponentChildren, RefObject } from 'preact'
 import { useId, useRef } from 'preact/hooks'
 import './popover.css'
 
@@ -9,11 +9,13 @@ interface Props {
   readonly opener: ButtonHTMLAttributes
   readonly class?: string
   readonly label: string
+  /** Where it is closed by more than Escape and a click elsewhere. */
+  readonly panelRef?: RefObject<HTMLDivElement | null>
   readonly children: ComponentChildren
 }
 
 /** A button, and what it opens below or above itself; Escape and a click elsewhere close it. */
-export function Popover({ opener, class: name = '', label, children }: Props) {
+export function Popover({ opener, class: name = '', label, panelRef, children }: Props) {
   const id = useId()
   const button = useRef<HTMLButtonElement>(null)
   const place = (event: ToggleEvent) => {
@@ -22,7 +24,15 @@ export function Popover({ opener, class: name = '', label, children }: Props) {
   return (
     <>
       <button type="button" {...opener} popovertarget={id} ref={button} />
-      <div id={id} class={`popover ${name}`.trim()} popover="auto" role="group" aria-label={label} onToggle={place}>
+      <div
+        id={id}
+        class={`popover ${name}`.trim()}
+        popover="auto"
+        role="group"
+        aria-label={label}
+        ref={panelRef ?? null}
+        onToggle={place}
+      >
         {children}
       </div>
     </>

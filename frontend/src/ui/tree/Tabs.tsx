@@ -1,4 +1,5 @@
 import type { ComponentChildren } from 'preact'
+import { placeAfter } from '../parts/placeAfter'
 import './tabs.css'
 
 /** A part that is shown in turn with others. */
@@ -18,21 +19,10 @@ interface Props {
   choose(name: string): void
 }
 
-/** Return the place of the tab that a key leads to; the arrows go round. */
-function nextTab(key: string, at: number, count: number): number | undefined {
-  const places: Readonly<Record<string, number>> = {
-    ArrowLeft: (at - 1 + count) % count,
-    ArrowRight: (at + 1) % count,
-    Home: 0,
-    End: count - 1,
-  }
-  return places[key]
-}
-
 /** Tabs above their parts; arrow keys go from one to the next, Home and End to the first and the last. */
 export function Tabs({ id, label, tabs, chosen, choose }: Props) {
   const step = ({ key, currentTarget: bar }: KeyboardEvent & { readonly currentTarget: HTMLElement }) => {
-    const next = nextTab(
+    const next = placeAfter(
       key,
       tabs.findIndex(({ name }) => name === chosen),
       tabs.length,

@@ -11,6 +11,7 @@ import { GrowBar } from './GrowBar'
 import { PreviewButtons, ShowsSwitch, VariantChoice, WindSwitch } from './PreviewButtons'
 import { followState } from './previewContent'
 import { useSettingsView } from './SettingsPanel'
+import { TakenChip } from './TakenChip'
 import './treePane.css'
 
 /** The service's code for a depth that was guessed. */
@@ -33,6 +34,7 @@ export function TreePane() {
         <StageMessage status={status} />
         <PreviewButtons status={status} preview={preview} />
         <div class="stage-foot">
+          <TakenChip />
           <AssumedNote />
           <ShowsSwitch webgl={status.webgl} />
           <VariantChoice />
