@@ -85,7 +85,8 @@ def _leaves(
     if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None
     species = SPECIES.get(settings.species, AUTO)
-    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, is_forked(tree.grown))
+    straps = tree.kind == "palm" and is_forked(tree.grown)
+    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps)
     atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)
