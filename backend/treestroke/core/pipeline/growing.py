@@ -31,6 +31,7 @@ from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
+from treestroke.core.segment.form import crown_form
 from treestroke.core.segment.kind import KindOdds, kind_odds
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
@@ -90,12 +91,13 @@ class PhotoEvidence:
     @property
     def odds(self) -> KindOdds:
         """Probability of each kind of foliage by the photo."""
-        trunk_px = self.working.strokes.branches[0].points
-        return kind_odds(self.foliage.look, self.foliage.sureness, self.foliage.mask, trunk_px)
+        return kind_odds(self.foliage.cues)
 
     def taken(self, settings: ModelSettings) -> Taken:
         """Return what the tree is taken for; a branch stroke is needed."""
-        return taken_for(self.odds, "round", settings)
+        branches_px = [branch.points for branch in self.working.strokes.branches]
+        kind = shown_kind(self.odds, settings)
+        return taken_for(self.odds, crown_form(self.foliage.cues, kind, branches_px, self.height_px), settings)
 
 
 @dataclass(frozen=True, eq=False)

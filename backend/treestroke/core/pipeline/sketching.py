@@ -235,7 +235,7 @@ def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels)
     if frame.scale != 1.0:
         photo = np.asarray(cv2.resize(photo, leafy.shape[::-1], interpolation=cv2.INTER_AREA), dtype=np.uint8)
     foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
-    odds = kind_odds(foliage.look, foliage.sureness, foliage.mask, stem.points_px)
+    odds = kind_odds(foliage.cues)
     view = View(frame.camera, photo, leaves_from, opacity, foliage.pure, leafy, stem)
     return taken_for(odds, "round", settings), view, likeliest(odds) != "bare"
 

@@ -18,7 +18,7 @@ from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.contrast import stands_out
-from treestroke.core.segment.kind import FoliageLook, foliage_look
+from treestroke.core.segment.cues import Cues, crown_cues
 from treestroke.core.segment.leaf_odds import (
     initial_models,
     log_odds_by_colour,
@@ -97,10 +97,8 @@ class Foliage:
         (h, w) where foliage was looked for: the crown, slightly dilated.
     leaf, ground
         Colour models of the foliage and of everything else near it.
-    look
-        How the foliage looks, for judging what it is.
-    sureness
-        Certainty, 0 to 1, that the foliage is leaves and not bare twigs, or the other way round.
+    cues
+        What was measured for judging what the tree is.
     clear
         Whether the crown stands out from what is around it.
     """
@@ -111,8 +109,7 @@ class Foliage:
     region: Mask
     leaf: Mixture
     ground: Mixture
-    look: FoliageLook
-    sureness: float
+    cues: Cues
     clear: bool
 
 
@@ -155,12 +152,12 @@ def segment_foliage(
     pure = _without_glare(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
     if known is None:
         found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
-    look, sureness = foliage_look(pixels, found, region)
+    cues = crown_cues(pixels, found, region)
     alpha = np.where(region, matte(pixels, found), np.float32(0)) if known is None else known
     mask, pure, region = (_in_frame(part, box, crown.shape) for part in (found, pure, region))
     report("foliage", 1.0)
     clear = stands_out(pixels, inside, max(height, width))
-    return Foliage(mask, _in_frame(alpha, box, crown.shape), pure, region, leaf, ground, look, sureness, clear)
+    return Foliage(mask, _in_frame(alpha, box, crown.shape), pure, region, leaf, ground, cues, clear)
 
 
 def _without_glare(foliage: Mask, pixels: Picture) -> Mask:
