@@ -588,6 +588,8 @@ export interface components {
             score: {
                 [key: string]: number;
             } | null;
+            /** @description with the report */
+            taken?: components["schemas"]["Taken"] | null;
             /**
              * Report
              * @description as the command line's --report
