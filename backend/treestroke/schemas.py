@@ -148,6 +148,7 @@ class ModelInfo(Wire):
                 "attempt": 1,
                 "error": None,
                 "score": None,
+                "taken": None,
                 "report": None,
                 "files": {"strokes.json": "/v1/models/mdl_0a1b2c3d4e5f60718293a4b5/strokes.json"},
                 "settings": {"height": 14.0},
@@ -172,6 +173,7 @@ class ModelInfo(Wire):
     attempt: int
     error: Failure | None
     score: dict[str, float] | None
+    taken: Taken | None = Field(default=None, description="with the report")
     report: dict[str, Any] | None = Field(description="as the command line's --report")
     files: dict[str, str]
     settings: dict[str, Any]

@@ -18,14 +18,14 @@ type Trees = Pick<State, 'shows' | 'liveTree' | 'model' | 'settings' | 'traced'>
 
 /** Return what the photo's tree is taken for; null while that is not known, and where the tree is sketched. */
 export function takenIn({ traced, model }: Pick<State, 'traced' | 'model'>): Taken | null {
-  return traced ? traced.answer.taken : takenOf(model)
+  return traced ? traced.answer.taken : (model?.info.taken ?? null)
 }
 
 /** Return what the tree that is shown, live or grown, was taken for by its photo and strokes. */
 export function shownTaken(state: Trees): Taken | null {
   const { model, traced } = state
   const isOfOtherStrokes = showsModel(state) && model!.strokes !== traced?.of
-  return (isOfOtherStrokes && takenOf(model)) || takenIn(state)
+  return (isOfOtherStrokes && model!.info.taken) || takenIn(state)
 }
 
 /** Return a trait of the tree that is shown; null while it is not known. */
@@ -54,9 +54,4 @@ export function shownSettings(state: Omit<Trees, 'traced'>): Settings {
 export function showsModel({ shows, liveTree, model }: Pick<State, 'shows' | 'liveTree' | 'model'>): boolean {
   const hasTree = Boolean(model?.glb ?? model?.growth)
   return hasTree && (shows === 'model' || !liveTree)
-}
-
-/** Return what a model was taken for, by its report. */
-function takenOf(model: State['model']): Taken | null {
-  return (model?.info.report?.taken as Taken | undefined) ?? null
 }

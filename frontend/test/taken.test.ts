@@ -1,4 +1,5 @@
 import { expect, test } from 'vitest'
+import type { Taken } from '../src/api/types'
 import { EMPTY, type State } from '../src/state'
 import { asksForKind, shownTaken, takenIn, traitOf } from '../src/taken'
 import { answer, grown, shownModel, TAKEN } from './builders'
@@ -13,8 +14,8 @@ function chosen(changes: Partial<State['settings']>): Partial<State> {
 }
 
 /** A model that is shown, made by these settings. */
-function made(settings: Partial<State['settings']>, report: Record<string, unknown> = {}): Partial<State> {
-  const info = { status: 'succeeded', settings, report } as const
+function made(settings: Partial<State['settings']>, taken: Taken | null = null): Partial<State> {
+  const info = { status: 'succeeded', settings, taken } as const
   return { shows: 'model', model: shownModel(info, { strokes: EMPTY.history.present, glb: new ArrayBuffer(4) }) }
 }
 
@@ -48,9 +49,8 @@ test('a model that is not there yet is not what is shown', () => {
   expect(traitOf({ ...waiting, model }, 'foliage')).toEqual({ name: 'palm', from: 'settings' })
 })
 
-test('a model of other strokes was taken for what its report says', () => {
-  const report = { taken: { ...TAKEN, foliage: 'scales' } }
-  const same = state(made({}, report))
+test('a model of other strokes was taken for something of its own', () => {
+  const same = state(made({}, { ...TAKEN, foliage: 'scales' }))
   expect(shownTaken(same)).toEqual(TAKEN)
   const other = { ...same, traced: { of: { ...EMPTY.history.present }, answer: same.traced!.answer } }
   expect(shownTaken(other)?.foliage).toBe('scales')

@@ -29,6 +29,7 @@ def test_a_model_is_accepted_and_made(service: Service, client: httpx.Client, ph
     assert (told["status"], told["progress"], told["attempt"]) == ("succeeded", 1.0, 1)
     assert set(told["files"]) == {"tree.glb", "preview.png", "strokes.json", "project"}
     assert told["score"] == told["report"]["score"]
+    assert told["taken"] == told["report"]["taken"]
     assert told["created"] <= told["started"] <= told["finished"]
 
 

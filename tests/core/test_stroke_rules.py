@@ -132,15 +132,46 @@ def test_a_second_stem_stands_on_the_ground(start: int, points: list[list[float]
     assert mended.strokes.branches[1].points.tolist() == [*points, [240, 150]]
 
 
+def test_a_stroke_from_the_ground_that_touches_no_other_is_a_stem_of_its_own() -> None:
+    mended = mend(branches=(TRUNK, [[240, 288], [250, 150]], [[270, 291], [270, 140]]))
+    assert mended.warnings == ()
+    assert [stroke.points.tolist() for stroke in mended.strokes.branches[1:]] == [
+        [[240, 290], [240, 288], [250, 150]],
+        [[270, 291], [270, 140]],
+    ]
+
+
+def test_a_stroke_that_starts_well_above_the_ground_is_joined() -> None:
+    mended = mend(branches=(TRUNK, [[240, 260], [280, 150]]))
+    assert [warning.code for warning in mended.warnings] == ["branch_joined"]
+
+
 @pytest.mark.parametrize(
     "trunk",
-    [[[110, 100], [290, 95]], [[200, 60], [205, 150]], [[120, 140], [160, 130], [280, 150]]],
+    [[[110, 100], [290, 95]], [[200, 60], [205, 130]], [[120, 140], [160, 130], [280, 150]]],
     ids=["level", "downward", "nearly level"],
 )
 def test_a_trunk_that_does_not_rise_is_warned_of(trunk: list[list[float]]) -> None:
     (warning,) = mend(branches=(trunk,)).warnings
     assert (warning.code, warning.stroke) == ("trunk_level", "branches/0")
     assert "root up the trunk" in warning.detail
+
+
+@pytest.mark.parametrize(
+    "trunk", [[[200, 150], [200, 290]], [[200, 60], [205, 150]], [[190, 30], [180, 120], [220, 290]]]
+)
+def test_a_trunk_drawn_from_its_top_down_is_turned(trunk: list[list[float]]) -> None:
+    mended = mend(branches=(trunk, [[203, 100], [280, 120]]))
+    assert mended.strokes.branches[0].points.tolist() == trunk[::-1]
+    assert ("stroke_turned", "branches/0") in [(one.code, one.stroke) for one in mended.warnings]
+    assert not {one.code for one in mended.warnings} & DOUBTS
+
+
+def test_a_trunk_that_stands_on_its_head_is_not_turned() -> None:
+    crown = [[100, 140], [300, 140], [300, 260], [100, 260]]
+    mended = mend(crown=crown, branches=([[200, 10], [200, 180]],))
+    assert mended.strokes.branches[0].points.tolist() == [[200, 10], [200, 180]]
+    assert {one.code for one in mended.warnings} == {"trunk_level"}
 
 
 @pytest.mark.parametrize(

@@ -105,7 +105,7 @@ def test_with_shadows_a_tree_takes_no_more_than_six_calls(open_page: OpenPage) -
     visitor.wait_for_preview("model")
     visitor.page.get_by_role("combobox", name="View").select_option("side")
     for _ in range(2):
-        visitor.page.get_by_role("button", name="Leaves").click()
+        visitor.page.get_by_role("button", name="Leaves", exact=True).click()
         visitor.wait_for_rest()
     visitor.shot("shadows")
     assert visitor.page.evaluate("mostCalls") == MOST_CALLS

@@ -39,6 +39,7 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
         attempt=row.attempt,
         error=schemas.Failure(**row.error) if row.error else None,
         score=_score(row.report),
+        taken=_taken(row.report),
         report=row.report,
         files={name: f"{path}/{name}" for name in names if name != GROWTH},
         settings=row.settings,
@@ -52,6 +53,11 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
 
 def _score(report: dict[str, Any] | None) -> dict[str, float] | None:
     return None if report is None else report["score"]
+
+
+def _taken(report: dict[str, Any] | None) -> schemas.Taken | None:
+    taken = (report or {}).get("taken")  # older reports have none
+    return None if taken is None else schemas.Taken(**taken)
 
 
 def _time(seconds: float) -> str:

@@ -25,6 +25,10 @@ class StemPixels:
     radii_px: Floats
 
 
+OWN_COLOUR_SHARE = 0.1
+"""Share of the foliage's pixels above which colours are taken only from those that are leaves by their own colour."""
+
+
 @dataclass(frozen=True, eq=False)
 class View:
     """What one picture (h, w) shows of a tree; blank where it was drawn on white.
@@ -67,6 +71,13 @@ class View:
     def foliage(self) -> Mask:
         """(h, w) pixels of the foliage."""
         return np.isneginf(self.leaves_from)
+
+    @property
+    def own_colour(self) -> Opacity:
+        """(h, w) share of each pixel that shows a leaf in its own colour."""
+        own = self.leaf_coloured & self.foliage
+        leaves = own if own.sum() > OWN_COLOUR_SHARE * self.foliage.sum() else self.foliage
+        return np.where(leaves, self.opacity, np.float32(0))
 
 
 @dataclass(frozen=True, eq=False)

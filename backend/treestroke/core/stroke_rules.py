@@ -1,5 +1,6 @@
 """Rules that strokes must keep to describe a tree, and how small faults are mended."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,9 +23,14 @@ TREE_HEIGHTS = (0.1, 150.0)
 """Least and greatest height of a tree, metres."""
 STEM_SHARE = 0.03
 """A later stroke that starts this near the root, as a share of the tree's height, is a second stem."""
+GROUND_SHARE = 0.04
+"""A later stroke that starts no further above the root's level than this share of the tree's height starts at the
+ground; if it touches no other, it is a stem with a root of its own."""
 LEAST_RISE = 0.4
 """Least rise of a trunk, as a share of the furthest it goes from its root (on 28 photos: 0.89 and more). A stroke below
 it is level, or was drawn on a photo that was turned since."""
+FOOT = 0.15
+"""Greatest height above the crown's bottom, as a share of the crown's, at which a trunk that is drawn down may end."""
 MOST_OUTSIDE, LOOSE, OUTSIDE_PLACES = 0.15, 0.05, 500
 """Largest share of a stroke that may lie further outside the photo than `LOOSE` of its long side, judged at
 `OUTSIDE_PLACES` places; a stroke around a tree that the edge cuts stays nearer."""
@@ -38,8 +44,9 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     """Return strokes that were checked against a photo of the given size, px, and mended where possible.
 
     Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
-    nearest of them by one more point at its start, with a warning; a second stem starts on the ground; a crown that
-    crosses itself is kept (fill it with `fill_outline`), with a warning.
+    nearest of them by one more point at its start, with a warning; a trunk drawn from its top down to the root is
+    turned, with a warning; a further stem starts on the ground; a crown that crosses itself is kept (fill it with
+    `fill_outline`), with a warning.
 
     Raises
     ------
@@ -63,10 +70,12 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     warnings = ((CROSSING,) if crossing else ()) + _outside(strokes, width, height)
     if not inside.branches:
         return MendedStrokes(inside, warnings)
+    inside, turned = _upward(inside)
     _check_trunk(inside, crown, coarse, max(width, height))
     _check_scale(inside)
     branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
-    return MendedStrokes(replace(inside, branches=branches), warnings + _level(inside.branches[0]) + joined)
+    mended = warnings + turned + _level(inside.branches[0]) + joined
+    return MendedStrokes(replace(inside, branches=branches), mended)
 
 
 def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, ...]:
@@ -94,6 +103,24 @@ def _share_outside(points: Floats, width: int, height: int) -> float:
     places = place_at(near, np.linspace(0.0, arc_lengths(near)[-1], OUTSIDE_PLACES))
     beyond = np.abs(places - np.clip(places, 0.0, (width, height))).max(axis=1)
     return float((beyond > LOOSE * side).mean())
+
+
+def _upward(strokes: Strokes) -> tuple[Strokes, tuple[StrokeWarning, ...]]:
+    """Return the strokes with the trunk from its root up, and a warning where it was drawn from its top down.
+
+    It was drawn so if it runs from the crown down to its foot or below, and leaves it further there than at its top:
+    the strokes of a photo that stands on its head are left as they are.
+    """
+    trunk, rest = strokes.branches[0], strokes.branches[1:]
+    crown = strokes.crown.points[:, 1]
+    top, bottom = float(crown.min()), float(crown.max())
+    above, below = top - trunk.points[0, 1], trunk.points[-1, 1] - bottom
+    runs_down = above > top - bottom and below > max(above, FOOT * (top - bottom))
+    turned = replace(trunk, points=trunk.points[::-1])
+    if not runs_down or not _level(trunk) or _level(turned):
+        return strokes, ()
+    detail = "the trunk was drawn from its top down, and was turned; draw it from the root up"
+    return replace(strokes, branches=(turned, *rest)), (StrokeWarning("stroke_turned", "branches/0", detail),)
 
 
 def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:
@@ -219,14 +246,14 @@ def _check_trunk(strokes: Strokes, crown: NDArray[np.bool_], coarse: float, side
 
 def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], tuple[StrokeWarning, ...]]:
     root = strokes.branches[0].points[0]
-    stem_reach = STEM_SHARE * abs(root[1] - strokes.crown.points[:, 1].min())
+    height = abs(float(root[1] - strokes.crown.points[:, 1].min()))
     branches, warnings = [strokes.branches[0]], []
     for index, stroke in enumerate(strokes.branches[1:], start=1):
         start = stroke.points[:1]
         found = [_nearest(earlier.points, start) for earlier in branches]
         parent = int(np.argmin([gap[0] for _, gap in found]))
         joint, gap = found[parent][0][0], float(found[parent][1][0])
-        if np.hypot(*(start[0] - root)) <= stem_reach:
+        if is_stem(stroke, branches, height, reach):
             stroke = _on_the_ground(stroke, float(root[1]))
         elif gap > reach:
             stroke = replace(stroke, points=np.vstack([joint, stroke.points]))
@@ -234,6 +261,21 @@ def _join_branches(strokes: Strokes, reach: float) -> tuple[tuple[Stroke, ...], 
             warnings.append(StrokeWarning("branch_joined", f"branches/{index}", detail))
         branches.append(stroke)
     return tuple(branches), tuple(warnings)
+
+
+def is_stem(stroke: Stroke, earlier: Sequence[Stroke], height: float, reach: float) -> bool:
+    """Return whether a stroke stands on the ground by itself, and does not leave one of those before it (px).
+
+    The first does; so does one that starts beside the first one's root, or at the ground and further than ``reach``
+    from all that is drawn. ``height`` is the tree's.
+    """
+    if not earlier:
+        return True
+    start, root = stroke.points[:1], earlier[0].points[0]
+    if np.hypot(*(start[0] - root)) <= STEM_SHARE * height:
+        return True
+    at_ground = start[0, 1] >= root[1] - GROUND_SHARE * height
+    return bool(at_ground and min(float(_nearest(other.points, start)[1][0]) for other in earlier) > reach)
 
 
 def _on_the_ground(stem: Stroke, ground: float) -> Stroke:

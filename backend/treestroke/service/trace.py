@@ -126,7 +126,7 @@ def trace(
         if last is not None and same_strokes(last.strokes, drawn):
             traced = last.photo_trace
         else:
-            traced = trace_photo(picture, drawn, None if last is None else last.photo_trace.evidence.foliage)
+            traced = trace_photo(picture, drawn, None if last is None else last.photo_trace.evidence)
         traced = with_side(traced, None if side is None else load_sketch(side, "side"))
         grown = grow_photo(traced, chosen, np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(traced.foliage) if last is None else last.rings

@@ -10,6 +10,7 @@ export const DEFAULT_SETTINGS: Required<components['schemas']['ModelSettings']> 
   species: 'auto',
   season: 'photo',
   foliage: 'auto',
+  light: 'photo',
   edge: 'complete',
   leaf_size: 1,
   leaf_density: 1,

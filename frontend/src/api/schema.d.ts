@@ -588,6 +588,8 @@ export interface components {
             score: {
                 [key: string]: number;
             } | null;
+            /** @description with the report */
+            taken?: components["schemas"]["Taken"] | null;
             /**
              * Report
              * @description as the command line's --report
@@ -991,6 +993,13 @@ export interface components {
              * @enum {string}
              */
             edge: "complete" | "cut";
+            /**
+             * Light
+             * @description light and shade as in the photo, or evened
+             * @default photo
+             * @enum {string}
+             */
+            light: "photo" | "even";
             /**
              * Leaf Size
              * @description factor on the size of the leaves

@@ -138,6 +138,11 @@ export const settingsText = {
       why: 'What to do with a crown that the photo cuts off.',
       names: { complete: 'Complete the crown', cut: 'End the tree there' },
     },
+    light: {
+      label: 'Light',
+      why: 'Light and shade of the leaves. Very dark photos are brightened.',
+      names: { photo: 'As in the photo', even: 'Even: without sun and shade' },
+    },
     leaf_size: { label: 'Leaf size', unit: '×', why: '1 is the size that suits the tree.' },
     leaf_density: {
       label: 'Leaf density',

@@ -52,11 +52,12 @@ BOXES = {"left": (80, 0, 300, 400), "right": (0, 0, 220, 400), "top": (0, 80, 30
 @pytest.mark.parametrize("side", BOXES)
 def test_a_round_crown_that_an_edge_cuts_is_round_again(photo: np.ndarray, mask: np.ndarray, side: str) -> None:
     box = BOXES[side]
-    found, corner, sides = crown_of(cropped(photo, strokes((150, 150), 124), box))
+    evidence = cropped(photo, strokes((150, 150), 124), box)
+    found, (x, y), sides = crown_of(evidence)
     assert sides == (side,)
-    shown = cv2.warpAffine(
-        found.astype(np.uint8), np.float32([[1, 0, box[0] - corner[0]], [0, 1, box[1] - corner[1]]]), (300, 400)
-    )
+    scale = evidence.working.frame.scale
+    back = np.float32([[1 / scale, 0, box[0] - x / scale], [0, 1 / scale, box[1] - y / scale]])
+    shown = cv2.warpAffine(found.astype(np.uint8), back, (300, 400))
     part = np.zeros_like(mask)
     part[box[1] : box[3], box[0] : box[2]] = mask[box[1] : box[3], box[0] : box[2]]
     assert overlap(part, mask) < 0.86

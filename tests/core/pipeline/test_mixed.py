@@ -61,6 +61,6 @@ def test_the_crown_is_as_deep_as_the_side_shows(seen: PhotoEvidence) -> None:
 def test_without_a_side_nothing_changes(seen: PhotoEvidence) -> None:
     photo = decode_photo((EXAMPLES / "burr_oak_dusk.jpg").read_bytes(), "oak")
     strokes = parse_strokes((EXAMPLES / "burr_oak_dusk.strokes.json").read_bytes(), "oak")
-    plain = grow_tree(read_photo(photo, strokes, seen.foliage), FEW, np.random.default_rng(0))
+    plain = grow_tree(read_photo(photo, strokes, seen), FEW, np.random.default_rng(0))
     assert set(plain.score) == {"attractors_reached"}
     assert not plain.volume.depth_seen

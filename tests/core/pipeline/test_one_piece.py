@@ -9,9 +9,8 @@ from tests.conftest import DATA
 from tests.pieces import touching_pieces
 
 from treestroke.core.mesh.tubes import tubes
-from treestroke.core.pipeline.growing import grow_tree, read_photo
+from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.service.loading import load_photo
@@ -20,12 +19,12 @@ SCALE = 0.3
 
 
 @pytest.fixture(scope="module")
-def beech() -> tuple[np.ndarray, np.ndarray, np.ndarray, Foliage]:
-    """Give a small photo, its crown and trunk strokes, px, and its foliage."""
+def beech() -> tuple[np.ndarray, np.ndarray, np.ndarray, PhotoEvidence]:
+    """Give a small photo, its crown and trunk strokes, px, and what is read in the crown."""
     photo = cv2.resize(load_photo(DATA / "beech_round.jpg"), None, fx=SCALE, fy=SCALE, interpolation=cv2.INTER_AREA)
     strokes = json.loads((DATA / "beech_round.strokes.json").read_text())
     crown, trunk = (np.array(s["points"]) * SCALE for s in (strokes["crown"], strokes["branches"][0]))
-    return photo, crown, trunk, segment_foliage(photo, crown)
+    return photo, crown, trunk, read_photo(photo, Strokes(Stroke(crown)))
 
 
 def hasty(crown: np.ndarray, trunk: np.ndarray, rng: np.random.Generator) -> tuple[Stroke, ...]:
@@ -50,8 +49,8 @@ def hasty(crown: np.ndarray, trunk: np.ndarray, rng: np.random.Generator) -> tup
 
 
 def grown(beech, more: tuple[Stroke, ...], seed: int = 0, width: float | None = None) -> Skeleton:
-    photo, crown, trunk, foliage = beech
-    seen = read_photo(photo, Strokes(Stroke(crown), (Stroke(trunk, width), *more)), foliage)
+    photo, crown, trunk, known = beech
+    seen = read_photo(photo, Strokes(Stroke(crown), (Stroke(trunk, width), *more)), known)
     return grow_tree(seen, ModelSettings(iterations=15), np.random.default_rng(seed)).grown.skeleton
 
 

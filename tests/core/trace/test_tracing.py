@@ -136,6 +136,38 @@ def test_a_later_stroke_beside_the_root_is_a_second_stem() -> None:
     assert traced.stroke[roots].tolist() == [0, 1]
 
 
+def test_a_stroke_from_the_ground_away_from_all_others_has_a_root_of_its_own() -> None:
+    second = [(290.0, 428.0), (320.0, 240.0)]
+    traced = trace(stroked(STEM, second), TREE | wood_mask([(second, 8.0)], SIZE, SIZE))
+    roots = np.flatnonzero(traced.skeleton.parents < 0)
+    assert traced.stroke[roots].tolist() == [0, 1]
+    assert traced.skeleton.points[roots[1]] == pytest.approx(second[0], abs=2.0)
+
+
+@pytest.mark.parametrize("thickness", [9.0, 40.0, 150.0])
+def test_a_trunk_s_thickness_is_measured_however_thick_it_is(thickness: float) -> None:
+    wood = wood_mask([(STEM, thickness)], SIZE, SIZE)
+    wood &= np.arange(SIZE)[:, None] < STEM[0][1]
+    traced = trace(stroked(STEM), wood)
+    above_ground = np.abs(traced.skeleton.points[:, 1] - 330).argmin()
+    assert traced.skeleton.radii[above_ground] == pytest.approx(thickness / 2, rel=0.2)
+
+
+def test_a_trunk_before_wood_of_its_colour_stays_thin() -> None:
+    wood = np.zeros((SIZE, SIZE), dtype=bool)
+    wood[260:430] = True
+    assert trace(stroked(STEM), wood).skeleton.radii.max() < 30
+
+
+def test_thickness_below_the_crown_is_not_judged_by_the_branch_s_tip_beyond_it() -> None:
+    over = [(220.0, 240.0), (400.0, 150.0)]
+    wood = wood_mask([(STEM, 11.0), (over, 8.0)], SIZE, SIZE)
+    wood[:, 384:] &= wood_mask([(over, 3.0)], SIZE, SIZE)[:, 384:]
+    traced = trace(stroked(STEM, over), wood)
+    middle = np.flatnonzero((traced.stroke == 1) & (traced.skeleton.points[:, 0] < 330))
+    assert traced.skeleton.radii[middle].max() == pytest.approx(4.0, abs=1.0)
+
+
 def test_a_later_stroke_away_from_the_root_is_joined_to_its_parent() -> None:
     traced = trace(stroked(STEM, LEFT, [(140.0, 152.0), (50.0, 150.0)]))
     assert np.count_nonzero(traced.skeleton.parents < 0) == 1

@@ -62,9 +62,12 @@ def grow_palm(skeleton: Skeleton, crown: CrownToFill, rounds: int, rng: np.rando
 
 
 def is_forked(grown: Grown) -> bool:
-    """Tell whether a grown palm's stems fork: true palms do not, dracaenas and yuccas do, and these bear straps."""
-    tree, visible = grown.skeleton, grown.born == 0
-    stems = Skeleton(tree.points[visible], tree.radii[visible], tree.parents[visible])
+    """Tell whether a grown palm's stems fork: true palms do not, dracaenas and yuccas do, and these bear straps.
+
+    The joints of the stems come before all others.
+    """
+    tree, count = grown.skeleton, int((grown.born == 0).sum())
+    stems = Skeleton(tree.points[:count], tree.radii[:count], tree.parents[:count])
     return len(_tops(stems)) > int((stems.parents < 0).sum())
 
 

@@ -1,4 +1,4 @@
-"""Chooses each card's tile and light: by the picture's colour where a view shows the place."""
+"""Chooses each card's tile and brightness: by the picture's colour where a view shows the place."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,29 +7,30 @@ import numpy as np
 
 from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
+from treestroke.core.imaging.light import luminance_of_lightness
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.paint.palette import nearest_colour
 from treestroke.core.paint.seasons import Recolour
 from treestroke.core.types import Floats, Indices
 
-SHOWN_DEPTH = 0.35
-"""Places nearer to the viewer than this share of the crown's half depth count as seen."""
+HIDDEN_BEHIND = 0.15
+"""Places further behind the crown's middle than this share of its half depth count as hidden: what lies before them is
+seen somewhere, through gaps too."""
 SIDEWAYS, UPDOWN = 0.9, 0.12
 """Distances from which hidden places take their colour, as shares of the crown's half width and height."""
 WAVES = 4
 """Sine waves that make up the smooth displacement."""
 WAVE_LENGTHS = (0.5, 1.3)
 """Their lengths, as shares of the crown's width: clumps of colour stay together, and none repeats."""
-COLOUR_SCATTER = 3.0
+COLOUR_SCATTER = 1.5
 """Standard deviation, Lab units, of a card's colour about the picture's, so that neighbours mix their tiles."""
-FOREIGN = 20.0
-"""Lab distance from all tiles above which a pixel is sky or wood; the mean colour around it is taken instead."""
 CLUMP = 0.6
 """Lengths of the waves of a season's colours through the crown, over those of the displacement."""
 MOOD_SCATTER = 0.45
 """Standard deviation of a card's position in a season's colours about its clump's, which itself varies by 1."""
-DARKEST = 0.55
-"""Brightness deep inside the crown and at its foot, against 1 at its outside."""
+DEPTH_SHADE = 0.7
+"""Brightness deep inside the crown and at its foot, against 1 at its outside: the photo shows the light on the outside,
+but not how much darker it is within."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,19 +52,17 @@ class _Waves:
 class _CellColours:
     """The colours of all views' cells, one view after the other.
 
-    ``labs`` and ``broad_labs`` (cells, 3) are those of `FoliageGrid`; ``first`` (views,) is each view's first cell.
+    ``labs`` (cells, 3) are those of `FoliageGrid`; ``first`` (views,) is each view's first cell.
     """
 
     grids: tuple[FoliageGrid, ...]
     labs: Floats
-    broad_labs: Floats
     first: Indices
 
     @staticmethod
     def of(grids: Sequence[FoliageGrid]) -> "_CellColours":
         first = np.cumsum([0] + [len(grid.labs) for grid in grids[:-1]])
-        labs, broad = (np.concatenate([getattr(grid, name) for grid in grids]) for name in ("labs", "broad_labs"))
-        return _CellColours(tuple(grids), labs, broad, first)
+        return _CellColours(tuple(grids), np.concatenate([grid.labs for grid in grids]), first)
 
     def cells_of(self, points: Floats, view: Indices) -> Indices:
         """Cells (n,) onto which points (n, 3), metres, project, each in its own view (n,)."""
@@ -102,30 +101,31 @@ class Colouring:
     recolour: Recolour | None = None
     mood: _Waves | None = None
 
-    def tiles(self, points: Floats, rng: np.random.Generator) -> Indices:
-        """Choose a tile (n,) for each place (n, 3), metres: of the colour there in the view that shows the place best.
+    def tiles(self, points: Floats, rng: np.random.Generator) -> tuple[Indices, Floats]:
+        """Choose a tile (n,) for each place (n, 3), metres, and how bright it is there (n,) over its own brightness.
 
-        That is the view toward which the place stands furthest out of the crown. Places that no view shows take the
-        colour of another place of about the same height, displaced smoothly in space, so that clumps persist, while the
-        back is no mirror image and no colour is smeared along the view.
+        It is the tile nearest to the colour there in the view that shows the place best: the view toward which the
+        place stands furthest out of the crown. Places that no view shows take the colour of another place of about the
+        same height, displaced smoothly in space, so that clumps persist, while the back is no mirror image and no
+        colour is smeared along the view.
         """
+        labs = self._labs(points)
+        if self.recolour is not None and self.mood is not None:
+            moods = _shares(self.mood.at(points) + rng.normal(0, MOOD_SCATTER, len(points)))
+            labs = self.recolour.at(labs, moods)
+        tiles = nearest_colour(labs + rng.normal(0, COLOUR_SCATTER, points.shape), self.tile_labs)[0]
+        wanted, own = luminance_of_lightness(labs[:, 0]), luminance_of_lightness(self.tile_labs[tiles, 0])
+        return tiles, wanted / np.maximum(own, 1e-6)
+
+    def _labs(self, points: Floats) -> Floats:
+        """Colour (n, 3), CIE Lab, that the views give places (n, 3), metres."""
         view, nearness = self._best_view(points)
         half_depth = self.volume.half_depth(points)
-        hidden = np.clip((SHOWN_DEPTH * half_depth - nearness) / np.maximum(half_depth, 1e-6), 0, 1)
+        hidden = np.clip(-nearness / np.maximum(half_depth, 1e-6) - HIDDEN_BEHIND, 0, 1)
         right = np.stack([grid.camera.right() for grid in self.colours.grids])[view]
         x = (points * right).sum(axis=1) + hidden * SIDEWAYS * self.volume.widest * self.sideways.at(points)
         y = points[:, 1] + hidden * UPDOWN * self.height * self.updown.at(points)
-        cells = self.colours.cells_of(self._folded(x, y, right), view)
-        scatter = rng.normal(0, COLOUR_SCATTER, points.shape)
-        if self.recolour is not None and self.mood is not None:
-            moods = _shares(self.mood.at(points) + rng.normal(0, MOOD_SCATTER, len(points)))
-            labs = self.recolour.at(self.colours.labs[cells], moods)
-            return nearest_colour(labs + scatter, self.tile_labs)[0]
-        tiles, square = nearest_colour(self.colours.labs[cells] + scatter, self.tile_labs)
-        foreign = square > FOREIGN**2
-        broad = self.colours.broad_labs[cells[foreign]] + scatter[foreign]
-        tiles[foreign] = nearest_colour(broad, self.tile_labs)[0]
-        return tiles
+        return self.colours.labs[self.colours.cells_of(self._folded(x, y, right), view)]
 
     def _best_view(self, points: Floats) -> tuple[Indices, Floats]:
         """Find the view (n,) toward which each place (n, 3) stands furthest from the axis, and how far (n,), metres."""
@@ -181,7 +181,7 @@ def _draw_waves(width: float, rng: np.random.Generator) -> _Waves:
 
 
 def shades(points: Floats, lift: Floats, volume: CrownVolume) -> Floats:
-    """Brightness (n,) of places (n, 3), metres, in the crown, DARKEST to 1.
+    """Brightness (n,) of places (n, 3), metres, in the crown, `DEPTH_SHADE` to 1.
 
     Light falls in from outside and above: brightness grows with the reach from the crown's axis and with height,
     and cards above their branch (``lift`` (n,) towards 1) are brighter than those below it (towards -1).
@@ -190,4 +190,4 @@ def shades(points: Floats, lift: Floats, volume: CrownVolume) -> Floats:
     height = np.clip((points[:, 1] - bottom) / (top - bottom), 0, 1)
     openness = np.clip(np.hypot(volume.reach(points), np.maximum(0, 2 * height - 1)), 0, 1)
     light = np.clip(1.15 * openness + 0.2 * height + 0.12 * lift - 0.15, 0, 1)
-    return np.asarray(DARKEST + (1 - DARKEST) * light * light * (3 - 2 * light))
+    return np.asarray(DEPTH_SHADE + (1 - DEPTH_SHADE) * light * light * (3 - 2 * light))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.paint.palette import flattened, lab_from_rgb
+from treestroke.core.paint.palette import SPRAY, lab_from_rgb, unshaded
 from treestroke.core.types import Floats, Indices, Mask
 
 CELLS_ACROSS = 800
@@ -19,8 +19,10 @@ MIN_STEP_PX = 0.25
 """Least side of a cell: a tiny tree's cells are finer than its pixels."""
 PADDING = 3
 """Empty cells around the foliage, so that points outside read as outside."""
-LOCAL_CELLS, BROAD_CELLS = 1.0, 8.0
-"""Standard deviations of the local means of colour, cells: a leaf (its own light and dark), and a whole spray."""
+AROUND = 4.0
+"""Standard deviation of the blur that finds the colour around a spray, over `SPRAY`."""
+AROUND_WEIGHT = 1e-3
+"""Weight of what is around: it counts where a spray shows next to no leaf's colour."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +44,9 @@ class FoliageGrid:
     leaves_from
         (rows, columns) depth, metres, from which on leaves may lie: minus infinity in the foliage, that of the wood
         where wood is seen, infinity elsewhere.
-    labs, broad_labs
-        (rows * columns, 3) mean of the foliage's colour over a leaf and over a spray, CIE Lab, light flattened as
-        the atlas's; outside the foliage the colour of the nearest part of it.
+    labs
+        (rows * columns, 3) mean of the leaves' colour over a spray, CIE Lab, unshaded as the atlas's; outside the
+        foliage the colour of the nearest part of it.
     """
 
     camera: Camera
@@ -54,7 +56,6 @@ class FoliageGrid:
     inside: Mask
     leaves_from: NDArray[np.float32]
     labs: Floats
-    broad_labs: Floats
 
     def cells_of(self, points_world: Floats) -> Indices:
         """Index (n,) into the flattened grid of the cells onto which world points (n, 3), metres, project.
@@ -97,12 +98,10 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
     size = (max(1, round((right - left) / step)), max(1, round((bottom - top) / step)))
     box = (slice(top, bottom), slice(left, right))
     part = mask[box].astype(np.uint8)
-    foliage = cv2.bitwise_and(view.picture[box], view.picture[box], mask=part)
     share = _padded(cv2.resize(part * view.opacity[box], size, interpolation=shrink))
-    total = _padded(cv2.resize(foliage, size, interpolation=shrink).reshape(*size[::-1], 3))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
-    fine, broad = (_mean_labs(total, share, sigma, inside) for sigma in (LOCAL_CELLS, BROAD_CELLS))
-    nearest = _nearest_inside(inside)
+    weight = view.own_colour[box]
+    colour = cv2.resize(np.dstack([view.picture[box] * weight[..., None], weight]), size, interpolation=shrink)
     return FoliageGrid(
         camera=view.camera,
         step_px=step,
@@ -110,8 +109,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         cell_m=step * float(view.camera.pixel_size(crown_middle[None])[0]),
         inside=inside,
         leaves_from=_depths(view.leaves_from[box], inside, size),
-        labs=fine[nearest],
-        broad_labs=broad[nearest],
+        labs=_spray_labs(_padded(colour), inside)[_nearest_inside(inside)],
     )
 
 
@@ -128,12 +126,13 @@ def _padded(image: NDArray[Any]) -> NDArray[np.float32]:
     return np.pad(image.astype(np.float32), border)
 
 
-def _mean_labs(colour: NDArray[np.float32], share: NDArray[np.float32], sigma: float, inside: Mask) -> Floats:
-    """Local mean colour of the cells inside (n, 3)."""
-    total = cv2.GaussianBlur(colour, (0, 0), sigma)
-    amount = cv2.GaussianBlur(share, (0, 0), sigma)
-    mean = np.clip(total / np.maximum(amount, np.float32(1e-4))[..., None], 0, 255).astype(np.uint8)
-    return flattened(lab_from_rgb(mean[inside]))
+def _spray_labs(colour: NDArray[np.float32], inside: Mask) -> Floats:
+    """Colour of the sprays at the cells inside (n, 3), CIE Lab, by each cell's colour times weight, and weight (4)."""
+    sigma = SPRAY * CELLS_ACROSS
+    near, around = (cv2.GaussianBlur(colour, (0, 0), blur) for blur in (sigma, AROUND * sigma))
+    total = near + np.float32(AROUND_WEIGHT) * around + np.float32(1e-9) * colour.mean(axis=(0, 1))
+    mean = total[inside][:, :3] / np.maximum(total[inside][:, 3:], np.float32(1e-20))
+    return unshaded(lab_from_rgb(np.clip(np.rint(mean), 0, 255).astype(np.uint8)))
 
 
 def _nearest_inside(inside: Mask) -> Indices:

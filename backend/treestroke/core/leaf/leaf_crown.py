@@ -10,7 +10,7 @@ from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
-from treestroke.core.leaf.colouring import DARKEST, Colouring, colouring_of, shades
+from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
 from treestroke.core.leaf.coverage import Outlines, cover, outlines_of, share_inside
 from treestroke.core.leaf.grid import FoliageGrid, foliage_grid
 from treestroke.core.leaf.leaves import Leaves
@@ -22,6 +22,10 @@ SIDES = (0.015, 0.03)
 """Smallest and largest side of a card of size 1, as shares of the crown's width."""
 FLICKER = 0.05
 """Standard deviation of a card's brightness, so that neighbours stand out from each other."""
+FULL_LIGHT = 0.95
+"""Brightness of a card that is as bright as the photo at its place: the rest is room for brighter ones."""
+LEAST_LIGHT = 0.55
+"""Least brightness of a card: a darker place gets a darker tile."""
 FITTING = 0.92
 """Share of a card's opaque dots that must lie in the foliage. Higher loses more of the foliage at its outline than it
 gains beside it (5 photos: 0.96 costs 1 to 3 % of silhouette IoU)."""
@@ -74,9 +78,9 @@ class LeafCrown:
 
     def coloured(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> Leaves:
         """Return cards with their tiles and their light."""
-        tiles, flips = self.colouring.tiles(poses.centres, rng), rng.random(len(seats)) < 0.5
+        (tiles, brightness), flips = self.colouring.tiles(poses.centres, rng), rng.random(len(seats)) < 0.5
         light = shades(poses.centres, poses.lift, self.volume) + rng.normal(0, FLICKER, len(seats))
-        light = np.clip(light, DARKEST, 1.0)
+        light = np.clip(FULL_LIGHT * brightness * light, LEAST_LIGHT, 1.0)
         return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
 
     def dressed(

@@ -11,7 +11,7 @@ from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
 from treestroke.core.paint.seasons import LEAFY, Recolour, grey_palette, recolour_for, recolour_grey
 from treestroke.core.paint.species import AUTO, Species
 from treestroke.core.paint.sprays import SprayKind, draw_spray
-from treestroke.core.types import EVERGREEN, Floats, FoliageKind
+from treestroke.core.types import EVERGREEN, Floats, FoliageKind, Mask, Opacity, Picture
 
 COLUMNS = 4
 """Tiles in a row; the atlas has as many rows."""
@@ -83,8 +83,8 @@ class Atlas:
 
 
 def leaf_atlas(
-    photo: NDArray[np.uint8],
-    mask: NDArray[np.bool_],
+    photo: Picture,
+    cover: Opacity | Mask,
     kind: FoliageKind,
     rng: np.random.Generator,
     style: LeafStyle = LeafStyle(),
@@ -99,8 +99,8 @@ def leaf_atlas(
 
     Parameters
     ----------
-    photo, mask
-        (h, w, 3) sRGB, and the pixels (h, w) of its foliage.
+    photo, cover
+        (h, w, 3) sRGB, and the share (h, w) of each pixel that shows a leaf in its own colour.
     kind
         What the twigs bear.
     rng
@@ -111,10 +111,10 @@ def leaf_atlas(
     Raises
     ------
     ValueError
-        The mask is empty or not of the photo's size.
+        Nothing is covered, or the cover is not of the photo's size.
     """
     tiles = COLUMNS * COLUMNS
-    palette = foliage_palette(photo, mask, tiles, rng) if style.shown else grey_palette(tiles, rng)
+    palette = foliage_palette(photo, cover, tiles, rng) if style.shown else grey_palette(tiles, rng)
     flower = _in_flower(palette, kind, style)
     recolour = None if flower and style.picture is None else _recolour(palette, kind, style)
     kinds = _spray_kinds(palette, kind, style, flower)

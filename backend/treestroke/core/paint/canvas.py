@@ -31,7 +31,7 @@ class Canvas:
         """Prepare a canvas for a tile ``side`` px wide and paints for the pieces, from colours (m, 3), CIE Lab."""
         self.side = 2 * side
         mean = colours.mean(axis=0)
-        picked = 0.7 * colours[rng.integers(len(colours), size=pieces)] + 0.3 * mean
+        picked = colours[rng.integers(len(colours), size=pieces)]
         picked[:, 0] += rng.normal(0, LIGHT_SCATTER, pieces)
         self.paints = rgb_from_lab(picked[:, None, :] + SHADES[:, None] * np.array([1.0, 0.0, 0.0]))
         wood = np.array([0.6 * mean[0], 0.5 * mean[1] + 4.0, 0.5 * mean[2] + 6.0])

@@ -5,50 +5,36 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from treestroke.core.types import Floats, Indices, Mask, Picture
+from treestroke.core.imaging.light import luminance_of_lightness
+from treestroke.core.types import Floats, Indices, Mask, Opacity, Picture
 
 SAMPLES = 6000
 """Foliage pixels that are clustered; more of them change no cluster by more than the photo's noise."""
-ROUNDS, RING_ROUNDS = 11, 10
-"""Steps of k-means for the foliage and for the ring; centres move by under one Lab unit after eight (11 photos)."""
-RING_WIDTH = 0.06
-"""Width of the ring around the foliage that shows the background, as a share of the foliage's height."""
-RING_CLUSTERS = 4
-"""Colours that the background is reduced to."""
-DISTINCT = 20.0
-"""Least distance, CIE Lab, of a background colour from the foliage's median colour to be told apart from it."""
-BLENDED = 0.3
-"""Share of background in a pixel's colour, 0 to 1, above which the pixel is seen through."""
-OFF_LINE = 18.0
-"""Greatest distance, CIE Lab, of a blend of foliage and background from the line between their two colours."""
-TINT_REMOVED = 0.6
-"""Share of the background's hue that is removed from foliage that is tinted by it (blue sky on white petals)."""
-BACKGROUND_SHARE = 0.3
-"""Greatest share of the foliage's pixels that is dropped as background."""
-SHADOWS_KEPT, LIGHTS_KEPT = 0.65, 0.95
-"""Share of the contrast in lightness that is kept below and above the mean.
-
-The viewer shades the crown again, so the shade that the photo already contains is reduced. Judged on renders of 5
-photos.
-"""
-GAIN = 1.1
-"""Factor on colours, for the same reason: a crown under sun and sky shows about 0.8 of its leaves' lightness."""
-LIGHTEST = 94.0
-"""Lightness, CIE Lab, up to which colours are brightened, so that white petals keep their contrast."""
+ROUNDS = 11
+"""Steps of k-means; centres move by under one Lab unit after eight (11 photos)."""
+INNER_SHARE = 0.1
+"""Share of the foliage that must remain when pixels count by their neighbours; in thinner foliage they count alone."""
+SPRAY = 0.004
+"""Standard deviation of the blur over which a spray's colour is averaged, as a share of the foliage's width."""
+UNSHADED = 1.4
+"""Gain in linear light from leaves in a photo, which shade each other, to leaves alone: a viewer shades them again."""
+CONTRAST = 1.25
+"""Factor on small differences of lightness, of which overlapping cards blur a sixth away (18 crowns); black and white
+stay."""
 
 
 @dataclass(frozen=True, eq=False)
 class Palette:
-    """Clusters of foliage colour, the most common first.
+    """Clusters of sprays by their colour, the most common first; the leaves of a spray differ.
 
     Attributes
     ----------
     centres
-        (k, 3) mean of each cluster, CIE Lab (L 0 to 100), as `flattened`.
+        (k, 3) mean of each cluster, CIE Lab (L 0 to 100), as `unshaded`.
     shares
         (k,) share of the foliage pixels in each cluster, summing to 1.
     members
-        k arrays (m, 3) of the clusters' pixels, CIE Lab, as `flattened`.
+        k arrays (m, 3) of the clusters' pixels, CIE Lab, as `unshaded`.
     """
 
     centres: Floats
@@ -88,55 +74,64 @@ def nearest_colour(lab: Floats, centres: Floats) -> tuple[Indices, Floats]:
     return best, least
 
 
-def flattened(lab: Floats) -> Floats:
-    """Reduce the contrast in lightness of colours (n, 3), CIE Lab, shadows more than lights, then brighten all."""
-    mean = lab[:, 0].mean()
-    kept = np.where(lab[:, 0] < mean, SHADOWS_KEPT, LIGHTS_KEPT)
-    lightness = np.minimum(GAIN * (mean + kept * (lab[:, 0] - mean)), np.maximum(lab[:, 0], LIGHTEST))
-    return np.stack([lightness, GAIN * lab[:, 1], GAIN * lab[:, 2]], axis=1)
+def unshaded(lab: Floats) -> Floats:
+    """Turn colours of a crown (n, 3), CIE Lab, into those of leaves alone, which cards show.
+
+    They are brighter, as if leaves did not shade each other, and differ more in lightness, since cards blur it. Hues
+    stay, and white stays white.
+    """
+    mean = lab[:, :1].mean()
+    away = lab[:, :1] - mean
+    way = np.maximum(np.where(away < 0, mean, 100.0 - mean), 1.0)
+    lightness = mean + away * (1 + (CONTRAST - 1) * (1 - (away / way) ** 2))
+    luminance = luminance_of_lightness(lightness)
+    lightness = np.cbrt(UNSHADED / (1 + (UNSHADED - 1) * luminance)) * (lightness + 16) - 16
+    return np.concatenate([lightness, lab[:, 1:] * (lightness + 16) / (lab[:, :1] + 16)], axis=1)
 
 
-def foliage_palette(photo: Picture, mask: Mask, clusters: int, rng: np.random.Generator) -> Palette:
-    """Cluster the pixels of a mask (h, w) on a photo (h, w, 3), sRGB, by k-means in CIE Lab.
+def foliage_palette(photo: Picture, cover: Opacity | Mask, clusters: int, rng: np.random.Generator) -> Palette:
+    """Cluster the sprays of a foliage on a photo (h, w, 3), sRGB, by k-means of their mean colours in CIE Lab.
 
-    Pixels at the mask's border are left out, since sky shines into them, and so are pixels that blend the foliage's
-    colour with one seen around the crown's upper half. The photo's light is reduced (`flattened`).
+    ``cover`` (h, w) is the share of each pixel that shows a leaf in its own colour. A cluster's members are single
+    pixels: leaves lie beside lighter and darker ones, as in the photo. Pixels count by the least cover of their
+    neighbours, since sky shines into a leaf's border.
 
-    Source: k-means, Lloyd 1982. Removing background and light is ours.
+    Source: k-means, Lloyd 1982; clustering by what surrounds a pixel is ours.
 
     Raises
     ------
     ValueError
-        The mask is empty or not of the photo's size.
+        Nothing is covered, or the cover is not of the photo's size.
     """
-    if mask.shape != photo.shape[:2] or not mask.any():
-        raise ValueError(f"a palette needs a mask with foliage of the photo's size, got {mask.shape}")
-    inner = cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    samples = _sample(photo, inner if inner.sum() > mask.sum() // 10 else mask, rng)
-    samples = _without_background(samples, _sample(photo, _background_ring(mask), rng), rng)
-    samples = flattened(samples)
-    labels = _k_means(samples, clusters, ROUNDS, rng)
+    if cover.shape != photo.shape[:2] or not cover.any():
+        raise ValueError(f"a palette needs a cover with foliage of the photo's size, got {cover.shape}")
+    share = np.asarray(cover, dtype=np.float32)
+    inner = cv2.erode(share, np.ones((3, 3), np.uint8))
+    index = _drawn(np.asarray(inner if inner.sum() > INNER_SHARE * share.sum() else share, dtype=np.float32), rng)
+    samples, sprays = (unshaded(lab_from_rgb(p.reshape(-1, 3)[index])) for p in (photo, _spray_colours(photo, share)))
+    labels = _k_means(sprays, clusters, ROUNDS, rng)
     counts = np.bincount(labels)
     order = [int(k) for k in np.argsort(-counts, kind="stable") if counts[k] > 0]
     members = tuple(samples[labels == k] for k in order)
     return Palette(np.stack([m.mean(axis=0) for m in members]), counts[order] / counts.sum(), members)
 
 
-def _sample(photo: Picture, mask: Mask, rng: np.random.Generator) -> Floats:
-    """Draw the colours (n, 3), CIE Lab, of up to SAMPLES pixels of a mask (h, w)."""
-    index = np.flatnonzero(mask)
-    if len(index) > SAMPLES:
-        index = index[np.sort(rng.choice(len(index), SAMPLES, replace=False))]
-    return lab_from_rgb(photo.reshape(-1, 3)[index])
+def _drawn(weight: Opacity, rng: np.random.Generator) -> Indices:
+    """Draw up to SAMPLES different pixels by their weight (h, w), as flat indices in rising order."""
+    index = np.flatnonzero(weight)
+    if len(index) <= SAMPLES:
+        return index
+    # the largest of random keys u^(1/w) are a weighted draw (Efraimidis and Spirakis 2006)
+    keys = np.log(rng.random(len(index))) / weight.ravel()[index]
+    return np.sort(index[np.argpartition(keys, -SAMPLES)[-SAMPLES:]])
 
 
-def _background_ring(mask: Mask) -> Mask:
-    """Mark the pixels (h, w) around the foliage's upper half, beyond its blurred border."""
-    rows = np.flatnonzero(mask.any(axis=1))
-    far = max(4, round(RING_WIDTH * (rows[-1] - rows[0] + 1)))
-    outside = cv2.distanceTransform((~mask).astype(np.uint8), cv2.DIST_L2, 3)
-    outside[(rows[0] + rows[-1]) // 2 :] = 0
-    return np.asarray((outside > 2.5) & (outside <= far), dtype=np.bool_)
+def _spray_colours(photo: Picture, cover: Opacity) -> Picture:
+    """Mean colour (h, w, 3) about each place of the pixels, by their cover (h, w)."""
+    sigma = max(0.5, SPRAY * np.count_nonzero(cover.any(axis=0)))
+    total = cv2.GaussianBlur(np.dstack([photo * cover[..., None], cover]), (0, 0), sigma)
+    mean = total[..., :3] / np.maximum(total[..., 3:], np.float32(1e-4))
+    return np.clip(np.rint(mean), 0, 255).astype(np.uint8)
 
 
 def _k_means(samples: Floats, clusters: int, steps: int, rng: np.random.Generator) -> Indices:
@@ -165,49 +160,3 @@ def _seed_colours(samples: Floats, clusters: int, rng: np.random.Generator) -> F
         centres = np.vstack([centres, samples[min(int(chosen), len(samples) - 1)]])
         least = np.minimum(least, nearest_colour(samples, centres[-1:])[1])
     return np.asarray(centres)
-
-
-def _cluster_means(samples: Floats, labels: Indices) -> Floats:
-    """Mean colours (k, 3) of the samples (n, 3) with each label (n,)."""
-    return np.asarray([samples[labels == label].mean(axis=0) for label in range(int(labels.max()) + 1)])
-
-
-def _without_background(samples: Floats, ring: Floats, rng: np.random.Generator) -> Floats:
-    """Drop the samples (n, 3) that are background seen between leaves, and reduce its tint in the others.
-
-    ``ring`` (m, 3) samples the background; all colours are CIE Lab. Samples with the largest share of background are
-    dropped first, at most BACKGROUND_SHARE of all.
-    """
-    if len(ring) == 0:
-        return samples
-    foliage, share = np.median(samples, axis=0), np.zeros(len(samples))
-    backgrounds = _cluster_means(ring, _k_means(ring, RING_CLUSTERS, RING_ROUNDS, rng))
-    for background in backgrounds:
-        share = np.maximum(share, _background_share(samples, foliage, background))
-    limit = np.sort(share)[-1 - int(BACKGROUND_SHARE * len(share))]
-    samples = samples[(share <= BLENDED) | (share <= limit)]
-    for background in backgrounds:
-        samples = _without_tint(samples, foliage, background)
-    return samples
-
-
-def _without_tint(samples: Floats, foliage: Floats, background: Floats) -> Floats:
-    """Remove most of a background's hue (3,) from samples (n, 3) that deviate toward it from the foliage's median."""
-    offset = background - foliage
-    offset[0] = 0.0
-    length = float(np.hypot(offset[1], offset[2]))
-    if length < DISTINCT:
-        return samples
-    share = ((samples - foliage) * offset).sum(axis=1) / length**2
-    return np.asarray(samples - TINT_REMOVED * np.maximum(share, 0.0)[:, None] * offset)
-
-
-def _background_share(samples: Floats, foliage: Floats, background: Floats) -> Floats:
-    """Share (n,) of the background's colour in each sample (n, 3); 0 where it is not a blend of the two colours."""
-    offset = background - foliage
-    length = float(np.sqrt((offset**2).sum()))
-    if length < DISTINCT:
-        return np.zeros(len(samples))
-    share = ((samples - foliage) * offset).sum(axis=1) / length**2
-    off_line = np.sqrt((((samples - foliage) - share[:, None] * offset) ** 2).sum(axis=1))
-    return np.where(off_line < OFF_LINE, share, 0.0)

@@ -27,7 +27,7 @@ from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import Report, silent
-from treestroke.core.types import Mask, Picture
+from treestroke.core.types import Opacity, Picture
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +47,6 @@ class OwnPictures:
 
 
 NO_PICTURES = OwnPictures()
-OWN_COLOUR_SHARE = 0.1
-"""Share of the foliage's pixels above which colours are taken only from those that are leaves by their own colour."""
 
 
 def leaf_surface(
@@ -87,7 +85,8 @@ def _leaves(
     if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None
     species = SPECIES.get(settings.species, AUTO)
-    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, is_forked(tree.grown))
+    straps = tree.kind == "palm" and is_forked(tree.grown)
+    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps)
     atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)
@@ -102,16 +101,15 @@ def _leaves(
     return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas
 
 
-def _coloured(views: tuple[View, ...]) -> tuple[Picture, Mask]:
-    """Lay the views' pictures side by side, and mark the pixels that have the leaves' colours."""
+def _coloured(views: tuple[View, ...]) -> tuple[Picture, Opacity]:
+    """Lay the views' pictures side by side, with the share of each pixel that shows a leaf in its own colour."""
     height = max(view.camera.height for view in views)
-    pictures, masks = [], []
+    pictures, covers = [], []
     for view in views:
-        pure = view.leaf_coloured & view.foliage
         below = ((0, height - view.camera.height), (0, 0))
         pictures.append(np.pad(view.picture, (*below, (0, 0))))
-        masks.append(np.pad(pure if pure.sum() > OWN_COLOUR_SHARE * view.foliage.sum() else view.foliage, below))
-    return np.hstack(pictures), np.hstack(masks)
+        covers.append(np.pad(view.own_colour, below))
+    return np.hstack(pictures), np.hstack(covers)
 
 
 def _with_fruit(

@@ -1,7 +1,7 @@
 """The second half of all recipes: from a grown tree to a finished one."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from treestroke.core.geometry.mesh import Surface
 from treestroke.core.grow.grown import Grown
 from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area
 from treestroke.core.paint.atlas import Atlas
+from treestroke.core.pipeline.clear_views import clear_views
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
@@ -82,6 +83,7 @@ def finish(
         A picture of a leaf or fruit has no pixels, or only transparent ones.
     """
     report("leaf", 0.0)
+    tree = replace(tree, appearance=clear_views(tree.appearance, settings.light))
     leaf, leaf_cards, atlas = leaf_surface(tree, settings, pictures, rng, report)
     report("mesh", 0.0)
     bark = bark_surface(tree, settings, rng, report)

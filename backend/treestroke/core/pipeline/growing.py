@@ -160,11 +160,13 @@ class _LiftedTrace:
 def read_photo(
     photo: Picture,
     strokes: Strokes,
-    known: Foliage | None = None,
+    known: PhotoEvidence | None = None,
     report: Report = silent,
     side: Sketch | None = None,
 ) -> PhotoEvidence:
     """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3 or 4), sRGB.
+
+    What an earlier reading knows is kept where it saw the same part of the photo.
 
     Raises
     ------
@@ -175,9 +177,11 @@ def read_photo(
     report("foliage", 0.0)
     working = working_copy(photo, strokes)
     report("foliage", 0.05)
-    foliage = known or segment_foliage(
-        working.photo, working.strokes.crown.points, report=report, cut_out=working.cut_out
-    )
+    if known is not None and known.working.frame == working.frame:
+        foliage = known.foliage
+    else:
+        crown = working.strokes.crown.points
+        foliage = segment_foliage(working.photo, crown, report=report, cut_out=working.cut_out)
     if not strokes.branches:
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
@@ -307,7 +311,7 @@ def _leaves_from(
 ) -> NDArray[np.float32]:
     """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 
-    Pixels that are leaves by their colour hang before the wood.
+    Pixels that are leaves by their colour hang before the wood; none hangs before what is wood by its colour.
     """
     depth, seen = crown.camera.depth(lifted.tree.points), traced.measured[lifted.owner]
     wood, middle = (
@@ -315,7 +319,7 @@ def _leaves_from(
     )
     leaves_from = np.where(np.isnan(wood) | ~foliage.region, np.inf, wood)
     leaves = foliage.pure & ~traced.wood & crown.shows_leaves
-    leaves_from[leafy & (np.isnan(middle) | leaves)] = -np.inf
+    leaves_from[leafy & (np.isnan(wood) | np.isnan(middle) & ~traced.wood | leaves)] = -np.inf
     return leaves_from.astype(np.float32)
 
 

@@ -2,14 +2,12 @@
 
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 
 from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
-from treestroke.core.segment.foliage import Foliage
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.types import Indices, Mask, Picture
@@ -40,10 +38,10 @@ class PhotoTrace:
     warnings: tuple[StrokeWarning, ...]
 
 
-def trace_photo(photo: Picture, strokes: Strokes, known: Foliage | None = None) -> PhotoTrace:
+def trace_photo(photo: Picture, strokes: Strokes, known: PhotoEvidence | None = None) -> PhotoTrace:
     """Find the foliage and the visible branches of a photo (h, w, 3), sRGB.
 
-    ``known`` is the foliage that an earlier trace of the same photo has seen in the same crown: it is kept, so that one
+    ``known`` is what an earlier trace of the same photo has read in the same crown: its foliage is kept, so that one
     more branch stroke is answered at once.
 
     Raises
@@ -75,10 +73,9 @@ def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Gener
 
 def _at_photo_size(evidence: PhotoEvidence) -> PhotoTrace:
     """Scale the evidence to the photo's own size."""
-    scale, size, traced = evidence.working.scale, evidence.working.size, evidence.traced
-    mask = cv2.resize(evidence.foliage.mask.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST).astype(bool)
+    working, traced = evidence.working, evidence.traced
+    mask = working.full_size_mask(evidence.foliage.mask)
     if traced is None:
         return PhotoTrace(mask, evidence, None, np.empty(0, dtype=np.int64), evidence.warnings)
-    small = traced.skeleton
-    full = Skeleton(small.points / scale, small.radii / scale, small.parents)
-    return PhotoTrace(mask, evidence, full, traced.stroke, evidence.warnings)
+    skeleton = working.full_size_skeleton(traced.skeleton)
+    return PhotoTrace(mask, evidence, skeleton, traced.stroke, evidence.warnings)

@@ -117,6 +117,7 @@ class ModelSettings:
     species: str = _setting("auto", Choice(("auto", *SPECIES)), "shape and place of leaves, relief of bark", "leaves")
     season: str = _setting("photo", Choice(("photo", *SEASONS)), "colour and number of leaves", "leaves")
     foliage: str = _setting("auto", Choice(("auto", *FOLIAGE_KINDS)), "what the twigs bear", "leaves")
+    light: str = _setting("photo", Choice(("photo", "even")), "light and shade as in the photo, or evened", "leaves")
     edge: str = _setting(
         "complete", Choice(("complete", "cut")), "what the photo's edge cuts off is completed, or cut", "tree"
     )

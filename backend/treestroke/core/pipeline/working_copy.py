@@ -1,35 +1,85 @@
 """The working copy of a photo and its strokes, and its camera."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.imaging.opacity import over_white
+from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import mend_strokes
 from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
+LEAST_SIDE, MOST_ENLARGED = 400, 4.0
+"""Long side, px, to which a smaller one is enlarged, at most by this factor: the constants in pixels are not for trees
+of 60 px. (Front overlap on 4 trees of 80 px: 0.65 becomes 0.73.)"""
+SURROUNDINGS, BELOW = 0.5, 1.5
+"""How much of the photo a tree is seen with, beside and above its crown and below it, as shares of the crown's size."""
+CROPPED_SHARE = 0.6
+"""Long side of a tree with its surroundings, as a share of the photo's, up to which the photo is cropped to them: a
+small tree in a large photo keeps its detail."""
 HALF, LEAST_TRANSPARENT = 128, 0.05
 """Share of its pixels with an alpha under a half from which on a photo counts as a tree that was cut out: rounded
 corners and soft edges have less."""
 
 
+@dataclass(frozen=True)
+class Frame:
+    """The part of a photo that its working copy shows.
+
+    Attributes
+    ----------
+    corner, size
+        Its top-left corner (x, y), and its width and height, px of the photo.
+    scale
+        Pixels of the copy for one of the photo.
+    """
+
+    corner: tuple[int, int]
+    size: tuple[int, int]
+    scale: float
+
+    @property
+    def copy_size(self) -> tuple[int, int]:
+        """Width and height of the copy, px."""
+        return max(1, round(self.size[0] * self.scale)), max(1, round(self.size[1] * self.scale))
+
+    @property
+    def part(self) -> tuple[slice, slice]:
+        """Rows and columns of the photo."""
+        (x, y), (width, height) = self.corner, self.size
+        return slice(y, y + height), slice(x, x + width)
+
+
 @dataclass(frozen=True, eq=False)
 class WorkingCopy:
-    """The working copy of a photo: reduced by ``scale`` (1 or less), with mended strokes to match.
+    """The working copy of a photo, with mended strokes to match.
 
-    ``size`` is the photo's own width and height, px, ``cut_out`` the opacity (h, w) of a tree that was cut out. Where
-    the crown is completed beyond the photo's edges, ``photo`` is a larger canvas with the photo at ``corner`` (x, y),
-    px.
+    Attributes
+    ----------
+    photo, strokes
+        What is worked on, at the copy's scale.
+    frame
+        The part of the photo that it shows.
+    size
+        The photo's own width and height, px.
+    warnings
+        What was mended in the strokes.
+    cut_out
+        (h, w) opacity of a tree that was cut out; None where the photo is whole.
+    corner
+        (x, y) of the copy in ``photo``, px, where this is a larger canvas: the crown was completed beyond the edges.
     """
 
     photo: Picture
     strokes: Strokes
-    scale: float
+    frame: Frame
     size: tuple[int, int]
     warnings: tuple[StrokeWarning, ...]
     cut_out: Opacity | None = None
@@ -54,7 +104,19 @@ class WorkingCopy:
 
     def full_size_camera(self, camera: OrthographicCamera) -> OrthographicCamera:
         """Return the same camera for the photo at its own size."""
-        return camera.cropped(self.corner, _reduced(self.size, self.scale)).enlarged(self.scale, self.size)
+        part = camera.cropped(self.corner, self.frame.copy_size).enlarged(self.frame.scale, self.frame.size)
+        return part.cropped((-self.frame.corner[0], -self.frame.corner[1]), self.size)
+
+    def full_size_mask(self, mask: Mask) -> Mask:
+        """Return a mask of the copy (h, w) at the photo's own size; it is empty where the copy does not show it."""
+        whole = np.zeros(self.size[::-1], dtype=np.uint8)
+        whole[self.frame.part] = cv2.resize(mask.astype(np.uint8), self.frame.size, interpolation=cv2.INTER_NEAREST)
+        return whole.astype(bool)
+
+    def full_size_skeleton(self, skeleton: Skeleton) -> Skeleton:
+        """Return a 2D skeleton of the copy, px, in the photo's own pixels."""
+        scale = self.frame.scale
+        return Skeleton(skeleton.points / scale + self.frame.corner, skeleton.radii / scale, skeleton.parents)
 
     def on_canvas(self, canvas: Picture, corner: tuple[int, int]) -> "WorkingCopy":
         """Return the copy on a larger ``canvas`` (h, w, 3), which shows it at a ``corner`` (x, y), px."""
@@ -62,15 +124,26 @@ class WorkingCopy:
         return replace(self, photo=canvas, strokes=strokes, cut_out=None, corner=corner)
 
     def in_photo(self, mask: Mask) -> Mask:
-        """Return the part of a canvas's mask (h, w) that the photo shows."""
-        (x, y), (width, height) = self.corner, _reduced(self.size, self.scale)
-        return mask[y : y + height, x : x + width]
+        """Return what the photo shows of a mask (h, w) of the copy or its canvas, at the copy's size or smaller."""
+        (x, y), (width, height) = self.corner, self.frame.copy_size
+        part = mask[y : y + height, x : x + width]
+        if self.frame.size == self.size:
+            return part
+        scale = min(1.0, WORKING_SIDE / max(self.size))
+        columns, rows = (
+            slice(round(start * scale), round((start + length) * scale))
+            for start, length in zip(self.frame.corner, self.frame.size, strict=True)
+        )
+        shown = np.zeros((round(self.size[1] * scale), round(self.size[0] * scale)), dtype=np.uint8)
+        place = shown[rows, columns]
+        place[:] = cv2.resize(part.astype(np.uint8), place.shape[::-1], interpolation=cv2.INTER_NEAREST)
+        return shown.astype(bool)
 
 
 def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
-    """Mend the strokes (px) and reduce a large photo (h, w, 3 or 4), sRGB, to `WORKING_SIDE` px, with its strokes.
+    """Mend the strokes (px) and bring the tree in a photo (h, w, 3 or 4), sRGB, to the working size, with its strokes.
 
-    Transparent pixels are laid over white.
+    A photo much larger than the tree is cropped to its surroundings. Transparent pixels are laid over white.
 
     Raises
     ------
@@ -79,14 +152,45 @@ def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
     """
     height, width = photo.shape[:2]
     mended = mend_strokes(strokes, width, height)
-    scale = min(1.0, WORKING_SIDE / max(height, width))
-    colours, cut_out, fitted = over_white(photo), _cut_out(photo), mended.strokes
-    if scale < 1.0:
-        size = _reduced((width, height), scale)
-        colours = np.asarray(cv2.resize(colours, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-        cut_out = None if cut_out is None else np.asarray(cv2.resize(cut_out, size, interpolation=cv2.INTER_AREA))
-        fitted = _moved(mended.strokes, scale, np.zeros(2))
-    return WorkingCopy(colours, fitted, scale, (width, height), mended.warnings, cut_out)
+    frame = _frame(mended.strokes, width, height)
+    part = photo[frame.part]
+    opacity = _cut_out(part)
+    copy = _resized(over_white(part), frame).astype(np.uint8, copy=False)
+    fitted = _moved(mended.strokes, frame.scale, -frame.scale * np.array(frame.corner, dtype=np.float64))
+    cut_out = None if opacity is None else np.clip(_resized(opacity, frame), 0, 1).astype(np.float32)
+    return WorkingCopy(np.ascontiguousarray(copy), fitted, frame, (width, height), mended.warnings, cut_out)
+
+
+def _resized(part: NDArray[Any], frame: Frame) -> NDArray[Any]:
+    """Return a part of a photo (h, w, ...) at the size of its working copy."""
+    if frame.scale == 1.0:
+        return part
+    method = cv2.INTER_AREA if frame.scale < 1.0 else cv2.INTER_CUBIC
+    return np.asarray(cv2.resize(part, frame.copy_size, interpolation=method))
+
+
+def _frame(strokes: Strokes, width: int, height: int) -> Frame:
+    """Return the part of a photo of this size, px, that shows a tree with its surroundings, and its scale."""
+    crown = strokes.crown.points
+    drawn = np.vstack([stroke.points for stroke in (strokes.crown, *strokes.branches, *strokes.erase)])
+    if strokes.scale is not None:
+        drawn = np.vstack([drawn, strokes.scale.points])
+    room = SURROUNDINGS * float(np.ptp(crown, axis=0).max())
+    below = crown.max(axis=0) + BELOW / SURROUNDINGS * np.array([0.0, room])
+    low = np.maximum(np.floor(drawn.min(axis=0) - room), 0).astype(int)
+    high = np.ceil(np.maximum(drawn.max(axis=0) + room, below)).astype(int)
+    high = np.minimum(high, (width, height))
+    corner, size = (int(low[0]), int(low[1])), (int(high[0] - low[0]), int(high[1] - low[1]))
+    if max(size) > CROPPED_SHARE * max(width, height):
+        corner, size = (0, 0), (width, height)
+    return Frame(corner, size, _scale(max(size)))
+
+
+def _scale(side: int) -> float:
+    """Return the scale of the working copy of a picture with this long side, px."""
+    if side > WORKING_SIDE:
+        return WORKING_SIDE / side
+    return min(max(LEAST_SIDE / side, 1.0), MOST_ENLARGED)
 
 
 def _cut_out(photo: Picture) -> Opacity | None:
@@ -97,11 +201,6 @@ def _cut_out(photo: Picture) -> Opacity | None:
     if np.count_nonzero(alpha < HALF) < LEAST_TRANSPARENT * alpha.size:
         return None
     return np.asarray(alpha * np.float32(1 / 255), dtype=np.float32)
-
-
-def _reduced(size: tuple[int, int], scale: float) -> tuple[int, int]:
-    """Return the width and height, px, of a reduced photo."""
-    return max(1, round(size[0] * scale)), max(1, round(size[1] * scale))
 
 
 def _moved(strokes: Strokes, scale: float, shift: Floats) -> Strokes:

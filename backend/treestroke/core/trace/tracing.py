@@ -12,6 +12,7 @@ import numpy as np
 from treestroke.core.geometry.polyline import arc_lengths, normals
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.stroke_rules import TOUCH_SHARE, is_stem
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
 from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
@@ -33,6 +34,13 @@ MIN_SEEN = 4
 """Least number of places along a line where its width must be seen for it to count."""
 GRAIN = 1.5
 """Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
+GIANT_SHARE, GIANT_GRAIN = 0.4, 0.008
+"""Greatest radius of a giant trunk, and the width of cracks in its bark that are closed, as shares of the height."""
+FEW_SIDES, MOST_SIDES = 0.1, 0.7
+"""A trunk is a giant if its sides are seen within the usual radius at fewer places below the crown than the first
+share (a baobab 0.00; the 20 other photos 0.27 and more), and within a giant's at more than the second."""
+GIANT_STEADY = 20.0
+"""Standard deviation, in steps of a line, over which a giant's is straightened: roots and buttresses do not bend it."""
 MAX_SWELLING = 1.8
 """Greatest measured radius relative to the line's median: more is a shadow beside the branch."""
 CHILD_RADIUS = 0.75
@@ -49,19 +57,16 @@ class TraceParams:
         Greatest distance by which a stroke is pulled aside.
     tolerance_share
         Greatest distance by which simplification moves the line.
-    stem_share
-        A later stroke that starts this near the root is a stem of its own.
     trunk_share
         Radius of a trunk that the photo does not show (a diameter of 1/30).
     thickest_share
-        Greatest radius of a trunk that is measured.
+        Greatest usual radius of a trunk.
     thinnest_px
         Least radius of a traced branch.
     """
 
     snap_share: float = 0.015
     tolerance_share: float = 0.002
-    stem_share: float = 0.03
     trunk_share: float = 0.017
     thickest_share: float = 0.065
     thinnest_px: float = 1.5
@@ -158,14 +163,16 @@ def _follow_strokes(
     root = branches[0].points[0]
     for index, stroke in enumerate(branches):
         start = root if index == 0 else None
-        line = _centre(
-            snap(stroke.points, smooth_odds, reach, step), evidence.sure_wood, params.thickest_share * height_px, start
-        )
-        is_stem = index == 0 or float(np.linalg.norm(stroke.points[0] - root)) <= params.stem_share * height_px
-        parent = -1 if is_stem else builder.nearest(line[0])
-        parent_px = params.trunk_share * height_px / CHILD_RADIUS if is_stem else builder.radii[parent]
-        widest = params.thickest_share * height_px if is_stem else 1.2 * parent_px
+        snapped = snap(stroke.points, smooth_odds, reach, step)
+        line = _centre(snapped, evidence.sure_wood, params.thickest_share * height_px, start)
+        stands = is_stem(stroke, branches[:index], height_px, TOUCH_SHARE * max(wood.shape))
+        parent = -1 if stands else builder.nearest(line[0])
+        parent_px = params.trunk_share * height_px / CHILD_RADIUS if stands else builder.radii[parent]
+        widest = params.thickest_share * height_px if stands else 1.2 * parent_px
         below = np.logical_and.accumulate(~sample_nearest(evidence.crown, line, False))
+        if stands and _is_giant(line[below], wood, widest, height_px):
+            wood, widest = _without_cracks(wood, height_px), GIANT_SHARE * height_px
+            line = _centre(blur(snapped, GIANT_STEADY), wood, widest, start, GIANT_STEADY)
         seen = _SeenWidths(half_widths(line, wood, widest)[0], below)
         radii = _radii(line, stroke.width, seen, parent_px, height_px)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
@@ -175,10 +182,23 @@ def _follow_strokes(
         builder.add_chain(parent, line, radii, stroke=index)
 
 
-def _centre(line: Floats, wood: Mask, most_px: float, root: Floats | None) -> Floats:
+def _is_giant(below: Floats, wood: Mask, usual_px: float, height_px: float) -> bool:
+    """Return whether the photo shows a stem, by its line (n, 2) below the crown, to be thicker than is usual."""
+    if len(below) < MIN_SEEN or (~np.isnan(half_widths(below, wood, usual_px)[0])).mean() > FEW_SIDES:
+        return False
+    halves, _ = half_widths(below, _without_cracks(wood, height_px), GIANT_SHARE * height_px)
+    return bool((~np.isnan(halves)).mean() > MOST_SIDES)
+
+
+def _without_cracks(wood: Mask, height_px: float) -> Mask:
+    """Close the cracks in the bark of a giant, a mask (h, w) of wood."""
+    return np.asarray(cv2.GaussianBlur(wood.astype(np.float32), (0, 0), GIANT_GRAIN * height_px) > 0.5)
+
+
+def _centre(line: Floats, wood: Mask, most_px: float, root: Floats | None, steady: float = STEADY) -> Floats:
     """Move a line (n, 2) to the middle of the wood where that is seen; it begins at its root, if there is one."""
     _, middles = half_widths(line, wood, most_px)
-    moved = line + blur(np.nan_to_num(middles), STEADY)[:, None] * normals(line)
+    moved = line + blur(np.nan_to_num(middles), steady)[:, None] * normals(line)
     if root is None:
         return moved
     hold = np.maximum(1 - arc_lengths(line) / (3 * most_px), 0.0)[:, None]

@@ -1,0 +1,67 @@
+"""Colours of what covers a picture in part, freed of the background that shines through."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.types import Mask, Opacity, Picture
+
+NEAR, FAR = 0.06, 0.3
+"""Half sides of the windows in which colours are averaged, shares of the cover's height: what lies beside a place, and
+for places with nothing beside them."""
+FURTHER = 1e-3
+"""Weight of the far window, and of the whole picture after it: each counts where those before hold next to nothing."""
+COARSE = 4
+"""Factor by which a picture is reduced before it is averaged."""
+OPEN = 0.05
+"""Opacity below which a pixel shows the background alone."""
+LUMA = np.array([0.299, 0.587, 0.114], dtype=np.float32)
+"""Share of red, green and blue in luma (ITU-R BT.601)."""
+
+_Colours = NDArray[np.float32]
+
+
+def unmixed(picture: Picture, opacity: Opacity, sure: Mask) -> Picture:
+    """Estimate the colours F (h, w, 3), sRGB, of a cover from pixels I = a F + (1 - a) B with opacities a (h, w).
+
+    First guesses of F and of the background B are the mean colours beside each pixel: of what surely has the cover's
+    colour (``sure`` (h, w)), and of what nothing covers, so that B is the wall or the sky at that height and in the
+    gaps. What they leave unexplained of the pixel is added to F in proportion to its opacity. Where nothing covers, the
+    picture stays.
+
+    A matte takes light leaves before a light sky for thin ones. So the more opaque a pixel is, the more of its own
+    lightness it keeps; hue and saturation are F's.
+
+    Source: Forte 2021, "Approximate fast foreground colour estimation", equation 5; keeping the lightness is ours.
+    """
+    covered = opacity > OPEN
+    rows = np.flatnonzero(covered.any(axis=1))
+    if len(rows) == 0:
+        return picture
+    height, colours = int(rows[-1] - rows[0]) + 1, picture.astype(np.float32)
+    sure_share = np.where(sure if sure.any() else covered, opacity, np.float32(0))
+    front = _beside(colours, sure_share, height)[covered]
+    back = _beside(colours, (~covered).astype(np.float32), height)[covered]
+    own, share = colours[covered], opacity[covered][:, None]
+    cleared = np.clip(front + share * (own - share * front - (1 - share) * back), 0, 255)
+    result = picture.copy()
+    result[covered] = np.rint(_with_lightness(cleared, share * own + (1 - share) * cleared))
+    return result
+
+
+def _with_lightness(colours: _Colours, other: _Colours) -> _Colours:
+    """Scale colours (n, 3) to the lightness of others (n, 3), as far as sRGB holds them."""
+    factor = (other @ LUMA + 1) / (colours @ LUMA + 1)
+    return np.asarray(colours * np.minimum(factor, 255 / np.maximum(colours.max(axis=1), 1))[:, None])
+
+
+def _beside(colours: _Colours, weight: Opacity, height: int) -> _Colours:
+    """Mean colour (h, w, 3) in windows about each pixel of pixels by their weight (h, w); ``height`` is the cover's."""
+    size = max(1, colours.shape[1] // COARSE), max(1, colours.shape[0] // COARSE)
+    weighted = cv2.resize(np.dstack([colours * weight[..., None], weight]), size, interpolation=cv2.INTER_AREA)
+    total = np.broadcast_to(np.float32(FURTHER**2) * weighted.mean(axis=(0, 1)), weighted.shape).astype(np.float32)
+    for reach, share in ((NEAR, 1.0), (FAR, FURTHER)):
+        side = 2 * max(1, round(reach * height / COARSE)) + 1
+        total += np.float32(share) * cv2.blur(weighted, (side, side), borderType=cv2.BORDER_REPLICATE)
+    mean = total[..., :3] / np.maximum(total[..., 3:], np.float32(1e-12))
+    return np.asarray(cv2.resize(mean, colours.shape[1::-1], interpolation=cv2.INTER_LINEAR))
