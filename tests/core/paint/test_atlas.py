@@ -39,6 +39,13 @@ def test_pale_petals_become_blossom_and_green_leaves_do_not(photo, mask):
     assert not np.array_equal(tile_alphas(green)[0], tile_alphas(petals)[0])
 
 
+def test_dark_twigs_between_petals_are_no_petals(photo, mask):
+    twigs = np.indices(mask.shape).sum(axis=0) // 5 % 4 == 0
+    flowering = np.where(twigs[..., None], np.uint8((70, 45, 40)), np.uint8((235, 232, 225)))
+    petals = leaf_atlas(flowering, mask, "leaves", np.random.default_rng(3))
+    assert lab_from_rgb(np.rint(petals.colours).astype(np.uint8))[:, 0].min() > 65
+
+
 def test_the_same_seed_gives_the_same_atlas(photo, mask, atlas):
     again = leaf_atlas(photo, mask, "leaves", np.random.default_rng(0))
     assert np.array_equal(again.image, atlas.image)

@@ -58,7 +58,8 @@ def _with_lightness(colours: _Colours, other: _Colours) -> _Colours:
 def _beside(colours: _Colours, weight: Opacity, height: int) -> _Colours:
     """Mean colour (h, w, 3) in windows about each pixel of pixels by their weight (h, w); ``height`` is the cover's."""
     size = max(1, colours.shape[1] // COARSE), max(1, colours.shape[0] // COARSE)
-    weighted = cv2.resize(np.dstack([colours * weight[..., None], weight]), size, interpolation=cv2.INTER_AREA)
+    parts = (cv2.multiply(colours, cv2.merge([weight] * 3)), weight)
+    weighted = np.dstack([cv2.resize(part, size, interpolation=cv2.INTER_AREA) for part in parts])
     total = np.broadcast_to(np.float32(FURTHER**2) * weighted.mean(axis=(0, 1)), weighted.shape).astype(np.float32)
     for reach, share in ((NEAR, 1.0), (FAR, FURTHER)):
         side = 2 * max(1, round(reach * height / COARSE)) + 1

@@ -20,7 +20,7 @@ MIN_STEP_PX = 0.25
 PADDING = 3
 """Empty cells around the foliage, so that points outside read as outside."""
 AROUND = 4.0
-"""Standard deviation of the blur that finds the colour around a spray, over `SPRAY`."""
+"""Side of the window that shows the colour around a spray, over `SPRAY`."""
 AROUND_WEIGHT = 1e-3
 """Weight of what is around: it counts where a spray shows next to no leaf's colour."""
 
@@ -128,8 +128,8 @@ def _padded(image: NDArray[Any]) -> NDArray[np.float32]:
 
 def _spray_labs(colour: NDArray[np.float32], inside: Mask) -> Floats:
     """Colour of the sprays at the cells inside (n, 3), CIE Lab, by each cell's colour times weight, and weight (4)."""
-    sigma = SPRAY * CELLS_ACROSS
-    near, around = (cv2.GaussianBlur(colour, (0, 0), blur) for blur in (sigma, AROUND * sigma))
+    sides = (round(SPRAY * CELLS_ACROSS), round(AROUND * SPRAY * CELLS_ACROSS))
+    near, around = (cv2.blur(colour, (side, side)) for side in sides)
     total = near + np.float32(AROUND_WEIGHT) * around + np.float32(1e-9) * colour.mean(axis=(0, 1))
     mean = total[inside][:, :3] / np.maximum(total[inside][:, 3:], np.float32(1e-20))
     return unshaded(lab_from_rgb(np.clip(np.rint(mean), 0, 255).astype(np.uint8)))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.appearance import StemPixels
 from treestroke.core.geometry.polyline import smoothed
+from treestroke.core.imaging.light import linear_light, srgb_light
 from treestroke.core.imaging.quilting import QuiltParams, quilt
 from treestroke.core.mesh.bark_pattern import BarkForm, bark_pattern
 from treestroke.core.types import Floats, Picture
@@ -71,7 +72,7 @@ def bark_texture(
     Parameters
     ----------
     picture
-        (h, w, 3) sRGB.
+        (h, w, 3) sRGB, freed of what shines through.
     stem
         The trunk's visible axis and radius in it, px.
     grain
@@ -80,7 +81,7 @@ def bark_texture(
     own = bark_pattern(TEXTURE_SIZE, rng, params.form or "furrowed") if grain is None else grain
     grain = _STRENGTH.get(params.form, 1.0) * own[..., None]
     found = _unrolled(picture, stem, params)
-    hidden = _linear(np.array(params.hidden_colour, dtype=np.float64))
+    hidden = linear_light(np.array(params.hidden_colour, dtype=np.float64))
     if found is None:
         return _painted(_PATTERN * grain, hidden)
     strip, pixels_per_pixel = found
@@ -122,7 +123,7 @@ def _unrolled(picture: Picture, stem: StemPixels, params: BarkParams) -> tuple[F
     kept = reach >= params.smallest_radius_px
     if not kept.any():
         return None
-    return _linear(strip[kept].astype(np.float64)), _PX_PER_RADIAN / radius
+    return linear_light(strip[kept].astype(np.float64)), _PX_PER_RADIAN / radius
 
 
 def _bark_like(strip: Floats) -> NDArray[np.bool_]:
@@ -199,15 +200,7 @@ def _painted(detail: Floats, colour: Floats) -> NDArray[np.uint8]:
     light = float(colour @ (0.2126, 0.7152, 0.0722))
     colour = colour * min(1.0, _LIGHT[1] / max(light, 1e-9)) + max(_LIGHT[0] - light, 0.0) * _WARM_GREY
     factor = np.exp(detail)
-    linear = np.clip(colour * factor / factor.mean(axis=(0, 1)), 0.0, 1.0)
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return np.asarray(np.rint(255.0 * srgb), dtype=np.uint8)
-
-
-def _linear(srgb: Floats) -> Floats:
-    """Convert sRGB, 0 to 255, to linear light, 0 to 1 (IEC 61966-2-1)."""
-    c = srgb / 255.0
-    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    return srgb_light(colour * factor / factor.mean(axis=(0, 1)))
 
 
 def _log(linear: Floats) -> Floats:

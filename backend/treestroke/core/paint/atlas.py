@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from treestroke.core.paint.cut_outs import mean_solid_colour, opaque_part, reduced
 from treestroke.core.paint.leaf_picture import draw_pictured_leaves, picture_recolour
 from treestroke.core.paint.palette import Palette, foliage_palette, lab_from_rgb
-from treestroke.core.paint.seasons import LEAFY, Recolour, grey_palette, recolour_for, recolour_grey
+from treestroke.core.paint.seasons import GREEN_A, GREEN_B, LEAFY, Recolour, grey_palette, recolour_for, recolour_grey
 from treestroke.core.paint.species import AUTO, Species
 from treestroke.core.paint.sprays import SprayKind, draw_spray
 from treestroke.core.types import EVERGREEN, Floats, FoliageKind, Mask, Opacity, Picture
@@ -19,6 +19,8 @@ TILE_SIDE = 256
 """Side of a tile, px: a spray is usually seen at 20 to 60 px, so that this allows a close look."""
 BLOSSOM_LIGHTNESS, BLOSSOM_CHROMA = 62.0, 17.0
 """Clusters that are lighter and of lower chroma than this, CIE Lab, look like blossom; so do pink ones."""
+PETAL_LIGHTNESS = 45.0
+"""CIE Lab lightness from which on colours of a tree in flower are petals; darker ones are its leaves or its wood."""
 BLOSSOM_SHARE = 0.3
 """Share of the foliage that must look like blossom for the tree to be in flower (tuned on 11 photos, 3 in flower)."""
 
@@ -116,6 +118,7 @@ def leaf_atlas(
     tiles = COLUMNS * COLUMNS
     palette = foliage_palette(photo, cover, tiles, rng) if style.shown else grey_palette(tiles, rng)
     flower = _in_flower(palette, kind, style)
+    palette = _without_wood(palette) if flower else palette
     recolour = None if flower and style.picture is None else _recolour(palette, kind, style)
     kinds = _spray_kinds(palette, kind, style, flower)
     if recolour is not None:
@@ -149,6 +152,21 @@ def _in_flower(palette: Palette, kind: FoliageKind, style: LeafStyle) -> bool:
     return bool(blooms and palette.shares[pale | pink].sum() > BLOSSOM_SHARE)
 
 
+def _without_wood(palette: Palette) -> Palette:
+    """Keep petals and green leaves of a tree in flower: dark twigs that are seen between them are modelled as wood."""
+    kept = [labs[_petal_or_leaf(labs)] for labs in palette.members]
+    left = np.array([len(labs) / len(own) for labs, own in zip(kept, palette.members, strict=True)])
+    members = tuple(labs for labs in kept if len(labs))
+    shares = (palette.shares * left)[left > 0]
+    return Palette(np.stack([labs.mean(axis=0) for labs in members]), shares / shares.sum(), members)
+
+
+def _petal_or_leaf(labs: Floats) -> Mask:
+    """Tell which colours (n, 3), CIE Lab, of a tree in flower are not its wood's."""
+    lightness, red, yellow = labs.T
+    return np.asarray((lightness > PETAL_LIGHTNESS) | ((red < GREEN_A) & (yellow > GREEN_B)))
+
+
 def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: bool) -> list[SprayKind]:
     """Choose what each cluster is drawn as: flowers only where much of the tree looks like blossom."""
     match kind:
@@ -158,7 +176,7 @@ def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: 
             return ["strap" if style.straps else "frond"]
     if style.species.flowers and style.season == "spring":
         return ["blossom"]
-    return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]
+    return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > PETAL_LIGHTNESS]
 
 
 def _recolour(palette: Palette, kind: FoliageKind, style: LeafStyle) -> Recolour | None:

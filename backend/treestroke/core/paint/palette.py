@@ -14,8 +14,8 @@ ROUNDS = 11
 """Steps of k-means; centres move by under one Lab unit after eight (11 photos)."""
 INNER_SHARE = 0.1
 """Share of the foliage that must remain when pixels count by their neighbours; in thinner foliage they count alone."""
-SPRAY = 0.004
-"""Standard deviation of the blur over which a spray's colour is averaged, as a share of the foliage's width."""
+SPRAY = 0.014
+"""Side of the window over which a spray's colour is averaged, as a share of the foliage's width."""
 UNSHADED = 1.4
 """Gain in linear light from leaves in a photo, which shade each other, to leaves alone: a viewer shades them again."""
 CONTRAST = 1.25
@@ -128,9 +128,9 @@ def _drawn(weight: Opacity, rng: np.random.Generator) -> Indices:
 
 def _spray_colours(photo: Picture, cover: Opacity) -> Picture:
     """Mean colour (h, w, 3) about each place of the pixels, by their cover (h, w)."""
-    sigma = max(0.5, SPRAY * np.count_nonzero(cover.any(axis=0)))
-    total = cv2.GaussianBlur(np.dstack([photo * cover[..., None], cover]), (0, 0), sigma)
-    mean = total[..., :3] / np.maximum(total[..., 3:], np.float32(1e-4))
+    side = max(1, round(SPRAY * np.count_nonzero(cover.any(axis=0))))
+    total, share = (cv2.blur(part, (side, side)) for part in (photo * cover[..., None], cover))
+    mean = total / np.maximum(share, np.float32(1e-4))[..., None]
     return np.clip(np.rint(mean), 0, 255).astype(np.uint8)
 
 
