@@ -19,8 +19,8 @@ FEWEST = 8
 APART = 3.0
 """Greatest distance of a trunk from its stroke, in half widths: a hasty hand misses it by its width, not by more."""
 CLEAR, CLEARER = 2.4, 1.4
-"""Least contrast of a trunk beside the stroke, in deviations of its colours, and how many times that of any stripe under
-the stroke it must be: of 40 strokes on their trunks none is moved, of 51 beside them by their width 31 are."""
+"""Least contrast of a trunk beside the stroke, in deviations of its colours, and how many times that of any stripe
+under the stroke it must be: of 40 strokes on their trunks none is moved, of 51 beside them by their width 31 are."""
 NOISE = 4.0
 """Added to deviations, steps of 255: no stripe is smoother than a camera's noise."""
 
