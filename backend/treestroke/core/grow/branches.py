@@ -6,7 +6,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.skeleton.measure import edge_lengths, path_lengths
+from treestroke.core.geometry.polyline import arc_lengths
+from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
 from treestroke.core.types import Floats, Indices
@@ -70,7 +71,7 @@ def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest:
     """Return the ends of a limb's chains, as positions in ``limb``."""
     if len(limb) < 2:
         return []
-    arc = path_lengths(skeleton)[limb]
+    arc = arc_lengths(skeleton.points[limb])
     counts = np.bincount(skeleton.parents[skeleton.parents >= 0], minlength=len(skeleton))
     cuts = [0]
     for i in range(1, len(limb) - 1):

@@ -132,6 +132,9 @@ def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -
     """Choose the option (k, n, 3) whose outer joints keep most distance from all that is placed; ties at random."""
     others = np.concatenate(placed)
     outer = options[:, options.shape[1] // 2 :]
-    gaps = np.linalg.norm(outer[:, :, None] - others, axis=-1).min(axis=-1).mean(axis=-1)
+    away = np.zeros((*outer.shape[:2], len(others)))
+    for axis in range(3):
+        away += (outer[:, :, None, axis] - others[:, axis]) ** 2
+    gaps = np.sqrt(away.min(axis=-1)).mean(axis=-1)
     best = np.flatnonzero(gaps >= gaps.max() * (1 - 1e-9))
     return int(best[rng.integers(len(best))])

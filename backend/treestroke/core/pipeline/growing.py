@@ -29,6 +29,7 @@ from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
+from treestroke.core.pipeline.trunk_stroke import on_its_trunk
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
@@ -185,6 +186,7 @@ def read_photo(
     if not strokes.branches:
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
+    working = on_its_trunk(working, foliage)
     height_px = working.height_px(foliage.mask)
     is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
     surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)

@@ -21,6 +21,8 @@ SEEN_SHARE = 0.4
 """Least length of wood that must be seen beyond a gap, relative to the gap: no limb goes on to a mere speck."""
 BUMP, BUMP_PX = 1.2, 2.0
 """A side branch no longer than this many half widths of the wood that it leaves, plus px, is a bump of the bark."""
+FINEST_SIDE = 800
+"""Long side, px, to which a larger crown is reduced: a stroke is answered at once."""
 STEP_PX, STEADY_PX = 4.0, 3.0
 """Distance between joints along a limb, and standard deviation over which its pixels' steps are smoothed, px."""
 
@@ -44,13 +46,36 @@ class CrownPicture:
     crown: Mask
     foliage: Mask
 
-    def cut(self, margin_px: int) -> tuple["CrownPicture", Floats]:
-        """Return the part around the crown, with a margin, and the place (2,) of its upper left corner, px."""
+    def cut(self, below_px: int) -> tuple["CrownPicture", "_Window"]:
+        """Return the part around the crown and ``below_px`` below it, reduced to `FINEST_SIDE`, and where it lies."""
         x, y, width, height = cv2.boundingRect(self.crown.astype(np.uint8))
-        left, top = max(0, x - margin_px), max(0, y - margin_px)
-        box = slice(top, y + height + margin_px), slice(left, x + width + margin_px)
-        part = CrownPicture(self.odds[box], self.smooth[box], self.crown[box], self.foliage[box])
-        return part, np.array([left, top], dtype=np.float64)
+        height = min(height + below_px, self.crown.shape[0] - y)
+        scale = min(1.0, FINEST_SIDE / max(width, height))
+        size = max(1, round(width * scale)), max(1, round(height * scale))
+
+        def reduced(part: NDArray[np.float32]) -> NDArray[np.float32]:
+            cut = part[y : y + height, x : x + width]
+            return np.asarray(cv2.resize(cut, size, interpolation=cv2.INTER_AREA) if scale < 1 else cut)
+
+        crown, foliage = (reduced(part.astype(np.float32)) > 0.5 for part in (self.crown, self.foliage))
+        part = CrownPicture(reduced(self.odds), reduced(self.smooth), crown, foliage)
+        return part, _Window(np.array([x, y], dtype=np.float64), scale)
+
+
+@dataclass(frozen=True, eq=False)
+class _Window:
+    """A part of a picture: the place (2,) of its upper left corner, px, and by how much it is reduced, 1 or less."""
+
+    corner: Floats
+    scale: float
+
+    def inside(self, points: Floats) -> Floats:
+        """Return points (n, 2) of the picture, px, in the window's px."""
+        return np.asarray((points - self.corner) * self.scale)
+
+    def outside(self, points: Floats) -> Floats:
+        """Return points (n, 2) of the window, px, in the picture's px."""
+        return np.asarray(points / self.scale + self.corner)
 
 
 def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, height_px: float, thinnest_px: float) -> None:
@@ -58,26 +83,28 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, height_px: float
 
     They are ``thinnest_px`` thick at least (a radius), fall outward and are nowhere thicker than their parent.
     """
-    around, corner = picture.cut(round(LONGEST_GAP * height_px))
-    ribbons = find_ribbons(around.odds, around.smooth, around.crown, height_px)
+    around, window = picture.cut(round(LONGEST_GAP * height_px))
+    small_px = height_px * window.scale
+    ribbons = find_ribbons(around.odds, around.smooth, around.crown, small_px)
     if not len(ribbons.pixels):
         return
     drawn = builder.skeleton()
-    strokes = Skeleton(drawn.points - corner, drawn.radii, drawn.parents)
+    strokes = Skeleton(window.inside(drawn.points), drawn.radii * window.scale, drawn.parents)
     network = join_strokes(ribbons, strokes, around.crown.shape)
-    paths = shortest_paths(network, around.foliage, height_px)
-    points, half_widths = network.ribbons.points, network.ribbons.half_widths
+    paths = shortest_paths(network, around.foliage, small_px)
+    points = window.outside(network.ribbons.points)
+    half_widths = network.ribbons.half_widths / window.scale
     joint_at = np.full(len(points), -1)
-    for chain in _chains(paths, *_kept(paths, half_widths)):
+    for chain in _chains(paths, *_kept(paths, network.ribbons.half_widths)):
         first = int(joint_at[chain[0]])
-        joint = first if first >= 0 else int(np.linalg.norm(strokes.points - points[chain[0]], axis=1).argmin())
-        line = np.vstack([builder.points[joint] - corner, points[chain[1:]]])
+        joint = first if first >= 0 else int(np.linalg.norm(drawn.points - points[chain[0]], axis=1).argmin())
+        line = np.vstack([builder.points[joint], points[chain[1:]]])
         even = resample(blur(resample(line, 1.0), STEADY_PX), STEP_PX)
         along = arc_lengths(line)
         widths = np.interp(np.linspace(0.0, along[-1], len(even)), along[1:], half_widths[chain[1:]])
         radii = np.clip(non_increasing(widths), thinnest_px, max(builder.radii[joint], thinnest_px))
         before = len(builder.points)
-        builder.add_chain(joint, even + corner, radii, stroke=-1)
+        builder.add_chain(joint, even, radii, stroke=-1)
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
 
 

@@ -39,6 +39,8 @@ GIANT_SHARE, GIANT_GRAIN = 0.4, 0.008
 FEW_SIDES, MOST_SIDES = 0.1, 0.7
 """A trunk is a giant if its sides are seen within the usual radius at fewer places below the crown than the first
 share (a baobab 0.00; the 20 other photos 0.27 and more), and within a giant's at more than the second."""
+GIANT_FREE = 0.2
+"""Least length of a giant's stem below the crown, as a share of the height: over less, its ground may deceive."""
 GIANT_STEADY = 20.0
 """Standard deviation, in steps of a line, over which a giant's is straightened: roots and buttresses do not bend it."""
 MAX_SWELLING = 1.8
@@ -184,7 +186,9 @@ def _follow_strokes(
 
 def _is_giant(below: Floats, wood: Mask, usual_px: float, height_px: float) -> bool:
     """Return whether the photo shows a stem, by its line (n, 2) below the crown, to be thicker than is usual."""
-    if len(below) < MIN_SEEN or (~np.isnan(half_widths(below, wood, usual_px)[0])).mean() > FEW_SIDES:
+    if len(below) < MIN_SEEN or arc_lengths(below)[-1] < GIANT_FREE * height_px:
+        return False
+    if (~np.isnan(half_widths(below, wood, usual_px)[0])).mean() > FEW_SIDES:
         return False
     halves, _ = half_widths(below, _without_cracks(wood, height_px), GIANT_SHARE * height_px)
     return bool((~np.isnan(halves)).mean() > MOST_SIDES)

@@ -1,0 +1,46 @@
+"""A drawn trunk below a crown, on a ground of grass and sky, and a stroke on it or beside it."""
+
+import numpy as np
+import pytest
+from tests.pictures import noisy
+
+from treestroke.core.trace.trunk_place import way_to_trunk
+
+SIZE, HEIGHT = 400, 360.0
+CROWN = np.arange(SIZE)[:, None] < np.full(SIZE, 160)
+STROKE = np.array([[200.0, 380.0], [200.0, 270.0], [200.0, 100.0]])
+
+
+def photo(half: float, middle: float = 200.0, trunk: tuple[int, int, int] = (90, 75, 60)) -> np.ndarray:
+    flat = np.zeros((SIZE, SIZE, 3))
+    flat[:] = (180, 200, 220)
+    flat[300:] = (90, 140, 50)
+    flat[:, int(middle - half) : int(middle + half)] = trunk
+    flat[CROWN] = (60, 110, 40)
+    return noisy(flat)
+
+
+@pytest.mark.parametrize("half", [3.0, 8.0, 15.0])
+@pytest.mark.parametrize("side", [-1, 1], ids=["left", "right"])
+def test_a_stroke_beside_its_trunk_by_its_width_finds_it(half: float, side: int) -> None:
+    way = way_to_trunk(photo(half, 200 + 2 * half * side), STROKE, CROWN, HEIGHT)
+    assert way == pytest.approx([2 * half * side, 0.0], abs=0.5 * half + 1)
+
+
+@pytest.mark.parametrize("half", [3.0, 8.0, 15.0, 40.0])
+@pytest.mark.parametrize("aside", [-0.7, 0.0, 0.7])
+def test_a_stroke_on_its_trunk_stays(half: float, aside: float) -> None:
+    assert not way_to_trunk(photo(half, 200 + aside * half), STROKE, CROWN, HEIGHT).any()
+
+
+def test_a_pole_far_beside_is_not_the_trunk() -> None:
+    assert not way_to_trunk(photo(4.0, 230.0), STROKE, CROWN, HEIGHT).any()
+
+
+@pytest.mark.parametrize("stroke", [STROKE[1:] - [0, 150], np.array([[200.0, 200.0], [200.0, 150.0]])[:, :] - [0, 60]])
+def test_a_stroke_inside_the_crown_stays(stroke: np.ndarray) -> None:
+    assert not way_to_trunk(photo(8.0, 216.0), stroke, CROWN, HEIGHT).any()
+
+
+def test_where_nothing_stands_out_nothing_moves() -> None:
+    assert not way_to_trunk(photo(8.0, 216.0, (180, 200, 220)), STROKE[1:], CROWN, HEIGHT).any()
