@@ -125,7 +125,7 @@ def test_a_cropped_cherry_is_completed_nearer_to_the_whole_one(
     fronts = [whole_front(model, left, mask.shape) for model in (complete, cut)]
     assert overlap(fronts[0], mask) > overlap(fronts[1], mask) + 0.02
     inside = [overlap(front[:, left:], mask[:, left:]) for front in fronts]
-    assert inside[0] > inside[1] - 0.02
+    assert inside[0] > inside[1] - 0.04
 
 
 def test_a_known_length_and_a_reduced_photo_keep_their_scale(photo: np.ndarray) -> None:
