@@ -14,6 +14,8 @@ DOTS_ACROSS = 12
 """A tile is sampled in 12 x 12 dots: about one per grid cell for a card of usual size."""
 SURE_ALPHA = 160
 """Alpha (0 to 255) above which a dot is drawn in every mip level."""
+SURE_SHARE = 0.63
+"""The same as a share of the densest dot's alpha, for sprays so fine that none is opaque."""
 PROBES = 24
 """Opaque dots of a tile that are tested against the foliage's outline."""
 
@@ -39,7 +41,7 @@ def outlines_of(alphas: NDArray[np.uint8]) -> Outlines:
     dots = []
     for alpha in alphas:
         coarse = cv2.resize(alpha, (DOTS_ACROSS, DOTS_ACROSS), interpolation=cv2.INTER_AREA)
-        row, column = np.nonzero(coarse >= min(SURE_ALPHA, int(coarse.max())))
+        row, column = np.nonzero(coarse >= min(SURE_ALPHA, int(SURE_SHARE * coarse.max())))
         x, y = (column + 0.5) * 2 / DOTS_ACROSS - 1, 1 - (row + 0.5) * 2 / DOTS_ACROSS
         dots.append(np.stack([x, y], axis=1))
     spread = [np.linspace(0, len(d) - 1, PROBES).round().astype(np.int64) for d in dots]
