@@ -8,6 +8,8 @@ from tests.api import corpora, drawn
 from tests.api.conftest import Service
 from tests.promises import kept
 
+from treestroke.core.imaging.opacity import over_white
+
 
 def refused(service: Service, content: bytes, *codes: str) -> str:
     """Upload what must be refused in both ways, see that nothing is kept, and give the reason."""
@@ -23,9 +25,9 @@ def refused(service: Service, content: bytes, *codes: str) -> str:
 
 
 def stored(service: Service, content: bytes) -> tuple[np.ndarray, bytes]:
-    """Upload a photo and give the stored pixels and bytes."""
+    """Upload a photo and give the stored pixels, over white, and bytes."""
     image = service.client.get(f"/v1/photos/{service.add_photo(content)}/image").content
-    return np.asarray(Image.open(io.BytesIO(image))), image
+    return over_white(np.asarray(Image.open(io.BytesIO(image)))), image
 
 
 def memory_kb(service: Service, name: str = "VmRSS") -> int:

@@ -10,6 +10,7 @@ from tests.api import drawn
 from tests.api.conftest import Service
 from tests.api.corpora import picture, saved
 
+import treestroke
 from treestroke.codec.image import decode_photo
 
 
@@ -54,6 +55,19 @@ def test_the_stored_picture_is_the_decoded_upload_pixel_by_pixel(service: Servic
     content = saved(picture(), kind)
     stored = image(service.client, service.add_photo(content))
     assert np.array_equal(stored, decode_photo(content, "photo"))
+
+
+def test_a_cut_out_gives_the_same_tree_by_the_service_and_the_library(service: Service) -> None:
+    plain = drawn.pixels()
+    alpha = np.where(plain[..., 2] > plain[..., 1], 0, 255).astype(np.uint8)
+    content = saved(Image.fromarray(np.dstack([plain, alpha])), "PNG")
+    id = service.add_photo(content)
+    assert np.array_equal(image(service.client, id), decode_photo(content, "photo"))
+    made = service.make(**drawn.request(id))
+    by_library = treestroke.model(content, drawn.STROKES, drawn.QUICK)
+    assert service.client.get(made["files"]["tree.glb"]).content == by_library.glb
+    opaque = treestroke.model(plain, drawn.STROKES, drawn.QUICK)
+    assert by_library.glb != opaque.glb
 
 
 def test_the_stored_picture_has_a_tag_and_is_not_sent_again(client: httpx.Client, photo: str) -> None:

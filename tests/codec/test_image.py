@@ -19,6 +19,7 @@ from treestroke.codec.image import (
     encode_stored,
 )
 from treestroke.core.errors import FruitError, LeafError, PhotoError
+from treestroke.core.imaging.opacity import over_white
 from treestroke.core.strokes import StrokeWarning
 from treestroke.limits import MAX_PHOTO_BYTES
 
@@ -56,18 +57,31 @@ def test_a_lossless_photo_comes_back_as_it_was() -> None:
     assert np.array_equal(decode_photo(encode_png(UPRIGHT), "photo"), UPRIGHT)
 
 
-def test_alpha_is_laid_over_white() -> None:
+def test_alpha_is_kept_and_what_is_not_seen_is_white() -> None:
     layered = np.zeros((64, 64, 4), dtype=np.uint8)
+    layered[:, 20:, 3] = 100
     layered[:, 32:, 3] = 255
     found = decode_photo(saved(Image.fromarray(layered), "PNG"), "photo")
-    assert (found[:, :32] == 255).all()
-    assert (found[:, 32:] == 0).all()
+    assert np.array_equal(found[..., 3], layered[..., 3])
+    assert (found[:, :20, :3] == 255).all()
+    assert (found[:, 20:, :3] == 0).all()
+    laid = over_white(found)
+    assert (laid[:, :20] == 255).all()
+    assert (laid[:, 20:32] == 155).all()
+    assert (laid[:, 32:] == 0).all()
+
+
+def test_a_stored_cut_out_comes_back_as_it_was() -> None:
+    noise = np.random.default_rng(0).integers(1, 256, (70, 64, 4), dtype=np.uint8)
+    found = decode_photo(saved(Image.fromarray(noise), "PNG"), "photo")
+    assert np.array_equal(found, noise)
+    assert np.array_equal(decode_stored(encode_stored(found)), noise)
 
 
 def test_a_palette_with_a_transparent_colour_is_laid_over_white() -> None:
     image = Image.new("P", (64, 64), 1)
     image.putpalette([0, 0, 0, 200, 0, 0])
-    found = decode_photo(saved(image, "PNG", transparency=1), "photo")
+    found = over_white(decode_photo(saved(image, "PNG", transparency=1), "photo"))
     assert (found == 255).all()
 
 
@@ -372,7 +386,7 @@ def test_what_phones_and_scanners_save_is_read(kind: str) -> None:
 def test_alpha_of_every_kind_is_laid_over_white(kind: str) -> None:
     layered = np.zeros((64, 64, 4), dtype=np.uint8)
     layered[:, 32:, 3] = 255
-    found = decode_photo(saved(Image.fromarray(layered), kind, quality=100), "photo")
+    found = over_white(decode_photo(saved(Image.fromarray(layered), kind, quality=100), "photo"))
     assert found[:, :28].min() > 250
     assert found[:, 36:].max() < 5
 

@@ -146,8 +146,8 @@ def test_a_member_that_is_packed_in_another_way_is_refused() -> None:
 
 @pytest.mark.parametrize("side", [64, 1000])
 def test_no_stored_photo_is_larger_than_is_allowed(side: int) -> None:
-    noise = np.random.default_rng(0).integers(0, 256, (side, 1000, 3), dtype=np.uint8)
-    assert len(encode_stored(noise)) / noise.size < MAX_STORED_BYTES / (3 * MAX_PIXELS)
+    noise = np.random.default_rng(0).integers(0, 256, (side, 1000, 4), dtype=np.uint8)
+    assert len(encode_stored(noise)) / noise.size < MAX_STORED_BYTES / (4 * MAX_PIXELS)
 
 
 def test_what_is_written_is_read_back() -> None:

@@ -23,7 +23,7 @@ def test_path_bytes_and_pixels_give_the_same_photo(maple_photo: Path) -> None:
     "array",
     [
         np.zeros((80, 80), np.uint8),
-        np.zeros((80, 80, 4), np.uint8),
+        np.zeros((80, 80, 2), np.uint8),
         np.zeros((80, 80, 3)),
         np.zeros((8, 8, 3), np.uint8),
     ],

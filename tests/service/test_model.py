@@ -42,12 +42,18 @@ def test_the_report_says_what_the_score_is_measured_against(maple: Model) -> Non
     assert list(reading["doubts"]) == []
 
 
-@pytest.mark.parametrize(("settings", "doubts"), [({}, ["kind_unsure"]), ({"foliage": "bare"}, [])])
-def test_a_tree_that_may_be_bare_or_not_is_doubted_unless_it_was_said(settings: dict, doubts: list[str]) -> None:
-    photo, strokes = (DATA / f"bigleaf_maple_bare.{end}" for end in ("jpg", "strokes.json"))
+@pytest.mark.parametrize(("settings", "doubts"), [({}, ["kind_unsure"]), ({"foliage": "needles"}, [])])
+def test_a_tree_that_may_bear_something_else_is_doubted_unless_it_was_said(settings: dict, doubts: list[str]) -> None:
+    photo, strokes = DATA / "loblolly_pines.jpg", DATA / "loblolly_pines.tree1.strokes.json"
     report = treestroke.model(photo, strokes, {"iterations": 0, **settings}).report
-    assert report["settings"]["foliage"] == "bare"
+    assert report["settings"]["foliage"] == report["taken"]["foliage"] == "needles"
+    assert report["taken"]["ask"] == bool(doubts)
     assert list(report["reading"]["doubts"]) == doubts
+
+
+def test_a_bare_tree_is_taken_for_bare() -> None:
+    photo, strokes = (DATA / f"bigleaf_maple_bare.{end}" for end in ("jpg", "strokes.json"))
+    assert treestroke.model(photo, strokes, {"iterations": 0}).report["taken"]["foliage"] == "bare"
 
 
 def test_strokes_that_may_mean_no_tree_are_warned_of_and_doubted(maple_photo: Path, maple_strokes: Path) -> None:

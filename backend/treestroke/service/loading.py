@@ -65,7 +65,9 @@ def read_part(name: str, file: FileLike) -> tuple[bytes, str]:
 
 
 def load_photo(photo: PhotoLike, report: Report = silent, warn: Warn = ignore_warning) -> Picture:
-    """Decode a photo (path, encoded bytes, or upright sRGB pixels) to upright sRGB pixels (h, w, 3) uint8.
+    """Decode a photo (path, encoded bytes, or upright sRGB pixels) to upright sRGB pixels, uint8.
+
+    They are (h, w, 3), or (h, w, 4) with straight alpha where some of it is transparent.
 
     ``report("decode", fraction)`` is called while encoded photos are read, ``warn`` with each thing that was mended.
 
@@ -75,8 +77,8 @@ def load_photo(photo: PhotoLike, report: Report = silent, warn: Warn = ignore_wa
         As `decode_photo`; or the file cannot be read; or the array has another shape or type.
     """
     if isinstance(photo, np.ndarray):
-        if photo.ndim != 3 or photo.shape[2] != 3 or photo.dtype != np.uint8:
-            problem = f"an array must be (h, w, 3) uint8, not {photo.shape} {photo.dtype}; convert it"
+        if photo.ndim != 3 or photo.shape[2] not in (3, 4) or photo.dtype != np.uint8:
+            problem = f"an array must be (h, w, 3) or (h, w, 4) uint8, not {photo.shape} {photo.dtype}; convert it"
             raise PhotoError.at((), problem, "wrong_type")
         check_size(photo.shape[1], photo.shape[0], "photo")
         return np.ascontiguousarray(photo)

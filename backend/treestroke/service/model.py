@@ -116,7 +116,7 @@ def model(
     Parameters
     ----------
     photo
-        A path, encoded bytes or upright sRGB pixels (h, w, 3) uint8.
+        A path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; (h, w, 4) with straight alpha of a tree cut out.
     strokes
         A path, JSON bytes, a plain mapping or values.
     settings

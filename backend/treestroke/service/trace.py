@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from treestroke.codec.overlay import draw_overlay
 from treestroke.codec.skeleton import plain_grown, plain_skeleton
+from treestroke.core.imaging.opacity import over_white
 from treestroke.core.imaging.outline import rings_of_mask
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree
 from treestroke.core.pipeline.photo import PhotoTrace, grow_photo, trace_photo, with_side
@@ -107,11 +108,11 @@ def trace(
 ) -> Trace:
     """Return the foliage inside the crown stroke and the branches near the branch strokes.
 
-    ``photo`` is a path, encoded bytes or upright sRGB pixels (h, w, 3) uint8; ``strokes`` a path, JSON bytes, a plain
-    mapping or values. Without branch strokes only the foliage is found. ``after`` is the last trace of the same photo:
-    its foliage is kept while the crown stays the same, so that one more branch stroke is answered at once; all of it
-    is kept while all strokes do. With ``grow`` the tree that `model` would grow by the same ``settings`` is added; a
-    sketch of its left ``side`` gives that tree its depth.
+    ``photo`` is as `model` takes it; ``strokes`` are a path, JSON bytes, a plain mapping or values. Without branch
+    strokes only the foliage is found. ``after`` is the last trace of the same photo: its foliage is kept while the
+    crown stays the same, so that one more branch stroke is answered at once; all of it is kept while all strokes do.
+    With ``grow`` the tree that `model` would grow by the same ``settings`` is added; a sketch of its left ``side``
+    gives that tree its depth.
 
     Raises
     ------
@@ -130,7 +131,7 @@ def trace(
         grown = grow_photo(traced, chosen, np.random.default_rng(0)) if grow else None
     rings = rings_of_mask(traced.foliage) if last is None else last.rings
     return Trace(
-        photo=picture,
+        photo=over_white(picture),
         foliage=traced.foliage,
         rings=rings,
         strokes=drawn,

@@ -7,13 +7,34 @@ from treestroke.core.paint.sprays import draw_spray
 MEMBERS = np.array([[45.0, -20.0, 25.0], [55.0, -18.0, 28.0], [50.0, -22.0, 20.0]])
 
 
-@pytest.mark.parametrize("shape", ["broad", "needles", "blossom"])
+def covered(shape) -> float:
+    """Mean share of a tile that eight sprays cover."""
+    drawn = [draw_spray(shape, 128, MEMBERS, np.random.default_rng(seed))[..., 3] for seed in range(8)]
+    return float(np.mean([(alpha > 127).mean() for alpha in drawn]))
+
+
+@pytest.mark.parametrize("shape", ["broad", "blossom"])
 def test_a_spray_covers_near_half_its_tile_and_leaves_gaps(shape):
-    covered = [(draw_spray(shape, 128, MEMBERS, np.random.default_rng(seed))[..., 3] > 127).mean() for seed in range(8)]
-    assert 0.36 <= np.mean(covered) <= 0.58
+    assert 0.36 <= covered(shape) <= 0.58
 
 
-@pytest.mark.parametrize("shape", ["broad", "needles", "blossom"])
+@pytest.mark.parametrize("shape", ["needles", "scales", "frond", "strap"])
+def test_what_is_fine_leaves_most_of_its_tile_open(shape):
+    assert 0.12 <= covered(shape) <= 0.35
+
+
+@pytest.mark.parametrize("shape", ["needles", "scales", "frond"])
+def test_fine_sprays_keep_their_gaps_where_they_are_small(shape):
+    # Seen 16 px wide, a leaf is a blot, while a comb still has more edge than a blot of its area.
+    def edge(shape) -> float:
+        alpha = draw_spray(shape, 256, MEMBERS, np.random.default_rng(1))[..., 3].astype(float) / 255
+        small = alpha.reshape(16, 16, 16, 16).mean(axis=(1, 3))
+        return float((np.abs(np.diff(small, axis=0)).sum() + np.abs(np.diff(small, axis=1)).sum()) / small.sum())
+
+    assert edge(shape) > 1.2 * edge("broad")
+
+
+@pytest.mark.parametrize("shape", ["broad", "needles", "scales", "frond", "strap", "blossom"])
 def test_the_border_is_clear(shape):
     alpha = draw_spray(shape, 128, MEMBERS, np.random.default_rng(0))[..., 3]
     assert max(alpha[0].max(), alpha[-1].max(), alpha[:, 0].max(), alpha[:, -1].max()) == 0

@@ -7,7 +7,7 @@ from tests.strategies import skeletons
 from treestroke.core.geometry.polyline import distances_to_segment
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts
-from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_short_branches, drop_subtrees, simplify
+from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 
 TREES = skeletons(dimensions=2, stems=False)
 STEM = np.array([[0.0, 90.0], [0.0, 60.0], [0.0, 30.0], [0.0, 0.0]])
@@ -55,19 +55,6 @@ def test_dropped_joints_go_with_all_their_descendants(tree: Skeleton, data: st.D
     assert np.array_equal(number[kept.parents[1:]], tree.parents[number][1:])
 
 
-@pytest.mark.parametrize(("spur_px", "joints"), [(20.0, 4), (40.0, 6)])
-def test_a_found_branch_stays_when_it_is_long_enough(spur_px: float, joints: int) -> None:
-    builder = drafted(spur_px)
-    tree, stroke = drop_short_branches(builder.skeleton(), np.array(builder.stroke), 30.0)
-    assert len(tree) == len(stroke) == joints
-
-
-def test_a_short_stroked_branch_is_not_dropped() -> None:
-    builder = drafted(2.0)
-    tree, _ = drop_short_branches(builder.skeleton(), np.array([0, 0, 0, 0, 1, 1]), 30.0)
-    assert len(tree) == 6
-
-
 @given(TREES, st.floats(0.0, 40.0))
 def test_simplifying_keeps_forks_and_ends(tree: Skeleton, tolerance: float) -> None:
     kept, number = simplify(tree, np.arange(len(tree)), tolerance)
@@ -86,3 +73,11 @@ def test_a_straight_stem_is_two_joints() -> None:
     tree, stroke = simplify(Skeleton(STEM, np.ones(4), np.arange(4) - 1), np.zeros(4, dtype=np.int64), 0.5)
     assert tree.points.tolist() == [[0, 90], [0, 0]]
     assert stroke.tolist() == [0, 0]
+
+
+def test_simplifying_keeps_how_thickness_falls() -> None:
+    stem = np.column_stack([np.zeros(5), np.arange(5) * -10.0])
+    tree, _ = simplify(
+        Skeleton(stem, np.array([9.0, 9.0, 9.0, 4.0, 3.5]), np.arange(5) - 1), np.zeros(5, dtype=int), 0.4
+    )
+    assert np.interp(-stem[:, 1], -tree.points[:, 1], tree.radii) == pytest.approx([9, 9, 9, 4, 3.5], abs=0.4)

@@ -38,7 +38,7 @@ def stroked(*lines: BranchLine, erase: Sequence[BranchLine] = (), width: float |
 
 
 def trace(strokes: Strokes, wood: np.ndarray = TREE) -> Traced:
-    return trace_branches(wood_photo(wood), strokes, Surroundings(LEAVES, BEHIND, INSIDE), HEIGHT)
+    return trace_branches(wood_photo(wood), strokes, Surroundings(LEAVES, BEHIND, INSIDE, INSIDE), HEIGHT)
 
 
 def drawn(skeleton: Skeleton, edges: np.ndarray) -> np.ndarray:
@@ -156,7 +156,7 @@ def test_the_same_photo_gives_the_same_trace() -> None:
 
 
 @pytest.mark.parametrize(
-    "changes", [{"circle_px": 0.0}, {"snap_share": -0.1}, {"thinnest_px": 0.0}, {"tolerance_share": -1.0}]
+    "changes", [{"trunk_share": 0.0}, {"snap_share": -0.1}, {"thinnest_px": 0.0}, {"tolerance_share": -1.0}]
 )
 def test_parameters_out_of_range_are_refused(changes: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must be positive"):

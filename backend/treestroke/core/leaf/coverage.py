@@ -52,6 +52,20 @@ def share_inside(leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Float
     return np.asarray(grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None]).mean(axis=1))
 
 
+def newly_hidden(
+    covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid
+) -> tuple[Floats, Floats]:
+    """Shares (m,) of each card's opaque dots that hide foliage, or background, not ``covered`` (cells,) yet.
+
+    Wood that a card lies behind is neither.
+    """
+    cells = _cells(leaves, outlines.probes[leaves.tiles], grid)
+    free = ~covered[cells]
+    foliage = grid.inside.ravel()[cells]
+    behind = grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None])
+    return (free & foliage).mean(axis=1), (free & ~behind).mean(axis=1)
+
+
 def cover(covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> None:
     """Mark in ``covered``, flags (cells,), flat as the grid, what the cards hide."""
     for tile, dots in enumerate(outlines.dots):

@@ -79,22 +79,27 @@ class LeafCrown:
         light = np.clip(light, DARKEST, 1.0)
         return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
 
-    def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> tuple[Leaves, Mask]:
-        """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,)."""
+    def dressed(
+        self, poses: Poses, seats: Seats, rng: np.random.Generator, fitting: float = FITTING
+    ) -> tuple[Leaves, Mask]:
+        """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,).
+
+        ``fitting`` is the share of their opaque dots that must lie in the foliage.
+        """
         leaves = self.coloured(poses, seats, rng)
-        kept = self._fitting(leaves)
+        kept = self._fitting(leaves, fitting)
         return leaves.select(kept), kept
 
     def hide(self, covered: NDArray[np.bool_], leaves: Leaves, grid: FoliageGrid) -> None:
         """Mark in ``covered``, flags (cells,), flat as a view's grid, what cards hide."""
         cover(covered, leaves, self.outlines, grid)
 
-    def _fitting(self, leaves: Leaves) -> Mask:
+    def _fitting(self, leaves: Leaves, least: float) -> Mask:
         """Which cards (m,) lie in the volume, and in the foliage, or behind the wood, of each view that sees them."""
         fits, excluded = np.zeros((2, len(leaves)), dtype=np.bool_)
         for grid in self.grids:
             behind = grid.deeper(grid.cells_of(leaves.centres), grid.camera.depth(leaves.centres))
-            shown = behind & (share_inside(leaves, self.outlines, grid) >= FITTING)
+            shown = behind & (share_inside(leaves, self.outlines, grid) >= least)
             fits |= shown
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
         return np.asarray(fits & ~excluded & self.volume.admits(leaves.centres, FLAT * self.height))

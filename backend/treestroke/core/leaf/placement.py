@@ -19,6 +19,7 @@ from treestroke.core.leaf.arrangement import (
     seats_along,
 )
 from treestroke.core.leaf.conifer_sprays import POSTURES, pose_conifer_sprays
+from treestroke.core.leaf.fronds import set_fronds
 from treestroke.core.leaf.gaps import GapParams, cover_gaps
 from treestroke.core.leaf.leaf_crown import LeafCrown
 from treestroke.core.leaf.leaf_density import leaf_weights
@@ -80,6 +81,8 @@ def place_leaves(
     """
     if params.kind == "bare" or params.density == 0 or params.max_cards == 0:
         return no_leaves()
+    if params.kind == "palm":
+        return set_fronds(skeleton, crown, params.density, rng)
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind in CONIFEROUS)

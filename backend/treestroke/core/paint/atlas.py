@@ -37,6 +37,8 @@ class LeafStyle:
         Whether the photo shows leaves; if not, all colours are the season's.
     picture
         A leaf, (h, w, 4) uint8, sRGB with straight alpha, its stalk down, reduced to its opaque part; None to draw one.
+    straps
+        Whether a palm bears strap leaves instead of fronds.
 
     Raises
     ------
@@ -48,6 +50,7 @@ class LeafStyle:
     season: str = "photo"
     shown: bool = True
     picture: NDArray[np.uint8] | None = None
+    straps: bool = False
 
     def __post_init__(self) -> None:
         if self.picture is not None:
@@ -152,7 +155,7 @@ def _spray_kinds(palette: Palette, kind: FoliageKind, style: LeafStyle, flower: 
         case "needles" | "scales":
             return [kind]
         case "palm":
-            return ["frond"]
+            return ["strap" if style.straps else "frond"]
     if style.species.flowers and style.season == "spring":
         return ["blossom"]
     return ["blossom" if flower and bright else "broad" for bright in palette.centres[:, 0] > 45]

@@ -1,4 +1,4 @@
-"""Pieces of palm fronds: a midrib with narrow leaflets to both sides."""
+"""Pieces of palm fronds, a midrib with narrow leaflets to both sides, and of strap leaves."""
 
 import numpy as np
 
@@ -27,6 +27,20 @@ def draw_frond_piece(side: int, colours: Floats, rng: np.random.Generator) -> Pi
         shade = (PLAIN, DARK, LIGHT, PLAIN)[number % 4]
         canvas.polygon(leaflet, canvas.paints[number, shade])
     canvas.lines(np.array([[[0.5, 0.96], [0.5, 0.04]]]), canvas.paints[0, RIB], 0.022)
+    return canvas.tile()
+
+
+def draw_strap_piece(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
+    """Draw a piece of a strap leaf, as dracaenas and yuccas bear it: a blade that runs through the square, with a rib.
+
+    Returns
+    -------
+    (side, side, 4) uint8, sRGB with straight alpha, in colours drawn from (m, 3), CIE Lab.
+    """
+    canvas, half = Canvas(side, colours, 1, rng), rng.uniform(0.11, 0.15)
+    for shade, left, right in ((DARK, -half, 0.02), (LIGHT, -0.02, half), (RIB, -0.012, 0.012)):
+        blade = np.array([[left, 0.97], [right, 0.97], [right, 0.03], [left, 0.03]]) + np.array([0.5, 0.0])
+        canvas.polygon(blade, canvas.paints[0, shade])
     return canvas.tile()
 
 

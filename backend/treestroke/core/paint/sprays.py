@@ -6,14 +6,14 @@ import numpy as np
 
 from treestroke.core.paint.broad_leaves import draw_ovate_leaves, draw_species_leaves
 from treestroke.core.paint.canvas import DARK, HEART, LIGHT, PLAIN, Canvas, fits_canvas
-from treestroke.core.paint.fronds import draw_frond_piece
+from treestroke.core.paint.fronds import draw_frond_piece, draw_strap_piece
 from treestroke.core.paint.needles import draw_flat_spray, draw_species_needles
 from treestroke.core.paint.scales import draw_scale_spray
 from treestroke.core.paint.shoots import along, draw_twig, heading
 from treestroke.core.paint.species import AUTO, Species
 from treestroke.core.types import Floats, FoliageKind, Picture
 
-SprayKind = Literal["broad", "needles", "scales", "frond", "blossom"]
+SprayKind = Literal["broad", "needles", "scales", "frond", "strap", "blossom"]
 
 CARD_SIZE: dict[FoliageKind, float] = {"leaves": 1.0, "needles": 1.8, "scales": 1.4, "palm": 1.0, "bare": 1.0}
 """Size of the card that shows a spray, relative to one of broad leaves: a conifer's spray has many more parts."""
@@ -43,6 +43,8 @@ def draw_spray(
             return draw_scale_spray(side, colours, rng)
         case "frond":
             return draw_frond_piece(side, colours, rng)
+        case "strap":
+            return draw_strap_piece(side, colours, rng)
         case "blossom":
             return _draw_blossom(side, colours, rng)
 

@@ -136,6 +136,7 @@ def completed(working: WorkingCopy, foliage: Foliage, traced: Traced, crown: Mas
         replace(
             foliage,
             mask=canvas.bears(foliage.mask),
+            alpha=np.where(canvas.tree, canvas.shows(foliage.alpha), np.float32(0)),
             pure=canvas.bears(foliage.pure),
             region=canvas.bears(foliage.region),
         ),

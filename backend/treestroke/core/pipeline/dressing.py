@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from treestroke.core.appearance import View
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.mesh import Surface
+from treestroke.core.grow.palm import is_forked
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
 from treestroke.core.leaf.leaf_crown import LEAST_SIZE, MOST_SIZE, leaf_crown
@@ -86,7 +87,7 @@ def _leaves(
     if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None
     species = SPECIES.get(settings.species, AUTO)
-    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture)
+    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, is_forked(tree.grown))
     atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)

@@ -10,6 +10,7 @@ from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.library import choose_library
+from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
@@ -32,7 +33,7 @@ from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, wor
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.form import crown_form
-from treestroke.core.segment.kind import KindOdds, kind_odds
+from treestroke.core.segment.kind import KindOdds, kind_odds, likeliest
 from treestroke.core.skeleton.branched import branched
 from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.measure import edge_lengths
@@ -163,7 +164,7 @@ def read_photo(
     report: Report = silent,
     side: Sketch | None = None,
 ) -> PhotoEvidence:
-    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3), sRGB.
+    """Find the foliage, unless it is ``known``, and trace the branches of a photo (h, w, 3 or 4), sRGB.
 
     Raises
     ------
@@ -174,12 +175,15 @@ def read_photo(
     report("foliage", 0.0)
     working = working_copy(photo, strokes)
     report("foliage", 0.05)
-    foliage = known or segment_foliage(working.photo, working.strokes.crown.points, report=report)
+    foliage = known or segment_foliage(
+        working.photo, working.strokes.crown.points, report=report, cut_out=working.cut_out
+    )
     if not strokes.branches:
         return PhotoEvidence(working, foliage, None, side_drawing)
     report("trace", 0.0)
     height_px = working.height_px(foliage.mask)
-    surroundings = Surroundings(foliage.leaf, foliage.ground, foliage.region)
+    is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
+    surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
     return PhotoEvidence(working, foliage, traced, side_drawing)
 
@@ -206,10 +210,15 @@ def grow_tree(
         choose_library(settings.library, crown.kind, lifted.tree, taken.form),
         growth_for(crown.kind, settings.iterations, taken.form),
     )
-    grown = grow(lifted.tree, CrownToFill(crown.volume, crown.front), method, rng, report)
-    leafy = foliage.mask if crown.shows_leaves else frayed(crown.front.mask, rng)
+    room = CrownToFill(crown.volume, crown.front)
+    if crown.kind == "palm":
+        grown = grow_palm(lifted.tree, room, settings.iterations, rng)
+    else:
+        grown = grow(lifted.tree, room, method, rng, report)
+    leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     tree = leafy | crown.wood
-    grown = grown if crown.kind == "bare" else trimmed(grown, Silhouette(tree, crown.camera))
+    if crown.kind not in ("bare", "palm"):
+        grown = trimmed(grown, Silhouette(tree, crown.camera))
     return GrownTree(
         taken=taken,
         grown=grown,

@@ -12,6 +12,7 @@ from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
+from treestroke.core.imaging.opacity import over_white
 from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.lift.spread import FrontCrown, lift
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
@@ -114,7 +115,7 @@ def read_sketches(
 ) -> SketchEvidence:
     """Find the 2D skeletons of a front sketch and, where there is one, of a left-side sketch.
 
-    ``photo`` (h, w, 3), sRGB, is what the front was drawn over: the tree takes its colours.
+    ``photo`` (h, w, 3 or 4), sRGB, is what the front was drawn over: the tree takes its colours.
 
     Raises
     ------
@@ -126,7 +127,8 @@ def read_sketches(
         front = _over(front, photo)
     drawing = draw_side(front, "front")
     report("trace", 0.5)
-    return SketchEvidence(drawing, None if side is None else draw_side(side, "side"), photo)
+    under = None if photo is None else over_white(photo)
+    return SketchEvidence(drawing, None if side is None else draw_side(side, "side"), under)
 
 
 def grow_sketches(

@@ -6,20 +6,25 @@ import cv2
 import numpy as np
 
 from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.imaging.opacity import over_white
 from treestroke.core.stroke_rules import mend_strokes
 from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
-from treestroke.core.types import Floats, Mask, Picture
+from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 WORKING_SIDE = 1600
 """Long side, px, to which a larger photo is reduced: the paper's constants are for about 1500."""
+HALF, LEAST_TRANSPARENT = 128, 0.05
+"""Share of its pixels with an alpha under a half from which on a photo counts as a tree that was cut out: rounded
+corners and soft edges have less."""
 
 
 @dataclass(frozen=True, eq=False)
 class WorkingCopy:
     """The working copy of a photo: reduced by ``scale`` (1 or less), with mended strokes to match.
 
-    ``size`` is the photo's own width and height, px. Where the crown is completed beyond the photo's edges, ``photo``
-    is a larger canvas with the photo at ``corner`` (x, y), px.
+    ``size`` is the photo's own width and height, px, ``cut_out`` the opacity (h, w) of a tree that was cut out. Where
+    the crown is completed beyond the photo's edges, ``photo`` is a larger canvas with the photo at ``corner`` (x, y),
+    px.
     """
 
     photo: Picture
@@ -27,6 +32,7 @@ class WorkingCopy:
     scale: float
     size: tuple[int, int]
     warnings: tuple[StrokeWarning, ...]
+    cut_out: Opacity | None = None
     corner: tuple[int, int] = (0, 0)
 
     def height_px(self, mask: Mask) -> float:
@@ -53,7 +59,7 @@ class WorkingCopy:
     def on_canvas(self, canvas: Picture, corner: tuple[int, int]) -> "WorkingCopy":
         """Return the copy on a larger ``canvas`` (h, w, 3), which shows it at a ``corner`` (x, y), px."""
         strokes = _moved(self.strokes, 1.0, np.array(corner, dtype=np.float64))
-        return replace(self, photo=canvas, strokes=strokes, corner=corner)
+        return replace(self, photo=canvas, strokes=strokes, cut_out=None, corner=corner)
 
     def in_photo(self, mask: Mask) -> Mask:
         """Return the part of a canvas's mask (h, w) that the photo shows."""
@@ -62,7 +68,9 @@ class WorkingCopy:
 
 
 def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
-    """Mend the strokes (px) and reduce a large photo (h, w, 3), sRGB, to `WORKING_SIDE` px, with its strokes.
+    """Mend the strokes (px) and reduce a large photo (h, w, 3 or 4), sRGB, to `WORKING_SIDE` px, with its strokes.
+
+    Transparent pixels are laid over white.
 
     Raises
     ------
@@ -72,11 +80,23 @@ def working_copy(photo: Picture, strokes: Strokes) -> WorkingCopy:
     height, width = photo.shape[:2]
     mended = mend_strokes(strokes, width, height)
     scale = min(1.0, WORKING_SIDE / max(height, width))
-    if scale == 1.0:
-        return WorkingCopy(photo, mended.strokes, 1.0, (width, height), mended.warnings)
-    small = cv2.resize(photo, _reduced((width, height), scale), interpolation=cv2.INTER_AREA)
-    fitted = _moved(mended.strokes, scale, np.zeros(2))
-    return WorkingCopy(np.asarray(small, dtype=np.uint8), fitted, scale, (width, height), mended.warnings)
+    colours, cut_out, fitted = over_white(photo), _cut_out(photo), mended.strokes
+    if scale < 1.0:
+        size = _reduced((width, height), scale)
+        colours = np.asarray(cv2.resize(colours, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+        cut_out = None if cut_out is None else np.asarray(cv2.resize(cut_out, size, interpolation=cv2.INTER_AREA))
+        fitted = _moved(mended.strokes, scale, np.zeros(2))
+    return WorkingCopy(colours, fitted, scale, (width, height), mended.warnings, cut_out)
+
+
+def _cut_out(photo: Picture) -> Opacity | None:
+    """Return the opacity (h, w) of a tree that was cut out of a photo (h, w, 4); None where next to all is opaque."""
+    if photo.shape[2] == 3:
+        return None
+    alpha = photo[..., 3]
+    if np.count_nonzero(alpha < HALF) < LEAST_TRANSPARENT * alpha.size:
+        return None
+    return np.asarray(alpha * np.float32(1 / 255), dtype=np.float32)
 
 
 def _reduced(size: tuple[int, int], scale: float) -> tuple[int, int]:

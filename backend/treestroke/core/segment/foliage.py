@@ -1,8 +1,8 @@
-"""Foliage from one crown stroke: colour mixtures and a graph cut.
+"""Foliage from one crown stroke: colour mixtures, a graph cut and a matte.
 
 Source: Tan et al. 2008, section 2, "Foliage extraction". We differ in how colours are divided between leaves and ground
 (`leaf_odds.initial_models`): by where they lie, with colour as a prior, so that yellow autumn, white blossom and bare
-twigs work too.
+twigs work too. And the cut tells only roughly where the foliage is; the `matte` tells sky between leaves from leaves.
 """
 
 from dataclasses import dataclass
@@ -21,6 +21,7 @@ from treestroke.core.segment.contrast import stands_out
 from treestroke.core.segment.cues import Cues, crown_cues
 from treestroke.core.segment.leaf_odds import (
     initial_models,
+    leaf_likelihood,
     log_odds_by_colour,
     log_odds_by_height,
     log_odds_by_place,
@@ -63,7 +64,7 @@ class FoliageParams:
     cut_pixels
         Greatest number of pixels in the coarse graph; at finer levels only a band along the border is cut.
     pore_share
-        Holes narrower than this share of the crown are filled: they are shade among leaves.
+        Holes narrower than this share of the crown are none in the mask, and pieces of foliage as small are left out.
     """
 
     components: int = 12
@@ -87,10 +88,10 @@ class Foliage:
 
     Attributes
     ----------
-    mask
-        (h, w) foliage pixels; twigs, if the tree is bare.
     alpha
-        (h, w) share of each pixel that foliage covers.
+        (h, w) share of each pixel that foliage covers; twigs, if the tree is bare.
+    mask
+        (h, w) pixels that foliage covers by half or more, and small holes between them.
     pure
         (h, w) foliage pixels that are leaves by their own colour, with nothing shining through.
     region
@@ -103,14 +104,19 @@ class Foliage:
         Whether the crown stands out from what is around it.
     """
 
-    mask: Mask
     alpha: Opacity
+    mask: Mask
     pure: Mask
     region: Mask
     leaf: Mixture
     ground: Mixture
     cues: Cues
     clear: bool
+
+    @property
+    def covered(self) -> Mask:
+        """(h, w) pixels that foliage covers by half or more."""
+        return self.alpha > HALF
 
 
 def segment_foliage(
@@ -133,11 +139,37 @@ def segment_foliage(
     inside, pixels = crown[box], np.ascontiguousarray(photo[box])
     dilation_px = params.dilation_px * max(height, width) / REFERENCE_SIDE
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= dilation_px
+    known = None if cut_out is None else cut_out[box] * region
+    leaf, ground, odds = _told_apart(pixels, inside, known, params, report)
+    if known is None:
+        found = cut_grid(pixels, odds + log_odds_by_place(inside), region, params.smoothness, params.cut_pixels)
+        report("foliage", 0.8)
+        likely = leaf_likelihood(pixels, found if found.any() else inside, params.components, params.samples)
+        alpha = matte(pixels, likely * region) * region
+    else:
+        found, alpha = known > HALF, known
+    if not found.any() or not (alpha > HALF).any():
+        found, alpha = inside, inside.astype(np.float32)
+    pore = params.pore_share * np.sqrt(inside.sum())
+    mask, pure = _without_pores(alpha > HALF, pore), (alpha > HALF) & (odds > PURE_ODDS) & ~_bluish(pixels)
+    cues = crown_cues(pixels, _without_pores(found, pore), region)
+    pure = _without_glare(pure, pixels)
+    mask, pure, region = (_in_frame(part, box, crown.shape) for part in (mask, pure, region))
+    report("foliage", 1.0)
+    clear = stands_out(pixels, inside, max(height, width))
+    return Foliage(_in_frame(alpha, box, crown.shape), mask, pure, region, leaf, ground, cues, clear)
+
+
+def _told_apart(
+    pixels: Picture, inside: Mask, known: Opacity | None, params: FoliageParams, report: Report
+) -> tuple[Mixture, Mixture, NDArray[np.float32]]:
+    """Fit colour models of leaves and ground; return them and the log odds (h, w) that each pixel is a leaf by them.
+
+    ``inside`` (h, w) is the stroke's, ``known`` (h, w) the foliage's opacity where that is known.
+    """
     leaf, ground = initial_models(pixels, inside, params.components, params.samples)
     report("foliage", 0.2)
-    place = log_odds_by_place(inside)
-    odds = log_odds_by_colour(leaf, ground, pixels)
-    known = None if cut_out is None else np.where(region, cut_out[box], np.float32(0))
+    place, odds = log_odds_by_place(inside), log_odds_by_colour(leaf, ground, pixels)
     for refit in range(params.refits):
         leaves = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0 if known is None else known > HALF)
         if not leaves.any() or leaves.all():
@@ -145,19 +177,7 @@ def segment_foliage(
         leaf, ground = refitted_models(pixels, leaves, params.components, params.samples)
         odds = log_odds_by_height(leaf, ground, pixels, leaves)
         report("foliage", 0.2 + 0.5 * (refit + 1) / params.refits)
-    found = (
-        cut_grid(pixels, odds + place, region, params.smoothness, params.cut_pixels) if known is None else known > HALF
-    )
-    report("foliage", 0.9)
-    pure = _without_glare(found & (odds > PURE_ODDS) & ~_bluish(pixels), pixels)
-    if known is None:
-        found = _without_pores(found, params.pore_share * np.sqrt(inside.sum())) if found.any() else inside
-    cues = crown_cues(pixels, found, region)
-    alpha = np.where(region, matte(pixels, found), np.float32(0)) if known is None else known
-    mask, pure, region = (_in_frame(part, box, crown.shape) for part in (found, pure, region))
-    report("foliage", 1.0)
-    clear = stands_out(pixels, inside, max(height, width))
-    return Foliage(mask, _in_frame(alpha, box, crown.shape), pure, region, leaf, ground, cues, clear)
+    return leaf, ground, odds
 
 
 def _without_glare(foliage: Mask, pixels: Picture) -> Mask:
@@ -180,11 +200,18 @@ def _in_frame(part: NDArray[Kind], box: tuple[slice, slice], shape: tuple[int, .
 
 
 def _without_pores(found: Mask, width_px: float) -> Mask:
-    """Fill the holes of a mask whose area is at most that of a square ``width_px`` wide."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats((~found).astype(np.uint8), connectivity=4)
-    small = np.zeros(count, dtype=bool)
-    small[1:] = stats[1:, cv2.CC_STAT_AREA] <= width_px**2
-    return np.asarray(found | small[labels])
+    """Fill the holes of a mask whose area is at most that of a square ``width_px`` wide; then drop pieces as small."""
+    filled = found | _pieces(~found, 0.0, width_px)
+    return np.asarray(_pieces(filled, width_px, np.inf)) if found.any() else filled
+
+
+def _pieces(mask: Mask, over_px: float, up_to_px: float) -> Mask:
+    """Keep the connected pieces of a mask with areas between those of squares as wide."""
+    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=4)
+    kept = np.zeros(count, dtype=bool)
+    area = stats[1:, cv2.CC_STAT_AREA]
+    kept[1:] = (over_px**2 < area) & (area <= up_to_px**2)
+    return np.asarray(kept[labels])
 
 
 def _surroundings(crown: Mask) -> tuple[slice, slice]:

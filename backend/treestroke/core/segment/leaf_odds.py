@@ -19,7 +19,7 @@ from treestroke.core.imaging.mixture import (
     table_colours,
     table_index,
 )
-from treestroke.core.types import Floats, Mask, Picture
+from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 BANDS = 10
 """Heights at which weights are counted; between them they are interpolated."""
@@ -29,6 +29,8 @@ HEIGHT_SAMPLES = 8000
 """Pixels by which the weights are counted."""
 FEWEST = 20
 """Pixels that a band must have for weights of its own."""
+THROUGH = 0.5
+"""Share of the background's colours that shines through foliage (0.35 to 0.6 are as good on 20 crowns)."""
 LIMIT = 8.0
 """Greatest log odds that a colour alone gives."""
 
@@ -103,6 +105,21 @@ def log_odds_by_place(inside: Mask) -> NDArray[np.float32]:
     odds = np.full(inside.shape, -2.0, dtype=np.float32)
     odds[inside] = 0.7 - 1.8 * np.exp(-_depth(inside)[inside] / 0.06)
     return odds
+
+
+def leaf_likelihood(pixels: Picture, found: Mask, components: int, samples: int) -> Opacity:
+    """Probability (h, w) that a pixel of such a colour at such a height is foliage and not the background behind it.
+
+    ``found`` (h, w) is where foliage was found, with what shines through it; ``pixels`` (h, w, 3) are sRGB. A colour
+    that is as common beside it is background seen through it.
+
+    Source: learning from a pure and a mixed sample, Elkan and Noto 2008, "Learning classifiers from only positive and
+    unlabeled data"; the background is the pure sample.
+    """
+    mixture = fit_mixture(_sample(pixels, np.ones_like(found), samples), components)
+    within, beside = (weights_by_height(mixture, pixels, where) for where in (found, ~found))
+    belief = np.clip(1 - THROUGH * beside / within, 0, 1)
+    return _interpolated(belief @ component_shares(mixture, table_colours()).T, table_index(pixels))
 
 
 def weights_by_height(mixture: Mixture, pixels: Picture, where: Mask) -> Floats:

@@ -32,6 +32,12 @@ MAX_SAMPLES = 2500
 """Approximate number of pixels that a mixture is fitted to."""
 MIN_BARE = 100
 """Number of pixels of bare wood under the strokes from which on it has a mixture of its own."""
+MIN_DIFFERENT = 0.25
+"""Least share of leaves that differ from bare wood; below it the colours in the crown tell nothing."""
+SURE, MIN_LEARNT = 1.0, 200
+"""Log odds from which a pixel of the crown teaches what wood looks like, and least number of them."""
+OTHER_COMPONENTS, BEHIND = 8, 0.3
+"""Components of a mixture of all in the crown that is not wood, and the ground's share in it."""
 MAX_ODDS = 6.0
 """Limit of the log odds in both directions."""
 
@@ -43,33 +49,88 @@ class Surroundings:
     Attributes
     ----------
     leaf, ground
-        Colours (sRGB mixtures) of leaves and of what is behind the tree.
+        Colours (sRGB mixtures) of leaves, None on a bare tree, and of what is behind the tree.
     crown
         (h, w) mask of where leaves may be.
+    foliage
+        (h, w) mask of the leaves, or of the twigs of a bare tree: a limb may be hidden there.
     """
 
-    leaf: Mixture
+    leaf: Mixture | None
     ground: Mixture
     crown: Mask
+    foliage: Mask
 
 
-def branch_odds(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, surroundings: Surroundings) -> Odds:
-    """Return the log odds (h, w), within +-6, that each pixel of a photo (h, w, 3), sRGB, shows a branch.
+@dataclass(frozen=True, eq=False)
+class WoodOdds:
+    """Log odds (h, w), within +-6, that each pixel of a photo shows wood.
+
+    Attributes
+    ----------
+    by_strokes
+        By the colours under the strokes: they change little when the hand shakes.
+    by_crown
+        Inside the crown by what was learnt there: they see wood in other light, and its whole width.
+    """
+
+    by_strokes: Odds
+    by_crown: Odds
+
+
+def wood_odds(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, surroundings: Surroundings) -> WoodOdds:
+    """Return the log odds that each pixel of a photo (h, w, 3), sRGB, shows wood.
 
     Branches have a mixture of 5 components of the pixels within ``breadth_px`` of the lines (n, 2), px. In the crown
     the components too close to those of leaves (the stroke crosses leaves) are left out, and all else is leaf or
     ground. Outside there are no leaves and the mixture is that of the bare wood there, so that a trunk as dark as its
     leaves differs from the ground. Source: Tan et al. 2008, section 2, "Visible branch tracing".
+
+    The crown's own odds begin with the bare wood below it, too, and with leaves that do not look like it; what these
+    tell apart gives both mixtures anew, as in GrabCut (Rother, Kolmogorov and Blake 2004, section 3).
     """
     leaf, ground, crown = surroundings.leaf, surroundings.ground, surroundings.crown
     pixels, in_crown = _pixels_under(photo, lines_px, breadth_px, crown)
     model = fit_mixture(_subsample(pixels), COMPONENTS)
-    bare = fit_mixture(_subsample(pixels[~in_crown]), COMPONENTS) if (~in_crown).sum() >= MIN_BARE else model
-    among_leaves = _wood_components(_without_leaf_components(model, leaf), bare)
-    rest = join_mixtures([leaf, ground], [0.5, 0.5])
-    outside = _odds(bare, ground)
-    inside = _odds(among_leaves, rest) if among_leaves is not None else np.full_like(outside, -MAX_ODDS)
-    return np.take(np.concatenate([outside, inside]), table_index(photo) | crown.astype(np.uint16) << 3 * TABLE_BITS)
+    bare = fit_mixture(_subsample(pixels[~in_crown]), COMPONENTS) if (~in_crown).sum() >= MIN_BARE else None
+    among_leaves = model if leaf is None else _without_leaf_components(model, leaf)
+    among_leaves = among_leaves if bare is None else _wood_components(among_leaves, bare)
+    rest = ground if leaf is None else join_mixtures([leaf, ground], [0.5, 0.5])
+    outside = _odds(bare or model, ground)
+    inside = np.full_like(outside, -MAX_ODDS) if among_leaves is None else _odds(among_leaves, rest)
+    place = table_index(photo)
+    by_strokes = np.take(np.concatenate([outside, inside]), place | crown.astype(np.uint16) << 3 * TABLE_BITS)
+    by_crown = by_strokes.copy()
+    wood = [mixture for mixture in (bare, among_leaves) if mixture is not None]
+    others = _others_in_crown(bare, surroundings)
+    if wood and others is not None:
+        table = _learnt_odds(photo[crown], _odds(join_mixtures(wood, [1.0] * len(wood)), others), ground)
+        by_crown[crown] = table[place[crown]]
+    return WoodOdds(by_strokes, by_crown)
+
+
+def _others_in_crown(bare: Mixture | None, surroundings: Surroundings) -> Mixture | None:
+    """Return the colours of all in the crown that is not wood: of the ground, and of leaves that differ from bare wood.
+
+    None where nearly all leaves have the colours of bare wood.
+    """
+    leaf, ground = surroundings.leaf, surroundings.ground
+    if leaf is None:
+        return ground
+    differs = np.array([bare is None or distance(bare, mean) > LEAF_LIKE for mean in leaf.means])
+    if leaf.weights[differs].sum() < MIN_DIFFERENT:
+        return None
+    return join_mixtures([leaf.select(differs), ground], [0.5, 0.5])
+
+
+def _learnt_odds(pixels: Picture, odds: Odds, ground: Mixture) -> Odds:
+    """Return log odds for each colour of the table, learnt from what such odds tell apart among pixels (n, 3)."""
+    known = odds[table_index(pixels)]
+    found, left = pixels[known > SURE], pixels[known <= 0]
+    if min(len(found), len(left)) < MIN_LEARNT:
+        return odds
+    others = join_mixtures([fit_mixture(_subsample(left), OTHER_COMPONENTS), ground], [1 - BEHIND, BEHIND])
+    return _odds(fit_mixture(_subsample(found), COMPONENTS), others)
 
 
 def _odds(branch: Mixture, rest: Mixture) -> Odds:

@@ -122,7 +122,7 @@ def thin(ink: Mask) -> Mask:
 def build_graph(lines: Mask, half_widths: NDArray[np.float32]) -> Graph:
     """Build the graph of lines (h, w) one pixel wide; half widths (h, w), px, are those of the ink."""
     pixels = np.argwhere(lines)
-    around = _neighbours(pixels, lines.shape)
+    around = neighbours(pixels, lines.shape)
     radii = np.asarray(half_widths[tuple(pixels.T)], dtype=np.float64)
     points = pixels[:, ::-1].astype(np.float64) + 0.5
     return Graph([Arc((c[0], c[-1]), points[c], radii[c]) for c in _chains(around, pixels)])
@@ -186,7 +186,7 @@ def _cross(graph: Graph, number: int) -> bool:
     return bool(min(max(turn(a, c), turn(b, d)), max(turn(a, d), turn(b, c))) < STRAIGHT_RAD)
 
 
-def _neighbours(pixels: Indices, shape: tuple[int, ...]) -> list[list[int]]:
+def neighbours(pixels: Indices, shape: tuple[int, ...]) -> list[list[int]]:
     """List the neighbours of each pixel (n, 2); a diagonal one counts only where no pixel shares a side with both."""
     number = np.full((shape[0] + 2, shape[1] + 2), -1, dtype=np.int64)
     row, column = pixels.T + 1

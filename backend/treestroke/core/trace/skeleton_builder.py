@@ -3,7 +3,6 @@
 import numpy as np
 
 from treestroke.core.geometry.polyline import simplified
-from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts, children
 from treestroke.core.types import Floats, Indices, Mask
@@ -61,24 +60,8 @@ def drop_subtrees(skeleton: Skeleton, stroke: Indices, dropped: Indices) -> tupl
     return _keep(skeleton, stroke, ~gone)
 
 
-def drop_short_branches(skeleton: Skeleton, stroke: Indices, shortest_px: float) -> tuple[Skeleton, Indices]:
-    """Drop traced branches that are shorter than ``shortest_px``: a single arc of the tracer is not a branch yet.
-
-    ``stroke`` (n,) is the index of each joint's stroke, -1 on traced branches; that of the joints that stay is
-    returned, too.
-    """
-    lengths = edge_lengths(skeleton)
-    beyond = np.zeros(len(skeleton))
-    for joint in range(len(skeleton) - 1, 0, -1):
-        parent = int(skeleton.parents[joint])
-        if parent >= 0:
-            beyond[parent] = max(beyond[parent], beyond[joint] + lengths[joint])
-    leaves_stroke = (stroke < 0) & (stroke[np.maximum(skeleton.parents, 0)] >= 0)
-    return drop_subtrees(skeleton, stroke, np.flatnonzero(leaves_stroke & (beyond + lengths < shortest_px)))
-
-
 def simplify(skeleton: Skeleton, stroke: Indices, tolerance_px: float) -> tuple[Skeleton, Indices]:
-    """Drop the joints between forks and ends that lie within ``tolerance_px`` of the line that remains.
+    """Drop the joints between forks and ends that lie, and whose radii are, within ``tolerance_px`` of what remains.
 
     ``stroke`` (n,) is the index of each joint's stroke; that of the joints that stay is returned, too. Source: Tan et
     al. 2008, section 2, which drops each joint that is not a fork and turns by less than 30 degrees. On a smooth bend
@@ -86,13 +69,14 @@ def simplify(skeleton: Skeleton, stroke: Indices, tolerance_px: float) -> tuple[
     """
     counts, offspring = child_counts(skeleton), children(skeleton)
     # A branch's first joint stays, too: its thickness there is its own, not its parent's.
+    places = np.column_stack([skeleton.points, skeleton.radii])
     kept = (counts != 1) | (skeleton.parents < 0) | (stroke != stroke[np.maximum(skeleton.parents, 0)])
     for joint in np.flatnonzero(kept).tolist():
         for child in offspring[joint]:
             chain = [joint, child]
             while not kept[chain[-1]]:
                 chain.append(offspring[chain[-1]][0])
-            kept[np.array(chain)[simplified(skeleton.points[chain], tolerance_px)]] = True
+            kept[np.array(chain)[simplified(places[chain], tolerance_px)]] = True
     return _keep(skeleton, stroke, kept)
 
 

@@ -1,22 +1,21 @@
 """From branch strokes to the visible branches, as a Skeleton in the photo.
 
-Source: Tan et al. 2008, section 2. Strokes are pulled onto the branches in the photo, further branches are found by the
-circle tracer, radii are measured where the photo shows them.
+Source: Tan et al. 2008, section 2. Strokes are pulled onto the branches in the photo, further limbs are found along
+ribbons of wood, radii are measured where the photo shows them.
 """
 
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import arc_lengths, normals
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
-from treestroke.core.trace.appearance import Surroundings, branch_odds
-from treestroke.core.trace.circle import Circle, trace_forks
-from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_short_branches, drop_subtrees, simplify
+from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
+from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
+from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
 from treestroke.core.trace.thickness import half_widths, non_increasing
 from treestroke.core.types import Floats, Indices, Mask, Picture
@@ -46,8 +45,6 @@ class TraceParams:
 
     Attributes
     ----------
-    circle_px
-        Radius of the circle tracer's circle (Tan et al. 2008, section 2).
     snap_share
         Greatest distance by which a stroke is pulled aside.
     tolerance_share
@@ -62,7 +59,6 @@ class TraceParams:
         Least radius of a traced branch.
     """
 
-    circle_px: float = 50.0
     snap_share: float = 0.015
     tolerance_share: float = 0.002
     stem_share: float = 0.03
@@ -71,7 +67,7 @@ class TraceParams:
     thinnest_px: float = 1.5
 
     def __post_init__(self) -> None:
-        if min(self.circle_px, self.snap_share, self.trunk_share, self.thinnest_px) <= 0 or self.tolerance_share < 0:
+        if min(self.snap_share, self.trunk_share, self.thinnest_px) <= 0 or self.tolerance_share < 0:
             raise ValueError(f"tracing parameters must be positive: {self}")
 
 
@@ -99,9 +95,14 @@ class Traced:
 
 @dataclass(frozen=True, eq=False)
 class _Evidence:
-    """What a stroke is judged by: branch odds, wood and crown (h, w), and the tree's height, px."""
+    """What a stroke is judged by.
 
-    odds: NDArray[np.float32]
+    Odds by the strokes' colours and the wood by them (h, w), to which a stroke is pulled; the wood by the crown's odds,
+    whose width is measured; the crown (h, w), and the tree's height, px.
+    """
+
+    odds: Odds
+    sure_wood: Mask
     wood: Mask
     crown: Mask
     height_px: float
@@ -109,7 +110,7 @@ class _Evidence:
 
 @dataclass(frozen=True, eq=False)
 class _SeenWidths:
-    """Half-widths (n,) measured along a line, px, NaN where unseen, and a mask (n,) of the places outside the crown."""
+    """Half-widths (n,) measured along a line, px, NaN where unseen, and a mask (n,) of the places below the crown."""
 
     halves: Floats
     bare: Mask
@@ -128,16 +129,23 @@ def trace_branches(
     strokes are connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
-    odds = branch_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), surroundings)
-    wood = cv2.GaussianBlur(odds, (0, 0), max(0.7, GRAIN * unit)) > 0
+    odds = wood_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), surroundings)
+    smooth = _smoothed(odds.by_crown, unit)
+    wood = smooth > 0
     builder = SkeletonBuilder()
-    _follow_strokes(builder, strokes.branches, _Evidence(odds, wood, surroundings.crown, height_px), params)
-    seeds = _seeds(builder, params.circle_px * unit)
-    trace_forks(builder, Circle(params.circle_px * unit, wood), seeds)
+    sure_wood = _smoothed(odds.by_strokes, unit) > 0
+    evidence = _Evidence(odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
+    _follow_strokes(builder, strokes.branches, evidence, params)
+    picture = CrownPicture(odds.by_crown, smooth, surroundings.crown, surroundings.foliage)
+    find_limbs(builder, picture, height_px, params.thinnest_px * height_px / REFERENCE_SIDE)
     skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
-    skeleton, stroke = drop_short_branches(skeleton, stroke, 1.6 * params.circle_px * unit)
     skeleton, stroke = simplify(skeleton, stroke, params.tolerance_share * height_px)
     return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood)
+
+
+def _smoothed(odds: Odds, unit: float) -> Odds:
+    """Average log odds (h, w) over the grain of bark, in a photo whose long side is ``unit`` times 1500 px."""
+    return np.asarray(cv2.GaussianBlur(odds, (0, 0), max(0.7, GRAIN * unit)), dtype=np.float32)
 
 
 def _follow_strokes(
@@ -150,12 +158,15 @@ def _follow_strokes(
     root = branches[0].points[0]
     for index, stroke in enumerate(branches):
         start = root if index == 0 else None
-        line = _centre(snap(stroke.points, smooth_odds, reach, step), wood, params.thickest_share * height_px, start)
+        line = _centre(
+            snap(stroke.points, smooth_odds, reach, step), evidence.sure_wood, params.thickest_share * height_px, start
+        )
         is_stem = index == 0 or float(np.linalg.norm(stroke.points[0] - root)) <= params.stem_share * height_px
         parent = -1 if is_stem else builder.nearest(line[0])
         parent_px = params.trunk_share * height_px / CHILD_RADIUS if is_stem else builder.radii[parent]
         widest = params.thickest_share * height_px if is_stem else 1.2 * parent_px
-        seen = _SeenWidths(half_widths(line, wood, widest)[0], ~sample_nearest(evidence.crown, line, False))
+        below = np.logical_and.accumulate(~sample_nearest(evidence.crown, line, False))
+        seen = _SeenWidths(half_widths(line, wood, widest)[0], below)
         radii = _radii(line, stroke.width, seen, parent_px, height_px)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
         if parent >= 0:
@@ -177,7 +188,7 @@ def _centre(line: Floats, wood: Mask, most_px: float, root: Floats | None) -> Fl
 def _radii(line: Floats, width: float | None, seen: _SeenWidths, parent_px: float, height_px: float) -> Floats:
     """Return the radii (n,) along a line, px: drawn, else measured, else 75 % of the parent's; they never grow outward.
 
-    Measurements on bare wood outside the crown, if there are enough, take the place of slivers among leaves.
+    Measurements on bare wood below the crown, if there are enough, take the place of slivers among leaves.
     """
     share = arc_lengths(line) / max(float(arc_lengths(line)[-1]), 1e-9)
     if width is not None:
@@ -194,13 +205,6 @@ def _radii(line: Floats, width: float | None, seen: _SeenWidths, parent_px: floa
     hidden = share > share[places[-1]]
     radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
     return np.asarray(np.maximum(radii, MIN_EXPECTED * expected))
-
-
-def _seeds(builder: SkeletonBuilder, radius_px: float) -> list[int]:
-    """Return the indices of joints a third of the circle's radius apart, bottom to top, stroke by stroke."""
-    points = np.array(builder.points)
-    step = float(np.median(np.linalg.norm(np.diff(points, axis=0), axis=1))) if len(points) > 1 else radius_px
-    return list(range(0, len(points), max(1, int(radius_px / (3 * max(step, 1e-6))))))
 
 
 def _erase(skeleton: Skeleton, stroke: Indices, erase: tuple[Stroke, ...]) -> tuple[Skeleton, Indices]:
