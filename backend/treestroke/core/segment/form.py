@@ -35,12 +35,12 @@ def crown_form(cues: Cues, kind: FoliageKind, branches_px: Sequence[Floats], hei
         return "round"
     if _stems(branches_px, height_px) > 1:
         return "multi_stem"
-    tallness, needled = float(np.exp(cues["aspect"])), kind in CONIFEROUS
-    if tallness > (1.1 if needled else 1.4) and cues["taper"] < (0.6 if needled else 0.35) and cues["widest"] > 0.5:
+    slimness, needled = float(np.exp(cues["aspect"])), kind in CONIFEROUS
+    if slimness > (1.1 if needled else 1.4) and cues["taper"] < (0.6 if needled else 0.35) and cues["widest"] > 0.5:
         return "spire"
-    if tallness > 2.3:
+    if slimness > 2.3:
         return "columnar"
-    if tallness < 0.62 and cues["shoulder"] > 0.53 and cues["foot"] < 0.5 and kind != "bare":
+    if slimness < 0.62 and cues["shoulder"] > 0.53 and cues["foot"] < 0.5 and kind != "bare":
         return "umbrella"
     if kind == "leaves" and cues["level"] < WEEPING and cues["widest"] > 0.55:
         return "weeping"
