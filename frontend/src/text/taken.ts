@@ -6,7 +6,7 @@ export const takenText = {
   questionWhy: (kind: string) => `The photo leaves it open. For now: ${kind}.`,
   /** What stands on the chip before a kind, by where it comes from, and before a form. */
   leads: { photo: 'Taken for: ', species: 'Species: ', settings: 'Chosen: ', form: 'Form: ' },
-  sureness: { sure: 'sure', likely: 'fairly sure', unsure: 'not sure' },
+  sureness: { sure: 'very sure', likely: 'fairly sure', unsure: 'not sure' },
   asInPhoto: (name: string) => `As in the photo (${name})`,
   asSpecies: (species: string) => `As the species (${species})`,
   changed: (words: string) => `${words}. The tree grows again.`,

@@ -1,3 +1,4 @@
+import type { ComponentChildren } from 'preact'
 import { useLayoutEffect, useRef } from 'preact/hooks'
 import { AUTO, asksForKind, type Trait, takenIn, traitOf } from '../../taken'
 import { text } from '../../text'
@@ -32,7 +33,9 @@ function Traits() {
   const sureness = useStore(surenessOf)
   return (
     <>
-      <TraitMenu trait="foliage" note={sureness} />
+      <TraitMenu trait="foliage">
+        {sureness && <span class={`taken-note is-${sureness}`}>{text.taken.sureness[sureness]}</span>}
+      </TraitMenu>
       <TraitMenu trait="form" />
     </>
   )
@@ -41,11 +44,11 @@ function Traits() {
 interface TraitProps {
   readonly trait: Trait
   /** What else is said of it. */
-  readonly note?: string
+  readonly children?: ComponentChildren
 }
 
 /** A button that says what a trait is, and opens its choices. */
-function TraitMenu({ trait, note = '' }: TraitProps) {
+function TraitMenu({ trait, children }: TraitProps) {
   const lead = useStore(state => leadOf(state, trait))
   const name = useStore(state => nameOf(state, trait))
   const auto = useStore(state => autoWords(state, trait))
@@ -65,7 +68,7 @@ function TraitMenu({ trait, note = '' }: TraitProps) {
         <span class="taken-lead">{lead}</span>
         <span class="taken-name">{name}</span>
       </span>
-      {note && <span class="taken-note">{note}</span>}
+      {children}
       <Icon path={ICONS.down} />
     </>
   )

@@ -4,8 +4,8 @@ import { AUTO, shownTaken, type Trait, takenIn, traitOf } from '../../taken'
 import { text } from '../../text'
 import { type Allowed, readable } from './settingGroups'
 
-/** Least sureness that is called sure; below it and above the one at which the page asks, it is likely. */
-const SURE = 0.75
+/** Least sureness that is called very sure; between it and where the page asks, the kind is likely. */
+const SURE = 0.9
 
 /** Return what a trait of the shown tree is; empty while it is not known. */
 export function nameOf(state: State, trait: Trait): string {
@@ -18,13 +18,12 @@ export function leadOf(state: State, trait: Trait): string {
   return text.taken.leads[trait === 'form' ? 'form' : (traitOf(state, trait)?.from ?? 'photo')]
 }
 
-/** Return how sure the kind is that the photo shows; empty where it was chosen. */
-export function surenessOf(state: State): string {
+/** Return how sure the kind is that the photo shows; null where it was chosen. */
+export function surenessOf(state: State): keyof typeof text.taken.sureness | null {
   const taken = shownTaken(state)
-  if (!taken || traitOf(state, 'foliage')?.from !== 'photo') return ''
-  const { sure, likely, unsure } = text.taken.sureness
-  if (taken.ask) return unsure
-  return taken.sureness >= SURE ? sure : likely
+  if (!taken || traitOf(state, 'foliage')?.from !== 'photo') return null
+  if (taken.ask) return 'unsure'
+  return taken.sureness >= SURE ? 'sure' : 'likely'
 }
 
 /** Return the names that a trait may have, as the service lists them, with their words. */

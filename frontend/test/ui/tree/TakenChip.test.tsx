@@ -62,9 +62,9 @@ test('before the trunk is traced there is no chip', () => {
 
 test('it says what the tree is taken for and how sure that is', () => {
   take()
-  expect([chip().hidden, openers()]).toEqual([false, ['Taken for: needles, sure', 'Form: spire']])
-  take({ sureness: 0.65 })
-  expect(openers()[0]).toBe('Taken for: needles, fairly sure')
+  expect([chip().hidden, openers()]).toEqual([false, ['Taken for: needles, fairly sure', 'Form: spire']])
+  take({ sureness: 0.97 })
+  expect(openers()[0]).toBe('Taken for: needles, very sure')
 })
 
 test('the choices are all kinds in plain words, and what the photo shows', () => {
@@ -89,7 +89,7 @@ test('one click changes the kind, and another gives it back to the photo', () =>
   expect([openers()[0], checked()]).toEqual(['Chosen: scales', ['Scales (cypress, juniper)']])
   click(choices()[0]!)
   expect(studio.store.state.settings.foliage).toBe('auto')
-  expect(openers()[0]).toBe('Taken for: needles, sure')
+  expect(openers()[0]).toBe('Taken for: needles, fairly sure')
 })
 
 test('the form is changed as the kind is', () => {
@@ -105,7 +105,7 @@ test('of a model that was grown as another kind the chip says that kind', () => 
   set({ model: shownModel(info, { strokes: studio.store.strokes, glb: new ArrayBuffer(4) }), shows: 'model' })
   expect(openers()[0]).toBe('Chosen: leaves')
   set({ shows: 'live' })
-  expect(openers()[0]).toBe('Taken for: needles, sure')
+  expect(openers()[0]).toBe('Taken for: needles, fairly sure')
 })
 
 test('a species that was chosen stands in place of the guess', () => {
