@@ -18,7 +18,7 @@ def on_its_trunk(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
         return working
     height, width = working.photo.shape[:2]
     moved = replace(trunk, points=np.clip(trunk.points + way, 0.0, (width, height)))
-    detail = f"it runs beside the trunk and was moved onto it, by {np.hypot(*way) / working.scale:.0f} px"
+    detail = f"it runs beside the trunk and was moved onto it, by {np.hypot(*way) / working.frame.scale:.0f} px"
     strokes = replace(working.strokes, branches=(moved, *others))
     warning = StrokeWarning("trunk_moved", "branches/0", detail)
     return replace(working, strokes=strokes, warnings=(*working.warnings, warning))

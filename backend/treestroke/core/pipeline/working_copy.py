@@ -25,8 +25,8 @@ CROPPED_SHARE = 0.6
 """Long side of a tree with its surroundings, as a share of the photo's, up to which the photo is cropped to them: a
 small tree in a large photo keeps its detail."""
 HALF, LEAST_TRANSPARENT = 128, 0.05
-"""Share of its pixels with an alpha under a half from which on a photo counts as a tree that was cut out: rounded
-corners and soft edges have less."""
+"""Share of the pixels with an alpha under a half, within the bounds of the others, from which on a photo counts as a
+tree that was cut out: rounded corners and soft edges have less, and a photo on a larger transparent ground has none."""
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,9 @@ def _cut_out(photo: Picture) -> Opacity | None:
     if photo.shape[2] == 3:
         return None
     alpha = photo[..., 3]
-    if np.count_nonzero(alpha < HALF) < LEAST_TRANSPARENT * alpha.size:
+    left, top, width, height = cv2.boundingRect((alpha >= HALF).astype(np.uint8))
+    within = alpha[top : top + height, left : left + width]
+    if np.count_nonzero(within < HALF) < LEAST_TRANSPARENT * within.size:
         return None
     return np.asarray(alpha * np.float32(1 / 255), dtype=np.float32)
 
