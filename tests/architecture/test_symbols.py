@@ -195,7 +195,7 @@ def test_a_name_that_is_gone_is_found(token: str) -> None:
 
 @pytest.mark.parametrize(
     "token",
-    ["make nothing", "treestroke dance", "--tallness", "TREESTROKE_NOTHING", "GET /v1/forests", "npm run nothing"],
+    ["make nothing", "treestroke dance", "--loudness", "TREESTROKE_NOTHING", "GET /v1/forests", "npm run nothing"],
 )
 def test_a_command_that_is_gone_is_found(token: str) -> None:
     assert is_missing(token)
