@@ -25,7 +25,7 @@ FITTING = 0.55
 """Share of such a card's opaque dots that must lie in the foliage, which is all fringe where leaves are thin."""
 WORTH = 3.0
 """How many times as much open foliage such a card hides as background (2 costs 2 % of the silhouette's precision for
-1 % of its recall; 6 crowns)."""
+1 % of its recall; 4 crowns)."""
 NEAR, REACH = 0.045, 0.08
 """How far such a card usually and at most stands off its branch in the picture, as shares of the tree's height."""
 FAR_SHARE = 0.02
