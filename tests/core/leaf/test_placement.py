@@ -82,6 +82,23 @@ def test_a_big_gap_stays_open(tree, mask, volume, photo, atlas, camera):
     assert (drawn & gap).sum() <= 0.06 * gap.sum()
 
 
+def test_thin_foliage_is_covered_and_does_not_swell(tree, mask, volume, photo, atlas, camera):
+    spots = cv2.GaussianBlur(np.random.default_rng(5).standard_normal(mask.shape), (0, 0), 3)
+    thin = mask & (spots > np.median(spots))
+    drawn = shown(place((tree, thin, volume, photo, atlas)), atlas, camera)
+    assert (drawn & thin).sum() >= 0.85 * thin.sum()
+    assert drawn.sum() <= 1.15 * thin.sum()
+
+
+def test_foliage_that_covers_little_of_its_pixels_bears_no_leaves(tree, mask, volume, photo, atlas, camera):
+    view, rng = view_of(photo, mask, camera), np.random.default_rng(0)
+    faint = mask & (np.arange(300) > 150)
+    view = replace(view, opacity=np.where(faint, 0.3, view.opacity).astype(np.float32))
+    crown = leaf_crown([view], volume, atlas, 1.0, rng)
+    drawn = shown(place_leaves(tree, crown, LeafParams(), rng), atlas, camera)
+    assert (drawn & faint).sum() <= 0.03 * faint.sum()
+
+
 def test_rights_and_ups_are_at_right_angles(leaves):
     assert np.abs((leaves.rights * leaves.ups).sum(axis=1)).max() < 1e-9
 

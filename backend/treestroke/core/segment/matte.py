@@ -20,7 +20,10 @@ FURTHER = 0.03
 ASIDE, ASIDE_FROM = 2.0, 16.0
 """Weight of a colour's distance from the line between both colours, and where it begins to count, steps of 255: leaves
 in light and in shade lie aside of it, mixed pixels on it."""
-NOISE = 24.0
+PURE = 0.15
+"""Share of the way from one colour to the other within which a pixel is as good as pure: leaves and background vary,
+too (mean error 0.07 instead of 0.09; 14 crowns)."""
+NOISE = 16.0
 """Distance of both colours, steps of 255, at which the colours count as much as the likelihood."""
 
 _Map = NDArray[np.float32]
@@ -44,7 +47,8 @@ def matte(pixels: Picture, likely: Opacity) -> Opacity:
     along = _dot(offset, way) / apart
     aside = np.sqrt(np.maximum(_dot(offset, offset) - along**2, 0))
     aside = ASIDE * likely * np.maximum(aside - ASIDE_FROM, 0)
-    share = np.minimum(np.sqrt(np.maximum(along, 0) ** 2 + aside**2) / apart, 1)
+    share = np.sqrt(np.maximum(along, 0) ** 2 + aside**2) / apart
+    share = np.clip((share - PURE) / (1 - 2 * PURE), 0, 1)
     clear = apart**2 / (apart**2 + NOISE**2)
     return np.asarray(clear * share + (1 - clear) * likely, dtype=np.float32)
 
@@ -63,7 +67,7 @@ def _near_by(colours: _Map, sure: NDArray[np.bool_]) -> _Map:
 def _blurred(image: _Map, reach: float) -> _Map:
     """Average over a Gaussian, computed on fewer pixels."""
     height, width = image.shape[:2]
-    step = max(1, int(reach / 2))
+    step = max(1, int(reach / 1.5))
     small = cv2.resize(image, (max(1, width // step), max(1, height // step)), interpolation=cv2.INTER_AREA)
     soft = cv2.GaussianBlur(small, (0, 0), reach / step)
     return np.asarray(cv2.resize(soft, (width, height), interpolation=cv2.INTER_LINEAR))
