@@ -14,7 +14,7 @@ FURTHEST, WIDEST = 0.13, 0.05
 """How far beside its stroke a trunk is looked for, and its greatest half width, as shares of the tree's height."""
 ALONG, ACROSS = 0.006, 0.004
 """Distance between the places that are compared, along the stroke and across it, as shares of the tree's height."""
-FEWEST = 8
+FEWEST = 20
 """Least number of places along the stroke below the crown."""
 APART = 3.0
 """Greatest distance of a trunk from its stroke, in half widths: a hasty hand misses it by its width, not by more."""
