@@ -183,7 +183,7 @@ def test_each_symbol_of_a_paper_is_in_the_files_beside_it() -> None:
         "core/pipeline/nowhere.py",
         "core.geometry.Lens",
         "Mesh.grip",
-        "MOST_LIMBS",
+        "MOST_ANTLERS",
         "_untwisted",
         "with_roots",
         "BarkParams2",
