@@ -43,7 +43,7 @@ RISE = 0.35
 """Weight of the vertical in the direction of a curve's end (phototropism)."""
 WITHIN = 0.92
 """Share of the crown's radius that curves may use."""
-MOST_LIMBS = 20
+MOST_EXTENDED = 20
 """Greatest number of limbs that are extended, the thickest: a crown whose limbs are seen needs no more."""
 THINNED = 0.35
 """Radius at an extension's end over that at its start, before the pipe model sets the final radii (`radii`)."""
@@ -84,7 +84,7 @@ def _ends(skeleton: Skeleton, height: float) -> list[_End]:
         length = float(arc[limb[-1]] - arc[limb[0]])
         if limb[-1] != highest and length >= LEAST_LIMB * height:
             found.append(_end(skeleton, limb, arc, height))
-    return sorted(found, key=lambda end: (-end.radius, end.joint))[:MOST_LIMBS]
+    return sorted(found, key=lambda end: (-end.radius, end.joint))[:MOST_EXTENDED]
 
 
 def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
