@@ -987,19 +987,19 @@ export interface components {
              */
             foliage: "auto" | "leaves" | "needles" | "scales" | "palm" | "bare";
             /**
-             * Edge
-             * @description what the photo's edge cuts off is completed, or cut
-             * @default complete
-             * @enum {string}
-             */
-            edge: "complete" | "cut";
-            /**
              * Light
              * @description light and shade as in the photo, or evened
              * @default photo
              * @enum {string}
              */
             light: "photo" | "even";
+            /**
+             * Edge
+             * @description what the photo's edge cuts off is completed, or cut
+             * @default complete
+             * @enum {string}
+             */
+            edge: "complete" | "cut";
             /**
              * Leaf Size
              * @description factor on the size of the leaves

@@ -153,11 +153,15 @@ def _in_flower(palette: Palette, kind: FoliageKind, style: LeafStyle) -> bool:
 
 
 def _without_wood(palette: Palette) -> Palette:
-    """Keep petals and green leaves of a tree in flower: dark twigs that are seen between them are modelled as wood."""
+    """Keep petals and green leaves of a tree in flower: dark twigs that are seen between them are modelled as wood.
+
+    Clusters that are mostly wood go, unless all are.
+    """
     kept = [labs[_petal_or_leaf(labs)] for labs in palette.members]
     left = np.array([len(labs) / len(own) for labs, own in zip(kept, palette.members, strict=True)])
-    members = tuple(labs for labs in kept if len(labs))
-    shares = (palette.shares * left)[left > 0]
+    least = min(0.5, float(left.max()))
+    members = tuple(labs for labs, share in zip(kept, left, strict=True) if share >= least)
+    shares = (palette.shares * left)[left >= least]
     return Palette(np.stack([labs.mean(axis=0) for labs in members]), shares / shares.sum(), members)
 
 
