@@ -307,7 +307,7 @@ def test_trace_answers_in_the_contract_s_shape(tmp_path: Path, maple_photo: Path
     argv = ["trace", str(maple_photo), "--strokes", str(maple_strokes), "--out", str(out), "--overlay", str(overlay)]
     assert main(argv) == 0
     answer = json.loads(out.read_text())
-    assert set(answer) == {"foliage", "skeleton", "warnings"}
+    assert set(answer) == {"foliage", "skeleton", "warnings", "taken"}
     skeleton = answer["skeleton"]
     assert {len(skeleton[key]) for key in ("points", "radii", "parents", "stroke")} == {len(skeleton["points"])}
     assert decode_photo(overlay.read_bytes(), "overlay").shape == decode_photo(maple_photo.read_bytes(), "photo").shape

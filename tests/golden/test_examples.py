@@ -12,12 +12,13 @@ pytestmark = pytest.mark.golden
 
 # branches, leaves, attractors_reached, depth_over_width
 NUMBERS = {
-    "burr_oak_dusk": (1137, 16171, 0.978, 0.969),
-    "sugar_maple_autumn": (1131, 19470, 0.976, 1.048),
-    "osage_orange_autumn": (1174, 20826, 0.960, 1.007),
-    "oak_02": (1047, 16915, 0.972, 0.963),
+    "burr_oak_dusk": (1069, 20102, 0.984, 0.940),
+    "sugar_maple_autumn": (1103, 22968, 0.968, 1.021),
+    "osage_orange_autumn": (1061, 25198, 0.959, 0.924),
+    "oak_02": (1182, 22103, 0.928, 0.859),
 }
-LEAST_SILHOUETTE_IOU = 0.88
+LEAST_SILHOUETTE_IOU = 0.83
+"""Its target is the matte, with each gap between leaves."""
 
 
 @cache
