@@ -125,6 +125,14 @@ def test_the_kind_can_be_overruled(maple: TreeModel) -> None:
     assert modelled(MAPLE, ModelSettings(iterations=0, leaf_density=0, foliage="needles")).taken.foliage == "needles"
 
 
+def test_a_palm_s_only_stems_are_those_with_a_stroke() -> None:
+    model = modelled(EXAMPLES / "oak_02.jpg", ModelSettings(iterations=4, foliage="palm"))
+    _, strokes = given(EXAMPLES / "oak_02.jpg")
+    joints = model.grown.skeleton.parents[model.grown.born == 0]
+    tips = np.setdiff1d(np.arange(len(joints)), joints)
+    assert len(tips) <= len(strokes.branches)
+
+
 def test_progress_names_the_stages_in_order() -> None:
     seen: list[str] = []
 

@@ -136,6 +136,15 @@ def test_a_later_stroke_beside_the_root_is_a_second_stem() -> None:
     assert traced.stroke[roots].tolist() == [0, 1]
 
 
+def test_the_stroked_branches_can_be_had_without_those_that_were_found() -> None:
+    traced = trace(stroked(STEM, LEFT))
+    alone = traced.stroked
+    assert set(alone.stroke.tolist()) == {0, 1}
+    assert len(alone.skeleton) == len(alone.measured) == (traced.stroke >= 0).sum()
+    assert alone.skeleton.points == pytest.approx(traced.skeleton.points[traced.stroke >= 0])
+    assert covered(LEFT, alone, found_only=False) > 0.8
+
+
 def test_a_stroke_from_the_ground_away_from_all_others_has_a_root_of_its_own() -> None:
     second = [(290.0, 428.0), (320.0, 240.0)]
     traced = trace(stroked(STEM, second), TREE | wood_mask([(second, 8.0)], SIZE, SIZE))

@@ -209,6 +209,8 @@ def grow_tree(
     traced, foliage = evidence.traced, evidence.foliage
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
+    if taken.foliage == "palm":
+        traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
     crown = _crown_of(evidence, traced, taken.foliage, settings)
     lifted = _lifted(evidence, traced, crown, rng)
     report("grow", 0.0)

@@ -11,6 +11,7 @@ import numpy as np
 
 from treestroke.core.geometry.polyline import arc_lengths, normals
 from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import TOUCH_SHARE, is_stem
 from treestroke.core.strokes import Stroke, Strokes
@@ -98,6 +99,12 @@ class Traced:
     stroke: Indices
     measured: Mask
     wood: Mask
+
+    @property
+    def stroked(self) -> "Traced":
+        """The branches that follow a stroke, without those that were found beside them."""
+        skeleton, joints = subskeleton(self.skeleton, self.stroke >= 0)
+        return Traced(skeleton, self.stroke[joints], self.measured[joints], self.wood)
 
 
 @dataclass(frozen=True, eq=False)
