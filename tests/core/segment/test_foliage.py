@@ -75,6 +75,18 @@ def test_a_real_crown_agrees_with_its_mask(folder: Path, name: str, least: float
 
 
 @pytest.mark.parametrize(
+    ("folder", "name"), [(DATA, "redbud_park"), (DATA, "boxelder_lawn"), (EXAMPLES, "osage_orange_autumn")]
+)
+def test_leaves_before_a_lawn_and_trees_of_their_colour_are_found(folder: Path, name: str) -> None:
+    photo = decode_photo((folder / f"{name}.jpg").read_bytes(), name)
+    crown_px = load_strokes(folder / f"{name}.strokes.json").crown.points
+    inside = fill_outline(crown_px, *photo.shape[:2])
+    rows = np.flatnonzero(inside.any(axis=1))
+    inside[: (rows[0] + rows[-1]) // 2] = False
+    assert segment_foliage(photo, crown_px).covered[inside].mean() > 0.66
+
+
+@pytest.mark.parametrize(
     "changes", [{"components": 1}, {"samples": 99}, {"cut_pixels": 999}, {"dilation_px": -1.0}, {"smoothness": -1.0}]
 )
 def test_parameters_out_of_range_are_refused(changes: dict[str, Any]) -> None:
