@@ -107,6 +107,9 @@ export const drawingText = {
     warnings: {
       crown_crosses_itself: 'The crown line crosses itself. Everything inside it counts as crown.',
       branch_joined: (stroke: string) => `${stroke}: joined to the nearest branch.`,
+      edge_completed: 'The photo cuts the crown. It is completed beyond the edge.',
+      stroke_turned: 'The trunk was drawn from the top down. It was turned.',
+      trunk_moved: 'The trunk line was moved onto the trunk.',
     },
     /** Warnings that a stroke may mean no tree, by their codes. */
     doubts: {
