@@ -54,7 +54,8 @@ def brightened(linear: Floats, gain: float) -> Floats:
 def exposed(picture: Picture, tree: Mask) -> Picture:
     """Brighten a dark picture (h, w, 3), sRGB, so that the tree on it (h, w) can be seen; others stay as they are.
 
-    One gain in linear light brings the lit parts of the tree to `LEAST_LIGHTNESS`; colours fade a little with it.
+    One gain in linear light brings the lit parts of the tree to `LEAST_LIGHTNESS`; colours fade a little with it. Only
+    the box around the tree is brightened.
     """
     if not tree.any():
         return picture
@@ -63,9 +64,13 @@ def exposed(picture: Picture, tree: Mask) -> Picture:
     gain = min(float(luminance_of_lightness(np.array(LEAST_LIGHTNESS))) / lit, MOST_GAIN)
     if gain <= 1.0:
         return picture
-    bright = brightened(_light_table()[picture], gain)
+    left, top, width, height = cv2.boundingRect(tree.astype(np.uint8))
+    box = slice(top, top + height), slice(left, left + width)
+    bright = brightened(_light_table()[picture[box]], gain)
     grey = (bright @ LUMINANCE)[..., None]
-    return srgb_light(grey + gain**-FADING * (bright - grey))
+    seen = picture.copy()
+    seen[box] = srgb_light(grey + gain**-FADING * (bright - grey))
+    return seen
 
 
 def evened(picture: Picture, tree: Mask) -> Picture:
