@@ -16,8 +16,7 @@ def test_a_worker_that_comes_back_after_its_lease_changes_nothing(broker_url: st
         ids = [service.ask("held at first") for _ in range(3)]
         child_stops, group_stops, group_dies = (group_of(service, service.wait_running(id)) for id in ids)
         frozen = [child_stops[1], *group_stops]
-        for process in frozen:
-            process.hit(signal.SIGSTOP)
+        service.freeze(frozen)
         for process in group_dies:
             process.hit()
         service.run("tests.faults.poisoned_worker", TREESTROKE_WORKERS=1)
