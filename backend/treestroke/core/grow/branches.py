@@ -4,13 +4,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import arc_lengths
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
-from treestroke.core.types import Floats, Indices
+from treestroke.core.types import Floats, Indices, Mask
 
 TURN_DEG = 30.0
 """Turn that ends a branch, degrees (Tan et al. 2008, section 2)."""
@@ -48,7 +47,7 @@ def successors_by_wood(skeleton: Skeleton) -> Indices:
     return successors
 
 
-def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[float, float]) -> list[Chain]:
+def split_chains(skeleton: Skeleton, inside: Mask, longest: tuple[float, float]) -> list[Chain]:
     """Split a skeleton (any unit) where it forks, turns, enters the crown, or has gone on for long.
 
     ``inside`` (n,) is the mask of the joints in the crown; ``longest`` is the greatest length there of a stem's and of
@@ -56,31 +55,31 @@ def split_chains(skeleton: Skeleton, inside: NDArray[np.bool_], longest: tuple[f
     than a tenth of ``longest``. Chains come parents first. Source: Tan et al. 2008, section 2 (simplification).
     """
     successors = successors_by_wood(skeleton)
+    forks = np.bincount(skeleton.parents[skeleton.parents >= 0], minlength=len(skeleton)) > 1
     order: dict[int, int] = {}
     chains = []
     for limb in limbs(skeleton, successors):
         generation = order.get(int(limb[0]), 0) + 1
         for joint in limb.tolist():
             order.setdefault(joint, generation)
-        cuts = _cuts(skeleton, limb, inside, longest[min(generation, 2) - 1])
+        cuts = _cuts(skeleton.points[limb], inside[limb], forks[limb], longest[min(generation, 2) - 1])
         chains += [Chain(limb[a : b + 1], generation) for a, b in pairwise(cuts)]
     return chains
 
 
-def _cuts(skeleton: Skeleton, limb: Indices, inside: NDArray[np.bool_], longest: float) -> list[int]:
-    """Return the ends of a limb's chains, as positions in ``limb``."""
-    if len(limb) < 2:
+def _cuts(points: Floats, inside: Mask, forks: Mask, longest: float) -> list[int]:
+    """Return the ends of a limb's chains, as positions along its joints (m, 3)."""
+    if len(points) < 2:
         return []
-    arc = arc_lengths(skeleton.points[limb])
-    counts = np.bincount(skeleton.parents[skeleton.parents >= 0], minlength=len(skeleton))
+    arc = arc_lengths(points)
     cuts = [0]
-    for i in range(1, len(limb) - 1):
-        crosses = inside[limb[i]] != inside[limb[i - 1]]
-        bends = counts[limb[i]] > 1 or _turn(skeleton.points[limb], arc, cuts[-1], i, longest) >= TURN_DEG
-        if crosses or (bends and min(arc[i] - arc[cuts[-1]], arc[-1] - arc[i]) >= 0.1 * longest):
+    for i in range(1, len(points) - 1):
+        crosses = inside[i] != inside[i - 1]
+        ends = min(arc[i] - arc[cuts[-1]], arc[-1] - arc[i]) >= 0.1 * longest
+        if crosses or (ends and (forks[i] or _turn(points, arc, cuts[-1], i, longest) >= TURN_DEG)):
             cuts.append(i)
-    cuts.append(len(limb) - 1)
-    return _even(cuts, arc, inside[limb], longest)
+    cuts.append(len(points) - 1)
+    return _even(cuts, arc, inside, longest)
 
 
 def _turn(points: Floats, arc: Floats, start: int, at: int, longest: float) -> float:
@@ -91,7 +90,7 @@ def _turn(points: Floats, arc: Floats, start: int, at: int, longest: float) -> f
     return float(np.degrees(np.arccos(np.clip(before @ after / lengths, -1, 1)))) if lengths > 0 else 0.0
 
 
-def _even(cuts: list[int], arc: Floats, inside: NDArray[np.bool_], longest: float) -> list[int]:
+def _even(cuts: list[int], arc: Floats, inside: Mask, longest: float) -> list[int]:
     """Cut chains inside the crown that are too long into equal parts, at joints."""
     found = [0]
     for a, b in pairwise(cuts):

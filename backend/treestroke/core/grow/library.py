@@ -170,10 +170,14 @@ def visible_subtrees(skeleton: Skeleton) -> tuple[Subtree, ...]:
     """
     successors = heaviest_children(skeleton, accumulate_to_root(skeleton, edge_lengths(skeleton)))
     chains = [chain for chain in limbs(skeleton, successors) if len(chain) > 1]
-    found = []
+    limb_of = {joint: i for i, chain in enumerate(chains) for joint in chain[1:].tolist()}
+    children: list[list[Indices]] = [[] for _ in chains]
     for chain in chains:
-        children = [other for other in chains if other is not chain and other[0] in set(chain[1:].tolist())]
-        subtree = _subtree_of(skeleton, chain, children[:MOST_SHOOTS]) if len(children) >= 2 else None
+        if (parent := limb_of.get(int(chain[0]))) is not None:
+            children[parent].append(chain)
+    found = []
+    for chain, forks in zip(chains, children, strict=True):
+        subtree = _subtree_of(skeleton, chain, forks[:MOST_SHOOTS]) if len(forks) >= 2 else None
         if subtree is not None:
             found.append(subtree)
     return tuple(sorted(found, key=lambda subtree: -len(subtree.parents)))

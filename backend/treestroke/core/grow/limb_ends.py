@@ -8,7 +8,6 @@ curves tried, the one with most free space around it is taken, as in lifting (Ok
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.branches import successors_by_wood
@@ -17,7 +16,7 @@ from treestroke.core.grow.growth_space import GrowthSpace
 from treestroke.core.skeleton.measure import path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import limbs
-from treestroke.core.types import Floats, Indices
+from treestroke.core.types import Floats, Indices, Mask
 
 JOINT_SHARE = 0.02
 """Distance between new joints, as a share of the crown's height."""
@@ -100,61 +99,74 @@ def _end(skeleton: Skeleton, limb: Indices, arc: Floats, height: float) -> _End:
 def _best_path(skeleton: Skeleton, end: _End, space: GrowthSpace, height: float) -> Floats:
     """Choose the curve (k, 3), px, with most free space along it, without its start; (0, 3) where none fits."""
     start = skeleton.points[end.joint]
-    others = skeleton.points[_away(skeleton, end.joint, AIM_SHARE * height)]
+    others = _near(skeleton.points[_away(skeleton, end.joint, AIM_SHARE * height)], start, end.reach + ROOM * height)
     top = float(skeleton.points[:, 1].min()) + JOINT_SHARE * height
     best, best_room = np.zeros((0, 3)), LEAST_ROOM * height * LEAST_REACH * height
-    for path in _paths(start, end, JOINT_SHARE * height):
-        inside = _inside(path, space)
-        first = int(np.argmax(inside))
-        gap = float(np.sqrt(((path[first] - start) ** 2).sum()))
-        if not inside[first:].all() or gap > MOST_GAP * height or path[:, 1].min() < top:
+    for paths in _paths(start, end, JOINT_SHARE * height):
+        paths, beyond = _fitting(paths[paths[..., 1].min(axis=1) >= top], space, start, MOST_GAP * height)
+        if not len(paths):
             continue
-        room = np.minimum(_nearest(path[first:], others), ROOM * height)
-        step = float(np.sqrt(((path[-1] - path[-2]) ** 2).sum()))
-        if float(room.sum()) * step > best_room:
-            best, best_room = path, float(room.sum()) * step
+        room = np.zeros(beyond.shape)
+        room[beyond] = np.minimum(_nearest(paths[beyond], others), ROOM * height)
+        free = room.sum(axis=1) * np.sqrt(((paths[:, -1] - paths[:, -2]) ** 2).sum(axis=-1))
+        most = int(free.argmax())
+        if free[most] > best_room:
+            best, best_room = paths[most], float(free[most])
     return best
 
 
 def _paths(start: Floats, end: _End, step: float) -> list[Floats]:
-    """Draw curves (k, 3) that begin in a limb's direction, swerve to all sides, and rise to their end."""
+    """Draw curves that begin in a limb's direction, swerve to all sides, and rise to their end: (m, k, 3) a length."""
     side = unit(np.cross(end.direction, UP_IN_PICTURE if abs(end.direction[1]) < 0.9 else np.array([1.0, 0.0, 0.0])))
     other = np.cross(side, end.direction)
-    directions = []
-    for swerve in SWERVES:
-        for turn in range(TURNS if swerve else 1):
-            angle = 2 * np.pi * turn / TURNS
-            directions.append(unit(end.direction + swerve * (np.cos(angle) * other + np.sin(angle) * side)))
-    return [
-        _curve(start, end.direction, direction * length * end.reach, step)
-        for length in LENGTHS
-        for direction in directions
-    ]
+    turns = 2 * np.pi * np.arange(TURNS) / TURNS
+    around = np.cos(turns)[:, None] * other + np.sin(turns)[:, None] * side
+    swerved = [swerve * (around if swerve else np.zeros((1, 3))) for swerve in SWERVES]
+    directions = unit(end.direction + np.concatenate(swerved))
+    return [_curves(start, end.direction, directions * length * end.reach, step) for length in LENGTHS]
 
 
-def _curve(start: Floats, direction: Floats, chord: Floats, step: float) -> Floats:
-    """Place points (k, 3) about ``step`` apart on a cubic curve that starts in a direction and rises at its end."""
-    length = float(np.sqrt((chord**2).sum()))
+def _curves(start: Floats, direction: Floats, chords: Floats, step: float) -> Floats:
+    """Place points (m, k, 3) about ``step`` apart on cubic curves that start in one direction and rise at their ends.
+
+    The chords (m, 3) are equally long.
+    """
+    length = float(np.sqrt((chords[0] ** 2).sum()))
     count = max(int(np.ceil(length / step)), 2)
     t = (np.arange(1, count + 1) / count)[:, None]
-    rising = unit(unit(chord) + RISE * UP_IN_PICTURE)
+    rising = unit(unit(chords) + RISE * UP_IN_PICTURE)[:, None]
     inner = t * (1 - t) ** 2 * direction * length - t**2 * (1 - t) * rising * length
-    return np.asarray(start + t**2 * (3 - 2 * t) * chord + inner)
+    return np.asarray(start + t**2 * (3 - 2 * t) * chords[:, None] + inner)
 
 
-def _inside(path: Floats, space: GrowthSpace) -> NDArray[np.bool_]:
-    """Tell which points (k, 3) lie in the crown, clear of its surface."""
-    row = np.clip(np.floor(path[:, 1]).astype(np.int64), 0, len(space.middle) - 1)
-    inner = np.hypot(path[:, 0] - space.middle[row], path[:, 2]) <= WITHIN * space.radius[row]
-    return np.asarray(space.inside(path) & inner)
+def _fitting(paths: Floats, space: GrowthSpace, start: Floats, most_gap: float) -> tuple[Floats, Mask]:
+    """Keep the paths (m, k, 3) that soon enter the crown and stay in it; flag their points (m, k) there."""
+    inside = _inside(paths, space)
+    beyond = np.logical_or.accumulate(inside, axis=1)
+    first = paths[np.arange(len(paths)), inside.argmax(axis=1)]
+    fit = (inside == beyond).all(axis=1) & inside[:, -1] & (((first - start) ** 2).sum(axis=1) <= most_gap**2)
+    return paths[fit], beyond[fit]
+
+
+def _inside(paths: Floats, space: GrowthSpace) -> Mask:
+    """Tell which points (m, k, 3) lie in the crown, clear of its surface."""
+    row = np.clip(np.floor(paths[..., 1]).astype(np.int64), 0, len(space.middle) - 1)
+    inner = np.hypot(paths[..., 0] - space.middle[row], paths[..., 2]) <= WITHIN * space.radius[row]
+    return np.asarray(space.inside(paths) & inner)
+
+
+def _near(points: Floats, centre: Floats, reach: float) -> Floats:
+    """Keep the points (n, 3) of a cube about a centre (3,): no other is within ``reach``."""
+    return np.asarray(points[(np.abs(points - centre) <= reach).all(axis=1)])
 
 
 def _nearest(points: Floats, others: Floats) -> Floats:
-    """Measure each point's (k, 3) distance to the nearest of others (n, 3)."""
+    """Measure each point's (k, 3) distance to the nearest of others (n, 3); infinite without one."""
     squares = np.zeros((len(points), len(others)))
     for axis in range(3):
-        squares += (points[:, axis, None] - others[:, axis]) ** 2
-    return np.asarray(np.sqrt(squares.min(axis=1)))
+        away = points[:, axis, None] - others[:, axis]
+        squares += np.multiply(away, away, out=away)
+    return np.asarray(np.sqrt(squares.min(axis=1, initial=np.inf)))
 
 
 def _away(skeleton: Skeleton, tip: int, reach: float) -> Indices:
