@@ -152,7 +152,7 @@ class Growing:
     def _tell_evaluator(self, first: int) -> None:
         """Pass the branches from ``first`` on to the evaluator."""
         new = slice(first, self.count)
-        scales = np.array([[tree.replaces != "stem" for tree in self.library]] * (self.count - first), dtype=np.float64)
+        scales = np.tile([float(tree.replaces != "stem") for tree in self.library], (self.count - first, 1))
         for stem in np.flatnonzero(self.generation[new] == 1).tolist():
             scales[stem] = self._stem_scales(first + stem)
         habit = self.params.habit

@@ -36,11 +36,13 @@ def drawn_depth(
     Only edges with both joints ``shown`` (n,) are drawn; elsewhere the depth is NaN.
     """
     drawn = np.full(shape, np.nan, np.float32)
-    for joint, parent in enumerate(tree.parents.tolist()):
-        if parent >= 0 and shown[joint] and shown[parent]:
-            ends = [tuple(np.round((tree.points[at] - 0.5) * 16).astype(int).tolist()) for at in (parent, joint)]
-            width = max(1, int(breadth * (tree.radii[joint] + tree.radii[parent])))
-            cv2.line(drawn, ends[0], ends[1], float(depth_m[joint]), width, cv2.LINE_8, 4)
+    joints = np.flatnonzero((tree.parents >= 0) & shown & shown[tree.parents])
+    parents = tree.parents[joints]
+    sixteenths = np.round((tree.points - 0.5) * 16).astype(int)
+    widths = np.maximum(1, (breadth * (tree.radii[joints] + tree.radii[parents])).astype(int))
+    edges = (sixteenths[parents], sixteenths[joints], depth_m[joints], widths)
+    for start, end, depth, width in zip(*(column.tolist() for column in edges), strict=True):
+        cv2.line(drawn, start, end, depth, width, cv2.LINE_8, 4)
     return drawn
 
 

@@ -9,6 +9,7 @@ from treestroke.core.appearance import Appearance, StemPixels, View
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
+from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
@@ -25,7 +26,7 @@ from treestroke.core.pipeline.crowns import (
     frayed,
     seen_from_front,
 )
-from treestroke.core.pipeline.grown_tree import GrownTree, Reading
+from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
@@ -158,6 +159,39 @@ class _LiftedTrace:
     score: dict[str, float]
 
 
+@dataclass(frozen=True, eq=False)
+class _FilledCrown:
+    """A grown tree and what it grew from.
+
+    Attributes
+    ----------
+    evidence, traced
+        The evidence, its crown completed, and what of its trace was used.
+    taken, crown, lifted, grown
+        What the steps in between gave.
+    leafy
+        (h, w) where the tree is to have leaves.
+    """
+
+    evidence: PhotoEvidence
+    traced: Traced
+    taken: Taken
+    crown: _PhotoCrown
+    lifted: _LiftedTrace
+    leafy: Mask
+    grown: Grown
+
+    @property
+    def tree(self) -> Mask:
+        """(h, w) where the tree is to have leaves or wood."""
+        return self.leafy | self.crown.wood
+
+    @property
+    def camera(self) -> OrthographicCamera:
+        """The camera of the photo at its own size."""
+        return self.evidence.working.full_size_camera(self.crown.camera)
+
+
 def read_photo(
     photo: Picture,
     strokes: Strokes,
@@ -204,9 +238,38 @@ def grow_tree(
     ValueError
         Nothing was traced.
     """
+    filled = _filled(evidence, settings, rng, report)
+    evidence, crown = filled.evidence, filled.crown
+    return GrownTree(
+        taken=filled.taken,
+        grown=filled.grown,
+        volume=crown.volume,
+        appearance=_appearance(filled),
+        camera=filled.camera,
+        expected_cover=evidence.working.in_photo(filled.tree),
+        stature=_stature(evidence, filled.traced, crown),
+        score={"attractors_reached": filled.grown.attractors_reached, **filled.lifted.score},
+        reading=_reading(evidence, filled.taken),
+        warnings=evidence.warnings,
+    )
+
+
+def grow_live_tree(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Generator) -> LiveTree:
+    """Return the live tree of `grow_tree`, without what only leaves and bark need.
+
+    Raises
+    ------
+    ValueError
+        Nothing was traced.
+    """
+    filled = _filled(evidence, settings, rng, silent)
+    return LiveTree(filled.grown.skeleton, filled.grown.born, filled.camera)
+
+
+def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report) -> _FilledCrown:
     report("lift", 0.0)
     taken, evidence = evidence.taken(settings), _completed(evidence, settings)
-    traced, foliage = evidence.traced, evidence.foliage
+    traced = evidence.traced
     if traced is None:
         raise ValueError("nothing grows without a branch stroke")
     if taken.foliage == "palm":
@@ -223,22 +286,10 @@ def grow_tree(
         grown = grow_palm(lifted.tree, room, settings.iterations, rng)
     else:
         grown = grow(lifted.tree, room, method, rng, report)
-    leafy = foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
-    tree = leafy | crown.wood
+    leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):
-        grown = trimmed(grown, Silhouette(tree, crown.camera))
-    return GrownTree(
-        taken=taken,
-        grown=grown,
-        volume=crown.volume,
-        appearance=_appearance(evidence, traced, crown, lifted, leafy),
-        camera=evidence.working.full_size_camera(crown.camera),
-        expected_cover=evidence.working.in_photo(tree),
-        stature=_stature(evidence, traced, crown),
-        score={"attractors_reached": grown.attractors_reached, **lifted.score},
-        reading=_reading(evidence, taken),
-        warnings=evidence.warnings,
-    )
+        grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera))
+    return _FilledCrown(evidence, traced, taken, crown, lifted, leafy, grown)
 
 
 def _completed(evidence: PhotoEvidence, settings: ModelSettings) -> PhotoEvidence:
@@ -291,18 +342,17 @@ def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np
     return _LiftedTrace(tree, seen_from_front(tree, crown.camera), owner[retrieved.front], retrieved.score)
 
 
-def _appearance(
-    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, lifted: _LiftedTrace, leafy: Mask
-) -> Appearance:
-    """Return the tree's appearance in the photo; ``leafy`` (h, w) is where the tree is to have leaves."""
+def _appearance(filled: _FilledCrown) -> Appearance:
+    """Return the tree's appearance in the photo."""
+    evidence, traced, crown = filled.evidence, filled.traced, filled.crown
     stem = np.flatnonzero(traced.stroke == 0)
     view = View(
         camera=crown.camera,
         picture=evidence.working.photo,
-        leaves_from=_leaves_from(evidence.foliage, traced, crown, lifted, leafy),
-        opacity=evidence.foliage.alpha if crown.shows_leaves else leafy.astype(np.float32),
+        leaves_from=_leaves_from(filled),
+        opacity=evidence.foliage.alpha if crown.shows_leaves else filled.leafy.astype(np.float32),
         leaf_coloured=evidence.foliage.pure,
-        tree=leafy | crown.wood,
+        tree=filled.tree,
         stem=StemPixels(
             traced.skeleton.points[stem], np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)
         ),
@@ -310,20 +360,19 @@ def _appearance(
     return Appearance((view,), crown.shows_leaves)
 
 
-def _leaves_from(
-    foliage: Foliage, traced: Traced, crown: _PhotoCrown, lifted: _LiftedTrace, leafy: Mask
-) -> NDArray[np.float32]:
+def _leaves_from(filled: _FilledCrown) -> NDArray[np.float32]:
     """Depth (h, w), metres, from which on leaves may lie, as `View` has it.
 
     Pixels that are leaves by their colour hang before the wood; none hangs before what is wood by its colour.
     """
+    traced, foliage, crown, lifted = filled.traced, filled.evidence.foliage, filled.crown, filled.lifted
     depth, seen = crown.camera.depth(lifted.tree.points), traced.measured[lifted.owner]
     wood, middle = (
         drawn_depth(lifted.visible, seen, depth, foliage.mask.shape, breadth) for breadth in (1.0, BARE_BREADTH)
     )
     leaves_from = np.where(np.isnan(wood) | ~foliage.region, np.inf, wood)
     leaves = foliage.pure & ~traced.wood & crown.shows_leaves
-    leaves_from[leafy & (np.isnan(wood) | np.isnan(middle) & ~traced.wood | leaves)] = -np.inf
+    leaves_from[filled.leafy & (np.isnan(wood) | np.isnan(middle) & ~traced.wood | leaves)] = -np.inf
     return leaves_from.astype(np.float32)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
+from treestroke.core.pipeline.growing import PhotoEvidence, grow_live_tree, read_photo
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
@@ -68,7 +68,7 @@ def with_side(traced: PhotoTrace, side: Sketch | None) -> PhotoTrace:
 
 def grow_photo(traced: PhotoTrace, settings: ModelSettings, rng: np.random.Generator) -> LiveTree | None:
     """Return the tree that grows from what was traced; None without a branch stroke."""
-    return None if traced.evidence.traced is None else grow_tree(traced.evidence, settings, rng).live
+    return None if traced.evidence.traced is None else grow_live_tree(traced.evidence, settings, rng)
 
 
 def _at_photo_size(evidence: PhotoEvidence) -> PhotoTrace:
