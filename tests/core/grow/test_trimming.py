@@ -25,8 +25,10 @@ def test_ends_that_grew_out_of_the_foliage_go() -> None:
     assert left.born.tolist() == [0, 0, 0, 1, 1, 1]
 
 
-def test_what_comes_back_into_the_foliage_stays() -> None:
-    assert len(cut(fork(angle_rad=0.7), [0, 0, 0, 1, 1, 1, 1], 240, 260).skeleton) == 5
+def test_a_twig_crosses_a_gap_only_for_what_it_bears_beyond() -> None:
+    born = [0, 0, 0, 1, 1, 1, 1]
+    assert cut(fork(angle_rad=0.7), born, 180, 300).skeleton.parents.tolist() == [-1, 0, 1, 2, 3]
+    assert len(cut(fork(angle_rad=0.7), born, 240, 260).skeleton) == 3
 
 
 def test_what_was_seen_stays() -> None:

@@ -10,58 +10,64 @@ from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.types import Floats, Indices
 
-DOTS_ACROSS = 12
-"""A tile is sampled in 12 x 12 dots: about one per grid cell for a card of usual size."""
-SURE_ALPHA = 160
-"""Alpha (0 to 255) above which a dot is drawn in every mip level."""
-SURE_SHARE = 0.63
-"""The same as a share of the densest dot's alpha, for sprays so fine that none is opaque."""
+LATTICES = (4, 8, 16, 32, 64)
+"""Dots along a tile's side, from the smallest cards to the largest: each card is sampled at about one dot per cell."""
+SURE_SHARE = 0.8
+"""Mean alpha, 0 to 1, of the part of a tile around a dot from which on the dot hides what is behind it. Tuned with ten
+trees, half of them conifers; lower ones (0.5) leave gaps between needles, which are narrower than a cell."""
+PROBED = 16
+"""Dots along a tile's side among which the probes are chosen."""
 PROBES = 24
-"""Opaque dots of a tile that are tested against the foliage's outline."""
+"""Dots of a tile that are tested against the foliage's outline."""
+
+_Dots = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
 class Outlines:
-    """The opaque dots of the atlas's tiles, in half-extents of a card: x right, y up, -1 to 1.
+    """The dots of the atlas's tiles that hide what is behind, in half-extents of a card: x right, y up, -1 to 1.
 
     Attributes
     ----------
     dots
-        k arrays (n, 2), all opaque dots.
+        For each of `LATTICES`, k arrays (n, 2): all dots.
     probes
         (k, PROBES, 2) some of them, spread over the tile.
     """
 
-    dots: tuple[Floats, ...]
-    probes: Floats
+    dots: tuple[tuple[_Dots, ...], ...]
+    probes: _Dots
 
 
 def outlines_of(alphas: NDArray[np.uint8]) -> Outlines:
-    """Find the opaque dots of tiles (k, side, side) of alpha."""
-    dots = []
-    for alpha in alphas:
-        coarse = cv2.resize(alpha, (DOTS_ACROSS, DOTS_ACROSS), interpolation=cv2.INTER_AREA)
-        row, column = np.nonzero(coarse >= min(SURE_ALPHA, int(SURE_SHARE * coarse.max())))
-        x, y = (column + 0.5) * 2 / DOTS_ACROSS - 1, 1 - (row + 0.5) * 2 / DOTS_ACROSS
-        dots.append(np.stack([x, y], axis=1))
-    spread = [np.linspace(0, len(d) - 1, PROBES).round().astype(np.int64) for d in dots]
-    return Outlines(tuple(dots), np.stack([d[index] for d, index in zip(dots, spread, strict=True)]))
+    """Find the dots of tiles (k, side, side) of alpha."""
+    dots = tuple(tuple(_hiding_dots(alpha, side) for alpha in alphas) for side in LATTICES)
+    probed = dots[LATTICES.index(PROBED)]
+    spread = [np.linspace(0, len(d) - 1, PROBES).round().astype(np.int64) for d in probed]
+    return Outlines(dots, np.stack([d[index] for d, index in zip(probed, spread, strict=True)]))
+
+
+def _hiding_dots(alpha: NDArray[np.uint8], side: int) -> _Dots:
+    """Dots (n, 2), one at least, that hide what is behind a tile with this alpha, reduced to ``side`` texels a side."""
+    coarse = cv2.resize(alpha, (side, side), interpolation=cv2.INTER_AREA)
+    row, column = np.nonzero(coarse >= SURE_SHARE * min(255.0, float(coarse.max())))
+    return np.stack([(column + 0.5) * 2 / side - 1, 1 - (row + 0.5) * 2 / side], axis=1).astype(np.float32)
 
 
 def share_inside(leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:
-    """Share (m,) of each card's opaque dots that project into the foliage, or onto wood that the card lies behind."""
-    cells = _cells(leaves, outlines.probes[leaves.tiles], grid)
+    """Share (m,) of each card's probes that project into the foliage, or onto wood that the card lies behind."""
+    cells = _Shown.of(leaves, grid).cells(outlines.probes[leaves.tiles], grid)
     return np.asarray(grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None]).mean(axis=1))
 
 
 def newly_hidden(
     covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid
 ) -> tuple[Floats, Floats]:
-    """Shares (m,) of each card's opaque dots that hide foliage, or background, not ``covered`` (cells,) yet.
+    """Shares (m,) of each card's probes that hide foliage, or background, not ``covered`` (cells,) yet.
 
     Wood that a card lies behind is neither.
     """
-    cells = _cells(leaves, outlines.probes[leaves.tiles], grid)
+    cells = _Shown.of(leaves, grid).cells(outlines.probes[leaves.tiles], grid)
     free = ~covered[cells]
     foliage = grid.inside.ravel()[cells]
     behind = grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None])
@@ -70,16 +76,53 @@ def newly_hidden(
 
 def cover(covered: NDArray[np.bool_], leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> None:
     """Mark in ``covered``, flags (cells,), flat as the grid, what the cards hide."""
-    for tile, dots in enumerate(outlines.dots):
-        covered[_cells(leaves.select(leaves.tiles == tile), dots[None], grid)] = True
+    shown = _Shown.of(leaves, grid)
+    lattice = np.searchsorted(LATTICES[:-1], shown.sides)
+    kinds = lattice * len(outlines.probes) + leaves.tiles
+    order = np.argsort(kinds, kind="stable")
+    for cards in np.split(order, np.flatnonzero(np.diff(kinds[order])) + 1):
+        if len(cards):
+            dots = outlines.dots[lattice[cards[0]]][leaves.tiles[cards[0]]]
+            covered[shown.select(cards).cells(dots[None], grid)] = True
 
 
-def _cells(leaves: Leaves, dots: Floats, grid: FoliageGrid) -> Indices:
-    """Grid cells (m, p) of dots (m or 1, p, 2) on cards."""
-    across, up = dots[..., 0] * np.where(leaves.flips, -1.0, 1.0)[:, None], dots[..., 1]
-    # One coordinate after the other: numpy is slow where the last axis is short.
-    centres, rights, ups = (vectors.T[..., None] for vectors in (leaves.centres, leaves.rights, leaves.ups))
-    points = across * rights
-    points += centres
-    points += up * ups
-    return grid.cells_of(points.reshape(3, -1).T).reshape(points.shape[1:])
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """Cards as a view shows them, in cells of its grid: their middles, and half-extents to the right and up (m, 2)."""
+
+    middles: _Dots
+    rights: _Dots
+    ups: _Dots
+
+    @staticmethod
+    def of(leaves: Leaves, grid: FoliageGrid) -> "_Shown":
+        """Project cards' middles and extents; within a card, perspective is neglected."""
+        rights = np.where(leaves.flips, -1.0, 1.0)[:, None] * leaves.rights
+        points = np.concatenate([leaves.centres, leaves.centres + rights, leaves.centres + leaves.ups])
+        middles, right, up = np.split(grid.positions_of(points).astype(np.float32), 3)
+        return _Shown(middles, right - middles, up - middles)
+
+    @property
+    def sides(self) -> _Dots:
+        """Longer side (m,) of each card."""
+        return np.asarray(2 * np.sqrt(np.maximum((self.rights**2).sum(axis=1), (self.ups**2).sum(axis=1))))
+
+    def select(self, index: Indices) -> "_Shown":
+        """Select cards by index (k,)."""
+        return _Shown(self.middles[index], self.rights[index], self.ups[index])
+
+    def cells(self, dots: _Dots, grid: FoliageGrid) -> Indices:
+        """Flat cells (m, p) of dots (m or 1, p, 2) on the cards."""
+        rows, columns = grid.inside.shape
+        x, y = (
+            dots[..., 0] * self.rights[:, None, axis]
+            + dots[..., 1] * self.ups[:, None, axis]
+            + self.middles[:, None, axis]
+            for axis in (0, 1)
+        )
+        return np.asarray(_within(y, rows) * columns + _within(x, columns))
+
+
+def _within(position: _Dots, count: int) -> Indices:
+    """Index of the cell, of ``count``, that holds each position; the nearest one outside."""
+    return np.asarray(np.clip(position, 0, count - 1).astype(np.int32))

@@ -15,7 +15,7 @@ from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
-SIZES = (1.0, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.4, 0.3, 0.3, 0.3, 0.25, 0.25, 0.25)
+SIZES = (1.0, 0.8, 0.6, 0.5, 0.4, 0.4, 0.3, 0.3, 0.3, 0.25, 0.25, 0.25, 0.2, 0.2, 0.2, 0.2, 0.2)
 """Sizes of the cards, round by round, the large ones first."""
 TARGET = 0.985
 """Share of the foliage's cells at which covering stops."""
@@ -23,9 +23,9 @@ SEATS = 8000
 """Places on all branches, thick ones too, that such cards may hang from."""
 FITTING = 0.55
 """Share of such a card's opaque dots that must lie in the foliage, which is all fringe where leaves are thin."""
-WORTH = 3.0
+WORTH = 4.0
 """How many times as much open foliage such a card hides as background (2 costs 2 % of the silhouette's precision for
-1 % of its recall; 4 crowns)."""
+1 % of its recall; 7 crowns)."""
 NEAR, REACH = 0.045, 0.08
 """How far such a card usually and at most stands off its branch in the picture, as shares of the tree's height."""
 FAR_SHARE = 0.02

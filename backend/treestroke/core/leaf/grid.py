@@ -13,7 +13,7 @@ from treestroke.core.paint.palette import SPRAY, lab_from_rgb, unshaded
 from treestroke.core.types import Floats, Indices, Mask
 
 CELLS_ACROSS = 800
-"""Cells over the foliage's width: a spray is about 16 cells wide, a leaf 4 (500 cells hide 2 % less of the foliage;
+"""Cells over the foliage's breadth: a spray is about 16 cells wide, a leaf 4 (500 cells hide 2 % less of the foliage;
 1200 are no better; 6 crowns)."""
 MIN_STEP_PX = 0.25
 """Least side of a cell: a tiny tree's cells are finer than its pixels."""
@@ -57,15 +57,27 @@ class FoliageGrid:
     leaves_from: NDArray[np.float32]
     labs: Floats
 
+    @property
+    def breadth_m(self) -> float:
+        """Breadth of the foliage, metres: its width, or that of a square as large where it is a narrow column."""
+        columns = np.flatnonzero(self.inside.any(axis=0))
+        square = float(np.sqrt(np.count_nonzero(self.inside)))
+        return self.cell_m * max(float(columns[-1] - columns[0] + 1), square)
+
     def cells_of(self, points_world: Floats) -> Indices:
         """Index (n,) into the flattened grid of the cells onto which world points (n, 3), metres, project.
 
         Points that project beside the grid get the nearest cell of its border.
         """
         rows, columns = self.inside.shape
-        x, y = self.camera.cropped(self.corner_px, (columns, rows)).pixels_from_world(points_world).T
-        column = np.clip(x / self.step_px, 0, columns - 1).astype(np.int64)
-        return np.asarray(np.clip(y / self.step_px, 0, rows - 1).astype(np.int64) * columns + column)
+        x, y = self.positions_of(points_world).T
+        column = np.clip(x, 0, columns - 1).astype(np.int64)
+        return np.asarray(np.clip(y, 0, rows - 1).astype(np.int64) * columns + column)
+
+    def positions_of(self, points_world: Floats) -> Floats:
+        """Project world points (n, 3), metres, to positions (n, 2) in the grid: x right and y down, in cells."""
+        rows, columns = self.inside.shape
+        return self.camera.cropped(self.corner_px, (columns, rows)).pixels_from_world(points_world) / self.step_px
 
     def pixels_of(self, cells: Indices, within: Floats) -> Floats:
         """Return picture points (n, 2), px, in cells of flat index (n,), at positions (n, 2), shares of a cell."""
@@ -92,7 +104,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         raise ValueError("a foliage grid needs a view that shows foliage")
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     top, bottom, left, right = int(rows[0]), int(rows[-1]) + 1, int(columns[0]), int(columns[-1]) + 1
-    step = max(MIN_STEP_PX, (right - left) / CELLS_ACROSS)
+    step = max(MIN_STEP_PX, max(right - left, float(np.sqrt(mask.sum()))) / CELLS_ACROSS)
     step = step if step >= 1 else 1 / round(1 / step)  # finer cells than pixels share the pixels' borders
     shrink = cv2.INTER_AREA if step >= 1 else cv2.INTER_NEAREST
     size = (max(1, round((right - left) / step)), max(1, round((bottom - top) / step)))

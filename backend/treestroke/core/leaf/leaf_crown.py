@@ -19,7 +19,7 @@ from treestroke.core.paint.cut_outs import SOLID_ALPHA
 from treestroke.core.types import Floats, Mask
 
 SIDES = (0.015, 0.03)
-"""Smallest and largest side of a card of size 1, as shares of the crown's width."""
+"""Smallest and largest side of a card of size 1, as shares of the foliage's breadth."""
 FLICKER = 0.05
 """Standard deviation of a card's brightness, so that neighbours stand out from each other."""
 FULL_LIGHT = 0.95
@@ -33,7 +33,7 @@ FLAT = 0.02
 """Distance from the root's plane, as a share of the tree's height, at which a card may lie outside a volume whose depth
 is assumed: such volumes come from smoothed outlines."""
 LEAST_SIZE, MOST_SIZE = 0.3, 3.0
-"""Bounds of the factor on a card's side, which is 1.5 to 3 % of the crown's width."""
+"""Bounds of the factor on a card's side, which is 1.5 to 3 % of the foliage's breadth."""
 MIDDLE = 0.6
 """How far down from the foliage's top, as a share of its height, the point is that cards face away from."""
 
@@ -53,7 +53,7 @@ class LeafCrown:
     height
         The tree's height above its root.
     side
-        The crown's width times the size factor.
+        The foliage's breadth times the size factor.
     card_area
         Mean opaque area of a card, square metres.
     """
@@ -126,8 +126,7 @@ def leaf_crown(
     alphas, inner = tile_alphas(atlas), volume.bounds.mean(axis=0)
     grids = tuple(foliage_grid(view, inner) for view in views)
     top, centre, bottom = _heights(grids[0], inner)
-    columns = np.flatnonzero(grids[0].inside.any(axis=0))
-    side = size * float(columns[-1] - columns[0] + 1) * grids[0].cell_m
+    side = size * grids[0].breadth_m
     middle = volume.axis(np.array([centre]))[0]
     middle[1] = centre
     return LeafCrown(

@@ -29,14 +29,17 @@ HEIGHT_SAMPLES = 8000
 """Pixels by which the weights are counted."""
 FEWEST = 20
 """Pixels that a band must have for weights of its own."""
-THROUGH = 0.5
+SPANNED = 0.03
+"""Half the width, as a share of the foliage's size, of gaps in it that are closed before colours are counted: the cut
+keeps what looks like a leaf, so that window panes would seem commoner in a crown than the wall around them."""
+THROUGH = 0.7
 """Greatest share of the foliage found that is taken for background seen through it."""
-COMMON = 0.25
+COMMON = 0.4
 """Share of the colours beside a crown, those that are rarest in it, by which that share is judged: they are no
 leaves, so that they are seen through gaps alone."""
-ALIKE, APART = 0.5, 0.75
+ALIKE, APART = 0.75, 0.85
 """Distances, 0 to 1, between the leaves' colours and those beside them at which colour tells nothing, and all. Tuned
-with `COMMON` on 17 crowns with known masks and 8 photos of trees before lawns and other trees."""
+with `COMMON` on 17 crowns with known masks and 9 photos of trees before lawns and other trees."""
 LIMIT = 8.0
 """Greatest log odds that a colour alone gives."""
 
@@ -124,7 +127,8 @@ def leaf_likelihood(pixels: Picture, found: Mask, components: int, samples: int)
     unlabeled data"; the background is the pure sample.
     """
     mixture = fit_mixture(_sample(pixels, np.ones_like(found), samples), components)
-    within, beside = (weights_by_height(mixture, pixels, where) for where in (found, ~found))
+    crown = _spanned(found)
+    within, beside = (weights_by_height(mixture, pixels, where) for where in (crown, ~crown))
     belief = np.clip(1 - _share_through(within, beside) * beside / within, 0, 1)
     leaves = within * belief**2
     leaves /= np.maximum(leaves.sum(axis=1, keepdims=True), 1e-9)
@@ -132,6 +136,13 @@ def leaf_likelihood(pixels: Picture, found: Mask, components: int, samples: int)
     by_colour = _interpolated(belief @ component_shares(mixture, table_colours()).T, table_index(pixels))
     trust = np.interp(_places(len(found)), np.arange(BANDS), apart)[:, None].astype(np.float32)
     return np.asarray(trust * by_colour + (1 - trust) * found, dtype=np.float32)
+
+
+def _spanned(found: Mask) -> Mask:
+    """Close the gaps of a mask (h, w) that are narrower than twice `SPANNED` of its size."""
+    side = 2 * round(SPANNED * float(np.sqrt(np.count_nonzero(found)))) + 1
+    kernel = np.ones((side, side), np.uint8)
+    return np.asarray(cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_CLOSE, kernel).astype(bool))
 
 
 def _share_through(within: Floats, beside: Floats) -> Floats:

@@ -17,9 +17,11 @@ REACHES_PX = (3.0, 12.0, 48.0)
 """Distances, px, over which sure colours are averaged: the nearest that there are count."""
 FURTHER = 0.03
 """Weight of what lies within the next greater distance."""
-ASIDE, ASIDE_FROM = 2.0, 16.0
-"""Weight of a colour's distance from the line between both colours, and where it begins to count, steps of 255: leaves
-in light and in shade lie aside of it, mixed pixels on it."""
+ASIDE, ASIDE_FROM = 30.0, 16.0
+"""How far aside of the line between both colours, steps of 255, a pixel counts half by where it lies along it, and from
+where on aside counts: mixed pixels lie on the line, leaves in light and in shade, and windows before a wall, do not."""
+DOUBT = (0.6, 0.9)
+"""Likelihoods at which a pixel aside of that line is background, and foliage."""
 PURE = 0.15
 """Share of the way from one colour to the other within which a pixel is as good as pure: leaves and background vary,
 too (mean error 0.07 instead of 0.09; 14 crowns)."""
@@ -36,8 +38,8 @@ def matte(pixels: Picture, likely: Opacity) -> Opacity:
 
     Source: the compositing equation, solved for known colours as by Gastal and Oliveira 2010, "Shared sampling for
     real-time alpha matting", equation 2. We average the colours of sure pixels near by instead of choosing a pair of
-    them, and take pixels aside of the line between both colours for leaves. Judged on 20 crowns with known masks or
-    mattes (`docs/papers.md`).
+    them, and take pixels aside of the line between both colours for what is likelier. Judged on 20 crowns with known
+    masks or mattes (`docs/papers.md`).
     """
     near, colours = np.ones((3, 3), np.uint8), pixels.astype(np.float32)
     leaf = _near_by(colours, cv2.erode(likely, near) > SURE_LEAF)
@@ -45,10 +47,11 @@ def matte(pixels: Picture, likely: Opacity) -> Opacity:
     way, offset = leaf - ground, colours - ground
     apart = np.maximum(np.sqrt(_dot(way, way)), np.float32(1))
     along = _dot(offset, way) / apart
-    aside = np.sqrt(np.maximum(_dot(offset, offset) - along**2, 0))
-    aside = ASIDE * likely * np.maximum(aside - ASIDE_FROM, 0)
-    share = np.sqrt(np.maximum(along, 0) ** 2 + aside**2) / apart
-    share = np.clip((share - PURE) / (1 - 2 * PURE), 0, 1)
+    aside = np.maximum(np.sqrt(np.maximum(_dot(offset, offset) - along**2, 0)) - ASIDE_FROM, 0)
+    mixed = ASIDE**2 / (ASIDE**2 + aside**2)
+    share = np.clip((along / apart - PURE) / (1 - 2 * PURE), 0, 1)
+    by_likelihood = np.clip((likely - DOUBT[0]) / (DOUBT[1] - DOUBT[0]), 0, 1)
+    share = mixed * share + (1 - mixed) * by_likelihood
     clear = apart**2 / (apart**2 + NOISE**2)
     return np.asarray(clear * share + (1 - clear) * likely, dtype=np.float32)
 
