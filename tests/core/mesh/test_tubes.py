@@ -98,14 +98,14 @@ def test_triangles_face_the_way_their_normals_do() -> None:
 
 def test_bark_stands_on_the_ground_even_where_the_trunk_leans() -> None:
     points = np.array([[0.0, 0, 0], [0.5, 1, 0], [1.0, 2, 0]])
-    mesh = tubes(Skeleton(points, np.array([0.2, 0.2, 0.2]), np.array([-1, 0, 1])), TubeParams())
+    mesh = tubes(Skeleton(points, np.array([0.2, 0.2, 0.2]), np.array([-1, 0, 1])), TubeParams(root_swelling=1.5))
     low = mesh.positions[mesh.positions[:, 1] < 0.001]
     assert mesh.positions[:, 1].min() == pytest.approx(0.0, abs=1e-6)
     assert np.hypot(low[:, 0], low[:, 2]).max() > 0.25
 
 
-def test_the_root_swells_by_half_and_the_trunk_above_does_not() -> None:
-    mesh = tubes(stick(joints=9, radius=0.1, tip_radius=0.1), TubeParams(buttress=0.0))
+def test_the_root_swells_and_the_trunk_above_does_not() -> None:
+    mesh = tubes(stick(joints=9, radius=0.1, tip_radius=0.1), TubeParams(root_swelling=1.5, buttress=0.0))
     reach = np.hypot(mesh.positions[:, 0], mesh.positions[:, 2])
     assert reach[mesh.positions[:, 1] == 0].max() == pytest.approx(0.15, rel=1e-5)
     assert reach[mesh.positions[:, 1] > 0.5].max() == pytest.approx(0.1, rel=1e-5)
@@ -114,8 +114,20 @@ def test_the_root_swells_by_half_and_the_trunk_above_does_not() -> None:
 def test_a_flare_that_the_photo_shows_is_not_swollen_again() -> None:
     points = np.array([[0.0, 0, 0], [0, 0.2, 0], [0, 0.5, 0], [0, 4, 0]])
     flared = Skeleton(points, np.array([0.16, 0.11, 0.1, 0.1]), np.array([-1, 0, 1, 2]))
-    mesh = tubes(flared, TubeParams(buttress=0.0))
+    mesh = tubes(flared, TubeParams(root_swelling=1.5, buttress=0.0))
     assert np.hypot(mesh.positions[:, 0], mesh.positions[:, 2]).max() == pytest.approx(0.16, rel=1e-5)
+
+
+def test_a_trunk_without_flare_ends_as_round_as_it_is_above() -> None:
+    mesh = tubes(stick(joints=9, radius=0.1, tip_radius=0.1), TubeParams())
+    reach = np.hypot(mesh.positions[:, 0], mesh.positions[:, 2])
+    assert reach[(reach > 0) & (mesh.positions[:, 1] < 0.5)] == pytest.approx(0.1, rel=1e-5)
+
+
+def test_a_limb_from_a_thick_foot_does_not_reach_below_the_ground() -> None:
+    points = np.array([[0.0, 0, 0], [0, 0.3, 0], [0, 2, 0], [1.0, 0.5, 0], [2.0, 1, 0]])
+    tree = Skeleton(points, np.array([0.5, 0.5, 0.4, 0.4, 0.3]), np.array([-1, 0, 1, 1, 3]))
+    assert tubes(tree).positions[:, 1].min() == 0.0
 
 
 def test_the_strongest_child_goes_on_ring_by_ring() -> None:
@@ -192,7 +204,8 @@ def test_a_drawing_is_refused() -> None:
 
 def test_each_stem_has_its_own_foot() -> None:
     points = np.array([[0.0, 0, 0], [0, 2, 0], [1, 0, 0], [1, 1.5, 0]])
-    mesh = tubes(Skeleton(points, np.full(4, 0.1), np.array([-1, 0, -1, 2])), TubeParams(buttress=0.0))
+    params = TubeParams(root_swelling=1.5, buttress=0.0)
+    mesh = tubes(Skeleton(points, np.full(4, 0.1), np.array([-1, 0, -1, 2])), params)
     ground = mesh.positions[mesh.positions[:, 1] == 0]
     assert [ground[:, 0].min(), ground[:, 0].max()] == pytest.approx([-0.15, 1.15], abs=0.01)
 

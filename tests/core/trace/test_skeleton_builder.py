@@ -43,6 +43,17 @@ def test_the_nearest_joint_is_found() -> None:
     assert drafted(20.0).nearest(np.array([17.0, 70.0])) == 5
 
 
+def test_a_point_inside_a_trunk_belongs_to_it_even_if_the_middle_of_a_limb_is_nearer() -> None:
+    builder = drafted(20.0)
+    builder.radii[:4] = [30.0, 30.0, 30.0, 30.0]
+    assert builder.nearest(np.array([18.0, 61.0])) == 1
+
+
+def test_the_joints_below_one_are_those_of_its_own_stroke() -> None:
+    assert drafted(20.0).stem_below(2).tolist() == [0, 1, 2]
+    assert drafted(20.0).stem_below(5).tolist() == [4, 5]
+
+
 @given(TREES, st.data())
 def test_dropped_joints_go_with_all_their_descendants(tree: Skeleton, data: st.DataObject) -> None:
     dropped = data.draw(st.sets(st.integers(1, max(1, len(tree) - 1)))) if len(tree) > 1 else set()

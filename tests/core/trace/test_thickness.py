@@ -3,10 +3,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import isotonic_regression
-from tests.pictures import disc, wood_mask
+from tests.pictures import disc, wood_mask, wood_photo
 
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.trace.thickness import half_widths, non_increasing
+from treestroke.core.trace.thickness import half_widths, non_increasing, to_edges
 
 UPRIGHT = resample(np.array([[100.0, 180.0], [100.0, 20.0]]), 4.0)
 ASLANT = resample(np.array([[40.0, 170.0], [150.0, 30.0]]), 4.0)
@@ -73,6 +73,27 @@ def test_a_long_hidden_part_is_not_measured() -> None:
     widths, _ = half_widths(UPRIGHT, wood, 20.0)
     assert np.isnan(widths[UPRIGHT[:, 1] < 60]).all()
     assert not np.isnan(widths[UPRIGHT[:, 1] > 110]).any()
+
+
+def test_twigs_that_cross_a_limb_on_one_side_or_the_other_do_not_widen_it() -> None:
+    twigs = [([(100.0, y), (100.0 + side * 60.0, y - 20.0)], 9.0) for y, side in [(60, 1), (95, -1), (130, 1)]]
+    wood = bar(UPRIGHT, 16.0) | wood_mask(twigs, 200, 200)
+    assert np.median(half_widths(UPRIGHT, wood, 30.0)[0]) == pytest.approx(8.0, abs=1.0)
+
+
+@pytest.mark.parametrize("told", [12.0, 20.0])
+def test_sides_that_colours_tell_wrongly_move_to_the_edges_in_the_photo(told: float) -> None:
+    photo = wood_photo(bar(UPRIGHT, 16.0))
+    widths, middles = to_edges(UPRIGHT, half_widths(UPRIGHT, bar(UPRIGHT, told), 20.0), photo, 20.0)
+    assert widths == pytest.approx(8.0, abs=0.6)
+    assert middles == pytest.approx(0.0, abs=0.6)
+
+
+def test_where_no_wood_is_seen_no_edge_is() -> None:
+    wood = bar(UPRIGHT, 16.0)
+    wood[20:120] = False
+    widths, _ = to_edges(UPRIGHT, half_widths(UPRIGHT, wood, 20.0), wood_photo(bar(UPRIGHT, 16.0)), 20.0)
+    assert np.isnan(widths[UPRIGHT[:, 1] < 60]).all()
 
 
 @given(st.lists(st.floats(0.5, 60.0), min_size=1, max_size=40))

@@ -55,9 +55,11 @@ def covered(line: BranchLine, traced: Traced, found_only: bool = True, within: f
     return float((away <= within).mean())
 
 
-def test_the_root_is_where_the_first_stroke_begins() -> None:
-    traced = trace(stroked(STEM))
-    assert traced.skeleton.points[0] == pytest.approx(np.array(STEM[0]))
+@pytest.mark.parametrize("beside", [0.0, -3.0, 4.0])
+def test_the_root_is_the_trunk_s_middle_where_the_first_stroke_begins(beside: float) -> None:
+    traced = trace(stroked([(STEM[0][0] + beside, STEM[0][1]), STEM[1]]))
+    assert traced.skeleton.points[0, 0] == pytest.approx(STEM[0][0], abs=1.0)
+    assert traced.skeleton.points[0, 1] == STEM[0][1]
     assert (traced.stroke[0], traced.skeleton.parents[0]) == (0, -1)
 
 

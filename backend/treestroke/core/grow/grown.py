@@ -20,9 +20,12 @@ class Grown:
         (k, 3) the branch, subtree and angle of each replacement; empty where growth does not replace.
     attractors_reached
         Share of the image attractors within 10 px (of a crown 1,000 px wide) of a branch; 0 without attractors.
+    root_swelling
+        Least radius of a stem at its root over that above its flare; 1 where the skeleton's radii say it all.
     """
 
     skeleton: Skeleton
     born: Indices
     choices: Indices
     attractors_reached: float = 0.0
+    root_swelling: float = 1.0

@@ -50,14 +50,16 @@ def collar_widening(limb: Indices, outward: Floats, nearness: Floats, axes: Limb
 def flare_widening(grid: TubeGrid, rings: Rings, axes: LimbAxes, root_swelling: float, buttress: float) -> Floats:
     """Compute the share (v,) of its radius by which a stem widens to the ground, in lobes; 0 on branches.
 
-    ``root_swelling`` is the radius at the root over that of the trunk above its flare, for a photo may show a flare
-    already; ``buttress`` is the depth of the lobes as a share of the radius.
+    ``root_swelling`` is the least radius at the root over that of the trunk above its flare, for the stem's own radii
+    may show a flare; ``buttress`` is the depth of the lobes over what the flare adds to the trunk's radius.
     """
     limb = rings.limb[grid.ring]
-    wanted = root_swelling * _radius_above_flare(rings) / axes.radii[axes.first]
+    trunk = _radius_above_flare(rings) / axes.radii[axes.first]
+    share = np.maximum(root_swelling * trunk - 1.0, 0.0)
+    added = np.maximum(1.0 + share - trunk, 0.0)
     lobes = sum(weight * np.cos(count * grid.angle_rad + phase) for count, phase, weight in _LOBES)
-    share = np.maximum(wanted - 1.0, 0.0)[limb] + buttress * lobes
-    return np.where(axes.is_stem[limb], rings.swelling[grid.ring] * share, 0.0)
+    widened = share[limb] + buttress * added[limb] * lobes
+    return np.where(axes.is_stem[limb], rings.swelling[grid.ring] * widened, 0.0)
 
 
 def blended_normals(normals: Floats, limb: Indices, positions: Floats, nearness: Floats, axes: LimbAxes) -> Floats:

@@ -49,12 +49,15 @@ class LodParams:
         Triangles of an average limb: where the budget has fewer for each, the least important limbs are dropped.
     most_thickened
         Greatest factor by which a limb is thickened to make up for dropped ones.
+    root_swelling
+        As in `TubeParams`.
     """
 
     max_triangles: int
     height_px: int
     limb_triangles: float = 14.0
     most_thickened: float = 1.3
+    root_swelling: float = 1.0
 
     def __post_init__(self) -> None:
         if self.max_triangles < LEAST_TRIANGLES or self.height_px < 1:
@@ -122,7 +125,7 @@ def _fitted(skeleton: Skeleton, params: LodParams, must_fit: bool) -> Mesh | Non
         allowed += spare
     if best is None and not must_fit:
         best = left, grid
-    return None if best is None else tube_mesh(best[1], best[0], axes, TubeParams())
+    return None if best is None else tube_mesh(best[1], best[0], axes, TubeParams(root_swelling=params.root_swelling))
 
 
 def _weighted_errors(rings: Rings, pixel: float) -> Floats:

@@ -12,7 +12,7 @@ from treestroke.core.mesh.limb_axes import LimbAxes, limb_axes, simplified, subs
 from treestroke.core.mesh.rings import Rings, place_rings
 from treestroke.core.mesh.tube_surface import TubeGrid, smooth_normals, texture_coordinates
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.types import Indices
+from treestroke.core.types import Floats, Indices
 
 MIN_RADIUS = 1.2e-4
 """Radius of the thinnest twig, in tree heights: a third of a pixel in a 1500 px photo."""
@@ -35,9 +35,9 @@ class TubeParams:
     max_sides
         Greatest number of sides of a tube.
     root_swelling
-        Radius at the root over the trunk's radius above the flare.
+        Least radius at the root over the trunk's radius above its flare.
     buttress
-        Depth of the root flare's lobes over the trunk's radius.
+        Depth of a root flare's lobes over what the flare adds to the trunk's radius.
     collar_swelling
         Widening of a limb where it leaves its parent, over its radius.
     texture_repeats
@@ -48,8 +48,8 @@ class TubeParams:
 
     max_triangles: int = 95_000
     max_sides: int = 20
-    root_swelling: float = 1.5
-    buttress: float = 0.22
+    root_swelling: float = 1.0
+    buttress: float = 0.5
     collar_swelling: float = 0.5
     texture_repeats: int = 3
     texture_aspect: float = 2.0
@@ -65,10 +65,10 @@ def tubes(skeleton: Skeleton, params: TubeParams = TubeParams()) -> Mesh:
     """Build the bark of a 3D skeleton (metres, world frame): one closed tube for each limb.
 
     Rings are oriented by rotation-minimizing frames. The strongest child continues its parent's tube; others start on
-    the parent's axis, hidden inside it, and leave it with a collar that widens along the parent. Stems widen to the
-    root in lobes, stand level and are closed below; tips are closed. The texture repeats a whole number of times around
-    a limb, and its scale along it follows the radius, so texels stay square. Each vertex is attached to the two joints
-    that its ring stands between.
+    the parent's axis, hidden inside it, and leave it with a collar that widens along the parent. A stem that widens to
+    its root does so in lobes; all stand level on the ground and are closed below; tips are closed. The texture repeats
+    a whole number of times around a limb, and its scale along it follows the radius, so texels stay square. Each vertex
+    is attached to the two joints that its ring stands between.
 
     Raises
     ------
@@ -126,6 +126,7 @@ def tube_mesh(grid: TubeGrid, rings: Rings, axes: LimbAxes, params: TubeParams) 
     widening = flare_widening(grid, rings, axes, params.root_swelling, params.buttress)
     widening += collar_widening(rings.limb[ring], outward, nearness, axes, params.collar_swelling)
     positions = rings.points[ring] + radius * (1.0 + widening[:, None]) * outward
+    positions[:, 1] = np.maximum(positions[:, 1], _ground(rings, axes)[ring])
     normals = blended_normals(smooth_normals(grid, rings, positions), rings.limb[ring], positions, nearness, axes)
     uvs = texture_coordinates(grid, rings, positions, params.texture_repeats, params.texture_aspect)
     return Mesh(
@@ -135,3 +136,12 @@ def tube_mesh(grid: TubeGrid, rings: Rings, axes: LimbAxes, params: TubeParams) 
         grid.triangles,
         attachment=Attachment(rings.joints[ring], rings.share[ring]),
     )
+
+
+def _ground(rings: Rings, axes: LimbAxes) -> Floats:
+    """Height (r,), metres, under which no part of a ring may reach: the lowest root's in root flares and collars.
+
+    Limbs whose axis goes below it are let be: they hang over a slope or a pot's edge.
+    """
+    lowest = axes.points[axes.first][axes.is_stem][:, 1].min(initial=np.inf)
+    return np.where((rings.swelling > 0) & (rings.points[:, 1] >= lowest), lowest, -np.inf)

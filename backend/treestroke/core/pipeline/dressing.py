@@ -17,7 +17,7 @@ from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
 from treestroke.core.mesh.bark_pattern import bark_pattern
 from treestroke.core.mesh.normal_map import NormalMapParams, bark_normal_map
-from treestroke.core.mesh.tubes import tubes
+from treestroke.core.mesh.tubes import TubeParams, tubes
 from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
 from treestroke.core.paint.cut_outs import opaque_part, reduced
 from treestroke.core.paint.seasons import size_and_density
@@ -129,7 +129,8 @@ def bark_surface(
     tree: GrownTree, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> Surface:
     """Wrap the grown tree in bark that is read off the first stem's visible pixels."""
-    surface, view = tubes(tree.grown.skeleton), tree.appearance.bark_view
+    surface = tubes(tree.grown.skeleton, TubeParams(root_swelling=tree.grown.root_swelling))
+    view = tree.appearance.bark_view
     report("mesh", 0.6)
     bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
     grain = bark_pattern(TEXTURE_SIZE, rng, bark.form)

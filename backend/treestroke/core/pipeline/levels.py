@@ -89,7 +89,8 @@ def _level(tree: TreeModel, number: int, wood: float, view: Framing, expected: M
     whole = len(tree.bark.mesh.triangles) + 2 * cards_before
     aim = _SHARES[number] * whole * (_BARE_MORE if tree.leaf is None else 1.0)
     most = int(max(wood * aim, aim - 2 * cards_before, LEAST_TRIANGLES))
-    bark = replace(tree.bark, mesh=lod_tubes(tree.grown.skeleton, LodParams(most, HEIGHTS_PX[number])))
+    params = LodParams(most, HEIGHTS_PX[number], root_swelling=tree.grown.root_swelling)
+    bark = replace(tree.bark, mesh=lod_tubes(tree.grown.skeleton, params))
     left = max(0, int(aim - len(bark.mesh.triangles)) // 2)
     return Level(
         bark, _thinned(tree, left, view, np.where(silhouettes((bark,), view), _HIDDEN_BY_WOOD, 1.0) * expected)

@@ -113,6 +113,7 @@ def with_depth(front: Branched, side: Side, height_px: float, camera: Orthograph
     flat = in_units(front, height_px)
     retrieved = retrieve_depth(flat, side.tree)
     skeleton, metres = retrieved.tree.skeleton, float(camera.metres_from_pixels(height_px / UNITS))
-    tree = Skeleton(skeleton.points * metres, skeleton.radii * metres, skeleton.parents)
+    root = camera.world_from_pixels(front.skeleton.points[:1])
+    tree = Skeleton(root + skeleton.points * metres, skeleton.radii * metres, skeleton.parents)
     score = asdict(fidelity(flat, side.tree, retrieved.tree, retrieved.origin == PAIRED))
     return RetrievedTree(Branched(tree, retrieved.tree.branch), retrieved.front, score)

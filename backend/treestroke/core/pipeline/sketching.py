@@ -44,6 +44,8 @@ SMALL_BRANCHES = 8
 """Small branches for each round of growth that the settings allow."""
 LEAFED_SHARE = 0.035
 """Leaves of a sketched crown lie within this share of the tree's height from its branches."""
+ROOT_SWELLING = 1.5
+"""Least radius of a drawn stem at its root over that above its flare: few draw a flare."""
 AS_DRAWN = Reading("the strokes as they were drawn", ())
 ONE_SIDE = StrokeWarning(
     "side_assumed",
@@ -143,7 +145,7 @@ def grow_sketches(
     lifted = _lifted(frame, rng)
     report("grow", 0.0)
     params = SelfSimilarParams(most=SMALL_BRANCHES * settings.iterations)
-    grown = grow_small(lifted.tree, lifted.volume, params, rng, report)
+    grown = replace(grow_small(lifted.tree, lifted.volume, params, rng, report), root_swelling=ROOT_SWELLING)
     return _grown_tree(frame, settings, lifted, grown, rng)
 
 

@@ -40,8 +40,16 @@ class SkeletonBuilder:
         return self._arrays
 
     def nearest(self, point: Floats) -> int:
-        """Return the index of the joint nearest to a point (2,), px."""
-        return int(np.linalg.norm(self.arrays()[0] - point, axis=1).argmin())
+        """Return the index of the joint to whose surface a point (2,), px, is nearest, or in which it lies deepest."""
+        points, radii = self.arrays()
+        return int((np.linalg.norm(points - point, axis=1) - radii).argmin())
+
+    def stem_below(self, joint: int) -> Indices:
+        """List the joints (n,), indices, along a joint's own stroke from its start to this joint."""
+        found = [joint]
+        while (parent := self.parents[found[-1]]) >= 0 and self.stroke[parent] == self.stroke[joint]:
+            found.append(parent)
+        return np.array(found[::-1], dtype=np.int64)
 
     def skeleton(self) -> Skeleton:
         """Return the skeleton so far."""

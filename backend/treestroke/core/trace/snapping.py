@@ -26,7 +26,7 @@ def snap(line_px: Floats, odds: NDArray[np.float32], reach_px: float, step_px: f
     places = smooth[:, None] + offsets[:, None] * side[:, None]
     cost = -EVIDENCE * sample_nearest(odds, places, -6.0) + DISTANCE * (offsets / reach_px) ** 2
     bending = BEND * (step_px / reach_px) * np.subtract.outer(offsets, offsets) ** 2 / reach_px**2
-    chosen = offsets[_cheapest(cost, bending)]
+    chosen = offsets[cheapest(cost, bending)]
     return _smooth(smooth + blur(chosen, 2.0)[:, None] * side, step_px, step_px)
 
 
@@ -47,7 +47,7 @@ def blur(values: Floats, sigma: float) -> Floats:
     return smoothed(long, sigma)[count - 1 : 2 * count - 1].reshape(values.shape)
 
 
-def _cheapest(cost: Floats, change: Floats) -> NDArray[np.int64]:
+def cheapest(cost: Floats, change: Floats) -> NDArray[np.int64]:
     """Return the cheapest columns (n,) down a table (n, k); going from column a to b adds ``change[b, a]``."""
     total, back = cost[0], []
     for row in cost[1:]:

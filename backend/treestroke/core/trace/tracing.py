@@ -9,45 +9,31 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import arc_lengths, normals
+from treestroke.core.geometry.polyline import normals
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import TOUCH_SHARE, is_stem
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
+from treestroke.core.trace.foot import flared
 from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
+from treestroke.core.trace.giant import fork_of, is_giant, upright
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
-from treestroke.core.trace.thickness import half_widths, non_increasing
+from treestroke.core.trace.stroke_radii import drawn_radii, limb_radii, stem_radii
+from treestroke.core.trace.thickness import half_widths, to_edges
 from treestroke.core.types import Floats, Indices, Mask, Picture
 
 REFERENCE_SIDE = 1500
 """Long side of a photo to which pixel figures refer, px."""
-CONE, TAPER = 1.25, 0.75
-"""A limb lies within a cone: its base has this multiple of the limb's first radius, and it loses this share of it over
-the tree's height. So neighbours of its own colour do not widen the limb."""
+CLEAR = 0.7
+"""Share of a stem below the crown where its width must be seen by the colours of wood for its foot to be looked at
+(0.78 and more on 27 photos; less where a trunk is hidden or all around it has its colours)."""
 STEADY = 4.0
 """Standard deviation, in steps of a line, over which its place in the wood is averaged."""
-MIN_EXPECTED = 0.5
-"""Least measured radius relative to the expected one: less is a sliver of the branch between leaves."""
-MIN_SEEN = 4
-"""Least number of places along a line where its width must be seen for it to count."""
 GRAIN = 1.5
 """Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
-GIANT_SHARE, GIANT_GRAIN = 0.4, 0.008
-"""Greatest radius of a giant trunk, and the width of cracks in its bark that are closed, as shares of the height."""
-FEW_SIDES, MOST_SIDES = 0.1, 0.7
-"""A trunk is a giant if its sides are seen within the usual radius at fewer places below the crown than the first
-share (a baobab 0.00; the 20 other photos 0.27 and more), and within a giant's at more than the second."""
-GIANT_FREE = 0.2
-"""Least length of a giant's stem below the crown, as a share of the height: over less, its ground may deceive."""
-GIANT_STEADY = 20.0
-"""Standard deviation, in steps of a line, over which a giant's is straightened: roots and buttresses do not bend it."""
-MAX_SWELLING = 1.8
-"""Greatest measured radius relative to the line's median: more is a shadow beside the branch."""
-CHILD_RADIUS = 0.75
-"""Radius of a branch relative to its parent where it is not seen (Tan et al. 2008, section 2)."""
 
 
 @dataclass(frozen=True)
@@ -111,23 +97,16 @@ class Traced:
 class _Evidence:
     """What a stroke is judged by.
 
-    Odds by the strokes' colours and the wood by them (h, w), to which a stroke is pulled; the wood by the crown's odds,
-    whose width is measured; the crown (h, w), and the tree's height, px.
+    The photo (h, w, 3); odds by the strokes' colours and the wood by them (h, w), to which a stroke is pulled; the wood
+    by the crown's odds, whose width is measured; the crown (h, w), and the tree's height, px.
     """
 
+    photo: Picture
     odds: Odds
     sure_wood: Mask
     wood: Mask
     crown: Mask
     height_px: float
-
-
-@dataclass(frozen=True, eq=False)
-class _SeenWidths:
-    """Half-widths (n,) measured along a line, px, NaN where unseen, and a mask (n,) of the places below the crown."""
-
-    halves: Floats
-    bare: Mask
 
 
 def trace_branches(
@@ -148,7 +127,7 @@ def trace_branches(
     wood = smooth > 0
     builder = SkeletonBuilder()
     sure_wood = _smoothed(odds.by_strokes, unit) > 0
-    evidence = _Evidence(odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
+    evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
     _follow_strokes(builder, strokes.branches, evidence, params)
     picture = CrownPicture(odds.by_crown, smooth, surroundings.crown, surroundings.foliage)
     find_limbs(builder, picture, height_px, params.thinnest_px * height_px / REFERENCE_SIDE)
@@ -166,76 +145,71 @@ def _follow_strokes(
     builder: SkeletonBuilder, branches: tuple[Stroke, ...], evidence: _Evidence, params: TraceParams
 ) -> None:
     """Add each stroke's line, pulled onto its branch, to the skeleton."""
-    height_px, wood = evidence.height_px, evidence.wood
+    height_px = evidence.height_px
     reach, step = params.snap_share * height_px, max(1.0, 0.006 * height_px)
     smooth_odds = np.asarray(cv2.GaussianBlur(evidence.odds, (0, 0), max(0.8, 0.3 * reach)), dtype=np.float32)
-    root = branches[0].points[0]
     for index, stroke in enumerate(branches):
-        start = root if index == 0 else None
-        snapped = snap(stroke.points, smooth_odds, reach, step)
-        line = _centre(snapped, evidence.sure_wood, params.thickest_share * height_px, start)
-        stands = is_stem(stroke, branches[:index], height_px, TOUCH_SHARE * max(wood.shape))
-        parent = -1 if stands else builder.nearest(line[0])
-        parent_px = params.trunk_share * height_px / CHILD_RADIUS if stands else builder.radii[parent]
-        widest = params.thickest_share * height_px if stands else 1.2 * parent_px
-        below = np.logical_and.accumulate(~sample_nearest(evidence.crown, line, False))
-        if stands and _is_giant(line[below], wood, widest, height_px):
-            wood, widest = _without_cracks(wood, height_px), GIANT_SHARE * height_px
-            line = _centre(blur(snapped, GIANT_STEADY), wood, widest, start, GIANT_STEADY)
-        seen = _SeenWidths(half_widths(line, wood, widest)[0], below)
-        radii = _radii(line, stroke.width, seen, parent_px, height_px)
+        line, parent = snap(stroke.points, smooth_odds, reach, step), -1
+        if is_stem(stroke, branches[:index], height_px, TOUCH_SHARE * max(evidence.wood.shape)):
+            line, radii = _stem(line, float(stroke.points[0, 1]), evidence, params)
+        else:
+            parent, line, radii = _limb(builder, line, evidence, params)
+        if stroke.width is not None:
+            radii = drawn_radii(line, stroke.width)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
-        if parent >= 0:
-            line = np.concatenate([builder.points[parent][None], line])
-            radii = np.concatenate([radii[:1], radii])
         builder.add_chain(parent, line, radii, stroke=index)
 
 
-def _is_giant(below: Floats, wood: Mask, usual_px: float, height_px: float) -> bool:
-    """Return whether the photo shows a stem, by its line (n, 2) below the crown, to be thicker than is usual."""
-    if len(below) < MIN_SEEN or arc_lengths(below)[-1] < GIANT_FREE * height_px:
-        return False
-    if (~np.isnan(half_widths(below, wood, usual_px)[0])).mean() > FEW_SIDES:
-        return False
-    halves, _ = half_widths(below, _without_cracks(wood, height_px), GIANT_SHARE * height_px)
-    return bool((~np.isnan(halves)).mean() > MOST_SIDES)
+def _stem(line: Floats, ground: float, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
+    """Return the line (n, 2) and the radii (n,) of a stem, by its stroke's line (n, 2); it begins at the ground, px."""
+    height_px, widest = evidence.height_px, params.thickest_share * evidence.height_px
+    centred = _centre(line, evidence, widest)
+    centred[0, 1] = ground
+    bare = np.logical_and.accumulate(~sample_nearest(evidence.crown, centred, False))
+    sides = half_widths(centred, evidence.wood, widest)
+    seen = ~np.isnan(sides[0][bare])
+    halves, _ = to_edges(centred, _assumed(sides, bare, params.trunk_share * height_px), evidence.photo, widest)
+    if is_giant(centred[bare], evidence.wood, widest, height_px):
+        centred, level = upright(centred, bare, evidence.wood, height_px)
+        halves = np.where(bare, level, half_widths(centred, evidence.wood, widest)[0])
+    radii = stem_radii(centred, halves, bare, height_px, params.trunk_share * height_px)
+    return centred, flared(centred, radii, evidence.photo) if seen.sum() > CLEAR * len(seen) else radii
 
 
-def _without_cracks(wood: Mask, height_px: float) -> Mask:
-    """Close the cracks in the bark of a giant, a mask (h, w) of wood."""
-    return np.asarray(cv2.GaussianBlur(wood.astype(np.float32), (0, 0), GIANT_GRAIN * height_px) > 0.5)
+def _assumed(sides: tuple[Floats, Floats], bare: Mask, usual_px: float) -> tuple[Floats, Floats]:
+    """Return half-widths and middles (n,), px, with typical ones where the colours of wood do not tell a bare stem.
 
-
-def _centre(line: Floats, wood: Mask, most_px: float, root: Floats | None, steady: float = STEADY) -> Floats:
-    """Move a line (n, 2) to the middle of the wood where that is seen; it begins at its root, if there is one."""
-    _, middles = half_widths(line, wood, most_px)
-    moved = line + blur(np.nan_to_num(middles), steady)[:, None] * normals(line)
-    if root is None:
-        return moved
-    hold = np.maximum(1 - arc_lengths(line) / (3 * most_px), 0.0)[:, None]
-    return np.asarray(moved + hold * (root - moved[0]))
-
-
-def _radii(line: Floats, width: float | None, seen: _SeenWidths, parent_px: float, height_px: float) -> Floats:
-    """Return the radii (n,) along a line, px: drawn, else measured, else 75 % of the parent's; they never grow outward.
-
-    Measurements on bare wood below the crown, if there are enough, take the place of slivers among leaves.
+    Below the crown no leaves hide a stem, so its edges are there even if its surroundings have its colours. Where its
+    width is nowhere seen, a ``usual_px`` one is taken.
     """
-    share = arc_lengths(line) / max(float(arc_lengths(line)[-1]), 1e-9)
-    if width is not None:
-        return width / 2 * (1 - 0.6 * share)
-    places = np.flatnonzero(~np.isnan(seen.halves))
-    if len(places) < MIN_SEEN:
-        return CHILD_RADIUS * parent_px * (1 - 0.7 * share)
-    bare = places[seen.bare[places]]
-    usual = float(np.median(seen.halves[bare if len(bare) >= MIN_SEEN else places]))
-    expected = (usual if len(bare) >= MIN_SEEN else CHILD_RADIUS * parent_px) * (1 - 0.7 * share)
-    measured = np.minimum(seen.halves[places], MAX_SWELLING * usual)
-    radii = np.interp(np.arange(len(line)), places, non_increasing(measured))
-    radii = np.minimum(radii, CONE * radii[0] * np.maximum(1 - TAPER * arc_lengths(line) / height_px, 1 - TAPER))
-    hidden = share > share[places[-1]]
-    radii[hidden] *= 1 - 0.7 * (share[hidden] - share[places[-1]])
-    return np.asarray(np.maximum(radii, MIN_EXPECTED * expected))
+    unseen = bare & np.isnan(sides[0])
+    typical = usual_px if unseen.sum() == bare.sum() else float(np.nanmedian(sides[0][bare]))
+    return np.where(unseen, typical, sides[0]), np.where(unseen, 0.0, sides[1])
+
+
+def _limb(
+    builder: SkeletonBuilder, line: Floats, evidence: _Evidence, params: TraceParams
+) -> tuple[int, Floats, Floats]:
+    """Return the joint at which a limb begins, its line (n, 2) from there, and its radii (n,)."""
+    line = _centre(line, evidence, params.thickest_share * evidence.height_px)
+    parent = builder.nearest(line[0])
+    parent_px = builder.radii[parent]
+    axis = builder.stem_below(parent)
+    points, radii = builder.arrays()
+    away = np.hypot(*(line[:, None] - points[axis]).transpose(2, 0, 1)) - radii[axis]
+    inside = np.logical_and.accumulate((away < 0).any(axis=1))
+    halves, _ = to_edges(line, half_widths(line, evidence.wood, 1.2 * parent_px), evidence.photo, 1.2 * parent_px)
+    widths = limb_radii(line, np.where(inside, np.nan, halves), parent_px)
+    if parent_px > params.thickest_share * evidence.height_px and not inside.all():
+        line, widths = line[~inside], widths[~inside]
+        parent = int(axis[fork_of(line, points[axis], float(widths[0]))])
+    return parent, np.concatenate([points[parent][None], line]), np.concatenate([widths[:1], widths])
+
+
+def _centre(line: Floats, evidence: _Evidence, most_px: float) -> Floats:
+    """Move a line (n, 2) to the middle of the wood where that is seen."""
+    _, middles = to_edges(line, half_widths(line, evidence.sure_wood, most_px), evidence.photo, most_px)
+    return np.asarray(line + blur(np.nan_to_num(middles), STEADY)[:, None] * normals(line))
 
 
 def _erase(skeleton: Skeleton, stroke: Indices, erase: tuple[Stroke, ...]) -> tuple[Skeleton, Indices]:
