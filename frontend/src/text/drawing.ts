@@ -113,7 +113,6 @@ export const drawingText = {
     },
     /** Warnings that a stroke may mean no tree, by their codes. */
     doubts: {
-      trunk_level: 'The trunk does not go up. Draw it from the ground upward.',
       outside_photo: (stroke: string) => `${stroke}: much of it is outside the photo. Draw it again on the photo.`,
       crown_unclear: 'The crown looks like its background. Draw around the leaves, or use another photo.',
     },

@@ -60,7 +60,7 @@ UNCLEAR = StrokeWarning(
     "crown",
     "what is inside it hardly differs from what is around it; draw it around the tree's foliage, or take another photo",
 )
-DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
+DOUBTFUL = ("outside_photo", UNCLEAR.code)
 """Codes of warnings after which the strokes may not describe a tree."""
 
 
