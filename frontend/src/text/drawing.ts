@@ -108,6 +108,7 @@ export const drawingText = {
       crown_crosses_itself: 'The crown line crosses itself. Everything inside it counts as crown.',
       branch_joined: (stroke: string) => `${stroke}: joined to the nearest branch.`,
       edge_completed: 'The photo cuts the crown. It is completed beyond the edge.',
+      line_removed: 'A pole or wire before the crown was left out. A branch line along it makes it a branch.',
       stroke_turned: 'The trunk was drawn from the top down. It was turned.',
       trunk_moved: 'The trunk line was moved onto the trunk.',
     },

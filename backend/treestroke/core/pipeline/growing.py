@@ -26,6 +26,7 @@ from treestroke.core.pipeline.crowns import (
     seen_from_front,
 )
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
+from treestroke.core.pipeline.occluders import lines_notice, without_lines
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
@@ -83,7 +84,8 @@ class PhotoEvidence:
         """What was mended, and what makes the reading doubtful."""
         unclear = () if self.foliage.clear else (UNCLEAR,)
         beyond = (_completion_notice(self.completed),) if self.completed else ()
-        return (*self.working.warnings, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
+        hidden = lines_notice(self.working)
+        return (*self.working.warnings, *hidden, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
 
     @property
     def height_px(self) -> float:
@@ -176,9 +178,10 @@ def read_photo(
     """
     side_drawing = None if side is None else draw_side(side, "side")
     report("foliage", 0.0)
-    working = working_copy(photo, strokes)
+    before = None if known is None else known.working
+    working = without_lines(working_copy(photo, strokes), before)
     report("foliage", 0.05)
-    if known is not None and known.working.frame == working.frame:
+    if known is not None and (known.working.frame, known.working.lines) == (working.frame, working.lines):
         foliage = known.foliage
     else:
         crown = working.strokes.crown.points
