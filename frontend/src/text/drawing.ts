@@ -110,6 +110,7 @@ export const drawingText = {
       edge_completed: 'The photo cuts the crown. It is completed beyond the edge.',
       line_removed: 'A pole or wire before the crown was left out. A branch line along it makes it a branch.',
       stroke_turned: 'The trunk was drawn from the top down. It was turned.',
+      trunk_completed: 'Something hides the foot of the trunk. It goes on to the ground.',
       trunk_moved: 'The trunk line was moved onto the trunk.',
     },
     /** Warnings that a stroke may mean no tree, by their codes. */

@@ -26,7 +26,7 @@ from treestroke.core.pipeline.crowns import (
     seen_from_front,
 )
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
-from treestroke.core.pipeline.occluders import lines_notice, without_lines
+from treestroke.core.pipeline.occluders import FOOT_COMPLETED, lines_notice, on_the_ground, without_lines
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
@@ -194,6 +194,7 @@ def read_photo(
     is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
     surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
+    working, traced = on_the_ground(working, traced, height_px)
     return PhotoEvidence(working, foliage, traced, side_drawing)
 
 
@@ -346,5 +347,6 @@ def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Sta
 
 def _reading(evidence: PhotoEvidence, taken: Taken) -> Reading:
     """Return what was read in the photo, and what makes that doubtful."""
-    doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
-    return Reading(READ, tuple(doubts + ["kind_unsure"] * taken.ask), evidence.completed)
+    codes = [warning.code for warning in evidence.warnings]
+    doubts = [code for code in codes if code in DOUBTFUL] + ["kind_unsure"] * taken.ask
+    return Reading(READ, tuple(doubts), evidence.completed + ("foot",) * (FOOT_COMPLETED in codes))
