@@ -31,7 +31,7 @@ BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
 _NEW_OBJECTS = 10_000
 """Objects made since the last search for garbage that start the next one."""
-_PRINTED = ("side_assumed", "photo_cut_short", "trunk_level", "outside_photo", "crown_unclear")
+_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear")
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
 

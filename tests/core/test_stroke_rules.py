@@ -14,7 +14,6 @@ from treestroke.service.loading import load_photo, load_strokes
 WIDTH, HEIGHT = 400, 300
 CROWN = [[100, 40], [300, 40], [300, 160], [100, 160]]
 TRUNK = [[200, 290], [200, 150]]
-DOUBTS = {"trunk_level", "outside_photo"}
 
 
 def mend(crown: object = CROWN, branches: object = (TRUNK,), erase: object = ()) -> MendedStrokes:
@@ -151,10 +150,10 @@ def test_a_stroke_that_starts_well_above_the_ground_is_joined() -> None:
     [[[110, 100], [290, 95]], [[200, 60], [205, 130]], [[120, 140], [160, 130], [280, 150]]],
     ids=["level", "downward", "nearly level"],
 )
-def test_a_trunk_that_does_not_rise_is_warned_of(trunk: list[list[float]]) -> None:
-    (warning,) = mend(branches=(trunk,)).warnings
-    assert (warning.code, warning.stroke) == ("trunk_level", "branches/0")
-    assert "root up the trunk" in warning.detail
+def test_a_trunk_that_does_not_rise_is_refused_with_advice(trunk: list[list[float]]) -> None:
+    with pytest.raises(StrokesError, match="from the ground up; .* turn the photo first") as refused:
+        mend(branches=(trunk,))
+    assert (refused.value.code, refused.value.pointer) == ("trunk_level", "/branches/0")
 
 
 @pytest.mark.parametrize(
@@ -164,20 +163,25 @@ def test_a_trunk_drawn_from_its_top_down_is_turned(trunk: list[list[float]]) -> 
     mended = mend(branches=(trunk, [[203, 100], [280, 120]]))
     assert mended.strokes.branches[0].points.tolist() == trunk[::-1]
     assert ("stroke_turned", "branches/0") in [(one.code, one.stroke) for one in mended.warnings]
-    assert not {one.code for one in mended.warnings} & DOUBTS
 
 
-def test_a_trunk_that_stands_on_its_head_is_not_turned() -> None:
+def test_a_trunk_that_stands_on_its_head_is_refused_and_not_turned() -> None:
     crown = [[100, 140], [300, 140], [300, 260], [100, 260]]
-    mended = mend(crown=crown, branches=([[200, 10], [200, 180]],))
-    assert mended.strokes.branches[0].points.tolist() == [[200, 10], [200, 180]]
-    assert {one.code for one in mended.warnings} == {"trunk_level"}
+    with pytest.raises(StrokesError, match="turn the photo") as refused:
+        mend(crown=crown, branches=([[200, 10], [200, 180]],))
+    assert refused.value.code == "trunk_level"
 
 
 @pytest.mark.parametrize(
     "trunk",
-    [[[120, 290], [280, 150]], [[60, 290], [200, 130], [320, 290]], [[200, 290], [120, 270], [260, 200], [150, 140]]],
-    ids=["leaning", "arched", "winding"],
+    [
+        [[120, 290], [280, 150]],
+        [[110, 270], [290, 120]],
+        [[60, 290], [200, 130], [320, 290]],
+        [[200, 290], [120, 270], [260, 200], [150, 140]],
+        [[140, 180], [150, 120], [200, 110], [290, 290]],
+    ],
+    ids=["leaning", "40 degrees from level", "arched", "winding", "cascade"],
 )
 def test_a_trunk_may_lean_arch_and_wind(trunk: list[list[float]]) -> None:
     assert mend(branches=(trunk,)).warnings == ()
@@ -186,27 +190,30 @@ def test_a_trunk_may_lean_arch_and_wind(trunk: list[list[float]]) -> None:
 def test_strokes_of_the_photo_before_it_was_turned_are_warned_of() -> None:
     strokes = Strokes(
         Stroke(np.array([[40, 100], [200, 100], [200, 300], [40, 300]], float)),
-        (Stroke(np.array([[30, 395], [150, 200]], float)),),
+        (Stroke(np.array([[130, 395], [150, 120]], float)),),
     )
     warnings = mend_strokes(strokes, 400, 220).warnings
-    outside = [("outside_photo", "crown"), ("outside_photo", "branches/0")]
-    assert [(one.code, one.stroke) for one in warnings] == [*outside, ("trunk_level", "branches/0")]
-    assert all("before it was turned upright" in one.detail for one in warnings[:2])
+    assert [(one.code, one.stroke) for one in warnings] == [("outside_photo", "crown"), ("outside_photo", "branches/0")]
+    assert all("before it was turned upright" in one.detail for one in warnings)
 
 
 @pytest.mark.parametrize("strokes", sorted(DATA.glob("*.strokes.json")), ids=lambda path: path.name)
-def test_strokes_of_real_trees_are_warned_of_only_where_the_photo_was_turned(strokes: Path) -> None:
+def test_strokes_of_real_trees_are_doubted_or_refused_only_where_the_photo_was_turned(strokes: Path) -> None:
     height, width = load_photo(DATA / f"{strokes.name.split('.')[0]}.jpg").shape[:2]
     given = load_strokes(strokes)
 
-    def codes(turn: Callable[[np.ndarray], np.ndarray]) -> set[str]:
+    def doubted(turn: Callable[[np.ndarray], np.ndarray]) -> bool:
         crown, *branches = (Stroke(turn(one.points)) for one in (given.crown, *given.branches))
-        return {one.code for one in mend_strokes(Strokes(crown, tuple(branches)), width, height).warnings}
+        try:
+            mended = mend_strokes(Strokes(crown, tuple(branches)), width, height)
+        except StrokesError as refused:
+            return refused.code == "trunk_level"
+        return "outside_photo" in {one.code for one in mended.warnings}
 
-    assert not codes(lambda points: points) & DOUBTS
-    assert codes(lambda points: np.column_stack([points[:, 1], width - points[:, 0]])) & DOUBTS
-    assert codes(lambda points: np.column_stack([height - points[:, 1], points[:, 0]])) & DOUBTS
-    assert codes(lambda points: (width, height) - points) & DOUBTS
+    assert not doubted(lambda points: points)
+    assert doubted(lambda points: np.column_stack([points[:, 1], width - points[:, 0]]))
+    assert doubted(lambda points: np.column_stack([height - points[:, 1], points[:, 0]]))
+    assert doubted(lambda points: (width, height) - points)
 
 
 def test_a_stroke_from_far_beyond_is_told_at_once() -> None:

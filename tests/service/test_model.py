@@ -58,11 +58,12 @@ def test_a_bare_tree_is_taken_for_bare() -> None:
 
 def test_strokes_that_may_mean_no_tree_are_warned_of_and_doubted(maple_photo: Path, maple_strokes: Path) -> None:
     strokes = json.loads(maple_strokes.read_text())
-    (x, y), wide = np.mean(strokes["crown"]["points"], axis=0), np.ptp(strokes["crown"]["points"], axis=0)[0]
-    strokes["branches"] = [{"points": [[x - 0.3 * wide, y], [x + 0.3 * wide, y]]}]
+    low, wide = np.min(strokes["crown"]["points"], axis=0), np.ptp(strokes["crown"]["points"], axis=0)[0]
+    beside = [[x - low[0] - 0.5 * wide, y] for x, y in strokes["crown"]["points"]]
+    strokes = {"crown": {"points": beside}, "branches": [{"points": [[10, 600], [12, 300]]}]}
     report = treestroke.model(maple_photo, strokes, {"iterations": 0}).report
-    assert [(one["code"], one["stroke"]) for one in report["warnings"]] == [("trunk_level", "branches/0")]
-    assert list(report["reading"]["doubts"]) == ["trunk_level"]
+    assert "outside_photo" in [one["code"] for one in report["warnings"]]
+    assert "outside_photo" in report["reading"]["doubts"]
 
 
 def test_the_same_input_gives_the_same_bytes_however_it_is_handed_in(

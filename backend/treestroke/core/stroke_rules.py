@@ -26,9 +26,10 @@ STEM_SHARE = 0.03
 GROUND_SHARE = 0.04
 """A later stroke that starts no further above the root's level than this share of the tree's height starts at the
 ground; if it touches no other, it is a stem with a root of its own."""
-LEAST_RISE = 0.4
-"""Least rise of a trunk, as a share of the furthest it goes from its root (on 28 photos: 0.89 and more). A stroke below
-it is level, or was drawn on a photo that was turned since."""
+LEAST_RISE, RISE_OF_ALL = 0.4, 0.15
+"""Least rise of a trunk, as shares of the furthest it goes from its root on the way to its highest point (on 28 photos:
+0.89 and more; 24 degrees from level), and of the furthest it goes at all: a cascade rises before it hangs. A stroke
+below either is level, or was drawn on a photo that was turned since."""
 FOOT = 0.15
 """Greatest height above the crown's bottom, as a share of the crown's, at which a trunk that is drawn down may end."""
 MOST_OUTSIDE, LOOSE, OUTSIDE_PLACES = 0.15, 0.05, 500
@@ -52,8 +53,8 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     ------
     StrokesError
         Too many strokes or points, a value that is not finite, too few distinct points, a crown that is too small,
-        a trunk that neither touches nor points into the crown, or a known length that makes no tree of it. The message
-    names the stroke.
+        a trunk that does not rise or neither touches nor points into the crown, or a known length that makes no tree of
+        it. The message names the stroke.
     """
     check_count(1 + len(strokes.branches) + len(strokes.erase))
     scale = None if strokes.scale is None else _known_length(strokes.scale, width, height)
@@ -72,10 +73,10 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
         return MendedStrokes(inside, warnings)
     inside, turned = _upward(inside)
     _check_trunk(inside, crown, coarse, max(width, height))
+    _check_rise(inside.branches[0])
     _check_scale(inside)
     branches, joined = _join_branches(inside, TOUCH_SHARE * max(width, height))
-    mended = warnings + turned + _level(inside.branches[0]) + joined
-    return MendedStrokes(replace(inside, branches=branches), mended)
+    return MendedStrokes(replace(inside, branches=branches), warnings + turned + joined)
 
 
 def _outside(strokes: Strokes, width: int, height: int) -> tuple[StrokeWarning, ...]:
@@ -117,20 +118,26 @@ def _upward(strokes: Strokes) -> tuple[Strokes, tuple[StrokeWarning, ...]]:
     above, below = top - trunk.points[0, 1], trunk.points[-1, 1] - bottom
     runs_down = above > top - bottom and below > max(above, FOOT * (top - bottom))
     turned = replace(trunk, points=trunk.points[::-1])
-    if not runs_down or not _level(trunk) or _level(turned):
+    if not runs_down or _rises(trunk) or not _rises(turned):
         return strokes, ()
     detail = "the trunk was drawn from its top down, and was turned; draw it from the root up"
     return replace(strokes, branches=(turned, *rest)), (StrokeWarning("stroke_turned", "branches/0", detail),)
 
 
-def _level(trunk: Stroke) -> tuple[StrokeWarning, ...]:
-    """Return a warning where a trunk rises little above its root for its length; it may lean, arch and hang."""
+def _rises(trunk: Stroke) -> bool:
+    """Return whether a trunk rises above its first point; it may lean, arch and hang."""
     way = trunk.points - trunk.points[0]
-    if -float(way[:, 1].min()) >= LEAST_RISE * float(np.hypot(*way.T).max()):
-        return ()
-    problem = "it lies level or runs down from its first point, the root"
-    detail = f"{problem}; draw it from the root up the trunk, on the photo as it stands upright"
-    return (StrokeWarning("trunk_level", "branches/0", detail),)
+    away, highest = np.hypot(*way.T), int(way[:, 1].argmin())
+    least = max(LEAST_RISE * float(away[: highest + 1].max()), RISE_OF_ALL * float(away.max()))
+    return -float(way[highest, 1]) >= least
+
+
+def _check_rise(trunk: Stroke) -> None:
+    """Raise where a trunk lies level or runs down: the tree would grow in the air."""
+    if not _rises(trunk):
+        problem = "the trunk lies level or runs down from its first point, the root"
+        mend = "draw it from the ground up; if the tree lies on its side in the photo, turn the photo first"
+        raise StrokesError.at(("branches", 0), f"{problem}; {mend}", "trunk_level")
 
 
 def require_trunk(strokes: Strokes) -> None:

@@ -108,12 +108,13 @@ export const drawingText = {
       crown_crosses_itself: 'The crown line crosses itself. Everything inside it counts as crown.',
       branch_joined: (stroke: string) => `${stroke}: joined to the nearest branch.`,
       edge_completed: 'The photo cuts the crown. It is completed beyond the edge.',
+      line_removed: 'A pole or wire before the crown was left out. A branch line along it makes it a branch.',
       stroke_turned: 'The trunk was drawn from the top down. It was turned.',
+      trunk_completed: 'Something hides the foot of the trunk. It goes on to the ground.',
       trunk_moved: 'The trunk line was moved onto the trunk.',
     },
     /** Warnings that a stroke may mean no tree, by their codes. */
     doubts: {
-      trunk_level: 'The trunk does not go up. Draw it from the ground upward.',
       outside_photo: (stroke: string) => `${stroke}: much of it is outside the photo. Draw it again on the photo.`,
       crown_unclear: 'The crown looks like its background. Draw around the leaves, or use another photo.',
     },

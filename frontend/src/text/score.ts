@@ -12,7 +12,6 @@ export const scoreText = {
       : `${front} of the front strokes and ${side} of the side strokes are in the tree`,
   /** What makes the reading of a photo doubtful, by the service's codes. */
   doubts: {
-    trunk_level: 'The trunk stroke does not go up.',
     outside_photo: 'Strokes lie outside the photo.',
     crown_unclear: 'The crown looks much like what is around it.',
     kind_unsure: 'It is unclear whether the tree has leaves. Choose Foliage in Settings.',

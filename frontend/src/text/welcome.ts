@@ -101,6 +101,8 @@ export const welcomeText = {
     codes: {
       trunk_outside_crown: 'The trunk does not reach the crown. Draw it from the ground up into the leaves.',
       crown_too_small: 'The crown is too small. Draw it around all of the leaves.',
+      trunk_level:
+        'The trunk does not go up. Draw it from the ground upward; if the tree lies on its side, turn the photo first.',
       stroke_too_short: 'This stroke is too short. Draw it longer.',
       too_many_strokes: 'There are too many strokes. Delete some.',
       scale_unlikely: 'The measured line makes the tree impossibly large or small. Check its length and its ends.',

@@ -27,6 +27,7 @@ from treestroke.core.pipeline.crowns import (
     seen_from_front,
 )
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
+from treestroke.core.pipeline.occluders import FOOT_COMPLETED, lines_notice, on_the_ground, without_lines
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
@@ -61,7 +62,7 @@ UNCLEAR = StrokeWarning(
     "crown",
     "what is inside it hardly differs from what is around it; draw it around the tree's foliage, or take another photo",
 )
-DOUBTFUL = ("trunk_level", "outside_photo", UNCLEAR.code)
+DOUBTFUL = ("outside_photo", UNCLEAR.code)
 """Codes of warnings after which the strokes may not describe a tree."""
 
 
@@ -84,7 +85,8 @@ class PhotoEvidence:
         """What was mended, and what makes the reading doubtful."""
         unclear = () if self.foliage.clear else (UNCLEAR,)
         beyond = (_completion_notice(self.completed),) if self.completed else ()
-        return (*self.working.warnings, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
+        hidden = lines_notice(self.working)
+        return (*self.working.warnings, *hidden, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
 
     @property
     def height_px(self) -> float:
@@ -210,9 +212,10 @@ def read_photo(
     """
     side_drawing = None if side is None else draw_side(side, "side")
     report("foliage", 0.0)
-    working = working_copy(photo, strokes)
+    before = None if known is None else known.working
+    working = without_lines(working_copy(photo, strokes), before)
     report("foliage", 0.05)
-    if known is not None and known.working.frame == working.frame:
+    if known is not None and (known.working.frame, known.working.lines) == (working.frame, working.lines):
         foliage = known.foliage
     else:
         crown = working.strokes.crown.points
@@ -225,6 +228,7 @@ def read_photo(
     is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
     surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
+    working, traced = on_the_ground(working, traced, height_px)
     return PhotoEvidence(working, foliage, traced, side_drawing)
 
 
@@ -392,5 +396,6 @@ def _stature(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown) -> Sta
 
 def _reading(evidence: PhotoEvidence, taken: Taken) -> Reading:
     """Return what was read in the photo, and what makes that doubtful."""
-    doubts = [warning.code for warning in evidence.warnings if warning.code in DOUBTFUL]
-    return Reading(READ, tuple(doubts + ["kind_unsure"] * taken.ask), evidence.completed)
+    codes = [warning.code for warning in evidence.warnings]
+    doubts = [code for code in codes if code in DOUBTFUL] + ["kind_unsure"] * taken.ask
+    return Reading(READ, tuple(doubts), evidence.completed + ("foot",) * (FOOT_COMPLETED in codes))

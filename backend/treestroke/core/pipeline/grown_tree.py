@@ -43,7 +43,7 @@ class Reading:
     doubts
         Codes of what makes the reading doubtful.
     completed
-        Edges of the photo, left, right or top, beyond which the crown was completed.
+        What was completed: the crown beyond the photo's left, right or top edge, the trunk's hidden foot.
     """
 
     against: str

@@ -79,14 +79,14 @@ test('a warning that the page does not know is said in the service’s words', (
 })
 
 test('a doubt about a stroke is said until it is drawn again, whatever was drawn since', () => {
-  const level = { code: 'trunk_level', stroke: 'branches/0', detail: 'it lies level' }
+  const unclear = { code: 'crown_unclear', stroke: 'crown', detail: 'it looks like its background' }
   const outside = { code: 'outside_photo', stroke: 'crown', detail: '40% of it lies outside' }
   const history = advance(begin(trunk), two)
-  expect(said({ tool: 'branch', history, traced: traced(two, JOINED, level) })).toBe(text.hints.doubts.trunk_level)
+  expect(said({ tool: 'branch', history, traced: traced(two, JOINED, unclear) })).toBe(text.hints.doubts.crown_unclear)
   expect(said({ tool: 'branch', history, traced: traced(two, outside) })).toContain(
     'Crown: much of it is outside the photo.',
   )
-  expect(said({ tool: 'branch', history, traced: traced(trunk, level) })).toBe(text.hints.waiting)
+  expect(said({ tool: 'branch', history, traced: traced(trunk, unclear) })).toBe(text.hints.waiting)
 })
 
 test('what is selected can be deleted from the line', () => {
