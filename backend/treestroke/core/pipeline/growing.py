@@ -9,12 +9,15 @@ from treestroke.core.appearance import Appearance, StemPixels, View
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
+from treestroke.core.grow.bare import grown_as_traced
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
+from treestroke.core.lift.fan import fan_out
+from treestroke.core.lift.hidden_limbs import with_hidden_limbs
 from treestroke.core.lift.spread import FrontCrown, lift
 from treestroke.core.pipeline.completion import completed
 from treestroke.core.pipeline.crowns import (
@@ -34,6 +37,7 @@ from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
 from treestroke.core.pipeline.trunk_stroke import on_its_trunk
 from treestroke.core.pipeline.working_copy import WORKING_SIDE, WorkingCopy, working_copy
 from treestroke.core.progress import Report, silent
+from treestroke.core.segment.bare import wood_in_crown
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.form import crown_form
 from treestroke.core.segment.kind import KindOdds, kind_odds, likeliest
@@ -70,12 +74,14 @@ DOUBTFUL = ("outside_photo", UNCLEAR.code)
 class PhotoEvidence:
     """What photo and strokes show, at the working size, and a sketch of the tree's left side where there is one.
 
-    Nothing is traced without a branch stroke. ``completed`` names the photo's edges beyond which the crown was
+    Nothing is traced without a branch stroke. ``foliage`` is the wood in a bare tree's crown once its trunk is known;
+    ``outlined`` is what the crown stroke alone tells. ``completed`` names the photo's edges beyond which the crown was
     completed.
     """
 
     working: WorkingCopy
     foliage: Foliage
+    outlined: Foliage
     traced: Traced | None
     side: Drawing | None = None
     completed: tuple[str, ...] = ()
@@ -153,12 +159,15 @@ class _LiftedTrace:
         (n,) traced joint at whose edge each lies.
     score
         How well it matches the sketch of its left side, by name.
+    hidden
+        Number of its last joints that stand for limbs behind those that the photo shows.
     """
 
     tree: Skeleton
     visible: Skeleton
     owner: Indices
     score: dict[str, float]
+    hidden: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,20 +225,35 @@ def read_photo(
     working = without_lines(working_copy(photo, strokes), before)
     report("foliage", 0.05)
     if known is not None and (known.working.frame, known.working.lines) == (working.frame, working.lines):
-        foliage = known.foliage
+        outlined = known.outlined
     else:
         crown = working.strokes.crown.points
-        foliage = segment_foliage(working.photo, crown, report=report, cut_out=working.cut_out)
+        outlined = segment_foliage(working.photo, crown, report=report, cut_out=working.cut_out)
     if not strokes.branches:
-        return PhotoEvidence(working, foliage, None, side_drawing)
+        return PhotoEvidence(working, outlined, outlined, None, side_drawing)
     report("trace", 0.0)
-    working = on_its_trunk(working, foliage)
+    working, wood = on_its_trunk(working, outlined), None
+    surroundings = Surroundings(outlined.leaf, outlined.ground, outlined.region, outlined.mask)
+    if likeliest(kind_odds(outlined.cues)) == "bare":
+        wood = _wood(outlined, working, known)
+        surroundings = replace(surroundings, leaf=None, bare_wood=None if wood is None else wood.alpha)
+    foliage = outlined if wood is None else wood
     height_px = working.height_px(foliage.mask)
-    is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
-    surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
     traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
     working, traced = on_the_ground(working, traced, height_px)
-    return PhotoEvidence(working, foliage, traced, side_drawing)
+    return PhotoEvidence(working, foliage, outlined, traced, side_drawing)
+
+
+def _wood(outlined: Foliage, working: WorkingCopy, known: PhotoEvidence | None) -> Foliage | None:
+    """Return the wood in a bare tree's crown, the known one where neither crown nor trunk changed; None if unclear."""
+    if working.cut_out is not None:
+        return outlined
+    trunk = working.strokes.branches[0].points
+    if known is None or known.traced is None or known.outlined is not outlined:
+        return wood_in_crown(outlined, working.photo, trunk)
+    if not np.array_equal(known.working.strokes.branches[0].points, trunk):
+        return wood_in_crown(outlined, working.photo, trunk)
+    return known.foliage if known.traced.whole else None
 
 
 def grow_tree(
@@ -279,14 +303,16 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     if taken.foliage == "palm":
         traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
     crown = _crown_of(evidence, traced, taken.foliage, settings)
-    lifted = _lifted(evidence, traced, crown, rng)
+    lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
     report("grow", 0.0)
     method = Replacement(
         choose_library(settings.library, crown.kind, lifted.tree, taken.form),
         growth_for(crown.kind, settings.iterations, taken.form),
     )
     room = CrownToFill(crown.volume, crown.front)
-    if crown.kind == "palm":
+    if crown.kind == "bare" and traced.whole:
+        grown = grown_as_traced(lifted.tree, lifted.hidden)
+    elif crown.kind == "palm":
         grown = grow_palm(lifted.tree, room, settings.iterations, rng)
     else:
         grown = grow(lifted.tree, room, method, rng, report)
@@ -332,16 +358,24 @@ def _crown_of(evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settin
     return _PhotoCrown(kind, shows_leaves, wood, front, as_seen, volume, side)
 
 
-def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator) -> _LiftedTrace:
+def _lifted(
+    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator, grows: bool
+) -> _LiftedTrace:
     """Lift the traced branches into the world: by the left side, or with a guessed depth."""
     visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
     stroke = traced.stroke[owner]
+    front = FrontCrown(crown.volume, crown.camera)
+    if crown.side is None and crown.kind == "bare" and traced.whole:
+        seen = np.arange(len(visible))
+        whole, joints = with_hidden_limbs(visible, stroke) if grows else (visible, seen)
+        tree = fan_out(whole, stroke[joints], front, rng)
+        return _LiftedTrace(tree, whole, owner[joints], {}, len(joints) - len(seen))
     if crown.side is None:
-        return _LiftedTrace(lift(visible, stroke, FrontCrown(crown.volume, crown.camera), rng), visible, owner, {})
+        return _LiftedTrace(lift(visible, stroke, front, rng), visible, owner, {})
     weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
-    front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
-    retrieved = with_depth(front, crown.side, evidence.height_px, crown.camera)
+    drawn_front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))
+    retrieved = with_depth(drawn_front, crown.side, evidence.height_px, crown.camera)
     tree = retrieved.tree.skeleton
     return _LiftedTrace(tree, seen_from_front(tree, crown.camera), owner[retrieved.front], retrieved.score)
 

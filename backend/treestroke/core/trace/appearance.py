@@ -18,7 +18,7 @@ from treestroke.core.imaging.mixture import (
     table_index,
 )
 from treestroke.core.imaging.sampling import sample_nearest
-from treestroke.core.types import Floats, Mask, Picture
+from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 Odds = NDArray[np.float32]
 
@@ -54,12 +54,15 @@ class Surroundings:
         (h, w) mask of where leaves may be.
     foliage
         (h, w) mask of the leaves, or of the twigs of a bare tree: a limb may be hidden there.
+    bare_wood
+        (h, w) share of each pixel that wood covers in a bare crown; None in leaves.
     """
 
     leaf: Mixture | None
     ground: Mixture
     crown: Mask
     foliage: Mask
+    bare_wood: Opacity | None = None
 
 
 @dataclass(frozen=True, eq=False)

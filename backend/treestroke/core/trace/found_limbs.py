@@ -46,7 +46,7 @@ class CrownPicture:
     crown: Mask
     foliage: Mask
 
-    def cut(self, below_px: int) -> tuple["CrownPicture", "_Window"]:
+    def cut(self, below_px: int) -> tuple["CrownPicture", "Window"]:
         """Return the part around the crown and ``below_px`` below it, reduced to `FINEST_SIDE`, and where it lies."""
         x, y, width, height = cv2.boundingRect(self.crown.astype(np.uint8))
         height = min(height + below_px, self.crown.shape[0] - y)
@@ -59,11 +59,11 @@ class CrownPicture:
 
         crown, foliage = (reduced(part.astype(np.float32)) > 0.5 for part in (self.crown, self.foliage))
         part = CrownPicture(reduced(self.odds), reduced(self.smooth), crown, foliage)
-        return part, _Window(np.array([x, y], dtype=np.float64), scale)
+        return part, Window(np.array([x, y], dtype=np.float64), scale)
 
 
 @dataclass(frozen=True, eq=False)
-class _Window:
+class Window:
     """A part of a picture: the place (2,) of its upper left corner, px, and by how much it is reduced, 1 or less."""
 
     corner: Floats
@@ -95,7 +95,7 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, height_px: float
     points = window.outside(network.ribbons.points)
     half_widths = network.ribbons.half_widths / window.scale
     joint_at = np.full(len(points), -1)
-    for chain in _chains(paths, *_kept(paths, network.ribbons.half_widths)):
+    for chain in chains(paths, *kept_pixels(paths, network.ribbons.half_widths)):
         first = int(joint_at[chain[0]])
         joint = first if first >= 0 else int(np.linalg.norm(drawn.points - points[chain[0]], axis=1).argmin())
         line = np.vstack([builder.points[joint], points[chain[1:]]])
@@ -108,7 +108,7 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, height_px: float
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
 
 
-def _kept(paths: Paths, half_widths: Floats) -> tuple[Mask, Floats]:
+def kept_pixels(paths: Paths, half_widths: Floats) -> tuple[Mask, Floats]:
     """Return which pixels (n,) lie on limbs, and the length (n,) of the longest way outward from each, px.
 
     Limbs end where too little wood is seen beyond a gap; bumps of the bark are none.
@@ -133,7 +133,7 @@ def _kept(paths: Paths, half_widths: Floats) -> tuple[Mask, Floats]:
     return kept, np.array(beyond)
 
 
-def _chains(paths: Paths, kept: Mask, beyond: Floats) -> Iterator[list[int]]:
+def chains(paths: Paths, kept: Mask, beyond: Floats) -> Iterator[list[int]]:
     """List the pixels of each limb from where it leaves a stroke or an earlier one; forks go on by the longer arm."""
     arms: dict[int, list[int]] = defaultdict(list)
     for pixel in paths.order[kept[paths.order]].tolist():

@@ -16,6 +16,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import TOUCH_SHARE, is_stem
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
+from treestroke.core.trace.bare_crown import TOLERANCE_PX, find_twigs, odds_of_share
 from treestroke.core.trace.foot import flared
 from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
 from treestroke.core.trace.giant import fork_of, is_giant, upright
@@ -79,12 +80,15 @@ class Traced:
         (n,) mask of the joints whose radius the photo shows.
     wood
         (h, w) mask of the pixels that have the colours of branches.
+    whole
+        Whether all wood of a bare crown was traced.
     """
 
     skeleton: Skeleton
     stroke: Indices
     measured: Mask
     wood: Mask
+    whole: bool = False
 
     @property
     def stroked(self) -> "Traced":
@@ -122,18 +126,25 @@ def trace_branches(
     strokes are connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
-    odds = wood_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), surroundings)
+    bare_wood, lines = surroundings.bare_wood, [stroke.points for stroke in strokes.branches]
+    odds = wood_odds(photo, lines, max(1.0, 2.0 * unit), surroundings)
+    if bare_wood is not None:
+        odds = odds_of_share(odds, bare_wood, surroundings.crown)
     smooth = _smoothed(odds.by_crown, unit)
     wood = smooth > 0
     builder = SkeletonBuilder()
     sure_wood = _smoothed(odds.by_strokes, unit) > 0
     evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
     _follow_strokes(builder, strokes.branches, evidence, params)
-    picture = CrownPicture(odds.by_crown, smooth, surroundings.crown, surroundings.foliage)
-    find_limbs(builder, picture, height_px, params.thinnest_px * height_px / REFERENCE_SIDE)
+    if bare_wood is None:
+        picture = CrownPicture(odds.by_crown, smooth, surroundings.crown, surroundings.foliage)
+        find_limbs(builder, picture, height_px, params.thinnest_px * height_px / REFERENCE_SIDE)
+    else:
+        find_twigs(builder, bare_wood, surroundings.crown, height_px)
     skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
-    skeleton, stroke = simplify(skeleton, stroke, params.tolerance_share * height_px)
-    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood)
+    tolerance_px = params.tolerance_share * height_px if bare_wood is None else TOLERANCE_PX
+    skeleton, stroke = simplify(skeleton, stroke, tolerance_px)
+    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood, bare_wood is not None)
 
 
 def _smoothed(odds: Odds, unit: float) -> Odds:
