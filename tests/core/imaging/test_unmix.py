@@ -48,7 +48,7 @@ def test_the_background_that_is_taken_out_is_the_one_beside():
 
 def test_opaque_pixels_and_what_nothing_covers_stay():
     opacity = thin_crown()
-    photo = mixed(LEAF + np.random.default_rng(0).normal(0, 12, (200, 200, 1)), opacity)
+    photo = mixed(np.clip(LEAF + np.random.default_rng(0).normal(0, 12, (200, 200, 1)), 0, 255), opacity)
     clear = unmixed(photo, opacity, opacity == 1)
     kept = opacity != 0.5
     assert np.abs(clear[kept].astype(int) - photo[kept]).max() <= 1
@@ -66,3 +66,16 @@ def test_light_leaves_that_a_matte_takes_for_thin_ones_stay_rather_light():
 def test_all_or_nothing_stays_as_it_is(value):
     photo = mixed(LEAF, thin_crown())
     assert np.array_equal(unmixed(photo, np.full((200, 200), value, np.float32), np.ones((200, 200), bool)), photo)
+
+
+def test_a_tint_of_the_sky_goes_beside_gaps_and_stays_amid_leaves():
+    blue, gap = np.array([60.0, 120.0, 230.0]), np.zeros((200, 200), bool)
+    gap[:, 120:] = True
+    photo = np.where(gap[..., None], blue, LEAF).astype(np.uint8)
+    tinted = np.array([60, 112, 80])
+    photo[60:140, 116:119] = photo[60:140, 30:33] = tinted
+    clear = unmixed(photo, (~gap).astype(np.float32), ~gap).astype(int)
+    assert clear[100, 117, 2] < tinted[2] - 10
+    assert clear[100, 118, 2] < clear[100, 117, 2]
+    assert np.abs(clear[100, 31] - tinted).max() <= 2
+    assert np.abs(clear[100, 100] - LEAF).max() <= 2

@@ -17,7 +17,7 @@ REACHES_PX = (3.0, 12.0, 48.0)
 """Distances, px, over which sure colours are averaged: the nearest that there are count."""
 FURTHER = 0.03
 """Weight of what lies within the next greater distance."""
-ASIDE, ASIDE_FROM = 30.0, 16.0
+ASIDE, ASIDE_FROM = 20.0, 16.0
 """How far aside of the line between both colours, steps of 255, a pixel counts half by where it lies along it, and from
 where on aside counts: mixed pixels lie on the line, leaves in light and in shade, and windows before a wall, do not."""
 DOUBT = (0.6, 0.9)
@@ -25,7 +25,7 @@ DOUBT = (0.6, 0.9)
 PURE = 0.15
 """Share of the way from one colour to the other within which a pixel is as good as pure: leaves and background vary,
 too (mean error 0.07 instead of 0.09; 14 crowns)."""
-NOISE = 16.0
+NOISE = 24.0
 """Distance of both colours, steps of 255, at which the colours count as much as the likelihood."""
 
 _Map = NDArray[np.float32]
