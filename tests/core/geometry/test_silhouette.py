@@ -72,4 +72,4 @@ def test_a_texture_is_averaged_before_it_is_cut() -> None:
 def test_a_tree_is_like_itself_and_unlike_a_thicker_one() -> None:
     thin, thick = wooden(stick(radius=0.2, tip_radius=0.2)), wooden(stick(radius=0.4, tip_radius=0.4))
     assert silhouette_ious([thin], [thin], 80).tolist() == [1.0] * 8
-    assert silhouette_ious([thin], [thick], 80) == pytest.approx(0.5, abs=0.05)
+    assert silhouette_ious([thick], [thin], 160) == pytest.approx(0.5, abs=0.05)

@@ -108,14 +108,15 @@ def _options(points: Floats, start: float, volume: CrownVolume, params: LiftPara
 
 
 def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, params: LiftParams) -> Floats:
-    """Bound the depth of a limb's joints (n,), metres, by the crown, and under the crown by its slope alone.
+    """Bound the depth of a limb's joints (n,), metres, by the crown, and under it by where the limb enters it.
 
-    The bound itself is no steeper than a limb may be: otherwise a limb that enters the crown would jump aside.
+    Else a stem would swing out under the crown and back into it. The bound itself is no steeper than a limb may be:
+    otherwise a limb that enters the crown would jump aside.
     """
     open_air = volume.half_width(points[:, 1]) <= 0
     most = np.where(open_air, np.inf, np.maximum(params.inside * volume.half_depth(points), start))
     for i in range(len(steps) - 1, -1, -1):
-        most[i] = min(most[i], most[i + 1] + params.steepest * steps[i])
+        most[i] = min(most[i], most[i + 1] + (0.0 if open_air[i] else params.steepest * steps[i]))
     most[0] = max(most[0], start)
     for i, step in enumerate(steps.tolist()):
         most[i + 1] = min(most[i + 1], most[i] + params.steepest * step)

@@ -8,6 +8,7 @@ from treestroke.core.mesh.tube_surface import TubeGrid
 from treestroke.core.types import Floats, Indices
 
 _LOBES = ((3, 0.4, 0.5), (5, 2.1, 0.8))  # buttresses: (how many around, phase in radians, weight)
+_LOBED = 0.42  # swelling 0.8 radii above the root: a flare is what a trunk adds below; a giant tapers above, too
 _COLLAR_REACH = 1.6  # height of a collar above the parent's surface, in radii of the limb
 _BLEND = 0.85  # weight of the parent's normal where a limb meets the parent's surface
 
@@ -53,10 +54,9 @@ def flare_widening(grid: TubeGrid, rings: Rings, axes: LimbAxes, root_swelling: 
     ``root_swelling`` is the least radius at the root over that of the trunk above its flare, for the stem's own radii
     may show a flare; ``buttress`` is the depth of the lobes over what the flare adds to the trunk's radius.
     """
-    limb = rings.limb[grid.ring]
-    trunk = _radius_above_flare(rings) / axes.radii[axes.first]
-    share = np.maximum(root_swelling * trunk - 1.0, 0.0)
-    added = np.maximum(1.0 + share - trunk, 0.0)
+    limb, root = rings.limb[grid.ring], axes.radii[axes.first]
+    share = np.maximum(root_swelling * _radius_above(rings, 0.0) / root - 1.0, 0.0)
+    added = np.maximum(1.0 + share - _radius_above(rings, _LOBED) / root, 0.0)
     lobes = sum(weight * np.cos(count * grid.angle_rad + phase) for count, phase, weight in _LOBES)
     widened = share[limb] + buttress * added[limb] * lobes
     return np.where(axes.is_stem[limb], rings.swelling[grid.ring] * widened, 0.0)
@@ -83,9 +83,9 @@ def _from_parent_axis(positions: Floats, limb: Indices, axes: LimbAxes) -> Float
     return np.asarray(offset - np.einsum("ij,ij->i", offset, axis)[:, None] * axis)
 
 
-def _radius_above_flare(rings: Rings) -> Floats:
-    """Radius (k,) of each limb at its first ring above the flare, or at its second ring if all are in it."""
-    above = np.where(rings.swelling <= 0, np.arange(len(rings.limb)), len(rings.limb))
+def _radius_above(rings: Rings, swelling: float) -> Floats:
+    """Radius (k,) of each limb at its first ring of no more ``swelling``, or at its second ring if all have more."""
+    above = np.where(rings.swelling <= swelling, np.arange(len(rings.limb)), len(rings.limb))
     index = np.minimum.reduceat(above, rings.first)
     end = np.append(rings.first[1:], len(rings.limb))
     return rings.radii[np.where(index < end, index, np.minimum(rings.first + 1, end - 1))]

@@ -49,7 +49,7 @@ class TubeParams:
     max_triangles: int = 95_000
     max_sides: int = 20
     root_swelling: float = 1.0
-    buttress: float = 0.5
+    buttress: float = 0.35
     collar_swelling: float = 0.5
     texture_repeats: int = 3
     texture_aspect: float = 2.0

@@ -19,6 +19,8 @@ LEAST_PLACES = 4
 """Least number of places below the crown by which a trunk is judged."""
 POST = 0.05
 """Greatest width of what stands before a giant's trunk or parts it, a post or a deep fold, as a share of the height."""
+LIMBED = 1.1
+"""Half-width of a giant's row relative to the median of all from which on limbs leave it there."""
 STEADY = 6.0
 """Standard deviation, in steps of a line, over which a giant's bends from its trunk into the limb that goes on."""
 
@@ -44,7 +46,8 @@ def upright(line_px: Floats, bare: Mask, wood: Mask, height_px: float) -> tuple[
     even = cv2.GaussianBlur(wood.astype(np.float32), (0, 0), GRAIN * height_px) > 0.5
     solid = cv2.morphologyEx(even.astype(np.uint8), cv2.MORPH_CLOSE, beyond) > 0
     sides, middles = half_widths(level, solid, 2 * MOST_SHARE * height_px)
-    seen = np.flatnonzero(~np.isnan(middles))
+    sides[sides > LIMBED * np.nanmedian(sides)] = np.nan
+    seen = np.flatnonzero(~np.isnan(sides))
     if len(seen):
         level += np.interp(np.arange(len(level)), seen, middles[seen])[:, None] * normals(level)
     halves = np.full(len(line_px), np.nan)
