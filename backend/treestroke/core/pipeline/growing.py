@@ -30,7 +30,7 @@ from treestroke.core.pipeline.crowns import (
     seen_from_front,
 )
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
-from treestroke.core.pipeline.occluders import FOOT_COMPLETED, lines_notice, on_the_ground, without_lines
+from treestroke.core.pipeline.occluders import lines_notice, on_the_ground, without_lines
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, draw_side, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
@@ -432,4 +432,4 @@ def _reading(evidence: PhotoEvidence, taken: Taken) -> Reading:
     """Return what was read in the photo, and what makes that doubtful."""
     codes = [warning.code for warning in evidence.warnings]
     doubts = [code for code in codes if code in DOUBTFUL] + ["kind_unsure"] * taken.ask
-    return Reading(READ, tuple(doubts), evidence.completed + ("foot",) * (FOOT_COMPLETED in codes))
+    return Reading(READ, tuple(doubts), evidence.completed + ("foot",) * ("trunk_completed" in codes))

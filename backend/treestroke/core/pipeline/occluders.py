@@ -11,9 +11,6 @@ from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.hidden_foot import hidden_ground
 from treestroke.core.trace.tracing import Traced
 
-FOOT_COMPLETED = "trunk_completed"
-"""Code of the warning that a trunk goes on to the ground behind what hides its foot."""
-
 
 def without_lines(working: WorkingCopy, known: WorkingCopy | None = None) -> WorkingCopy:
     """Return the working copy with the poles and wires before the crown painted over, once the trunk is drawn.
@@ -52,7 +49,7 @@ def on_the_ground(working: WorkingCopy, traced: Traced, height_px: float) -> tup
     longer = replace(trunk, points=np.vstack([[x, ground], trunk.points]))
     by = f"{(ground - end) / working.frame.scale:.0f} px"
     detail = f"something hides its foot, and it goes on to the ground, by {by}; draw it to where it stands"
-    warning = StrokeWarning(FOOT_COMPLETED, "branches/0", detail)
+    warning = StrokeWarning("trunk_completed", "branches/0", detail)
     strokes = replace(working.strokes, branches=(longer, *others))
     return replace(working, strokes=strokes, warnings=(*working.warnings, warning)), _standing(traced, ground)
 

@@ -19,6 +19,7 @@ from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.contrast import stands_out
 from treestroke.core.segment.cues import Cues, crown_cues
+from treestroke.core.segment.cut_foliage import cut_foliage
 from treestroke.core.segment.leaf_odds import (
     initial_models,
     leaf_likelihood,
@@ -137,17 +138,19 @@ def segment_foliage(
     crown = fill_outline(crown_px, height, width)
     box = _surroundings(crown)
     inside, pixels = crown[box], np.ascontiguousarray(photo[box])
+    known = None if cut_out is None else cut_out[box]
+    leaf, ground, odds = _told_apart(pixels, inside, known, params, report)
+    if known is None:
+        inside = inside | cut_foliage(odds, inside)
     dilation_px = params.dilation_px * max(height, width) / REFERENCE_SIDE
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= dilation_px
-    known = None if cut_out is None else cut_out[box] * region
-    leaf, ground, odds = _told_apart(pixels, inside, known, params, report)
     if known is None:
         found = cut_grid(pixels, odds + log_odds_by_place(inside), region, params.smoothness, params.cut_pixels)
         report("foliage", 0.8)
         likely = leaf_likelihood(pixels, found if found.any() else inside, params.components, params.samples)
         alpha = matte(pixels, likely * region) * region
     else:
-        found, alpha = known > HALF, known
+        found, alpha = known * region > HALF, known * region
     if not found.any() or not (alpha > HALF).any():
         found, alpha = inside, inside.astype(np.float32)
     pore = params.pore_share * np.sqrt(inside.sum())
