@@ -28,10 +28,15 @@ def test_every_joint_still_stands_on_its_pixel_and_the_stem_in_the_picture(tree:
 
 
 def test_limbs_stand_on_both_sides_and_within_the_crown() -> None:
-    depth = fanned(MANY).points[5:, 2]
-    width = CROWN.volume.half_width(fanned(MANY).points[5:, 1])
-    assert depth.min() < -0.5 < 0.5 < depth.max()
-    assert (np.abs(depth) < width).all()
+    points = fanned(MANY).points[5:]
+    widest = float(CROWN.volume.half_width(points[:, 1]).max())
+    assert points[:, 2].min() < -0.5 < 0.5 < points[:, 2].max()
+    assert np.abs(points[:, 2]).max() <= widest
+
+
+def test_no_limb_turns_back_toward_the_picture_s_plane() -> None:
+    depth = fanned(MANY).points[5:, 2].reshape(-1, 2)
+    assert (np.abs(depth[:, 1]) >= np.abs(depth[:, 0])).all()
 
 
 def test_limbs_in_one_line_of_sight_part_in_depth() -> None:
