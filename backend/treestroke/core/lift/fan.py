@@ -7,7 +7,6 @@ from the front that angle shows as a slope in depth, forward or back. A branch b
 import numpy as np
 
 from treestroke.core.geometry.crown_volume import CrownVolume
-from treestroke.core.geometry.polyline import smoothed
 from treestroke.core.lift.spread import FrontCrown
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -23,10 +22,10 @@ BEND = 0.3
 """Share of its length over which a limb turns from its parent's slope to its own."""
 JITTER_RAD = 0.4
 """Greatest deviation of a limb from its turn, radians."""
-INSIDE = 0.85
-"""Depth that limbs come near to, as a share of half the crown's width at their height."""
-LEAST_DEPTH, SMOOTH = 0.05, 0.06
-"""Least of that depth, and the distance over which it is evened, as shares of the tree's height."""
+TURNS = np.array([1.0, 0.75, 0.5, 0.25, 0.0, -0.25, -0.5])
+"""Shares of its slope with which a limb is tried: the first with which it stays in the crown is taken."""
+INSIDE, AROUND = 1.0, 0.08
+"""Greatest depth of limbs, as a share of half the crown's greatest width within this share of the tree's height."""
 
 
 def fan_out(skeleton: Skeleton, stroke: Indices, crown: FrontCrown, rng: np.random.Generator) -> Skeleton:
@@ -43,18 +42,25 @@ def fan_out(skeleton: Skeleton, stroke: Indices, crown: FrontCrown, rng: np.rand
     chains = limbs(flat, heaviest_children(flat, np.where(same, weights + weights.max(), weights)))
     stems = np.isin(stroke, stroke[skeleton.parents < 0])
     steepness = _steepness([float(weights[chain[min(1, len(chain) - 1)]]) for chain in chains], rng)
+    most = _most_depth(points[:, 1], crown.volume)
     depth, slope = np.zeros(len(flat)), np.zeros(len(flat))
     for chain, steep in zip(chains, steepness.tolist(), strict=True):
-        if stems[chain[-1]] or stems[chain[min(1, len(chain) - 1)]]:
+        if stems[chain[min(1, len(chain) - 1)]]:
             continue
-        along = np.cumsum(lengths[chain[1:]])
-        start = slope[chain[0]]
-        own = FOLLOW * start + steep
-        slopes = start + (own - start) * along / (along + BEND * along[-1] + 1e-9)
-        slope[chain[1:]] = slopes
-        depth[chain[1:]] = depth[chain[0]] + np.cumsum(slopes * lengths[chain[1:]])
-    most = _most_depth(points[:, 1], crown.volume)
-    return Skeleton(np.column_stack([points[:, :2], most * np.tanh(depth / most)]), radii, flat.parents)
+        first, rest = chain[0], chain[1:]
+        slopes, depths = _turns(lengths[rest], float(slope[first]), steep)
+        over = np.max(np.abs(depth[first] + depths) - most[rest], axis=1)
+        best = int(np.argmax(over <= max(0.0, float(over.min()))))
+        slope[rest], depth[rest] = slopes[best], depth[first] + depths[best]
+    return Skeleton(np.column_stack([points[:, :2], depth]), radii, flat.parents)
+
+
+def _turns(lengths: Floats, start: float, steep: float) -> tuple[Floats, Floats]:
+    """Return slopes and depths (k, n) along a limb of such edges (n,) that begins at a slope, for each of `TURNS`."""
+    along = np.cumsum(lengths)
+    own = (FOLLOW * start + steep) * TURNS[:, None]
+    slopes = start + (own - start) * along / (along + BEND * along[-1] + 1e-9)
+    return slopes, np.cumsum(slopes * lengths, axis=1)
 
 
 def _steepness(weights: list[float], rng: np.random.Generator) -> Floats:
@@ -65,8 +71,7 @@ def _steepness(weights: list[float], rng: np.random.Generator) -> Floats:
 
 
 def _most_depth(heights_m: Floats, volume: CrownVolume) -> Floats:
-    """Return the depth (n,), metres, that limbs come near to at heights (n,), metres."""
+    """Return the greatest depth (n,), metres, of limbs at heights (n,), metres."""
     tall = float(heights_m.max())
-    places = np.linspace(0.0, tall, 101)
-    width = smoothed(np.maximum(INSIDE * volume.half_width(places), LEAST_DEPTH * tall), 100 * SMOOTH)
-    return np.interp(heights_m, places, width)
+    around = heights_m + tall * np.linspace(-AROUND, AROUND, 9)[:, None]
+    return np.asarray(INSIDE * np.max([volume.half_width(heights) for heights in around], axis=0))

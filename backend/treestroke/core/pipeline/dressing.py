@@ -1,6 +1,6 @@
 """Leaves, fruit and bark of a grown tree, from its appearance and from its species and season."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
 from treestroke.core.mesh.bark_pattern import bark_pattern
 from treestroke.core.mesh.normal_map import NormalMapParams, bark_normal_map
+from treestroke.core.mesh.seen_light import lit_as_seen
 from treestroke.core.mesh.tubes import TubeParams, tubes
 from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
 from treestroke.core.paint.cut_outs import opaque_part, reduced
@@ -28,6 +29,9 @@ from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import Report, silent
 from treestroke.core.types import Opacity, Picture
+
+BARE_TUBES = TubeParams(max_triangles=130_000)
+"""A bare tree has no leaves, and all its twigs are bark."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,11 +133,13 @@ def bark_surface(
     tree: GrownTree, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> Surface:
     """Wrap the grown tree in bark that is read off the first stem's visible pixels."""
-    surface = tubes(tree.grown.skeleton, TubeParams(root_swelling=tree.grown.root_swelling))
-    view = tree.appearance.bark_view
+    is_bare, view = tree.kind == "bare", tree.appearance.bark_view
+    params = replace(BARE_TUBES if is_bare else TubeParams(), root_swelling=tree.grown.root_swelling)
+    surface = tubes(tree.grown.skeleton, params)
     report("mesh", 0.6)
     bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
     grain = bark_pattern(TEXTURE_SIZE, rng, bark.form)
     params = BarkParams(hidden_colour=bark.colour, form=bark.form if known else None)
     texture = bark_texture(view.picture, view.stem, params, rng, grain)
-    return Surface(surface, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))
+    wrapped = Surface(surface, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))
+    return lit_as_seen(wrapped, view) if is_bare and not known else wrapped

@@ -305,16 +305,14 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     crown = _crown_of(evidence, traced, taken.foliage, settings)
     lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
     report("grow", 0.0)
-    method = Replacement(
-        choose_library(settings.library, crown.kind, lifted.tree, taken.form),
-        growth_for(crown.kind, settings.iterations, taken.form),
-    )
     room = CrownToFill(crown.volume, crown.front)
     if crown.kind == "bare" and traced.whole:
         grown = grown_as_traced(lifted.tree, lifted.hidden)
     elif crown.kind == "palm":
         grown = grow_palm(lifted.tree, room, settings.iterations, rng)
     else:
+        library = choose_library(settings.library, crown.kind, lifted.tree, taken.form)
+        method = Replacement(library, growth_for(crown.kind, settings.iterations, taken.form))
         grown = grow(lifted.tree, room, method, rng, report)
     leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):

@@ -10,6 +10,7 @@ from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.thinning import Coverage, thin_leaves
 from treestroke.core.mesh.impostor import impostor
 from treestroke.core.mesh.lod_tubes import LEAST_TRIANGLES, LodParams, lod_tubes
+from treestroke.core.mesh.seen_light import shaded_like
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.progress import Report, silent
 from treestroke.core.types import Floats, Mask
@@ -90,7 +91,7 @@ def _level(tree: TreeModel, number: int, wood: float, view: Framing, expected: M
     aim = _SHARES[number] * whole * (_BARE_MORE if tree.leaf is None else 1.0)
     most = int(max(wood * aim, aim - 2 * cards_before, LEAST_TRIANGLES))
     params = LodParams(most, HEIGHTS_PX[number], root_swelling=tree.grown.root_swelling)
-    bark = replace(tree.bark, mesh=lod_tubes(tree.grown.skeleton, params))
+    bark = replace(tree.bark, mesh=shaded_like(lod_tubes(tree.grown.skeleton, params), tree.bark.mesh))
     left = max(0, int(aim - len(bark.mesh.triangles)) // 2)
     return Level(
         bark, _thinned(tree, left, view, np.where(silhouettes((bark,), view), _HIDDEN_BY_WOOD, 1.0) * expected)

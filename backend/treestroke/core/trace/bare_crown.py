@@ -9,7 +9,7 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.trace.appearance import MAX_ODDS, WoodOdds
 from treestroke.core.trace.centre_lines import thin
 from treestroke.core.trace.found_limbs import Window, chains, kept_pixels
-from treestroke.core.trace.limb_paths import join_strokes, shortest_paths
+from treestroke.core.trace.limb_paths import LONGEST_GAP, join_strokes, shortest_paths
 from treestroke.core.trace.ribbons import Ribbons
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 from treestroke.core.trace.snapping import blur
@@ -19,7 +19,7 @@ from treestroke.core.types import Floats, Mask, Opacity
 SIDE_PX, MOST_ENLARGED = 1000, 3.0
 """Long side, px, to which a crown is brought before its twigs are thinned to lines, and greatest enlargement: twigs of
 one pixel stay apart."""
-SEEN = 0.35
+SEEN = 0.3
 """Share of a pixel from which on wood there is traced."""
 TOUCHED = 0.1
 """Share of a pixel from which on a twig may go on there unseen."""
@@ -28,14 +28,14 @@ SPECK = 0.006
 THIN_PX, AROUND_PX = 3.0, 4
 """Half width below which the width of wood follows from its area around the line, and half the side of the square in
 which that is measured, px."""
-STEP_PX, STEADY_PX = 3.0, 2.0
+STEP_PX, STEADY_PX = 3.0, 1.0
 """Distance between joints along a twig, and standard deviation over which its pixels' steps are smoothed, px."""
 FINEST = 2.5e-4
 """Radius of the finest twig, as a share of the tree's height: a fourth of a pixel in a tree 1,000 px high."""
 
-TOLERANCE_PX = 0.4
+TOLERANCE_PX = 0.25
 """Greatest distance by which simplification moves the line of a twig, px."""
-MOST_JOINTS = 5000
+MOST_JOINTS = 6000
 """Greatest number of joints before simplification: where there are more, the shortest twigs are left out."""
 _BESIDE = np.array([[0, 1, 0], [1, 0, 1], [0, 1, 0]], dtype=np.float32)
 _ASLANT = np.array([[1, 0, 1], [0, 0, 0], [1, 0, 1]], dtype=np.float32)
@@ -47,7 +47,7 @@ def find_twigs(builder: SkeletonBuilder, wood: Opacity, crown: Mask, height_px: 
     ``wood`` (h, w) is the share of each pixel that wood covers. Twigs fall outward and are nowhere thicker than their
     parent.
     """
-    share, window = _window(wood, crown)
+    share, window = _window(wood, crown, round(LONGEST_GAP * height_px))
     small_px = height_px * window.scale
     ribbons = _ribbons(share, SPECK * small_px)
     if not len(ribbons.pixels):
@@ -87,9 +87,10 @@ def odds_of_share(odds: WoodOdds, wood: Opacity, crown: Mask) -> WoodOdds:
     return WoodOdds(by_strokes, by_crown)
 
 
-def _window(wood: Opacity, crown: Mask) -> tuple[Opacity, Window]:
-    """Return the wood in a crown (h, w) at the size at which it is traced, and where that lies in the picture."""
+def _window(wood: Opacity, crown: Mask, below_px: int) -> tuple[Opacity, Window]:
+    """Return the wood in a crown (h, w) and below it at the size at which it is traced, and where it lies."""
     x, y, width, height = cv2.boundingRect(crown.astype(np.uint8))
+    height = min(height + below_px, crown.shape[0] - y)
     scale = min(MOST_ENLARGED, SIDE_PX / max(width, height))
     size = max(1, round(width * scale)), max(1, round(height * scale))
     cut = wood[y : y + height, x : x + width]
