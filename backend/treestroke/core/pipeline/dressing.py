@@ -134,8 +134,8 @@ def bark_surface(
 ) -> Surface:
     """Wrap the grown tree in bark that is read off the first stem's visible pixels."""
     is_bare, view = tree.kind == "bare", tree.appearance.bark_view
-    params = replace(BARE_TUBES if is_bare else TubeParams(), root_swelling=tree.grown.root_swelling)
-    surface = tubes(tree.grown.skeleton, params)
+    width = replace(BARE_TUBES if is_bare else TubeParams(), root_swelling=tree.grown.root_swelling)
+    surface = tubes(tree.grown.skeleton, width)
     report("mesh", 0.6)
     bark, known = SPECIES.get(settings.species, AUTO).bark, settings.species != "auto"
     grain = bark_pattern(TEXTURE_SIZE, rng, bark.form)
