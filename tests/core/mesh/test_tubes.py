@@ -118,6 +118,14 @@ def test_a_flare_that_the_photo_shows_is_not_swollen_again() -> None:
     assert np.hypot(mesh.positions[:, 0], mesh.positions[:, 2]).max() == pytest.approx(0.16, rel=1e-5)
 
 
+def test_a_giant_among_many_twigs_keeps_its_shape() -> None:
+    points = np.array([[0.0, 0, 0], [0, 1, 0], [0, 2, 0], [0, 10, 0]])
+    mesh = tubes(Skeleton(points, np.array([3.0, 3.0, 2.0, 0.3]), np.array([-1, 0, 1, 2])), TubeParams(buttress=0.0))
+    reach, high = np.hypot(mesh.positions[:, 0], mesh.positions[:, 2]), mesh.positions[:, 1]
+    shown = np.interp([1.0, 2.0], np.unique(high), [reach[high == y].max() for y in np.unique(high)])
+    assert shown == pytest.approx([3.0, 2.0], abs=0.1)
+
+
 def test_a_trunk_without_flare_ends_as_round_as_it_is_above() -> None:
     mesh = tubes(stick(joints=9, radius=0.1, tip_radius=0.1), TubeParams())
     reach = np.hypot(mesh.positions[:, 0], mesh.positions[:, 2])

@@ -45,6 +45,13 @@ def test_a_stem_is_as_thick_as_it_is_seen_below_the_crown() -> None:
     assert radii.min() >= 0.5 * 10.0 * 0.3 - 1e-9
 
 
+def test_limbs_that_leave_a_stem_in_the_crown_do_not_widen_it() -> None:
+    seen = 10.0 * (1 - SHARE)
+    forked = np.where((SHARE > 0.45) & (SHARE < 0.7), 14.0, seen)
+    radii = stem_radii(LINE, forked, SHARE < 0.4, 200.0, 3.0)
+    assert radii[SHARE < 0.9] == pytest.approx(np.maximum(seen, 5.0 * (1 - 0.7 * SHARE))[SHARE < 0.9], rel=0.2)
+
+
 def test_a_stem_that_is_nowhere_seen_has_the_usual_thickness() -> None:
     assert stem_radii(LINE, UNSEEN, SHARE < 0.4, 200.0, 3.0)[0] == 3.0
 

@@ -19,6 +19,7 @@ MIN_RADIUS = 1.2e-4
 _MIN_DETAIL = 0.003  # where every limb is a cone or two; less saves no more triangles
 _SIDES_PER_ROOT_HEIGHT = 105.0  # sides = 2.3 + this * sqrt(radius / height): 17 on a trunk, 4 on a twig
 _MAX_ERROR = 3e-4  # in tree heights: distance of a thin limb's axis from its joints, half a pixel in a 1500 px photo
+_MAX_TRUNK_ERROR = 2e-3  # in tree heights: the same of the thickest
 _BLUNT = 1.2e-3  # in tree heights: tips of at least this radius are round
 _COLLARED = 1e-3  # in tree heights: limbs of at least this radius have a collar
 _BACK = np.array([0.0, 0.0, -1.0])  # the texture's seam faces away from the camera
@@ -97,7 +98,8 @@ def tubes(skeleton: Skeleton, params: TubeParams = TubeParams()) -> Mesh:
 
 def _rings(axes: LimbAxes, height: float, detail: float) -> Rings:
     """Place rings at this detail, and more where tubes would not cover the start of other limbs."""
-    left = simplified(axes, np.maximum(0.08 * axes.radii, _MAX_ERROR * height) / detail**2)
+    error = np.clip(0.08 * axes.radii, _MAX_ERROR * height, _MAX_TRUNK_ERROR * height)
+    left = simplified(axes, error / detail**2)
     while True:
         rings = place_rings(subset(axes, left), detail, _BLUNT * height, _COLLARED * height / detail)
         uncovered = uncovered_forks(axes, left, rings)

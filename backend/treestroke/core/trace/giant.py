@@ -21,7 +21,7 @@ POST = 0.05
 """Greatest width of what stands before a giant's trunk or parts it, a post or a deep fold, as a share of the height."""
 LIMBED = 1.1
 """Half-width of a giant's row relative to the median of all from which on limbs leave it there."""
-STEADY = 6.0
+STEADY = 15.0
 """Standard deviation, in steps of a line, over which a giant's bends from its trunk into the limb that goes on."""
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import normals
+from treestroke.core.geometry.polyline import normals, resample
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -212,8 +212,10 @@ def _limb(
     halves, _ = to_edges(line, half_widths(line, evidence.wood, 1.2 * parent_px), evidence.photo, 1.2 * parent_px)
     widths = limb_radii(line, np.where(inside, np.nan, halves), parent_px)
     if parent_px > params.thickest_share * evidence.height_px and not inside.all():
-        line, widths = line[~inside], widths[~inside]
-        parent = int(axis[fork_of(line, points[axis], float(widths[0]))])
+        parent = int(axis[fork_of(line[~inside], points[axis], float(widths[~inside][0]))])
+        within = resample(np.vstack([points[parent], line[~inside][0]]), GRAIN)[1:-1]
+        line = np.concatenate([within, line[~inside]])
+        widths = np.concatenate([np.full(len(within), widths[~inside][0]), widths[~inside]])
     return parent, np.concatenate([points[parent][None], line]), np.concatenate([widths[:1], widths])
 
 
