@@ -19,6 +19,8 @@ CLEAR = 0.05
 """How far there must be next to no foliage where it ends, as a share of the size: else it is a sparse neighbour's."""
 DENSE = 0.6
 """Share from which on what lies along a ray counts as foliage."""
+LEAST = 0.01
+"""Least share of the crown that is cut off: a line that cuts less was drawn with care, and stays."""
 GRAIN = 0.004
 """Standard deviation over which leaf pixels are counted, as a share of the size."""
 SPREAD = 9
@@ -45,7 +47,8 @@ def cut_foliage(odds: NDArray[np.float32], inside: Mask) -> Mask:
     x, y = (np.arange(side, dtype=np.float32) - at for side, at in zip(inside.shape[::-1], middle, strict=True))
     radius, turn = cv2.cartToPolar(*np.meshgrid(x, y), angleInDegrees=True)
     ray = np.minimum(turn * (RAYS / 360), RAYS - 1).astype(np.int64)
-    return np.asarray(~inside & (leafy > 0) & (radius < end[ray]))
+    cut = ~inside & (leafy > 0) & (radius < end[ray])
+    return np.asarray(cut & (np.count_nonzero(cut) >= LEAST * np.count_nonzero(inside)))
 
 
 def _reach(leaf: Mask, line: NDArray[np.int64], size: float) -> NDArray[np.int64]:
