@@ -89,3 +89,13 @@ def test_where_there_is_too_much_the_shortest_twigs_are_left_out(monkeypatch: py
 
 def test_a_crown_without_wood_has_no_twigs() -> None:
     assert min(traced(np.zeros((400, 400), dtype=np.float32)).stroke) == 0
+
+
+def test_a_stroke_is_no_thicker_than_the_wood_around_it() -> None:
+    builder = SkeletonBuilder()
+    builder.add_chain(-1, resample(np.array([STEM[0], STEM[1], LEFT[1]]), 4.0), 12.0, stroke=0)
+    find_twigs(builder, share_of(LINES) * CROWN, CROWN, 380.0)
+    stroked = np.array(builder.stroke) == 0
+    points, radii = np.array(builder.points)[stroked], np.array(builder.radii)[stroked]
+    assert np.median(radii[points[:, 1] < 180]) == pytest.approx(4.5, abs=1.0)
+    assert (radii[points[:, 1] > 300] == 12.0).all()

@@ -105,7 +105,7 @@ def wood_odds(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, sur
     by_strokes = np.take(np.concatenate([outside, inside]), place | crown.astype(np.uint16) << 3 * TABLE_BITS)
     by_crown = by_strokes.copy()
     wood = [mixture for mixture in (bare, among_leaves) if mixture is not None]
-    others = _others_in_crown(bare, surroundings)
+    others = _others_in_crown(bare, surroundings) if surroundings.bare_wood is None else None
     if wood and others is not None:
         table = _learnt_odds(photo[crown], _odds(join_mixtures(wood, [1.0] * len(wood)), others), ground)
         by_crown[crown] = table[place[crown]]

@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import arc_lengths, resample
+from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.trace.appearance import MAX_ODDS, WoodOdds
 from treestroke.core.trace.centre_lines import thin
@@ -28,6 +29,8 @@ SPECK = 0.006
 THIN_PX, AROUND_PX = 3.0, 4
 """Half width below which the width of wood follows from its area around the line, and half the side of the square in
 which that is measured, px."""
+ASIDE_PX = 9
+"""Side of the square in which the middle of a limb lies around its stroke's line, px."""
 STEP_PX, STEADY_PX = 3.0, 1.0
 """Distance between joints along a twig, and standard deviation over which its pixels' steps are smoothed, px."""
 FINEST = 2.5e-4
@@ -49,6 +52,7 @@ def find_twigs(builder: SkeletonBuilder, wood: Opacity, crown: Mask, height_px: 
     """
     share, window = _window(wood, crown, round(LONGEST_GAP * height_px))
     small_px = height_px * window.scale
+    _slim(builder, wood, crown)
     ribbons = _ribbons(share, SPECK * small_px)
     if not len(ribbons.pixels):
         return
@@ -96,6 +100,20 @@ def _window(wood: Opacity, crown: Mask, below_px: int) -> tuple[Opacity, Window]
     cut = wood[y : y + height, x : x + width]
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
     return np.asarray(cv2.resize(cut, size, interpolation=how)), Window(np.array([x, y], dtype=np.float64), scale)
+
+
+def _slim(builder: SkeletonBuilder, share: Opacity, crown: Mask) -> None:
+    """Make the strokes' lines no thicker than the wood around them: twigs beside a limb widen what is measured.
+
+    ``share`` (h, w) is that of each pixel that wood covers in the crown (h, w); outside it nothing is known.
+    """
+    inward = cv2.distanceTransform(((share > SEEN) | ~crown).astype(np.uint8), cv2.DIST_L2, 5)
+    wide = sample_nearest(cv2.dilate(inward, np.ones((ASIDE_PX, ASIDE_PX))), np.array(builder.points), np.inf)
+    radii, stroke = np.array(builder.radii), np.array(builder.stroke)
+    radii = np.where(wide > 0, np.minimum(radii, wide), radii)
+    for index in np.unique(stroke):
+        radii[stroke == index] = non_increasing(radii[stroke == index])
+    builder.set_radii(radii)
 
 
 def _ribbons(share: Opacity, speck_px: float) -> Ribbons:

@@ -39,6 +39,10 @@ class SkeletonBuilder:
             self._arrays = np.array(self.points), np.array(self.radii)
         return self._arrays
 
+    def set_radii(self, radii_px: Floats) -> None:
+        """Replace the radii (n,), px, of all joints so far."""
+        self.radii, self._arrays = radii_px.tolist(), None
+
     def nearest(self, point: Floats) -> int:
         """Return the index of the joint to whose surface a point (2,), px, is nearest, or in which it lies deepest."""
         points, radii = self.arrays()
