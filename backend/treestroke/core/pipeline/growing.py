@@ -14,7 +14,8 @@ from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
-from treestroke.core.lift.spread import FrontCrown, lift
+from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
 from treestroke.core.pipeline.completion import completed
 from treestroke.core.pipeline.crowns import (
     CLOSED_SHARE,
@@ -43,6 +44,7 @@ from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_child
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Stature
 from treestroke.core.trace.appearance import Surroundings
+from treestroke.core.trace.crown_picture import see_crown
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
 from treestroke.core.types import FoliageKind, Indices, Mask, Picture
@@ -188,9 +190,15 @@ def read_photo(
     report("trace", 0.0)
     working = on_its_trunk(working, foliage)
     height_px = working.height_px(foliage.mask)
-    is_bare = likeliest(kind_odds(foliage.cues)) == "bare"
-    surroundings = Surroundings(None if is_bare else foliage.leaf, foliage.ground, foliage.region, foliage.mask)
-    traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
+    kind = likeliest(kind_odds(foliage.cues))
+    leaf = None if kind == "bare" else foliage.leaf
+    surroundings = Surroundings(leaf, foliage.ground, foliage.region, foliage.mask, kind == "leaves")
+    before = known.traced if known is not None and known.foliage is foliage else None
+    if before is not None and before.picture.tree_px == height_px:
+        picture = before.picture
+    else:
+        picture = see_crown(working.photo, surroundings, height_px)
+    traced = trace_branches(working.photo, working.strokes, surroundings, picture)
     return PhotoEvidence(working, foliage, traced, side_drawing)
 
 
@@ -282,7 +290,10 @@ def _lifted(evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np
     visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
     stroke = traced.stroke[owner]
     if crown.side is None:
-        return _LiftedTrace(lift(visible, stroke, FrontCrown(crown.volume, crown.camera), rng), visible, owner, {})
+        leafy = crown.front.mask & crown.shows_leaves & (crown.kind != "bare")
+        seen = (traced.measured[owner] | (stroke < 0)) & sample_nearest(leafy, visible.points, False)
+        tree = lift(FrontTree(visible, stroke, seen), FrontCrown(crown.volume, crown.camera), rng)
+        return _LiftedTrace(tree, visible, owner, {})
     weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))

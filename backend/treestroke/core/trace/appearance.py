@@ -54,12 +54,15 @@ class Surroundings:
         (h, w) mask of where leaves may be.
     foliage
         (h, w) mask of the leaves, or of the twigs of a bare tree: a limb may be hidden there.
+    broad
+        Whether its leaves are broad: shade between sprays of needles or scales makes lines like limbs.
     """
 
     leaf: Mixture | None
     ground: Mixture
     crown: Mask
     foliage: Mask
+    broad: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ Source: Tan et al. 2008, section 2. Strokes are pulled onto the branches in the 
 ribbons of wood, radii are measured where the photo shows them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -16,7 +16,8 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import TOUCH_SHARE, is_stem
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
-from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
+from treestroke.core.trace.crown_picture import CrownPicture
+from treestroke.core.trace.found_limbs import find_limbs
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
 from treestroke.core.trace.thickness import half_widths, non_increasing
@@ -93,18 +94,21 @@ class Traced:
         (n,) mask of the joints whose radius the photo shows.
     wood
         (h, w) mask of the pixels that have the colours of branches.
+    picture
+        What the crown shows of limbs, whatever strokes are drawn.
     """
 
     skeleton: Skeleton
     stroke: Indices
     measured: Mask
     wood: Mask
+    picture: CrownPicture
 
     @property
     def stroked(self) -> "Traced":
         """The branches that follow a stroke, without those that were found beside them."""
         skeleton, joints = subskeleton(self.skeleton, self.stroke >= 0)
-        return Traced(skeleton, self.stroke[joints], self.measured[joints], self.wood)
+        return replace(self, skeleton=skeleton, stroke=self.stroke[joints], measured=self.measured[joints])
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,14 +138,15 @@ def trace_branches(
     photo: Picture,
     strokes: Strokes,
     surroundings: Surroundings,
-    height_px: float,
+    picture: CrownPicture,
     params: TraceParams = TraceParams(),
 ) -> Traced:
     """Trace the branches under and beside the branch strokes (one at least) of a photo (h, w, 3), sRGB.
 
-    ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; branches found beside the
-    strokes are connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
+    ``picture`` shows its crown. Every stroke is followed over its whole length; branches found beside the strokes are
+    connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
+    height_px = picture.tree_px
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
     odds = wood_odds(photo, [s.points for s in strokes.branches], max(1.0, 2.0 * unit), surroundings)
     smooth = _smoothed(odds.by_crown, unit)
@@ -150,11 +155,10 @@ def trace_branches(
     sure_wood = _smoothed(odds.by_strokes, unit) > 0
     evidence = _Evidence(odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
     _follow_strokes(builder, strokes.branches, evidence, params)
-    picture = CrownPicture(odds.by_crown, smooth, surroundings.crown, surroundings.foliage)
-    find_limbs(builder, picture, height_px, params.thinnest_px * height_px / REFERENCE_SIDE)
+    find_limbs(builder, picture, odds.by_crown, smooth, params.thinnest_px * height_px / REFERENCE_SIDE)
     skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
     skeleton, stroke = simplify(skeleton, stroke, params.tolerance_share * height_px)
-    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood)
+    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood, picture)
 
 
 def _smoothed(odds: Odds, unit: float) -> Odds:
