@@ -23,7 +23,7 @@ from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.placement import LeafParams, place_leaves
-from treestroke.core.lift.spread import FrontCrown, lift
+from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
 from treestroke.core.mesh.bark import BarkParams, bark_texture
 from treestroke.core.mesh.tubes import tubes
 from treestroke.core.paint.atlas import leaf_atlas
@@ -77,7 +77,8 @@ def subject(request: pytest.FixtureRequest) -> Subject:
 
 def _lifted(subject: Subject) -> Skeleton:
     crown = FrontCrown(subject.crown.volume, subject.crown.front.camera)
-    return lift(subject.skeleton, subject.trace.stroke, crown, np.random.default_rng(0))
+    tree = FrontTree(subject.skeleton, subject.trace.stroke, subject.trace.stroke < 0)
+    return lift(tree, crown, np.random.default_rng(0))
 
 
 def test_decoding(benchmark: BenchmarkFixture, subject: Subject) -> None:

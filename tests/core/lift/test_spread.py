@@ -1,3 +1,4 @@
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ from hypothesis import strategies as st
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
-from treestroke.core.lift.spread import FrontCrown, LiftParams, lift
+from treestroke.core.lift.spread import FrontCrown, FrontTree, LiftParams, lift
 from treestroke.core.skeleton.skeleton import Skeleton
 
 DEFAULT = LiftParams()
@@ -41,10 +42,10 @@ SPRAY = tree_of(
 )
 
 
-def lifted(tree: Skeleton, seed: int = 0, params: LiftParams = DEFAULT) -> Skeleton:
-    """Lift a tree whose stem alone was stroked."""
-    stroke = np.where(np.arange(len(tree)) < 5, 0, -1)
-    return lift(tree, stroke, CROWN, np.random.default_rng(seed), params)
+def lifted(tree: Skeleton, seed: int = 0, params: LiftParams = DEFAULT, seen: Sequence[int] = ()) -> Skeleton:
+    """Lift a tree whose stem alone was stroked; some joints are seen among leaves."""
+    stroke, joints = np.where(np.arange(len(tree)) < 5, 0, -1), np.arange(len(tree))
+    return lift(FrontTree(tree, stroke, np.isin(joints, seen)), CROWN, np.random.default_rng(seed), params)
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 12))
@@ -125,3 +126,21 @@ def test_a_limb_enters_the_crown_without_a_jump_in_depth() -> None:
     run = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
     assert (np.abs(np.diff(points[:, 2])) <= LiftParams().steepest * run + 1e-9).all()
     assert np.abs(points[:, 2]).max() > 0.3
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_limbs_seen_among_leaves_lie_on_the_viewer_s_side(seed: int) -> None:
+    depth = lifted(SPRAY, seed, seen=range(5, len(SPRAY))).points[:, 2]
+    assert depth.min() >= 0
+    assert np.ptp(depth[[6, 8, 10, 12]]) > 1.0
+
+
+def test_what_is_seen_of_one_limb_leaves_the_others_free() -> None:
+    depth = np.array([lifted(SPRAY, seed, seen=[5, 6]).points[:, 2] for seed in range(8)])
+    assert (depth[:, 5:7] >= 0).all()
+    assert (depth[:, 7:] < 0).any()
+
+
+def test_a_limb_of_which_little_is_seen_may_lie_behind() -> None:
+    hidden = tree_of([[*LEFT, (80.0, 100.0), (60.0, 20.0)], [(x + 4.0, y - 3.0) for x, y in LEFT]])
+    assert any(lifted(hidden, seed, seen=[5]).points[5:9, 2].min() < 0 for seed in range(8))

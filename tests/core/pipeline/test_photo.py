@@ -150,3 +150,17 @@ def test_without_a_branch_stroke_the_foliage_alone_is_traced() -> None:
     assert traced.skeleton is None
     assert len(traced.stroke) == 0
     assert np.array_equal(traced.foliage, trace_photo(photo, strokes).foliage)
+
+
+def test_what_was_seen_of_the_crown_is_kept_between_strokes_and_changes_nothing() -> None:
+    photo, strokes = given(EXAMPLES / "burr_oak_dusk")
+    first = read_photo(photo, Strokes(strokes.crown, strokes.branches[:-1]))
+    before, again, anew = (
+        read.traced for read in (first, read_photo(photo, strokes, first), read_photo(photo, strokes))
+    )
+    assert before is not None
+    assert again is not None
+    assert anew is not None
+    assert again.picture is before.picture
+    assert (anew.stroke < 0).sum() > 20
+    assert np.array_equal(again.skeleton.points, anew.skeleton.points)

@@ -6,7 +6,8 @@ import pytest
 from tests.pictures import disc, wood_mask
 
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
+from treestroke.core.trace.crown_picture import CrownPicture, Window
+from treestroke.core.trace.found_limbs import find_limbs
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 
 STEM = [(200.0, 390.0), (200.0, 220.0)]
@@ -21,7 +22,8 @@ def traced(wood: np.ndarray, foliage: np.ndarray = EVERYWHERE, crown: np.ndarray
     builder.add_chain(-1, resample(np.array(STEM), 4.0), 8.0, stroke=0)
     odds = np.where(wood, 3.0, -3.0).astype(np.float32)
     smooth = np.asarray(cv2.GaussianBlur(odds, (0, 0), 0.7))
-    find_limbs(builder, CrownPicture(odds, smooth, crown, foliage), 380.0, 0.5)
+    picture = CrownPicture(Window((0, 0), (400, 400), 1.0), crown, foliage, 380.0, None)
+    find_limbs(builder, picture, odds, smooth, 0.5)
     return builder
 
 
@@ -114,3 +116,10 @@ def test_nothing_is_found_where_all_is_alike(wood: np.ndarray) -> None:
 def test_a_crown_at_the_photo_s_edge_is_cut_there() -> None:
     limb = [(200.0, 220.0), (0.0, 20.0)]
     assert covered(limb, traced(wood_mask([(STEM, 16.0), (limb, 9.0)], 400, 400))) > 0.85
+
+
+def test_a_limb_leaves_the_stem_forward() -> None:
+    away = [(230.0, 330.0), (300.0, 270.0)]
+    tree = traced(wood_mask([(STEM, 16.0), (away, 7.0)], 400, 400)).skeleton()
+    leaves = int(np.flatnonzero((np.array(tree.parents) >= 0) & (tree.points[:, 0] > 203))[0])
+    assert tree.points[tree.parents[leaves], 1] > 325

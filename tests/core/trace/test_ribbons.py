@@ -14,7 +14,7 @@ LIMB = [(40.0, 250.0), (250.0, 60.0)]
 
 def found_in(wood: np.ndarray, crown: np.ndarray = CROWN) -> Ribbons:
     odds = np.where(wood, 3.0, -3.0).astype(np.float32)
-    return find_ribbons(odds, np.asarray(cv2.GaussianBlur(odds, (0, 0), 0.7)), crown, HEIGHT)
+    return find_ribbons(odds, np.asarray(cv2.GaussianBlur(odds, (0, 0), 0.7)), crown, HEIGHT)[0]
 
 
 def shade(share: float, seed: int = 0) -> np.ndarray:
@@ -64,3 +64,9 @@ def test_headings_follow_the_line(slope: float) -> None:
     along = np.array([1.0, slope]) / np.hypot(1.0, slope)
     heading = headings(Ribbons(lines, np.ones(len(lines))), 8)
     assert np.abs(heading @ along).min() > 0.97
+
+
+@pytest.mark.parametrize(("wood", "are_shown"), [(wood_mask([(LIMB, 5.0)], SIZE, SIZE), True), (shade(0.4), False)])
+def test_whether_colours_show_limbs_is_told(wood: np.ndarray, are_shown: bool) -> None:
+    odds = np.where(wood, 3.0, -3.0).astype(np.float32)
+    assert find_ribbons(odds, np.asarray(cv2.GaussianBlur(odds, (0, 0), 0.7)), CROWN, HEIGHT)[1] is are_shown

@@ -13,6 +13,7 @@ from treestroke.core.imaging.outline import fill_outline
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Surroundings
+from treestroke.core.trace.crown_picture import see_crown
 from treestroke.core.trace.tracing import Traced, TraceParams, trace_branches
 
 SIZE, HEIGHT = 450, 400.0
@@ -38,7 +39,8 @@ def stroked(*lines: BranchLine, erase: Sequence[BranchLine] = (), width: float |
 
 
 def trace(strokes: Strokes, wood: np.ndarray = TREE) -> Traced:
-    return trace_branches(wood_photo(wood), strokes, Surroundings(LEAVES, BEHIND, INSIDE, INSIDE), HEIGHT)
+    photo, around = wood_photo(wood), Surroundings(LEAVES, BEHIND, INSIDE, INSIDE)
+    return trace_branches(photo, strokes, around, see_crown(photo, around, HEIGHT))
 
 
 def drawn(skeleton: Skeleton, edges: np.ndarray) -> np.ndarray:

@@ -14,10 +14,12 @@ from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
-from treestroke.core.types import Floats, Indices
+from treestroke.core.types import Floats, Indices, Mask
 
 UPRIGHT = 0.4
 """Share of the steepest slope that an upright limb may take: upright limbs lean little in depth too."""
+SEEN = 0.3
+"""Share of a limb's length, with all that it bears, that is seen among leaves if it lies on the viewer's side."""
 
 
 @dataclass(frozen=True)
@@ -51,32 +53,47 @@ class FrontCrown:
     camera: OrthographicCamera
 
 
-def lift(
-    skeleton: Skeleton,
-    stroke: Indices,
-    crown: FrontCrown,
-    rng: np.random.Generator,
-    params: LiftParams = LiftParams(),
-) -> Skeleton:
-    """Lift a traced skeleton (2D, px) to the world (3D, metres), radii too.
+@dataclass(frozen=True, eq=False)
+class FrontTree:
+    """A tree traced in a front view.
 
-    ``stroke`` (n,) tells which stroke each joint follows: a limb goes on along its own stroke. Each joint still
-    projects onto its pixel. The first stem stays in the picture's plane; every other limb takes the slope that keeps
-    its joints furthest from all limbs before it, heaviest limbs first among siblings; ``rng`` decides to which side
-    when both are equal.
-
-    Source: Tan et al. 2008, section 3.1; bounds by slope and by the crown are ours.
+    Attributes
+    ----------
+    skeleton
+        2D, px, n joints.
+    stroke
+        (n,) which stroke each joint follows: a limb goes on along its own stroke.
+    before_leaves
+        (n,) mask of the joints that are seen among leaves, and so lie before them.
     """
+
+    skeleton: Skeleton
+    stroke: Indices
+    before_leaves: Mask
+
+
+def lift(tree: FrontTree, crown: FrontCrown, rng: np.random.Generator, params: LiftParams = LiftParams()) -> Skeleton:
+    """Lift a traced tree to the world (3D, metres), radii too.
+
+    Each joint still projects onto its pixel. The first stem stays in the picture's plane; every other limb takes the
+    slope that keeps its joints furthest from all limbs before it, heaviest limbs first among siblings; ``rng`` decides
+    to which side when both are equal. A limb that is seen among leaves comes toward the viewer.
+
+    Source: Tan et al. 2008, section 3.1; bounds by slope and by the crown, and the viewer's side, are ours.
+    """
+    skeleton, stroke = tree.skeleton, tree.stroke
     points, radii = crown.camera.world_from_pixels(skeleton.points), crown.camera.metres_from_pixels(skeleton.radii)
     flat = Skeleton(points, radii, skeleton.parents)
     weights = accumulate_to_root(flat, edge_lengths(flat))
     same = stroke == stroke[np.maximum(flat.parents, 0)]
     chains = limbs(flat, heaviest_children(flat, np.where(same, weights + weights.max(), weights)))
+    is_seen = accumulate_to_root(flat, edge_lengths(flat) * tree.before_leaves) > SEEN * weights
     depth = np.zeros(len(flat))
     placed = [flat.points[chains[0]]]
     for chain in _by_order(chains[1:], weights):
         first = int(flat.parents[chain[0]] >= 0 or len(chain) > 1)
-        options = _options(flat.points[chain], float(depth[chain[0]]), crown.volume, params)
+        toward = bool(is_seen[chain[min(first, len(chain) - 1)]])
+        options = _options(flat.points[chain], float(depth[chain[0]]), toward, crown.volume, params)
         best = options[_furthest(options, placed, rng)]
         depth[chain[first:]] = best[first:, 2]
         placed.append(best)
@@ -94,11 +111,12 @@ def _by_order(chains: list[Indices], weights: Floats) -> list[Indices]:
     return [chains[n] for n in order]
 
 
-def _options(points: Floats, start: float, volume: CrownVolume, params: LiftParams) -> Floats:
-    """Return the limb's joints (slopes, n, 3), metres, at each slope, bounded by the crown."""
+def _options(points: Floats, start: float, toward: bool, volume: CrownVolume, params: LiftParams) -> Floats:
+    """Return the limb's joints (slopes, n, 3), metres, at all slopes, or those ``toward`` the viewer, in the crown."""
     steps = np.linalg.norm(np.diff(points[:, :2], axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(steps)])
-    slopes = np.linspace(-params.steepest, params.steepest, params.slopes) * _leaning(points)
+    furthest_back = 0.0 if toward else -params.steepest
+    slopes = np.linspace(furthest_back, params.steepest, params.slopes) * _leaning(points)
     most = _bounds(points, abs(start), steps, volume, params)
     eased = along**2 / (along + 0.25 * along[-1] + 1e-9)
     depth = np.clip(start + slopes[:, None] * eased, -most, most)

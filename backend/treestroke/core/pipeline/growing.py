@@ -16,9 +16,10 @@ from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
+from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.lift.fan import fan_out
 from treestroke.core.lift.hidden_limbs import with_hidden_limbs
-from treestroke.core.lift.spread import FrontCrown, lift
+from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
 from treestroke.core.pipeline.completion import completed
 from treestroke.core.pipeline.crowns import (
     CLOSED_SHARE,
@@ -49,6 +50,7 @@ from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_child
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.survey.measures import BREAST_HEIGHT, ENDS_PX, Scale, Stature
 from treestroke.core.trace.appearance import Surroundings
+from treestroke.core.trace.crown_picture import see_crown
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
 from treestroke.core.types import FoliageKind, Indices, Mask, Picture
@@ -233,13 +235,17 @@ def read_photo(
         return PhotoEvidence(working, outlined, outlined, None, side_drawing)
     report("trace", 0.0)
     working, wood = on_its_trunk(working, outlined), None
-    surroundings = Surroundings(outlined.leaf, outlined.ground, outlined.region, outlined.mask)
-    if likeliest(kind_odds(outlined.cues)) == "bare":
+    kind = likeliest(kind_odds(outlined.cues))
+    surroundings = Surroundings(outlined.leaf, outlined.ground, outlined.region, outlined.mask, broad=kind == "leaves")
+    if kind == "bare":
         wood = _wood(outlined, working, known)
         surroundings = replace(surroundings, leaf=None, bare_wood=None if wood is None else wood.alpha)
     foliage = outlined if wood is None else wood
     height_px = working.height_px(foliage.mask)
-    traced = trace_branches(working.photo, working.strokes, surroundings, height_px)
+    seen = known.traced.picture if known is not None and known.traced and known.outlined is outlined else None
+    if seen is None or seen.tree_px != height_px:
+        seen = see_crown(working.photo, surroundings, height_px)
+    traced = trace_branches(working.photo, working.strokes, surroundings, seen)
     working, traced = on_the_ground(working, traced, height_px)
     return PhotoEvidence(working, foliage, outlined, traced, side_drawing)
 
@@ -369,7 +375,9 @@ def _lifted(
         tree = fan_out(whole, stroke[joints], front, rng)
         return _LiftedTrace(tree, whole, owner[joints], {}, len(joints) - len(seen))
     if crown.side is None:
-        return _LiftedTrace(lift(visible, stroke, front, rng), visible, owner, {})
+        leafy = crown.front.mask & crown.shows_leaves & (crown.kind != "bare")
+        shown = (traced.measured[owner] | (stroke < 0)) & sample_nearest(leafy, visible.points, False)
+        return _LiftedTrace(lift(FrontTree(visible, stroke, shown), front, rng), visible, owner, {})
     weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     drawn_front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))

@@ -61,13 +61,11 @@ def _standing(traced: Traced, ground: float) -> Traced:
     feet = np.column_stack([wood.points[roots, 0], np.maximum(wood.points[roots, 1], ground)])
     parents = wood.parents + len(roots)
     parents[roots] = np.arange(len(roots))
-    return Traced(
-        Skeleton(
-            np.vstack([feet, wood.points]),
-            np.concatenate([wood.radii[roots], wood.radii]),
-            np.concatenate([np.full(len(roots), -1), parents]),
-        ),
-        np.concatenate([traced.stroke[roots], traced.stroke]),
-        np.concatenate([np.zeros(len(roots), dtype=np.bool_), traced.measured]),
-        traced.wood,
+    skeleton = Skeleton(
+        np.vstack([feet, wood.points]),
+        np.concatenate([wood.radii[roots], wood.radii]),
+        np.concatenate([np.full(len(roots), -1), parents]),
     )
+    stroke = np.concatenate([traced.stroke[roots], traced.stroke])
+    measured = np.concatenate([np.zeros(len(roots), dtype=np.bool_), traced.measured])
+    return replace(traced, skeleton=skeleton, stroke=stroke, measured=measured)

@@ -14,7 +14,7 @@ from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.opacity import over_white
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.lift.spread import FrontCrown, lift
+from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
@@ -186,7 +186,8 @@ def _lifted(frame: _Frame, rng: np.random.Generator) -> _LiftedSketch:
     """Turn the drawn branches into the world: by the left side, or by spreading them in depth."""
     outline = turned_outline(frame.crown)
     if frame.side is None:
-        tree = lift(frame.tree.skeleton, frame.tree.branch, FrontCrown(outline, frame.camera), rng)
+        front = FrontTree(frame.tree.skeleton, frame.tree.branch, np.zeros(len(frame.tree), dtype=bool))
+        tree = lift(front, FrontCrown(outline, frame.camera), rng)
         return _LiftedSketch(Branched(tree, frame.tree.branch), outline, {})
     retrieved = with_depth(frame.tree, frame.side, frame.height_px, frame.camera)
     return _LiftedSketch(retrieved.tree, outline.with_side(frame.side.crown), retrieved.score)

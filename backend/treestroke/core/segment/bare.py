@@ -37,10 +37,12 @@ MIN_LEARNT = 200
 """Least number of pixels of the crown that teach what wood and background look like there."""
 MAX_ODDS = 6.0
 """Limit of the log odds in both directions."""
-
 MOST_COVER = 0.48
 """Greatest share of a bare crown that wood covers: over more, it cannot be told from the background (0.18 to 0.40 on 10
-photos where it can, 0.56 before a slope of its colours)."""
+photos where it can)."""
+LEAST_OF_TRUNK = 0.75
+"""Least share of the trunk under its stroke that must be found as wood (0.89 to 1 where wood can be told; 0.47 where a
+slope was taken for it)."""
 
 
 def wood_in_crown(foliage: Foliage, photo: Picture, trunk_px: Floats) -> Foliage | None:
@@ -51,7 +53,9 @@ def wood_in_crown(foliage: Foliage, photo: Picture, trunk_px: Floats) -> Foliage
     """
     alpha = wood_matte(photo, foliage.region, trunk_px)
     covered = alpha > HALF
-    if not covered.any() or covered[foliage.region].mean() > MOST_COVER:
+    trunk = foliage.region & _drawn(trunk_px, covered.shape, max(2, round(UNDER * max(covered.shape))))
+    is_told = not trunk.any() or covered[trunk].mean() > LEAST_OF_TRUNK
+    if not is_told or not covered.any() or covered[foliage.region].mean() > MOST_COVER:
         return None
     return replace(foliage, alpha=alpha, mask=covered, pure=covered)
 

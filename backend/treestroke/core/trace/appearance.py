@@ -56,6 +56,8 @@ class Surroundings:
         (h, w) mask of the leaves, or of the twigs of a bare tree: a limb may be hidden there.
     bare_wood
         (h, w) share of each pixel that wood covers in a bare crown; None in leaves.
+    broad
+        Whether its leaves are broad: shade between sprays of needles or scales makes lines like limbs.
     """
 
     leaf: Mixture | None
@@ -63,6 +65,7 @@ class Surroundings:
     crown: Mask
     foliage: Mask
     bare_wood: Opacity | None = None
+    broad: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,8 @@ from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.trace.appearance import MAX_ODDS, WoodOdds
 from treestroke.core.trace.centre_lines import thin
-from treestroke.core.trace.found_limbs import Window, chains, kept_pixels
+from treestroke.core.trace.crown_picture import Window
+from treestroke.core.trace.found_limbs import chains, kept_pixels
 from treestroke.core.trace.limb_paths import LONGEST_GAP, join_strokes, shortest_paths
 from treestroke.core.trace.ribbons import Ribbons
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
@@ -35,7 +36,6 @@ STEP_PX, STEADY_PX = 3.0, 1.0
 """Distance between joints along a twig, and standard deviation over which its pixels' steps are smoothed, px."""
 FINEST = 2.5e-4
 """Radius of the finest twig, as a share of the tree's height: a fourth of a pixel in a tree 1,000 px high."""
-
 TOLERANCE_PX = 0.25
 """Greatest distance by which simplification moves the line of a twig, px."""
 MOST_JOINTS = 6000
@@ -96,10 +96,9 @@ def _window(wood: Opacity, crown: Mask, below_px: int) -> tuple[Opacity, Window]
     x, y, width, height = cv2.boundingRect(crown.astype(np.uint8))
     height = min(height + below_px, crown.shape[0] - y)
     scale = min(MOST_ENLARGED, SIDE_PX / max(width, height))
-    size = max(1, round(width * scale)), max(1, round(height * scale))
-    cut = wood[y : y + height, x : x + width]
+    window = Window((x, y), (width, height), scale)
     how = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
-    return np.asarray(cv2.resize(cut, size, interpolation=how)), Window(np.array([x, y], dtype=np.float64), scale)
+    return np.asarray(cv2.resize(window.cut(wood), window.size, interpolation=how)), window
 
 
 def _slim(builder: SkeletonBuilder, share: Opacity, crown: Mask) -> None:

@@ -2,16 +2,16 @@
 
 from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.geometry.polyline import arc_lengths, resample
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.trace.limb_paths import LONGEST_GAP, Paths, join_strokes, shortest_paths
-from treestroke.core.trace.ribbons import find_ribbons
+from treestroke.core.trace.appearance import Odds
+from treestroke.core.trace.crown_picture import CrownPicture
+from treestroke.core.trace.limb_paths import Paths, join_strokes, shortest_paths
+from treestroke.core.trace.ribbons import Ribbons, find_ribbons
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 from treestroke.core.trace.snapping import blur
 from treestroke.core.trace.thickness import non_increasing
@@ -21,77 +21,26 @@ SEEN_SHARE = 0.4
 """Least length of wood that must be seen beyond a gap, relative to the gap: no limb goes on to a mere speck."""
 BUMP, BUMP_PX = 1.2, 2.0
 """A side branch no longer than this many half widths of the wood that it leaves, plus px, is a bump of the bark."""
-FINEST_SIDE = 800
-"""Long side, px, to which a larger crown is reduced: a stroke is answered at once."""
+APART_PX = 3.0
+"""Distance from a ribbon within which a line is the same limb, px."""
 STEP_PX, STEADY_PX = 4.0, 3.0
 """Distance between joints along a limb, and standard deviation over which its pixels' steps are smoothed, px."""
 
 
-@dataclass(frozen=True, eq=False)
-class CrownPicture:
-    """What a photo shows of limbs in a crown.
-
-    Attributes
-    ----------
-    odds, smooth
-        (h, w) log odds of wood, as they are and averaged over the grain of bark.
-    crown
-        (h, w) where limbs are looked for.
-    foliage
-        (h, w) where leaves may hide a limb.
-    """
-
-    odds: NDArray[np.float32]
-    smooth: NDArray[np.float32]
-    crown: Mask
-    foliage: Mask
-
-    def cut(self, below_px: int) -> tuple["CrownPicture", "Window"]:
-        """Return the part around the crown and ``below_px`` below it, reduced to `FINEST_SIDE`, and where it lies."""
-        x, y, width, height = cv2.boundingRect(self.crown.astype(np.uint8))
-        height = min(height + below_px, self.crown.shape[0] - y)
-        scale = min(1.0, FINEST_SIDE / max(width, height))
-        size = max(1, round(width * scale)), max(1, round(height * scale))
-
-        def reduced(part: NDArray[np.float32]) -> NDArray[np.float32]:
-            cut = part[y : y + height, x : x + width]
-            return np.asarray(cv2.resize(cut, size, interpolation=cv2.INTER_AREA) if scale < 1 else cut)
-
-        crown, foliage = (reduced(part.astype(np.float32)) > 0.5 for part in (self.crown, self.foliage))
-        part = CrownPicture(reduced(self.odds), reduced(self.smooth), crown, foliage)
-        return part, Window(np.array([x, y], dtype=np.float64), scale)
-
-
-@dataclass(frozen=True, eq=False)
-class Window:
-    """A part of a picture: the place (2,) of its upper left corner, px, and by how much it is reduced, 1 or less."""
-
-    corner: Floats
-    scale: float
-
-    def inside(self, points: Floats) -> Floats:
-        """Return points (n, 2) of the picture, px, in the window's px."""
-        return np.asarray((points - self.corner) * self.scale)
-
-    def outside(self, points: Floats) -> Floats:
-        """Return points (n, 2) of the window, px, in the picture's px."""
-        return np.asarray(points / self.scale + self.corner)
-
-
-def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, height_px: float, thinnest_px: float) -> None:
+def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, odds: Odds, smooth: Odds, thinnest_px: float) -> None:
     """Add the limbs that are seen in a crown to a skeleton, px, that holds the strokes' lines.
 
-    They are ``thinnest_px`` thick at least (a radius), fall outward and are nowhere thicker than their parent.
+    Wood is told by log odds (h, w) over the photo, as they are and averaged over the grain of bark (``smooth``). Limbs
+    are ``thinnest_px`` thick at least (a radius), fall outward and are nowhere thicker than their parent.
     """
-    around, window = picture.cut(round(LONGEST_GAP * height_px))
-    small_px = height_px * window.scale
-    ribbons = find_ribbons(around.odds, around.smooth, around.crown, small_px)
+    window, height_px = picture.window, picture.height_px
+    ribbons = _ribbons(picture, window.reduced(odds), window.reduced(smooth))
     if not len(ribbons.pixels):
         return
     drawn = builder.skeleton()
     strokes = Skeleton(window.inside(drawn.points), drawn.radii * window.scale, drawn.parents)
-    network = join_strokes(ribbons, strokes, around.crown.shape)
-    paths = shortest_paths(network, around.foliage, small_px)
+    network = join_strokes(ribbons, strokes, picture.crown.shape)
+    paths = shortest_paths(network, picture.foliage, height_px)
     points = window.outside(network.ribbons.points)
     half_widths = network.ribbons.half_widths / window.scale
     joint_at = np.full(len(points), -1)
@@ -106,6 +55,21 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, height_px: float
         before = len(builder.points)
         builder.add_chain(joint, even, radii, stroke=-1)
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
+
+
+def _ribbons(picture: CrownPicture, odds: Odds, smooth: Odds) -> Ribbons:
+    """Find the ribbons of wood in a crown by log odds (h, w); where colours do not show them, as lines."""
+    ribbons, are_shown = find_ribbons(odds, smooth, picture.crown, picture.height_px)
+    pieces = None if are_shown else picture.pieces(smooth)
+    if pieces is None:
+        return ribbons
+    drawn = np.ones(picture.crown.shape, dtype=np.uint8)
+    drawn[tuple(ribbons.pixels.T)] = 0
+    apart = cv2.distanceTransform(drawn, cv2.DIST_L2, 5)[tuple(pieces.pixels.T)] > APART_PX
+    return Ribbons(
+        np.concatenate([ribbons.pixels, pieces.pixels[apart]]),
+        np.concatenate([ribbons.half_widths, pieces.half_widths[apart]]),
+    )
 
 
 def kept_pixels(paths: Paths, half_widths: Floats) -> tuple[Mask, Floats]:

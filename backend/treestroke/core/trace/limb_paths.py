@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.trace.centre_lines import neighbours
@@ -19,8 +20,9 @@ from treestroke.core.types import Floats, Indices, Mask
 
 ON_WOOD = 0.3
 """Cost of a step along wood, relative to a straight gap of the same length behind leaves."""
-ASLANT, UNCOVERED = 3.0, 4.0
-"""What a gap costs more, relative, if it lies across the ribbon behind it, and if no leaves cover it."""
+ASLANT, UNCOVERED, BACKWARD = 3.0, 4.0, 4.0
+"""What a gap costs more, relative, if it lies across the ribbon behind it, if no leaves cover it, and if it leads back
+along the stroke that it leaves: limbs leave a stem forward, seldom toward its root."""
 LONGEST_GAP = 0.12
 """Longest gap, as a share of the tree's height."""
 HEADING_PX = 12
@@ -33,10 +35,19 @@ _COARSE = 2
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """Ribbons (n pixels) together with the strokes' lines, and which pixels (n,) belong to strokes."""
+    """Ribbons (n pixels) together with the strokes' lines.
+
+    Attributes
+    ----------
+    stroked
+        (n,) which pixels belong to strokes.
+    onward
+        (n, 2) unit direction in which a stroke's line goes on there; 0 beside the lines.
+    """
 
     ribbons: Ribbons
     stroked: Mask
+    onward: Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,12 +71,14 @@ class Paths:
 
 def join_strokes(ribbons: Ribbons, strokes: Skeleton, shape: tuple[int, int]) -> Network:
     """Draw the strokes' lines (2D, px) into the ribbons of a picture (h, w); ribbons in their wood become theirs."""
-    line, width = np.zeros(shape, dtype=np.uint8), np.zeros(shape, dtype=np.float32)
+    line, drawn = np.zeros(shape, dtype=np.uint8), np.zeros((*shape, 3), dtype=np.float32)
     ends = np.floor(strokes.points).astype(np.int64).tolist()
     for joint, parent in enumerate(strokes.parents.tolist()):
         if parent >= 0:
+            right, down = unit(strokes.points[joint] - strokes.points[parent], np.zeros(2)).tolist()
             cv2.line(line, ends[parent], ends[joint], 1)
-            cv2.line(width, ends[parent], ends[joint], float(strokes.radii[joint]))
+            cv2.line(drawn, ends[parent], ends[joint], (float(strokes.radii[joint]), right, down))
+    width, onward = drawn[..., 0].copy(), drawn[..., 1:]
     away, nearest = cv2.distanceTransformWithLabels(1 - line, cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)
     radius = np.zeros(int(nearest.max()) + 1)
     radius[nearest[line > 0]] = width[line > 0]
@@ -77,7 +90,7 @@ def join_strokes(ribbons: Ribbons, strokes: Skeleton, shape: tuple[int, int]) ->
     line[at] = 1
     pixels = np.argwhere(line)
     at = tuple(pixels.T)
-    return Network(Ribbons(pixels, width[at].astype(np.float64)), stroked[at])
+    return Network(Ribbons(pixels, width[at].astype(np.float64)), stroked[at], onward[at].astype(np.float64))
 
 
 def shortest_paths(network: Network, leafy: Mask, height_px: float) -> Paths:
@@ -106,9 +119,11 @@ def _gaps(network: Network, leafy: Mask, longest_px: float) -> list[tuple[int, i
     places = points[borders[:, 0]] + np.linspace(0.0, 1.0, 9)[1:-1, None, None] * way
     uncovered = 1.0 - sample_nearest(leafy, places, False).mean(axis=0)
     heading, found = headings(network.ribbons, HEADING_PX), []
-    for start, end in (borders.T, borders.T[::-1]):
-        aslant = 1.0 - np.abs((way / length[:, None] * heading[end]).sum(axis=1))
-        cost = length * (1.0 + ASLANT * aslant + UNCOVERED * uncovered)
+    forth = way / length[:, None]
+    for start, end, along in ((*borders.T, forth), (*borders.T[::-1], -forth)):
+        aslant = 1.0 - np.abs((along * heading[end]).sum(axis=1))
+        backward = np.maximum(-(along * network.onward[start]).sum(axis=1), 0.0)
+        cost = length * (1.0 + ASLANT * aslant + UNCOVERED * uncovered + BACKWARD * backward)
         order = np.lexsort([cost, piece[end], piece[start]])
         pairs = np.column_stack([piece[start], piece[end]])[order]
         best = order[np.append(True, (np.diff(pairs, axis=0) != 0).any(axis=1))]

@@ -51,8 +51,10 @@ class Ribbons:
         return self.pixels[:, ::-1].astype(np.float64) + 0.5
 
 
-def find_ribbons(odds: NDArray[np.float32], smooth: NDArray[np.float32], crown: Mask, height_px: float) -> Ribbons:
-    """Find the ribbons of wood inside a crown (h, w) of a tree ``height_px`` high.
+def find_ribbons(
+    odds: NDArray[np.float32], smooth: NDArray[np.float32], crown: Mask, height_px: float
+) -> tuple[Ribbons, bool]:
+    """Find the ribbons of wood inside a crown (h, w) of a tree ``height_px`` high, and tell whether colours show them.
 
     Wood is told by log odds (h, w), as they are and averaged over the grain of bark (``smooth``).
     """
@@ -68,7 +70,7 @@ def find_ribbons(odds: NDArray[np.float32], smooth: NDArray[np.float32], crown: 
     lines &= ((length > shortest) & (length**2 > ELONGATION * area))[labels]
     inward = cv2.distanceTransform(wood.astype(np.uint8), cv2.DIST_L2, 5)
     found = Ribbons(np.argwhere(lines), np.maximum(inward[lines].astype(np.float64) - 0.5, 0.5))
-    return _clear(found, smooth, height_px) if len(found.pixels) else found
+    return _clear(found, smooth, height_px) if len(found.pixels) else (found, False)
 
 
 def headings(ribbons: Ribbons, reach_px: int) -> Floats:
@@ -89,8 +91,11 @@ def headings(ribbons: Ribbons, reach_px: int) -> Floats:
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _clear(ribbons: Ribbons, smooth: NDArray[np.float32], height_px: float) -> Ribbons:
-    """Keep the clear and long parts of ribbons, by `CLEAR`; the more of all is clear, the less is asked of each."""
+def _clear(ribbons: Ribbons, smooth: NDArray[np.float32], height_px: float) -> tuple[Ribbons, bool]:
+    """Keep the clear and long parts of ribbons, by `CLEAR`; the more of all is clear, the less is asked of each.
+
+    Tell, too, whether so much is clear that colours show limbs.
+    """
     low = ribbons.pixels.min(axis=0)
     at = tuple((ribbons.pixels - low).T)
     lines = np.zeros(ribbons.pixels.max(axis=0) - low + 1, dtype=np.float64)
@@ -105,7 +110,7 @@ def _clear(ribbons: Ribbons, smooth: NDArray[np.float32], height_px: float) -> R
     lines[tuple(part[clear] for part in at)] = 1.0
     _, labels = cv2.connectedComponents(lines.astype(np.uint8), connectivity=8)
     clear &= np.bincount(labels.ravel())[labels[at]] > height_px * np.interp(share, shares, lengths)
-    return Ribbons(ribbons.pixels[clear], ribbons.half_widths[clear])
+    return Ribbons(ribbons.pixels[clear], ribbons.half_widths[clear]), bool(share >= shares[-1])
 
 
 def _clearness(ribbons: Ribbons, smooth: NDArray[np.float32]) -> Floats:

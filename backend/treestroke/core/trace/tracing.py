@@ -4,7 +4,7 @@ Source: Tan et al. 2008, section 2. Strokes are pulled onto the branches in the 
 ribbons of wood, radii are measured where the photo shows them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -17,8 +17,9 @@ from treestroke.core.stroke_rules import TOUCH_SHARE, is_stem
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
 from treestroke.core.trace.bare_crown import TOLERANCE_PX, find_twigs, odds_of_share
+from treestroke.core.trace.crown_picture import CrownPicture
 from treestroke.core.trace.foot import flared
-from treestroke.core.trace.found_limbs import CrownPicture, find_limbs
+from treestroke.core.trace.found_limbs import find_limbs
 from treestroke.core.trace.giant import fork_of, is_giant, upright
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
@@ -80,6 +81,8 @@ class Traced:
         (n,) mask of the joints whose radius the photo shows.
     wood
         (h, w) mask of the pixels that have the colours of branches.
+    picture
+        What the crown shows of limbs, whatever strokes are drawn.
     whole
         Whether all wood of a bare crown was traced.
     """
@@ -88,13 +91,14 @@ class Traced:
     stroke: Indices
     measured: Mask
     wood: Mask
+    picture: CrownPicture
     whole: bool = False
 
     @property
     def stroked(self) -> "Traced":
         """The branches that follow a stroke, without those that were found beside them."""
         skeleton, joints = subskeleton(self.skeleton, self.stroke >= 0)
-        return Traced(skeleton, self.stroke[joints], self.measured[joints], self.wood)
+        return replace(self, skeleton=skeleton, stroke=self.stroke[joints], measured=self.measured[joints])
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,14 +121,15 @@ def trace_branches(
     photo: Picture,
     strokes: Strokes,
     surroundings: Surroundings,
-    height_px: float,
+    picture: CrownPicture,
     params: TraceParams = TraceParams(),
 ) -> Traced:
     """Trace the branches under and beside the branch strokes (one at least) of a photo (h, w, 3), sRGB.
 
-    ``height_px`` is the tree's height, px. Every stroke is followed over its whole length; branches found beside the
-    strokes are connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
+    ``picture`` shows its crown. Every stroke is followed over its whole length; branches found beside the strokes are
+    connected with them. Source: Tan et al. 2008, section 2, "Visible branch tracing".
     """
+    height_px = picture.tree_px
     unit = max(photo.shape[:2]) / REFERENCE_SIDE
     bare_wood, lines = surroundings.bare_wood, [stroke.points for stroke in strokes.branches]
     odds = wood_odds(photo, lines, max(1.0, 2.0 * unit), surroundings)
@@ -137,14 +142,13 @@ def trace_branches(
     evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
     _follow_strokes(builder, strokes.branches, evidence, params)
     if bare_wood is None:
-        picture = CrownPicture(odds.by_crown, smooth, surroundings.crown, surroundings.foliage)
-        find_limbs(builder, picture, height_px, params.thinnest_px * height_px / REFERENCE_SIDE)
+        find_limbs(builder, picture, odds.by_crown, smooth, params.thinnest_px * height_px / REFERENCE_SIDE)
     else:
         find_twigs(builder, bare_wood, surroundings.crown, height_px)
     skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
     tolerance_px = params.tolerance_share * height_px if bare_wood is None else TOLERANCE_PX
     skeleton, stroke = simplify(skeleton, stroke, tolerance_px)
-    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood, bare_wood is not None)
+    return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood, picture, bare_wood is not None)
 
 
 def _smoothed(odds: Odds, unit: float) -> Odds:
