@@ -78,3 +78,20 @@ def test_mixed_pixels_follow_from_the_colours_beside_them() -> None:
     truth = np.tile(np.clip((np.arange(SIZE) - 146) / 8, 0, 1).astype(np.float32), (SIZE, 1))
     rough = (truth > 0.01).astype(np.float32)
     assert np.abs(matte(composed(truth), rough) - truth).mean() < 0.02
+
+
+def test_windows_of_a_wall_behind_a_thin_crown_are_none_of_it() -> None:
+    """Panes are neither the wall's colour nor the leaves', and lie aside of all mixtures of both."""
+    wall, pane = (205, 190, 150), (75, 85, 100)
+    house = np.full((SIZE, SIZE, 3), wall, float)
+    panes = np.zeros((SIZE, SIZE), dtype=bool)
+    for row in range(20, SIZE, 70):
+        for column in range(20, SIZE, 60):
+            panes[row : row + 34, column : column + 26] = True
+    house[panes] = pane
+    truth = sprinkled(0.5)
+    photo = noisy(truth[..., None] * np.array((190, 160, 40), float) + (1 - truth[..., None]) * house, 5.0)
+    alpha = segment_foliage(photo, ring(110, (150.0, 150.0))).alpha
+    seen = panes & disc(SIZE, 95) & (truth < 0.05)
+    assert (alpha[seen] > 0.5).mean() < 0.1
+    assert (alpha[disc(SIZE, 95) & (truth > 0.95)] > 0.5).mean() > 0.95

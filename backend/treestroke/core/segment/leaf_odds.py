@@ -34,7 +34,7 @@ SPANNED = 0.03
 keeps what looks like a leaf, so that window panes would seem commoner in a crown than the wall around them."""
 THROUGH = 0.7
 """Greatest share of the foliage found that is taken for background seen through it."""
-COMMON = 0.4
+COMMON = 0.33
 """Share of the colours beside a crown, those that are rarest in it, by which that share is judged: they are no
 leaves, so that they are seen through gaps alone."""
 ALIKE, APART = 0.75, 0.85
