@@ -29,9 +29,10 @@ from treestroke.core.types import Floats, Indices, Mask, Picture
 
 REFERENCE_SIDE = 1500
 """Long side of a photo to which pixel figures refer, px."""
-CLEAR = 0.7
-"""Share of a stem below the crown where its width must be seen by the colours of wood for its foot to be looked at
-(0.78 and more on 27 photos; less where a trunk is hidden or all around it has its colours)."""
+CLEAR, BULKY = 0.7, 1.3
+"""Share of a stem below the crown where its width must be seen by the colours of wood, up to such a multiple of the
+greatest usual one, for its foot to be looked at (0.78 and more on 28 photos; less where all around it has its colours).
+"""
 STEADY = 4.0
 """Standard deviation, in steps of a line, over which its place in the wood is averaged."""
 GRAIN = 1.5
@@ -182,7 +183,7 @@ def _stem(line: Floats, ground: float, evidence: _Evidence, params: TraceParams)
     centred[0, 1] = ground
     bare = np.logical_and.accumulate(~sample_nearest(evidence.crown, centred, False))
     sides = half_widths(centred, evidence.wood, widest)
-    seen = ~np.isnan(sides[0][bare])
+    seen = ~np.isnan(half_widths(centred[bare], evidence.wood, BULKY * widest)[0]) if bare.any() else bare[:0]
     halves, _ = to_edges(centred, _assumed(sides, bare, params.trunk_share * height_px), evidence.photo, widest)
     if is_giant(centred[bare], evidence.wood, widest, height_px):
         centred, level = upright(centred, bare, evidence.wood, height_px)
