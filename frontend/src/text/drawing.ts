@@ -111,6 +111,7 @@ export const drawingText = {
       line_removed: 'A pole or wire before the crown was left out. A branch line along it makes it a branch.',
       stroke_turned: 'The trunk was drawn from the top down. It was turned.',
       trunk_completed: 'Something hides the foot of the trunk. It goes on to the ground.',
+      trunk_lengthened: 'The trunk line began above the ground. It was made longer.',
       trunk_moved: 'The trunk line was moved onto the trunk.',
     },
     /** Warnings that a stroke may mean no tree, by their codes. */

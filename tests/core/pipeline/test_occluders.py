@@ -78,3 +78,16 @@ def test_a_trunk_behind_a_hedge_goes_on_to_the_ground_as_wide_as_above(through: 
     assert ("trunk_completed" in [one.code for one in seen.warnings]) == (not through)
     reading = grow_tree(seen, ModelSettings(iterations=0), np.random.default_rng(0)).reading
     assert reading.completed == (() if through else ("foot",))
+
+
+def test_a_trunk_stroke_that_begins_above_the_foot_goes_on_down_the_visible_trunk() -> None:
+    photo, strokes = load_photo(EXAMPLES / "oak_02.jpg"), load_strokes(EXAMPLES / "oak_02.strokes.json")
+    whole = read_photo(photo, strokes)
+    trunk = strokes.branches[0].points
+    rows = np.linspace(trunk[0, 1] - 0.08 * whole.height_px, trunk[-1, 1], 30)
+    short = Stroke(np.column_stack([np.interp(-rows, -trunk[:, 1], trunk[:, 0]), rows]))
+    seen = read_photo(photo, replace(strokes, branches=(short, *strokes.branches[1:])), whole)
+    assert seen.traced is not None
+    assert seen.traced.skeleton.points[0] == pytest.approx(trunk[0], abs=0.02 * whole.height_px)
+    assert "trunk_lengthened" in [one.code for one in seen.warnings]
+    assert "trunk_lengthened" not in [one.code for one in whole.warnings]

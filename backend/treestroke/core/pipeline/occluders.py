@@ -1,4 +1,4 @@
-"""What stands before a tree: poles and wires are painted over, a hidden trunk goes on down to the ground."""
+"""What stands before a tree: poles and wires are painted over, a trunk goes on down to the ground."""
 
 from dataclasses import replace
 
@@ -10,6 +10,8 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.hidden_foot import hidden_ground
 from treestroke.core.trace.tracing import Traced
+from treestroke.core.trace.visible_foot import visible_foot
+from treestroke.core.types import Floats
 
 
 def without_lines(working: WorkingCopy, known: WorkingCopy | None = None) -> WorkingCopy:
@@ -37,28 +39,40 @@ def lines_notice(working: WorkingCopy) -> tuple[StrokeWarning, ...]:
 
 
 def on_the_ground(working: WorkingCopy, traced: Traced, height_px: float) -> tuple[WorkingCopy, Traced]:
-    """Return both with all stems going on to the ground, where a hedge, fence or car hides the trunk's foot.
+    """Return both with all stems going on down to the ground, where the trunk's stroke begins above it.
 
-    ``height_px`` is the height of the visible tree. What is added keeps the width of the stem above.
+    It does so if the photo shows the trunk to go on, and if a hedge, fence or car hides its foot. ``height_px`` is the
+    height of the visible tree. What is added keeps the width of the stem above.
     """
     trunk, *others = working.strokes.branches
-    ground = None if working.cut_out is not None else hidden_ground(working.photo, trunk.points[0], height_px)
-    if ground is None:
+    root, radii = trunk.points[0], traced.skeleton.radii[traced.stroke == 0]
+    if working.cut_out is not None:
         return working, traced
-    x, end = trunk.points[0]
-    longer = replace(trunk, points=np.vstack([[x, ground], trunk.points]))
-    by = f"{(ground - end) / working.frame.scale:.0f} px"
-    detail = f"something hides its foot, and it goes on to the ground, by {by}; draw it to where it stands"
-    warning = StrokeWarning("trunk_completed", "branches/0", detail)
+    seen = visible_foot(traced.wood, root, float(np.median(radii[: len(radii) // 4 + 2])), height_px)
+    ground = hidden_ground(working.photo, root if seen is None else seen, height_px)
+    foot = seen if ground is None else np.array([root[0] if seen is None else seen[0], ground])
+    if foot is None:
+        return working, traced
+    warning = _foot_notice(ground is not None, (foot[1] - root[1]) / working.frame.scale)
+    longer = replace(trunk, points=np.vstack([foot, trunk.points]))
     strokes = replace(working.strokes, branches=(longer, *others))
-    return replace(working, strokes=strokes, warnings=(*working.warnings, warning)), _standing(traced, ground)
+    return replace(working, strokes=strokes, warnings=(*working.warnings, warning)), _standing(traced, foot)
 
 
-def _standing(traced: Traced, ground: float) -> Traced:
-    """Return traced branches with a joint at the row of the ground, px, below each root."""
+def _foot_notice(hidden: bool, added_px: float) -> StrokeWarning:
+    """Return the warning that a trunk goes on to the ground, by ``added_px`` px of the photo."""
+    added = f"goes on to the ground, by {added_px:.0f} px; draw it to where it stands"
+    if hidden:
+        return StrokeWarning("trunk_completed", "branches/0", f"something hides its foot, and it {added}")
+    return StrokeWarning("trunk_lengthened", "branches/0", f"it begins above the trunk's foot, and {added}")
+
+
+def _standing(traced: Traced, foot: Floats) -> Traced:
+    """Return traced branches with a joint at the ground below each root, the first one's at a ``foot`` (2,), px."""
     wood = traced.skeleton
     roots = np.flatnonzero(wood.parents < 0)
-    feet = np.column_stack([wood.points[roots, 0], np.maximum(wood.points[roots, 1], ground)])
+    aside = foot[0] - wood.points[0, 0]
+    feet = np.column_stack([wood.points[roots, 0] + aside, np.maximum(wood.points[roots, 1], foot[1])])
     parents = wood.parents + len(roots)
     parents[roots] = np.arange(len(roots))
     skeleton = Skeleton(
