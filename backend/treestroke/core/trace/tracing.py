@@ -93,7 +93,7 @@ class Traced:
     measured
         (n,) mask of the joints whose radius the photo shows.
     wood
-        (h, w) mask of the pixels that have the colours of branches.
+        (h, w) mask of the pixels that have the colours of branches, or lie on a limb that is seen.
     picture
         What the crown shows of limbs, whatever strokes are drawn.
     """
@@ -155,7 +155,8 @@ def trace_branches(
     sure_wood = _smoothed(odds.by_strokes, unit) > 0
     evidence = _Evidence(odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
     _follow_strokes(builder, strokes.branches, evidence, params)
-    find_limbs(builder, picture, odds.by_crown, smooth, params.thinnest_px * height_px / REFERENCE_SIDE)
+    thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
+    wood |= find_limbs(builder, picture, odds.by_crown, smooth, thinnest_px)
     skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
     skeleton, stroke = simplify(skeleton, stroke, params.tolerance_share * height_px)
     return Traced(skeleton, stroke, _on_wood(skeleton, wood), wood, picture)
