@@ -23,7 +23,8 @@ def traced(wood: np.ndarray, foliage: np.ndarray = EVERYWHERE, crown: np.ndarray
     odds = np.where(wood, 3.0, -3.0).astype(np.float32)
     smooth = np.asarray(cv2.GaussianBlur(odds, (0, 0), 0.7))
     picture = CrownPicture(Window((0, 0), (400, 400), 1.0), crown, foliage, 380.0, None)
-    find_limbs(builder, picture, odds, smooth, 0.5)
+    seen = find_limbs(builder, picture, odds, smooth, 0.5)
+    assert not (seen & (cv2.dilate(wood.astype(np.uint8), np.ones((3, 3))) == 0)).any()
     return builder
 
 

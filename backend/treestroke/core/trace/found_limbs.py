@@ -27,16 +27,17 @@ STEP_PX, STEADY_PX = 4.0, 3.0
 """Distance between joints along a limb, and standard deviation over which its pixels' steps are smoothed, px."""
 
 
-def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, odds: Odds, smooth: Odds, thinnest_px: float) -> None:
+def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, odds: Odds, smooth: Odds, thinnest_px: float) -> Mask:
     """Add the limbs that are seen in a crown to a skeleton, px, that holds the strokes' lines.
 
     Wood is told by log odds (h, w) over the photo, as they are and averaged over the grain of bark (``smooth``). Limbs
-    are ``thinnest_px`` thick at least (a radius), fall outward and are nowhere thicker than their parent.
+    are ``thinnest_px`` thick at least (a radius), fall outward and are nowhere thicker than their parent. Return where
+    (h, w) they are seen.
     """
     window, height_px = picture.window, picture.height_px
     ribbons = _ribbons(picture, window.reduced(odds), window.reduced(smooth))
     if not len(ribbons.pixels):
-        return
+        return np.zeros(odds.shape, dtype=bool)
     drawn = builder.skeleton()
     strokes = Skeleton(window.inside(drawn.points), drawn.radii * window.scale, drawn.parents)
     network = join_strokes(ribbons, strokes, picture.crown.shape)
@@ -44,7 +45,8 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, odds: Odds, smoo
     points = window.outside(network.ribbons.points)
     half_widths = network.ribbons.half_widths / window.scale
     joint_at = np.full(len(points), -1)
-    for chain in chains(paths, *kept_pixels(paths, network.ribbons.half_widths)):
+    kept, beyond = kept_pixels(paths, network.ribbons.half_widths)
+    for chain in chains(paths, kept, beyond):
         first = int(joint_at[chain[0]])
         joint = first if first >= 0 else int(np.linalg.norm(drawn.points - points[chain[0]], axis=1).argmin())
         line = np.vstack([builder.points[joint], points[chain[1:]]])
@@ -55,6 +57,15 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, odds: Odds, smoo
         before = len(builder.points)
         builder.add_chain(joint, even, radii, stroke=-1)
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
+    return _drawn(points[kept], half_widths[kept], odds.shape)
+
+
+def _drawn(points: Floats, half_widths: Floats, shape: tuple[int, ...]) -> Mask:
+    """Draw ribbons, by points (n, 2) of their centre lines and their half widths (n,), px, into a picture (h, w)."""
+    wood = np.zeros(shape, dtype=np.uint8)
+    for (x, y), half_width in zip(points.tolist(), half_widths.tolist(), strict=True):
+        cv2.circle(wood, (int(x), int(y)), max(1, int(half_width)), 1, cv2.FILLED)
+    return wood > 0
 
 
 def _ribbons(picture: CrownPicture, odds: Odds, smooth: Odds) -> Ribbons:

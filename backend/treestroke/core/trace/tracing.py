@@ -81,7 +81,7 @@ class Traced:
     measured
         (n,) mask of the joints whose radius the photo shows.
     wood
-        (h, w) mask of the pixels that have the colours of branches.
+        (h, w) mask of the pixels that have the colours of branches, or lie on a limb that is seen.
     picture
         What the crown shows of limbs, whatever strokes are drawn.
     whole
@@ -143,7 +143,8 @@ def trace_branches(
     evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
     _follow_strokes(builder, strokes.branches, evidence, params)
     if bare_wood is None:
-        find_limbs(builder, picture, odds.by_crown, smooth, params.thinnest_px * height_px / REFERENCE_SIDE)
+        thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
+        wood |= find_limbs(builder, picture, odds.by_crown, smooth, thinnest_px)
     else:
         find_twigs(builder, bare_wood, surroundings.crown, height_px)
     skeleton, stroke = _erase(builder.skeleton(), np.array(builder.stroke), strokes.erase)
