@@ -10,8 +10,9 @@ from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.dressing import OwnPictures
+from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, ignore_grown
-from treestroke.core.pipeline.growing import grow_tree, read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.pipeline.sketching import grow_sketches, read_sketches

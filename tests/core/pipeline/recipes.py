@@ -3,8 +3,9 @@
 import numpy as np
 
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures
+from treestroke.core.pipeline.evidence import PhotoEvidence
 from treestroke.core.pipeline.finishing import TreeModel, finish
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sketching import SketchEvidence, grow_sketches
 from treestroke.core.progress import Report, silent

@@ -4,7 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
+from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes

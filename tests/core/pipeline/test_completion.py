@@ -8,8 +8,9 @@ from tests.core.pipeline.recipes import model_photo
 
 from treestroke.core.geometry.silhouette import overlap, silhouette
 from treestroke.core.pipeline.completion import completed
+from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
 from treestroke.core.pipeline.finishing import TreeModel
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Length, Stroke, Strokes
 from treestroke.service.loading import load_photo, load_strokes

@@ -12,7 +12,7 @@ import treestroke
 from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.paint.atlas import tile_labs
 from treestroke.core.pipeline.dressing import OwnPictures
-from treestroke.core.pipeline.growing import read_photo
+from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.service.loading import load_photo, load_strokes
 from treestroke.service.model import Model

@@ -7,7 +7,8 @@ from tests.core.pipeline.recipes import model_photo
 
 from treestroke.codec.image import decode_photo
 from treestroke.codec.strokes import parse_strokes
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
+from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Sketch, Stroke
 

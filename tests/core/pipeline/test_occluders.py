@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from tests.conftest import EXAMPLES
 
-from treestroke.core.pipeline.growing import grow_tree, read_photo
+from treestroke.core.pipeline.evidence import read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.service.loading import load_photo, load_strokes

@@ -9,7 +9,8 @@ from tests.conftest import DATA
 from tests.pieces import touching_pieces
 
 from treestroke.core.mesh.tubes import tubes
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_tree, read_photo
+from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Stroke, Strokes

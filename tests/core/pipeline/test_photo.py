@@ -6,8 +6,8 @@ import pytest
 from tests.conftest import DATA, EXAMPLES
 from tests.core.pipeline.recipes import model_photo
 
+from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.finishing import TreeModel
-from treestroke.core.pipeline.growing import read_photo
 from treestroke.core.pipeline.photo import trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import Stroke, Strokes

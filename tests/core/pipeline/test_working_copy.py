@@ -5,7 +5,8 @@ from tests.core.conftest import SKY
 from tests.core.pipeline.test_completion import strokes
 
 from treestroke.core.geometry.silhouette import overlap
-from treestroke.core.pipeline.growing import grow_tree, read_photo
+from treestroke.core.pipeline.evidence import read_photo
+from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.photo import trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.working_copy import LEAST_SIDE, WORKING_SIDE, working_copy

@@ -4,7 +4,7 @@ from tests.conftest import DATA
 from tests.pictures import SKY, disc, leaves_on_sky, noisy, ring
 
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.pipeline.growing import read_photo
+from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.segment.contrast import stands_out
 from treestroke.core.strokes import Stroke, Strokes
 from treestroke.service.loading import load_photo, load_strokes

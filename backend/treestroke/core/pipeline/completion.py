@@ -149,6 +149,11 @@ def completed(working: WorkingCopy, foliage: Foliage, traced: Traced, crown: Mas
     )
 
 
+def touches_edge(mask: Mask) -> bool:
+    """Tell whether a mask (h, w) touches an edge beyond which a crown is completed; closed gaps do not change that."""
+    return bool(mask[:BAND_PX].any() or mask[:, :BAND_PX].any() or mask[:, -BAND_PX:].any())
+
+
 def _axis(working: WorkingCopy) -> float:
     """Return the trunk's mean column, px."""
     trunk = working.strokes.branches[0].points

@@ -4,7 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.pipeline.growing import PhotoEvidence, grow_live_tree, read_photo
+from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
+from treestroke.core.pipeline.growing import grow_live_tree
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
