@@ -22,7 +22,7 @@ def seen(scale: int = 1, broad: bool = True) -> tuple[CrownPicture, np.ndarray]:
     grey[wood_mask([(LIMB, 5.0)], SIZE, SIZE)] -= 80.0
     photo = np.repeat(np.clip(grey, 0, 255).astype(np.uint8)[..., None], 3, axis=2)
     photo, crown = (cv2.resize(part, None, fx=scale, fy=scale) for part in (photo, CROWN.astype(np.uint8)))
-    around = Surroundings(COLOURS, COLOURS, crown > 0, crown > 0, broad)
+    around = Surroundings(COLOURS, COLOURS, crown > 0, crown > 0, broad=broad)
     picture = see_crown(np.asarray(photo), around, HEIGHT * scale)
     return picture, np.zeros(picture.crown.shape, dtype=np.float32)
 

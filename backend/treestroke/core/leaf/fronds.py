@@ -13,8 +13,8 @@ from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Mask
 
-HALF_SIDE = 0.13
-"""Half the side of a card that shows a piece of a frond, as a share of the frond's length."""
+HALF_SIDE = 0.165
+"""Half the side of a card that shows a piece of a frond, as a share of the frond's length (judged on five palms)."""
 PROFILE = ((0.0, 0.1, 0.4, 0.8, 1.0), (0.25, 0.75, 1.0, 0.8, 0.3))
 """Size of the pieces along a frond: places, 0 to 1, and factors."""
 BARE_FOOT = 0.08
