@@ -28,9 +28,10 @@ ACROSS_PX = 3
 """Length along a line over which a single place of it is compared with both sides, px."""
 HALF_WIDTHS = (0.5, 1.5, 3.0)
 """Half widths of the limbs that are looked for, px of a crown so reduced."""
-FAINT, CLEAR = 2.5, 4.5
+FAINT, CLEAR = 2.5, 4.7
 """How rarely texture makes such a line, as powers of ten in both layers together: at every place of a piece of limb,
-and in its mean. Judged on 5 photos with limbs marked by eye and 8 in which hardly any are seen."""
+and in its mean. Judged on 6 photos with limbs that were marked by eye and 8 in which hardly any are seen: at 4.5,
+branches are drawn through leaves of one colour; at 5, most limbs are lost."""
 SHORTEST = 0.08
 """Least extent of a piece, as a share of the tree's height."""
 _ZERO = 2 * CONTRAST - 1
