@@ -13,6 +13,9 @@ from treestroke.core.trace.tracing import Traced
 from treestroke.core.trace.visible_foot import visible_foot
 from treestroke.core.types import Floats
 
+LOW = 0.1
+"""Length of a stem above its root that tells how thick it is there, as a share of the tree's height."""
+
 
 def without_lines(working: WorkingCopy, known: WorkingCopy | None = None) -> WorkingCopy:
     """Return the working copy with the poles and wires before the crown painted over, once the trunk is drawn.
@@ -45,10 +48,11 @@ def on_the_ground(working: WorkingCopy, traced: Traced, height_px: float) -> tup
     height of the visible tree. What is added keeps the width of the stem above.
     """
     trunk, *others = working.strokes.branches
-    root, radii = trunk.points[0], traced.skeleton.radii[traced.stroke == 0]
     if working.cut_out is not None:
         return working, traced
-    seen = visible_foot(traced.wood, root, float(np.median(radii[: len(radii) // 4 + 2])), height_px)
+    root, wood = trunk.points[0], traced.skeleton
+    low = (traced.stroke == 0) & (root[1] - wood.points[:, 1] <= LOW * height_px)
+    seen = visible_foot(traced.wood, root, float(np.median(wood.radii[low])), height_px)
     ground = hidden_ground(working.photo, root if seen is None else seen, height_px)
     foot = seen if ground is None else np.array([root[0] if seen is None else seen[0], ground])
     if foot is None:

@@ -37,6 +37,8 @@ STEADY = 4.0
 """Standard deviation, in steps of a line, over which its place in the wood is averaged."""
 GRAIN = 1.5
 """Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
+BESIDE = 0.5
+"""A stem begins where its stroke does, up to this share of its radius beside the middle of the wood."""
 
 
 @dataclass(frozen=True)
@@ -168,7 +170,7 @@ def _follow_strokes(
     for index, stroke in enumerate(branches):
         line, parent = snap(stroke.points, smooth_odds, reach, step), -1
         if is_stem(stroke, branches[:index], height_px, TOUCH_SHARE * max(evidence.wood.shape)):
-            line, radii = _stem(line, float(stroke.points[0, 1]), evidence, params)
+            line, radii = _stem(line, stroke.points[0], evidence, params)
         else:
             parent, line, radii = _limb(builder, line, evidence, params)
         if stroke.width is not None:
@@ -177,11 +179,14 @@ def _follow_strokes(
         builder.add_chain(parent, line, radii, stroke=index)
 
 
-def _stem(line: Floats, ground: float, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
-    """Return the line (n, 2) and the radii (n,) of a stem, by its stroke's line (n, 2); it begins at the ground, px."""
+def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
+    """Return the line (n, 2) and the radii (n,), px, of a stem whose stroke is a line (n, 2) from a root (2,).
+
+    It begins at the root, too, or as low where that is far beside the middle of the wood.
+    """
     height_px, widest = evidence.height_px, params.thickest_share * evidence.height_px
     centred = _centre(line, evidence, widest)
-    centred[0, 1] = ground
+    centred[0, 1] = root[1]
     bare = np.logical_and.accumulate(~sample_nearest(evidence.crown, centred, False))
     sides = half_widths(centred, evidence.wood, widest)
     seen = ~np.isnan(half_widths(centred[bare], evidence.wood, BULKY * widest)[0]) if bare.any() else bare[:0]
@@ -190,6 +195,8 @@ def _stem(line: Floats, ground: float, evidence: _Evidence, params: TraceParams)
         centred, level = upright(centred, bare, evidence.wood, height_px)
         halves = np.where(bare, level, half_widths(centred, evidence.wood, widest)[0])
     radii = stem_radii(centred, halves, bare, height_px, params.trunk_share * height_px)
+    if abs(root[0] - centred[0, 0]) < BESIDE * radii[0]:
+        centred[0, 0] = root[0]
     return centred, flared(centred, radii, evidence.photo) if seen.sum() > CLEAR * len(seen) else radii
 
 
