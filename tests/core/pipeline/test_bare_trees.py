@@ -1,5 +1,7 @@
 """A drawn bare tree before the sky: its own branches are in the model's front view, and its depth is filled."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -92,3 +94,10 @@ def test_a_known_crown_and_trunk_give_the_same_wood_with_one_more_stroke(evidenc
 def test_leaves_may_be_hung_on_it(evidence: PhotoEvidence) -> None:
     leafy = grow_tree(evidence, ModelSettings(foliage="leaves", iterations=20), np.random.default_rng(0))
     assert len(leafy.grown.choices)
+
+
+def test_the_score_tells_how_much_of_the_crown_lies_near_its_wood(grown: GrownTree, evidence: PhotoEvidence) -> None:
+    assert evidence.traced is not None
+    trunk_alone = replace(evidence, traced=replace(evidence.traced.stroked, whole=True))
+    poor = grow_tree(trunk_alone, ModelSettings(foliage="bare"), np.random.default_rng(0))
+    assert poor.score["attractors_reached"] < 0.7 * grown.score["attractors_reached"] < 0.7

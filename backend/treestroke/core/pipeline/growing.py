@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,10 +12,11 @@ from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.bare import grown_as_traced
 from treestroke.core.grow.grown import Grown
+from treestroke.core.grow.growth_space import REFERENCE_WIDTH
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
-from treestroke.core.grow.replacement import CrownToFill, Replacement, grow
+from treestroke.core.grow.replacement import REACHED_PX, CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.lift.fan import fan_out
@@ -189,6 +191,7 @@ def grow_live_tree(evidence: PhotoEvidence, settings: ModelSettings, rng: np.ran
 
 
 def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report) -> _FilledCrown:
+    """Return the tree that fills the crown of a photo, and what it grew from; as `grow_tree`."""
     report("lift", 0.0)
     taken, evidence = evidence.taken(settings), _completed(evidence, settings)
     traced = evidence.traced
@@ -201,7 +204,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     report("grow", 0.0)
     room = CrownToFill(crown.volume, crown.front)
     if crown.kind == "bare" and traced.whole:
-        grown = grown_as_traced(lifted.tree, lifted.hidden)
+        grown = grown_as_traced(lifted.tree, lifted.hidden, _reached(crown))
     elif crown.kind == "palm":
         grown = grow_palm(lifted.tree, room, settings.iterations, rng)
     else:
@@ -212,6 +215,13 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     if crown.kind not in ("bare", "palm"):
         grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera))
     return _FilledCrown(evidence, traced, taken, crown, lifted, leafy, grown)
+
+
+def _reached(crown: _PhotoCrown) -> float:
+    """Return the share of the crown that lies as near to its wood as growth's attractors must, in the picture."""
+    away = cv2.distanceTransform((~crown.wood).astype(np.uint8), cv2.DIST_L2, 5)
+    width = float(np.ptp(np.flatnonzero(crown.front.mask.any(axis=0))) + 1)
+    return float((away[crown.front.mask] <= REACHED_PX * width / REFERENCE_WIDTH).mean())
 
 
 def _completed(evidence: PhotoEvidence, settings: ModelSettings) -> PhotoEvidence:
