@@ -79,3 +79,11 @@ def test_of_a_bare_tree_s_foliage_only_what_covers_is_replaced() -> None:
     assert np.array_equal(wood.mask, wood.alpha > 0.5)
     assert wood.region is foliage.region
     assert wood.cues is foliage.cues
+
+
+def test_wood_that_is_not_found_along_the_trunk_is_none() -> None:
+    picture = photo(sky())
+    foliage = segment_foliage(picture, CROWN)
+    aside = TRUNK - np.array([0.0, 60.0]) + np.array([20.0, 0.0])
+    assert wood_in_crown(foliage, picture, TRUNK - np.array([0.0, 60.0])) is not None
+    assert wood_in_crown(foliage, picture, aside) is None
