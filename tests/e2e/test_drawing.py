@@ -64,13 +64,12 @@ def test_what_is_deleted_comes_back_by_undo(visitor: Visitor) -> None:
 
 def test_a_trunk_that_does_not_go_up_is_told_of_until_it_is_drawn_again(visitor: Visitor) -> None:
     page, told = visitor.page, "The trunk does not go up."
+    visitor.expect_complaint("422")
     opened(visitor).draw_tree({**STROKES, "branches": [{"points": LEVEL}]})
-    expect(page.locator(".hint-text", has_text=told)).to_be_visible()
-    page.get_by_role("button", name="Strokes (2)").click()
-    expect(page.locator(".stroke-remark", has_text=told)).to_be_visible()
-    visitor.shot("doubt")
-    page.get_by_role("button", name="Delete Trunk").click()
-    page.keyboard.press("Escape")
+    expect(page.get_by_role("alert").filter(has_text=told)).to_be_visible()
+    expect(page.get_by_role("button", name="Grow")).to_be_disabled()
+    visitor.shot("refused")
+    page.get_by_role("button", name="Delete this stroke").click()
     visitor.draw(STROKES["branches"][0]["points"], button="right")
     visitor.wait_for_preview("live")
     expect(page.get_by_text(told)).to_have_count(0)
