@@ -108,7 +108,7 @@ export const drawingText = {
       crown_crosses_itself: 'The crown line crosses itself. Everything inside it counts as crown.',
       branch_joined: (stroke: string) => `${stroke}: joined to the nearest branch.`,
       edge_completed: 'The photo cuts the crown. It is completed beyond the edge.',
-      line_removed: 'A pole or wire before the crown was left out. A branch line along it makes it a branch.',
+      pole_removed: 'A pole or wire before the crown was left out. A branch line along it makes it a branch.',
       stroke_turned: 'The trunk was drawn from the top down. It was turned.',
       trunk_completed: 'Something hides the foot of the trunk. It goes on to the ground.',
       trunk_lengthened: 'The trunk line began above the ground. It was made longer.',

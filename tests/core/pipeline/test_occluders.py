@@ -26,7 +26,7 @@ def test_a_pole_is_no_hole_in_the_crown_and_a_warning_tells_of_it() -> None:
     assert whole.foliage.covered[pole].mean() > 0.9
     assert seen.foliage.covered[pole].mean() > 0.85
     assert not np.array_equal(seen.working.photo, crossed)
-    assert [one.code for one in seen.warnings] == ["line_removed"]
+    assert [one.code for one in seen.warnings] == ["pole_removed"]
     assert [one.code for one in whole.warnings] == []
 
 
@@ -35,19 +35,19 @@ def test_what_is_known_of_lines_is_kept_until_a_stroke_follows_one() -> None:
     first = read_photo(crossed, strokes)
     limb = Stroke(np.array([[330.0, 420.0], [400.0, 300.0]]))
     more = read_photo(crossed, replace(strokes, branches=(*strokes.branches, limb)), first)
-    assert more.working.lines is first.working.lines
+    assert more.working.poles is first.working.poles
     assert more.foliage is first.foliage
     along = Stroke(np.array([[190.0, 580.0], [190.0, 200.0]]))
     other = read_photo(crossed, replace(strokes, branches=(*strokes.branches, along)), first)
-    assert other.working.lines == ()
+    assert other.working.poles == ()
     assert np.array_equal(other.working.photo, crossed)
 
 
 def test_nothing_is_looked_for_before_the_trunk_is_drawn() -> None:
     _, crossed, strokes = maple_behind_a_pole()
     only_crown = read_photo(crossed, replace(strokes, branches=()))
-    assert only_crown.working.lines == ()
-    assert len(read_photo(crossed, strokes, only_crown).working.lines) == 1
+    assert only_crown.working.poles == ()
+    assert len(read_photo(crossed, strokes, only_crown).working.poles) == 1
 
 
 def oak_behind_a_hedge(through: bool) -> tuple[np.ndarray, Strokes, float]:

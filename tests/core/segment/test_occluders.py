@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from tests.conftest import DATA, EXAMPLES
 
-from treestroke.core.segment.occluders import Line, find_lines, is_branch, painted_over
+from treestroke.core.segment.occluders import Pole, find_poles, is_branch, painted_over
 from treestroke.core.strokes import Strokes
 from treestroke.service.loading import load_photo, load_strokes
 
@@ -14,8 +14,8 @@ def maple() -> tuple[np.ndarray, Strokes]:
     return load_photo(EXAMPLES / "sugar_maple_autumn.jpg"), load_strokes(EXAMPLES / "sugar_maple_autumn.strokes.json")
 
 
-def lines_in(photo: np.ndarray, strokes: Strokes) -> tuple[Line, ...]:
-    return find_lines(photo, strokes.crown.points, [branch.points for branch in strokes.branches])
+def lines_in(photo: np.ndarray, strokes: Strokes) -> tuple[Pole, ...]:
+    return find_poles(photo, strokes.crown.points, [branch.points for branch in strokes.branches])
 
 
 def with_line(photo: np.ndarray, points: list[list[float]], width: int, colour: tuple[int, int, int]) -> np.ndarray:
@@ -76,7 +76,7 @@ def test_a_pole_behind_the_crown_is_none_before_it() -> None:
 
 def test_a_line_that_a_stroke_follows_is_a_branch() -> None:
     _, strokes = maple()
-    line = Line(np.array([[190.0, 100.0], [190.0, 300.0], [190.0, 580.0]]), 10.0)
+    line = Pole(np.array([[190.0, 100.0], [190.0, 300.0], [190.0, 580.0]]), 10.0)
     trunk = [branch.points for branch in strokes.branches]
     assert not is_branch(line, strokes.crown.points, trunk)
     assert is_branch(line, strokes.crown.points, [*trunk, np.array([[192.0, 580.0], [188.0, 300.0]])])

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.pipeline.occluders import lines_notice, on_the_ground, without_lines
+from treestroke.core.pipeline.occluders import on_the_ground, poles_notice, without_poles
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.taken import Taken, shown_kind, taken_for
@@ -50,7 +50,7 @@ class PhotoEvidence:
         """What was mended, and what makes the reading doubtful."""
         unclear = () if self.foliage.clear else (UNCLEAR,)
         beyond = (_completion_notice(self.completed),) if self.completed else ()
-        hidden = lines_notice(self.working)
+        hidden = poles_notice(self.working)
         return (*self.working.warnings, *hidden, *unclear, *beyond, *(() if self.side is None else self.side.warnings))
 
     @property
@@ -89,9 +89,9 @@ def read_photo(
     side_drawing = None if side is None else draw_side(side, "side")
     report("foliage", 0.0)
     before = None if known is None else known.working
-    working = without_lines(working_copy(photo, strokes), before)
+    working = without_poles(working_copy(photo, strokes), before)
     report("foliage", 0.05)
-    if known is not None and (known.working.frame, known.working.lines) == (working.frame, working.lines):
+    if known is not None and (known.working.frame, known.working.poles) == (working.frame, working.poles):
         outlined = known.outlined
     else:
         crown = working.strokes.crown.points

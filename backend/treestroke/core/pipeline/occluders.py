@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from treestroke.core.pipeline.working_copy import WorkingCopy
-from treestroke.core.segment.occluders import find_lines, is_branch, painted_over
+from treestroke.core.segment.occluders import find_poles, is_branch, painted_over
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.hidden_foot import hidden_ground
@@ -17,7 +17,7 @@ LOW = 0.1
 """Length of a stem above its root that tells how thick it is there, as a share of the tree's height."""
 
 
-def without_lines(working: WorkingCopy, known: WorkingCopy | None = None) -> WorkingCopy:
+def without_poles(working: WorkingCopy, known: WorkingCopy | None = None) -> WorkingCopy:
     """Return the working copy with the poles and wires before the crown painted over, once the trunk is drawn.
 
     Those that are ``known`` of the same crown are kept, unless a new stroke follows one.
@@ -26,19 +26,19 @@ def without_lines(working: WorkingCopy, known: WorkingCopy | None = None) -> Wor
     if working.cut_out is not None or not strokes:
         return working
     same = known is not None and known.frame == working.frame and bool(known.strokes.branches)
-    if known is not None and same and not any(is_branch(line, crown, strokes) for line in known.lines):
-        return replace(working, photo=known.photo, lines=known.lines)
-    lines = find_lines(working.photo, crown, strokes)
-    return replace(working, photo=painted_over(working.photo, lines), lines=lines) if lines else working
+    if known is not None and same and not any(is_branch(pole, crown, strokes) for pole in known.poles):
+        return replace(working, photo=known.photo, poles=known.poles)
+    poles = find_poles(working.photo, crown, strokes)
+    return replace(working, photo=painted_over(working.photo, poles), poles=poles) if poles else working
 
 
-def lines_notice(working: WorkingCopy) -> tuple[StrokeWarning, ...]:
+def poles_notice(working: WorkingCopy) -> tuple[StrokeWarning, ...]:
     """Return a warning where poles or wires were painted over."""
-    if not working.lines:
+    if not working.poles:
         return ()
-    what = "a pole or wire" if len(working.lines) == 1 else f"{len(working.lines)} poles or wires"
+    what = "a pole or wire" if len(working.poles) == 1 else f"{len(working.poles)} poles or wires"
     detail = f"{what} before the crown was taken for no part of the tree; a branch stroke along one makes it a branch"
-    return (StrokeWarning("line_removed", "crown", detail),)
+    return (StrokeWarning("pole_removed", "crown", detail),)
 
 
 def on_the_ground(working: WorkingCopy, traced: Traced, height_px: float) -> tuple[WorkingCopy, Traced]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.imaging.opacity import over_white
-from treestroke.core.segment.occluders import Line
+from treestroke.core.segment.occluders import Pole
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.stroke_rules import mend_strokes
 from treestroke.core.strokes import Length, Stroke, Strokes, StrokeWarning
@@ -76,7 +76,7 @@ class WorkingCopy:
         (h, w) opacity of a tree that was cut out; None where the photo is whole.
     corner
         (x, y) of the copy in ``photo``, px, where this is a larger canvas: the crown was completed beyond the edges.
-    lines
+    poles
         Poles and wires before the crown, px of the copy, that were painted over in ``photo``.
     """
 
@@ -87,7 +87,7 @@ class WorkingCopy:
     warnings: tuple[StrokeWarning, ...]
     cut_out: Opacity | None = None
     corner: tuple[int, int] = (0, 0)
-    lines: tuple[Line, ...] = ()
+    poles: tuple[Pole, ...] = ()
 
     def height_px(self, mask: Mask) -> float:
         """Measure the tree, px, from its root to the foliage's top (h, w), or to the crown's where there is no leaf."""

@@ -20,7 +20,7 @@ from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.types import Floats, Mask, Picture
 
 AROUND = 0.4
-"""How far beside a crown lines are looked for, as a share of its size: the longer side of its box."""
+"""How far beside a crown poles are looked for, as a share of its size: the longer side of its box."""
 SHORTEST, THICKEST = 0.06, 0.05
 """Least length of a side that is seen beside the crown, and greatest width, as shares of the crown's size."""
 MOST = 16
@@ -32,12 +32,12 @@ STRAY = 0.02
 STRAIGHT = 0.05
 """Greatest mean distance of a stripe's middle from an arc, as a share of its width, besides half a pixel."""
 ON, FOLLOWED, STEM = 0.02, 0.3, 0.06
-"""A line is a branch if a stroke comes this near (share of the crown's size) to more than this share of it, or if it
+"""A pole is a branch if a stroke comes this near (share of the crown's size) to more than this share of it, or if it
 ends this near a stroke: a limb, or a stem beside the trunk."""
 NOISE = 12.0
 """Distance of colours, steps of 255, up to which they count as the same, besides what the stripe itself varies."""
 WINDOW = 0.06
-"""Length over which places along a line are counted, as a share of the crown's size."""
+"""Length over which places along a stripe are counted, as a share of the crown's size."""
 LIKE, LEAST = 0.65, 0.1
 """Least share of the places in a window that have the stripe's colour for it to be seen there, and least length that is
 seen before the crown, as a share of the crown's size."""
@@ -48,13 +48,13 @@ BOTH = 0.4
 CORE = 7
 """Number of places across a stripe whose colours are compared."""
 ASIDE, UNLIKE = 2.0, 1e3
-"""Cost of a step aside along a line, in steps of 255, and a cost above that of any colour."""
+"""Cost of a step aside along a stripe, in steps of 255, and a cost above that of any colour."""
 MARGIN_PX = 1.5
 """What is painted over beside a stripe's sides, px: pixels that it shares with what is behind."""
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Pole:
     """A pole or wire: its middle (n, 2), px, and its width with the blurred sides, px."""
 
     middle: Floats
@@ -85,28 +85,28 @@ class _Course:
     step: float
 
 
-def find_lines(photo: Picture, crown_px: Floats, strokes_px: Sequence[Floats]) -> tuple[Line, ...]:
+def find_poles(photo: Picture, crown_px: Floats, strokes_px: Sequence[Floats]) -> tuple[Pole, ...]:
     """Find the poles and wires that pass before a crown (n, 2), px, in a photo (h, w, 3), sRGB.
 
     What a branch stroke (m, 2), px, follows is none.
     """
     crown, size = fill_outline(crown_px, *photo.shape[:2]), _size(crown_px)
     stripes = _stripes(photo, crown, crown_px, size)
-    found: list[Line] = []
+    found: list[Pole] = []
     for stripe in stripes:
         middle = stripe.ends.mean(axis=0)
-        known = any(_is_near(middle, line.middle, line.width / 2) for line in found)
+        known = any(_is_near(middle, pole.middle, pole.width / 2) for pole in found)
         if known or any(_is_near(middle, stroke, ON * size) for stroke in strokes_px):
             continue
-        line = _followed(photo, crown, _course(stripe, _partner(stripe, stripes, size), size), size)
-        if line is not None and not is_branch(line, crown_px, strokes_px):
-            found.append(line)
+        pole = _followed(photo, crown, _course(stripe, _partner(stripe, stripes, size), size), size)
+        if pole is not None and not is_branch(pole, crown_px, strokes_px):
+            found.append(pole)
     return tuple(found)
 
 
-def is_branch(line: Line, crown_px: Floats, strokes_px: Sequence[Floats]) -> bool:
-    """Return whether a line is a branch: a branch stroke (m, 2) follows it or meets its end; the crown is (n, 2)."""
-    middle, size = line.middle, _size(crown_px)
+def is_branch(pole: Pole, crown_px: Floats, strokes_px: Sequence[Floats]) -> bool:
+    """Return whether a pole is a branch: a branch stroke (m, 2) follows it or meets its end; the crown is (n, 2)."""
+    middle, size = pole.middle, _size(crown_px)
     ends, along = middle[[0, -1]], middle[:: max(1, len(middle) // 20)]
     return any(
         any(_is_near(end, stroke, STEM * size) for end in ends)
@@ -115,23 +115,23 @@ def is_branch(line: Line, crown_px: Floats, strokes_px: Sequence[Floats]) -> boo
     )
 
 
-def painted_over(photo: Picture, lines: Sequence[Line]) -> Picture:
-    """Return a photo (h, w, 3) with each line painted over by what is beside it, mirrored at its sides."""
+def painted_over(photo: Picture, poles: Sequence[Pole]) -> Picture:
+    """Return a photo (h, w, 3) with each pole painted over by what is beside it, mirrored at its sides."""
     painted = photo.copy()
-    for _ in range(2):  # what is beside one line may be another one
-        for line in lines:
-            _paint_over(painted, line)
+    for _ in range(2):  # what is beside one pole may be another one
+        for pole in poles:
+            _paint_over(painted, pole)
     return painted
 
 
-def _paint_over(photo: Picture, line: Line) -> None:
-    """Paint over one line in a photo (h, w, 3)."""
-    middle = resample(line.middle, 0.5)
+def _paint_over(photo: Picture, pole: Pole) -> None:
+    """Paint over one pole in a photo (h, w, 3)."""
+    middle = resample(pole.middle, 0.5)
     along = np.gradient(middle, axis=0)
     along /= np.maximum(np.hypot(*along.T), 1e-9)[:, None]
     across = np.column_stack([-along[:, 1], along[:, 0]])
-    offsets = np.arange(-line.width / 2, line.width / 2 + 0.25, 0.5)
-    source = np.where(offsets < 0, -1, 1) * line.width - offsets
+    offsets = np.arange(-pole.width / 2, pole.width / 2 + 0.25, 0.5)
+    source = np.where(offsets < 0, -1, 1) * pole.width - offsets
     at, beside = (middle[:, None] + step[:, None] * across[:, None] for step in (offsets, source))
     height, width = photo.shape[:2]
     column, row = np.floor(at).astype(np.int64).transpose(2, 0, 1)
@@ -243,7 +243,7 @@ def _is_near(place: Floats, line: Floats, reach: float) -> bool:
     return float(np.hypot(*(resample(line, max(reach / 2, 0.5)) - place).T).min()) <= reach
 
 
-def _followed(photo: Picture, crown: Mask, course: _Course, size: float) -> Line | None:
+def _followed(photo: Picture, crown: Mask, course: _Course, size: float) -> Pole | None:
     """Follow a course through the crown (h, w); None where no stripe passes before it."""
     on_photo = ((course.places >= 0) & (course.places < photo.shape[1::-1])).all(axis=1)
     places, own, width = course.places[on_photo], course.own[on_photo], course.width
@@ -266,7 +266,7 @@ def _followed(photo: Picture, crown: Mask, course: _Course, size: float) -> Line
     if not _is_arc(places[seen] + offsets[path[seen]][:, None] * across[seen], width):
         return None
     kept = slice(*(np.flatnonzero(seen)[[0, -1]] + [0, 1]))
-    return Line(places[kept] + offsets[path[kept]][:, None] * across[kept], width + 2 * MARGIN_PX)
+    return Pole(places[kept] + offsets[path[kept]][:, None] * across[kept], width + 2 * MARGIN_PX)
 
 
 def _unlikeness(
