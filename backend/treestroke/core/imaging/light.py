@@ -1,9 +1,16 @@
 """How much light a picture shows: sRGB to linear light and back, exposure, and shade taken out."""
 
+from functools import cache
+from typing import Any
+
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.types import Floats, Mask, Picture
+
+Light = NDArray[np.floating[Any]]
+"""Linear light (..., 3) or (...), 0 to 1."""
 
 LIT = 0.75
 """Quantile of a tree's lightness by which its exposure is judged: leaves and bark that light falls on."""
@@ -21,6 +28,10 @@ MOST_SHADE = 3.0
 """Greatest factor by which shade is lightened and sunlight is dimmed."""
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Share of linear red, green and blue in luminance (ITU-R BT.709)."""
+SAMPLES = 50_000
+"""Most pixels of a tree, evenly spaced, by which its exposure is judged."""
+STEPS = 2**16 - 1
+"""Steps of linear light that are told apart on the way to sRGB: twenty between its darkest two values."""
 DARK = 0.003
 """Luminance added before logarithms, so that noise in black is no contrast."""
 
@@ -31,11 +42,10 @@ def linear_light(srgb: Floats) -> Floats:
     return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
 
 
-def srgb_light(linear: Floats) -> Picture:
+def srgb_light(linear: Light) -> Picture:
     """Convert linear light, clipped to 0 to 1, to sRGB, 0 to 255 (IEC 61966-2-1)."""
-    c = np.clip(linear, 0.0, 1.0)
-    srgb = np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055)
-    return np.asarray(np.rint(255.0 * srgb), dtype=np.uint8)
+    steps = np.clip(linear, 0.0, 1.0) * STEPS + 0.5
+    return np.take(_srgb_table(), steps.astype(np.uint16))
 
 
 def luminance_of_lightness(lightness: Floats) -> Floats:
@@ -43,7 +53,7 @@ def luminance_of_lightness(lightness: Floats) -> Floats:
     return np.where(lightness > 8.0, ((lightness + 16.0) / 116.0) ** 3, lightness / 903.3)
 
 
-def brightened(linear: Floats, gain: float) -> Floats:
+def brightened(linear: Light, gain: float) -> Light:
     """Multiply linear light (n, 3), 0 to 1, by a gain from 1 on, by less the lighter it is: white stays white.
 
     Hues stay: a colour's channels have one factor, by the largest of them.
@@ -60,15 +70,16 @@ def exposed(picture: Picture, tree: Mask) -> Picture:
     """
     if not tree.any():
         return picture
-    linear = _light_table()[picture[tree]]
+    pixels = picture[tree]
+    linear = _light_table()[pixels[:: len(pixels) // SAMPLES + 1]]
     lit = max(float(np.quantile(linear @ LUMINANCE, LIT)), 1e-6)
     gain = min(float(luminance_of_lightness(np.array(LEAST_LIGHTNESS))) / lit, MOST_GAIN)
     if gain <= 1.0:
         return picture
     left, top, width, height = cv2.boundingRect(tree.astype(np.uint8))
     box = slice(top, top + height), slice(left, left + width)
-    bright = brightened(_light_table()[picture[box]], gain)
-    grey = (bright @ LUMINANCE)[..., None]
+    bright = brightened(_light_table().astype(np.float32)[picture[box]], gain)
+    grey = (bright @ LUMINANCE.astype(np.float32))[..., None]
     seen = picture.copy()
     seen[box] = srgb_light(grey + gain**-FADING * (bright - grey))
     return seen
@@ -93,6 +104,15 @@ def evened(picture: Picture, tree: Mask) -> Picture:
     return flat
 
 
+@cache
 def _light_table() -> Floats:
     """Linear light of every 8-bit value (256,)."""
     return linear_light(np.arange(256.0))
+
+
+@cache
+def _srgb_table() -> Picture:
+    """sRGB, 0 to 255, of linear light in `STEPS` even steps from 0 to 1."""
+    c = np.linspace(0.0, 1.0, STEPS + 1)
+    srgb = np.where(c <= 0.0031308, 12.92 * c, 1.055 * c ** (1 / 2.4) - 0.055)
+    return np.asarray(np.rint(255.0 * srgb), dtype=np.uint8)

@@ -57,23 +57,29 @@ def matte(pixels: Picture, likely: Opacity) -> Opacity:
 
 
 def _near_by(colours: _Map, sure: NDArray[np.bool_]) -> _Map:
-    """Mean colour (h, w, 3) of the sure pixels (h, w) near each pixel."""
+    """Mean colour (h, w, 3) of the sure pixels (h, w) near each pixel, averaged at half the size."""
+    height, width = sure.shape
+    size = max(1, width // 2), max(1, height // 2)
     weight = sure.astype(np.float32)
-    total, amount = np.zeros_like(colours), np.full(sure.shape, 1e-12, dtype=np.float32)
-    parts = colours * weight[..., None]
+    weighted = _resized(cv2.merge([*cv2.split(cv2.multiply(colours, cv2.merge([weight] * 3))), weight]), size)
+    total = np.full_like(weighted, 1e-12)
     for rank, reach in enumerate(REACHES_PX):
-        total += np.float32(FURTHER**rank) * _blurred(parts, reach)
-        amount += np.float32(FURTHER**rank) * _blurred(weight, reach)
-    return np.asarray(total / amount[..., None])
+        total += np.float32(FURTHER**rank) * _blurred(weighted, reach / 2)
+    return _resized(total[..., :3] / total[..., 3:], (width, height))
 
 
 def _blurred(image: _Map, reach: float) -> _Map:
     """Average over a Gaussian, computed on fewer pixels."""
     height, width = image.shape[:2]
     step = max(1, int(reach / 1.5))
-    small = cv2.resize(image, (max(1, width // step), max(1, height // step)), interpolation=cv2.INTER_AREA)
-    soft = cv2.GaussianBlur(small, (0, 0), reach / step)
-    return np.asarray(cv2.resize(soft, (width, height), interpolation=cv2.INTER_LINEAR))
+    small = _resized(image, (max(1, width // step), max(1, height // step)))
+    return _resized(np.asarray(cv2.GaussianBlur(small, (0, 0), reach / step), dtype=np.float32), (width, height))
+
+
+def _resized(image: _Map, size: tuple[int, int]) -> _Map:
+    """Return an image at a size (width, height): averaged where that is smaller, else between its pixels."""
+    smaller = size[0] < image.shape[1]
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR))
 
 
 def _dot(first: _Map, second: _Map) -> _Map:

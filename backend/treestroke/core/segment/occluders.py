@@ -280,9 +280,11 @@ def _unlikeness(
     core = np.unique(np.linspace(-half, half, CORE).round()).astype(np.int64)
     usual = np.median(colours[own][:, middle + core], axis=0)
     apart = np.full(colours.shape[:2], np.float32(UNLIKE))
-    for column in range(half, len(offsets) - half):
-        part = colours[:, column + core] - usual
-        apart[:, column] = np.sqrt(np.einsum("ijk,ijk->ij", part, part)).mean(axis=1)
+    whole = slice(half, len(offsets) - half)
+    apart[:, whole] = 0
+    for away, colour in zip(core.tolist(), usual, strict=True):
+        part = colours[:, whole.start + away : whole.stop + away] - colour
+        apart[:, whole] += np.sqrt(np.einsum("ijk,ijk->ij", part, part)) / len(core)
     return apart, float(np.median(apart[own, middle]))
 
 
