@@ -36,6 +36,7 @@ class Growing:
         evaluator: Evaluator,
     ) -> None:
         self.params, self.space, self.library = params, space, library
+        self.foot, self.top = float(space.foot[1]), float(np.argmax(space.radius > 0))
         self.evaluator = evaluator
         self.chains = _chains(visible, space, params)
         self.count = len(self.chains)
@@ -92,8 +93,8 @@ class Growing:
 
     def _height(self, branch: int) -> float:
         """Return the height of a branch's middle in the crown: 0 where the stem enters it, 1 at its top."""
-        foot, top = float(self.space.foot[1]), float(np.argmax(self.space.radius > 0))
-        return (foot - float(self.bases[branch, 1] + self.tips[branch, 1]) / 2) / max(foot - top, 1.0)
+        middle = float(self.bases[branch, 1] + self.tips[branch, 1]) / 2
+        return (self.foot - middle) / max(self.foot - self.top, 1.0)
 
     def _is_long(self, branch: int) -> bool:
         """Tell whether a branch is at least two samples long, so that it may be replaced."""
@@ -168,7 +169,7 @@ class Growing:
         """
         middle, chord = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
         row = int(np.clip(middle[1], 0, len(self.space.radius) - 1))
-        above = self.params.habit.stretch * (row - int(np.argmax(self.space.radius > 0)))
+        above = self.params.habit.stretch * (row - self.top)
         reach = max(float(self.space.radius[row]), above) / max(math.sqrt(float(chord @ chord)), 1e-9)
         stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
         return np.where([tree.replaces != "limb" for tree in self.library], stretch, 0.0)

@@ -35,11 +35,11 @@ def pipe_radii(points: Floats, parents: Indices, measured: Floats, tip: float, s
     weight = _weights(tree, pipes, slender)
     known = measured > 0
     mixed = np.where(known, measured, 1.0) ** weight * model ** (1 - weight)
-    radii = np.where(known, mixed, model)
+    radii = np.where(known, mixed, model).tolist()
     for joint, parent in enumerate(parents.tolist()):
         if parent >= 0:
             radii[joint] = min(radii[joint], radii[parent])
-    return radii
+    return np.array(radii)
 
 
 def pipe_counts(tree: Skeleton, twig: float) -> Floats:

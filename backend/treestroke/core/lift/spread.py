@@ -132,13 +132,14 @@ def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, pa
     otherwise a limb that enters the crown would jump aside.
     """
     open_air = volume.half_width(points[:, 1]) <= 0
-    most = np.where(open_air, np.inf, np.maximum(params.inside * volume.half_depth(points), start))
-    for i in range(len(steps) - 1, -1, -1):
-        most[i] = min(most[i], most[i + 1] + (0.0 if open_air[i] else params.steepest * steps[i]))
+    most = np.where(open_air, np.inf, np.maximum(params.inside * volume.half_depth(points), start)).tolist()
+    rises = (params.steepest * steps).tolist()
+    for i, rise in reversed(list(enumerate(np.where(open_air[:-1], 0.0, rises).tolist()))):
+        most[i] = min(most[i], most[i + 1] + rise)
     most[0] = max(most[0], start)
-    for i, step in enumerate(steps.tolist()):
-        most[i + 1] = min(most[i + 1], most[i] + params.steepest * step)
-    return np.asarray(np.maximum(most, start))
+    for i, rise in enumerate(rises):
+        most[i + 1] = min(most[i + 1], most[i] + rise)
+    return np.maximum(most, start)
 
 
 def _leaning(points: Floats) -> float:

@@ -15,11 +15,11 @@ def edge_lengths(skeleton: Skeleton) -> Floats:
 
 def path_lengths(skeleton: Skeleton) -> Floats:
     """Return the length of the path from the root to each joint (n,), in the skeleton's unit (px or metres)."""
-    lengths = edge_lengths(skeleton)
+    lengths = edge_lengths(skeleton).tolist()
     for joint, parent in enumerate(skeleton.parents.tolist()):
         if parent >= 0:
             lengths[joint] += lengths[parent]
-    return lengths
+    return np.array(lengths)
 
 
 def generations(skeleton: Skeleton, successors: Indices) -> Indices:

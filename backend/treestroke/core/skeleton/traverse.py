@@ -22,12 +22,12 @@ def child_counts(skeleton: Skeleton) -> Indices:
 
 def accumulate_to_root(skeleton: Skeleton, values: Floats) -> Floats:
     """Return the sums (n,) of values (n,), any unit, over each joint and all its descendants."""
-    total = np.array(values, dtype=np.float64)
+    total = values.astype(np.float64).tolist()
     parents = skeleton.parents.tolist()
     for joint in range(len(skeleton) - 1, 0, -1):
         if parents[joint] >= 0:
             total[parents[joint]] += total[joint]
-    return total
+    return np.array(total)
 
 
 def heaviest_children(skeleton: Skeleton, weights: Floats) -> Indices:
@@ -49,8 +49,9 @@ def limbs(skeleton: Skeleton, successors: Indices) -> list[Indices]:
     starts = [joint for joint, parent in enumerate(parents) if parent < 0 or following[parent] != joint]
     found = []
     for start in starts:
-        chain = [start] if parents[start] < 0 else [parents[start], start]
-        while following[chain[-1]] >= 0 and (len(chain) == 1 or chain[-1] >= start):
-            chain.append(following[chain[-1]])
+        chain, after = [start] if parents[start] < 0 else [parents[start], start], following[start]
+        while after >= 0:
+            chain.append(after)
+            after = following[after]
         found.append(np.array(chain, dtype=np.int64))
     return found

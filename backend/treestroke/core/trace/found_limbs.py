@@ -116,7 +116,9 @@ def chains(paths: Paths, kept: Mask, beyond: Floats) -> Iterator[list[int]]:
     starts = [(parent, arm) for parent, offspring in arms.items() if not kept[parent] for arm in offspring]
     while starts:
         chain = [*starts.pop()]
-        while offspring := sorted(arms[chain[-1]], key=lambda arm: (-beyond[arm], arm)):
-            starts += [(chain[-1], arm) for arm in offspring[1:]]
+        while offspring := arms.get(chain[-1]):
+            if len(offspring) > 1:
+                offspring = sorted(offspring, key=lambda arm: (-beyond[arm], arm))
+                starts += [(chain[-1], arm) for arm in offspring[1:]]
             chain.append(offspring[0])
         yield chain
