@@ -139,7 +139,7 @@ def _bounds(points: Floats, start: float, steps: Floats, volume: CrownVolume, pa
     most[0] = max(most[0], start)
     for i, rise in enumerate(rises):
         most[i + 1] = min(most[i + 1], most[i] + rise)
-    return np.maximum(most, start)
+    return np.maximum(np.array(most, dtype=np.float64), start)
 
 
 def _leaning(points: Floats) -> float:

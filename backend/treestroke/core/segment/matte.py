@@ -5,6 +5,8 @@ known near by, the share follows from how far the pixel's colour lies from the b
 they are alike, only from how likely that colour is.
 """
 
+from typing import TypeVar
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,7 @@ NOISE = 24.0
 """Distance of both colours, steps of 255, at which the colours count as much as the likelihood."""
 
 _Map = NDArray[np.float32]
+Value = TypeVar("Value", np.float32, np.uint8)
 
 
 def matte(pixels: Picture, likely: Opacity) -> Opacity:
@@ -42,8 +45,8 @@ def matte(pixels: Picture, likely: Opacity) -> Opacity:
     masks or mattes (`docs/papers.md`).
     """
     near, colours = np.ones((3, 3), np.uint8), pixels.astype(np.float32)
-    leaf = _near_by(colours, cv2.erode(likely, near) > SURE_LEAF)
-    ground = _near_by(colours, cv2.dilate(likely, near) < SURE_GROUND)
+    leaf = _near_by(pixels, cv2.erode(likely, near) > SURE_LEAF)
+    ground = _near_by(pixels, cv2.dilate(likely, near) < SURE_GROUND)
     way, offset = leaf - ground, colours - ground
     apart = np.maximum(np.sqrt(_dot(way, way)), np.float32(1))
     along = _dot(offset, way) / apart
@@ -56,16 +59,16 @@ def matte(pixels: Picture, likely: Opacity) -> Opacity:
     return np.asarray(clear * share + (1 - clear) * likely, dtype=np.float32)
 
 
-def _near_by(colours: _Map, sure: NDArray[np.bool_]) -> _Map:
+def _near_by(pixels: Picture, sure: NDArray[np.bool_]) -> _Map:
     """Mean colour (h, w, 3) of the sure pixels (h, w) near each pixel, averaged at half the size."""
     height, width = sure.shape
-    size = max(1, width // 2), max(1, height // 2)
-    weight = sure.astype(np.float32)
-    weighted = _resized(cv2.merge([*cv2.split(cv2.multiply(colours, cv2.merge([weight] * 3))), weight]), size)
-    total = np.full_like(weighted, 1e-12)
+    size, mask = (max(1, width // 2), max(1, height // 2)), sure.astype(np.uint8) * np.uint8(255)
+    masked = np.asarray(cv2.bitwise_and(pixels, pixels, mask=mask), dtype=np.uint8)
+    weighted = np.dstack([_resized(masked, size), _resized(mask, size)]).astype(np.float32)
+    total = np.full(weighted.shape, 1e-12, dtype=np.float32)
     for rank, reach in enumerate(REACHES_PX):
         total += np.float32(FURTHER**rank) * _blurred(weighted, reach / 2)
-    return _resized(total[..., :3] / total[..., 3:], (width, height))
+    return _resized(total[..., :3] * (np.float32(255) / total[..., 3:]), (width, height))
 
 
 def _blurred(image: _Map, reach: float) -> _Map:
@@ -76,12 +79,13 @@ def _blurred(image: _Map, reach: float) -> _Map:
     return _resized(np.asarray(cv2.GaussianBlur(small, (0, 0), reach / step), dtype=np.float32), (width, height))
 
 
-def _resized(image: _Map, size: tuple[int, int]) -> _Map:
-    """Return an image at a size (width, height): averaged where that is smaller, else between its pixels."""
+def _resized(image: NDArray[Value], size: tuple[int, int]) -> NDArray[Value]:
+    """Return an image (h, w) or (h, w, c) at a size (width, height): averaged where that is smaller."""
     smaller = size[0] < image.shape[1]
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR))
+    resized = cv2.resize(image, size, interpolation=cv2.INTER_AREA if smaller else cv2.INTER_LINEAR)
+    return np.asarray(resized, dtype=image.dtype)
 
 
 def _dot(first: _Map, second: _Map) -> _Map:
     """Scalar product (h, w) of two maps of vectors (h, w, 3)."""
-    return np.asarray(np.einsum("ijk,ijk->ij", first, second))
+    return np.asarray(cv2.transform(cv2.multiply(first, second), np.ones((1, 3), np.float32)))
