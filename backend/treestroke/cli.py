@@ -1,7 +1,6 @@
 """The command line: parse, call one use case, write its results."""
 
 import argparse
-import gc
 import json
 import os
 import sys
@@ -20,6 +19,7 @@ from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
+from treestroke.memory import keep_freed_memory
 from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_NEW_OBJECTS = 10_000
-"""Objects made since the last search for garbage that start the next one."""
 _PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear")
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
@@ -74,9 +72,7 @@ def run() -> NoReturn:
     """Run the command line and exit with its code; a programming error is printed as one line, too."""
     if "--debug" not in sys.argv:
         sys.excepthook = _one_line
-    # Modules stay until the end and a tree leaves hardly any cycles, so garbage is searched for less often than usual.
-    gc.freeze()
-    gc.set_threshold(_NEW_OBJECTS)
+    keep_freed_memory()
     # treestroke has no pydantic plugins; to look for some takes longer than to check strokes.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     sys.exit(main())
