@@ -204,7 +204,7 @@ def encode_picture(pixels: NDArray[np.uint8], quality: int = _JPEG_QUALITY) -> t
     """
     out = BytesIO()
     if pixels.shape[2] == 4:
-        Image.fromarray(pixels).save(out, "PNG", compress_level=7)
+        Image.fromarray(pixels).save(out, "PNG", compress_level=5)
         return "image/png", out.getvalue()
     Image.fromarray(pixels).save(out, "JPEG", quality=quality, subsampling=0 if quality >= 90 else 2)
     return "image/jpeg", out.getvalue()
