@@ -42,15 +42,13 @@ def rise(form: TreeForm) -> float:
 
 def test_a_round_tree_is_not_steered() -> None:
     assert HABITS["round"] is UNSTEERED
-    assert {UNSTEERED.steering(generation, 0.4) for generation in (1, 2, 3, 4)} == {(1.0, 0.0)}
+    assert np.array_equal(UNSTEERED.steering(np.arange(1, 5), np.full(4, 0.4)), [(1.0, 0.0)] * 4)
 
 
 def test_a_form_steers_limbs_by_their_height_and_leaves_the_finest_shoots() -> None:
     habit = Habit(Rise(0.5, -0.4, 0.4), Rise(0.2, 0.1, 0.1))
-    assert habit.steering(1, 0.75) == pytest.approx((0.5, 0.2))
-    assert habit.steering(2, 0.75) == pytest.approx((0.2, 0.1))
-    assert habit.steering(1, 7.0) == pytest.approx((0.5, 0.4))
-    assert habit.steering(4, 0.75) == (1.0, 0.0)
+    steering = habit.steering(np.array([1, 2, 1, 4]), np.array([0.75, 0.75, 7.0, 0.75]))
+    assert steering == pytest.approx(np.array([(0.5, 0.2), (0.2, 0.1), (0.5, 0.4), (1.0, 0.0)]))
 
 
 def test_a_spires_limbs_are_flatter_and_its_lowest_the_lowest() -> None:

@@ -48,7 +48,7 @@ class Growing:
         self._add_chains(visible)
         self._tell_evaluator(0)
         self.evaluator.add_attractors(space.grid(params.attractors))
-        self._turn_tips(0)
+        self.turned = 0
 
     def run(self, rng: np.random.Generator, report: Report) -> list[tuple[int, int, int]]:
         """Replace branch after branch; list the (branch, subtree, angle) chosen."""
@@ -86,15 +86,15 @@ class Growing:
         """Let limbs leave the stems only where the habit lets them, unless none could then."""
         low, high = self.params.habit.leave
         stems = np.flatnonzero(self.open & (self.generation == 1))
-        height = np.array([self._height(branch) for branch in stems.tolist()])
+        height = self._heights(stems)
         bare = (height < low) | (height > high)
         if not bare.all():
             self.open[stems[bare]] = False
 
-    def _height(self, branch: int) -> float:
-        """Return the height of a branch's middle in the crown: 0 where the stem enters it, 1 at its top."""
-        middle = float(self.bases[branch, 1] + self.tips[branch, 1]) / 2
-        return (self.foot - middle) / max(self.foot - self.top, 1.0)
+    def _heights(self, branches: Indices | slice) -> Floats:
+        """Return the heights (k,) of branches' middles in the crown: 0 where the stem enters it, 1 at its top."""
+        middles = (self.bases[branches, 1] + self.tips[branches, 1]) / 2
+        return np.asarray((self.foot - middles) / max(self.foot - self.top, 1.0))
 
     def _is_long(self, branch: int) -> bool:
         """Tell whether a branch is at least two samples long, so that it may be replaced."""
@@ -114,6 +114,8 @@ class Growing:
         choice = Choice(-1, 0, 0, 0.0)
         for in_space in orders[self.params.mode]:
             if choice.branch < 0:
+                if in_space:
+                    self._turn_tips()
                 choice = self.evaluator.best(candidates, in_space)
         return choice
 
@@ -138,7 +140,6 @@ class Growing:
             self._add(shoot, choice.branch if shoot.parent < 0 else first + shoot.parent, iteration)
         if self.count > first:
             self._tell_evaluator(first)
-            self._turn_tips(first)
 
     def _add(self, shoot: Shoot, parent: int, iteration: int) -> None:
         """Fill the next row with a shoot."""
@@ -156,11 +157,8 @@ class Growing:
         scales = np.tile([float(tree.replaces != "stem") for tree in self.library], (self.count - first, 1))
         for stem in np.flatnonzero(self.generation[new] == 1).tolist():
             scales[stem] = self._stem_scales(first + stem)
-        habit = self.params.habit
-        steering = [
-            habit.steering(int(self.generation[branch]), self._height(branch)) for branch in range(first, self.count)
-        ]
-        self.evaluator.add_branches(self.bases[new], self.tips[new], scales, np.array(steering).reshape(-1, 2))
+        steering = self.params.habit.steering(self.generation[new], self._heights(new))
+        self.evaluator.add_branches(self.bases[new], self.tips[new], scales, steering)
 
     def _stem_scales(self, branch: int) -> Floats:
         """Stretch each subtree (s,) on a stem so that its longest shoot would reach the crown's edge; 0 forbids it.
@@ -174,9 +172,10 @@ class Growing:
         stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
         return np.where([tree.replaces != "limb" for tree in self.library], stretch, 0.0)
 
-    def _turn_tips(self, first: int) -> None:
-        """Add the tips from ``first`` on, turned by a quarter, to the attractors in space."""
-        self.evaluator.add_attractors(self.space.turned(self.tips[first : self.count]))
+    def _turn_tips(self) -> None:
+        """Add the tips of new branches, turned by a quarter, to the attractors in space."""
+        self.evaluator.add_attractors(self.space.turned(self.tips[self.turned : self.count]))
+        self.turned = self.count
 
 
 def rules_for(params: GrowthParams, unit: float) -> Rules:

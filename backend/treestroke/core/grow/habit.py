@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import NamedTuple
 
-from treestroke.core.types import TreeForm
+import numpy as np
+
+from treestroke.core.types import Floats, Indices, TreeForm
 
 STEERED = 3
 """Generations of branches that a form steers; finer shoots fill what these leave empty."""
@@ -27,10 +29,6 @@ class Rise(NamedTuple):
     kept: float = 1.0
     low: float = 0.0
     high: float = 0.0
-
-    def at(self, height: float) -> tuple[float, float]:
-        """Return the share that is kept, and what is added at a height in the crown, 0 to 1."""
-        return self.kept, self.low + (self.high - self.low) * height
 
 
 AS_GROWN = Rise()
@@ -60,10 +58,11 @@ class Habit:
     sag: float = 0.22
     turn_up: float = 0.38
 
-    def steering(self, generation: int, height: float) -> tuple[float, float]:
-        """Return the steering of `placements.Evaluator` for a branch's generation, 1 on a stem, and height, 0 to 1."""
-        rise = AS_GROWN if generation > STEERED else self.limbs if generation == 1 else self.outer
-        return rise.at(min(max(height, 0.0), 1.0))
+    def steering(self, generations: Indices, heights: Floats) -> Floats:
+        """Return the steering (k, 2) of `placements.Evaluator` for branches: generations, 1 on a stem, and heights."""
+        which = np.where(generations > STEERED, 2, np.where(generations == 1, 0, 1))
+        kept, low, high = np.array([self.limbs, self.outer, AS_GROWN])[which].T
+        return np.column_stack([kept, low + (high - low) * np.clip(heights, 0.0, 1.0)])
 
 
 UNSTEERED = Habit()
