@@ -45,3 +45,11 @@ def test_what_branches_reach_gets_no_twigs() -> None:
     foliage = np.zeros((400, 500), dtype=bool)
     foliage[60:76, 345:361] = True
     assert len(reached(foliage).skeleton) == 7
+
+
+def test_no_twig_grows_into_the_ground() -> None:
+    foliage = np.zeros((400, 500), dtype=bool)
+    foliage[370:400, 170:235] = True
+    tree = reached(foliage).skeleton
+    assert len(tree) > 7
+    assert tree.points[:, 1].min() == 0

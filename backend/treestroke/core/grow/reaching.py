@@ -33,8 +33,9 @@ def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> 
     """Add twigs to the foliage that lies out of reach of all branches in the picture: ends of boughs, mostly.
 
     Joints stand in the middle of such foliage, and the shortest links join them to the tree and to each other, the
-    nearest first: so twigs run along the foliage, and across a gap where it is narrowest. They are as deep as the
-    branch that they leave, as far as the crown's ``volume`` is. What was there keeps its place and radius.
+    nearest first: so twigs run along the foliage, and across a gap where it is narrowest. They stand above the ground,
+    as deep as the branch that they leave, as far as the crown's ``volume`` is. What was there keeps its place and
+    radius. The foliage does not include wood.
 
     Source: the minimum spanning tree, Prim 1957; for branches as by Livny et al. 2010, "Automatic reconstruction of
     tree skeletal structures from point clouds", section 4.
@@ -43,6 +44,7 @@ def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> 
     joints_px = camera.pixels_from_world(tree.points)
     height_px = float(np.ptp(joints_px[:, 1]))
     places_px = _out_of_reach(joints_px, tree.parents, foliage.mask, height_px)
+    places_px = places_px[camera.world_from_pixels(places_px)[:, 1] > tree.points[:, 1].min()]
     places_px, parents = _linked(joints_px, places_px, LONGEST * height_px)
     if len(parents) == 0:
         return grown

@@ -214,8 +214,8 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
         grown = grow(lifted.tree, room, method, rng, report)
     leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):
-        shown = Silhouette(leafy | crown.wood, crown.camera)
-        grown = reaching(trimmed(grown, shown), shown, crown.volume)
+        grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera))
+        grown = reaching(grown, Silhouette(leafy & ~crown.wood, crown.camera), crown.volume)
     return _FilledCrown(evidence, traced, taken, crown, lifted, leafy, grown)
 
 
