@@ -21,8 +21,6 @@ PADDING = 3
 """Empty cells around the foliage, so that points outside read as outside."""
 AROUND = 4.0
 """Side of the window that shows the colour around a spray, over `SPRAY`."""
-BORDER_WEIGHT = 0.02
-"""Weight of a leaf's border, into which the background shines: it counts where a spray shows nothing else."""
 AROUND_WEIGHT = 1e-3
 """Weight of what is around: it counts where a spray shows next to no leaf's colour."""
 
@@ -114,8 +112,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
     part = mask[box].astype(np.uint8)
     share = _padded(cv2.resize(part * view.opacity[box], size, interpolation=shrink))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
-    own = view.own_colour[box]
-    weight = cv2.erode(own, np.ones((3, 3), np.uint8)) + np.float32(BORDER_WEIGHT) * own
+    weight = view.own_colour[box]
     colour = cv2.resize(np.dstack([view.picture[box] * weight[..., None], weight]), size, interpolation=shrink)
     return FoliageGrid(
         camera=view.camera,
