@@ -5,6 +5,7 @@ from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.trimming import trimmed
+from treestroke.core.skeleton.edit import densified
 from treestroke.core.skeleton.skeleton import Skeleton
 
 CAMERA = OrthographicCamera(300, 400, 0.01, (150.0, 390.0))
@@ -26,9 +27,11 @@ def test_ends_that_grew_out_of_the_foliage_go() -> None:
 
 
 def test_a_twig_crosses_a_gap_only_for_what_it_bears_beyond() -> None:
-    born = [0, 0, 0, 1, 1, 1, 1]
-    assert cut(fork(angle_rad=0.7), born, 180, 300).skeleton.parents.tolist() == [-1, 0, 1, 2, 3]
-    assert len(cut(fork(angle_rad=0.7), born, 240, 260).skeleton) == 3
+    tree, owner = densified(fork(angle_rad=0.7), 0.1)
+    born = np.array([0, 0, 0, 1, 1, 1, 1])[owner].tolist()
+    aside = int((owner >= 5).sum())
+    assert len(cut(tree, born, 160, 300).skeleton) == np.count_nonzero(owner < 3) + aside
+    assert len(cut(tree, born, 180, 300).skeleton) == np.count_nonzero(owner < 3)
 
 
 def test_what_was_seen_stays() -> None:

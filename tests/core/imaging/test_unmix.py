@@ -79,3 +79,14 @@ def test_a_tint_of_the_sky_goes_beside_gaps_and_stays_amid_leaves():
     assert clear[100, 118, 2] < clear[100, 117, 2]
     assert np.abs(clear[100, 31] - tinted).max() <= 2
     assert np.abs(clear[100, 100] - LEAF).max() <= 2
+
+
+def test_leaves_whose_borders_the_sky_tints_get_the_hue_of_their_middles():
+    place = np.arange(200) % 8
+    opacity = np.where(place < 5, np.float32(1), np.float32(0)) * np.ones((200, 1), np.float32)
+    border = (place == 0) | (place == 4)
+    blue = np.array([60.0, 120.0, 230.0])
+    share = np.where(border, 0.6, opacity)[..., None]
+    clear = unmixed(np.rint(share * LEAF + (1 - share) * blue).astype(np.uint8), opacity, opacity > 0)
+    away = np.abs(hue(clear[:, border].reshape(-1, 3).astype(float)).mean(axis=0) - hue(LEAF[None])[0])
+    assert away.max() < 0.07

@@ -11,9 +11,10 @@ from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Mask
 
-CROSSING = 2.0
-"""Length within the foliage by which a twig pays for a length across a gap, where no leaf hides it. At 4 too few twigs
-are left to bear the foliage, and at 1 twice as many cross the sky (6 crowns)."""
+CROSSING = 8.0
+"""Length within the foliage by which a twig pays for a length across a gap, where no leaf hides it. Of 2, 4 and 8, the
+front IoU of 6 crowns is 0.857, 0.861 and 0.866, with as much foliage covered: foliage that loses its twig gets a
+shorter one (`reaching`)."""
 SAMPLES = 4
 """Places on each edge at which it is seen whether foliage is there."""
 

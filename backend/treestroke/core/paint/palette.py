@@ -16,12 +16,13 @@ INNER_SHARE = 0.1
 """Share of the foliage that must remain when pixels count by their neighbours; in thinner foliage they count alone."""
 SPRAY = 0.014
 """Side of the window over which a spray's colour is averaged, as a share of the foliage's width."""
-UNSHADED = 2.0
+UNSHADED = 2.4
 """Gain in linear light from leaves in a photo, which shade each other, to leaves alone: a viewer shades them again (at
-1.8 crowns came out 4 darker, CIE Lab, and their colours as much paler; 5 photos)."""
-CONTRAST = 1.25
-"""Factor on small differences of lightness, of which overlapping cards blur a sixth away (18 crowns); black and white
-stay."""
+2.0 crowns came out 4 darker, CIE Lab, in the median of 17 photos, and their colours as much paler)."""
+CONTRAST = 1.7
+"""Factor on small differences of lightness, part of which overlapping cards and their soft shading blur away; black and
+white stay. At 1.25 the spread of lightness in a crown was 0.76 to 0.86 of its photo's, at 1.7 it is 0.83 to 0.95, and
+clumps of light and dark come out truer (4 photos); at 2.1 it is 0.90 to 1.02, but shade turns black."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,9 +83,9 @@ def unshaded(lab: Floats) -> Floats:
     stay, and white stays white.
     """
     mean = lab[:, :1].mean()
-    away = lab[:, :1] - mean
-    way = np.maximum(np.where(away < 0, mean, 100.0 - mean), 1.0)
-    lightness = mean + away * (1 + (CONTRAST - 1) * (1 - (away / way) ** 2))
+    way = np.maximum(np.where(lab[:, :1] < mean, mean, 100.0 - mean), 1.0)
+    away = (lab[:, :1] - mean) / way
+    lightness = mean + way * CONTRAST * away / np.sqrt(1 + (CONTRAST**2 - 1) * away**2)
     luminance = luminance_of_lightness(lightness)
     lightness = np.cbrt(UNSHADED / (1 + (UNSHADED - 1) * luminance)) * (lightness + 16) - 16
     return np.concatenate([lightness, lab[:, 1:] * (lightness + 16) / (lab[:, :1] + 16)], axis=1)

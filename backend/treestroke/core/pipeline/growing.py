@@ -16,6 +16,7 @@ from treestroke.core.grow.growth_space import REFERENCE_WIDTH
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.palm import grow_palm
 from treestroke.core.grow.params import growth_for
+from treestroke.core.grow.reaching import reaching
 from treestroke.core.grow.replacement import REACHED_PX, CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.imaging.sampling import sample_nearest
@@ -214,6 +215,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):
         grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera))
+        grown = reaching(grown, Silhouette(leafy & ~crown.wood, crown.camera), crown.volume)
     return _FilledCrown(evidence, traced, taken, crown, lifted, leafy, grown)
 
 

@@ -1,0 +1,118 @@
+"""Extends a grown tree to foliage that its branches did not reach."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
+from treestroke.core.grow.grown import Grown
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.skeleton.traverse import accumulate_to_root, child_counts
+from treestroke.core.types import Floats, Indices, Mask
+
+REACH = 0.03
+"""Distance from the nearest branch in the picture, as a share of the tree's height, up to which its leaves cover the
+foliage."""
+SPACING = 0.02
+"""Side of the squares, as a share of the tree's height, that get a joint each where their foliage is out of reach."""
+CELLS = 6
+"""Cells along such a square's side in which foliage and branches are counted."""
+ON_EDGE = (1 / 3, 2 / 3, 1.0)
+"""Shares of an edge's length at which it is marked."""
+FILLED = 0.2
+"""Share of a square that such foliage must fill."""
+LONGEST = 0.1
+"""Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
+WITHIN = 0.9
+"""Share of the crown's depth that new joints may use."""
+
+
+def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> Grown:
+    """Add twigs to the foliage that lies out of reach of all branches in the picture: ends of boughs, mostly.
+
+    Joints stand in the middle of such foliage, and the shortest links join them to the tree and to each other, the
+    nearest first: so twigs run along the foliage, and across a gap where it is narrowest. They stand above the ground,
+    as deep as the branch that they leave, as far as the crown's ``volume`` is. What was there keeps its place and
+    radius. The foliage does not include wood.
+
+    Source: the minimum spanning tree, Prim 1957; for branches as by Livny et al. 2010, "Automatic reconstruction of
+    tree skeletal structures from point clouds", section 4.
+    """
+    tree, camera = grown.skeleton, foliage.camera
+    joints_px = camera.pixels_from_world(tree.points)
+    height_px = float(np.ptp(joints_px[:, 1]))
+    places_px = _out_of_reach(joints_px, tree.parents, foliage.mask, height_px)
+    places_px = places_px[camera.world_from_pixels(places_px)[:, 1] > tree.points[:, 1].min()]
+    places_px, parents = _linked(joints_px, places_px, LONGEST * height_px)
+    if len(parents) == 0:
+        return grown
+    parents = np.concatenate([tree.parents, parents])
+    points = np.vstack([tree.points, _lifted(tree, places_px, parents, camera, volume)])
+    born = np.concatenate([grown.born, np.full(len(places_px), grown.born.max() + 1)])
+    return replace(grown, skeleton=Skeleton(points, _radii(tree, points, parents), parents), born=born)
+
+
+def _out_of_reach(joints_px: Floats, parents: Indices, foliage: Mask, height_px: float) -> Floats:
+    """Middles (m, 2), px, of the foliage (h, w) in each square that lies out of reach of a tree's joints (n, 2), px."""
+    cell_px = max(1.0, SPACING * height_px / CELLS)
+    size = np.maximum(np.rint(np.array(foliage.shape[::-1]) / cell_px).astype(np.int64), 1)
+    scale = size / foliage.shape[::-1]
+    covered = cv2.resize(foliage.astype(np.uint8) * np.uint8(255), size.tolist(), interpolation=cv2.INTER_AREA) > 127
+    free = np.ones(covered.shape, dtype=np.uint8)
+    start = joints_px[np.maximum(parents, 0)]
+    for share in ON_EDGE:
+        column, row = np.clip((start + share * (joints_px - start)) * scale, 0, size - 1).astype(np.int64).T
+        free[row, column] = 0
+    away = cv2.distanceTransform(free, cv2.DIST_L2, 5)
+    rows, columns = np.nonzero(covered & (away > REACH * height_px / cell_px))
+    square, count = np.unique(rows // CELLS * int(size[0]) + columns // CELLS, return_inverse=True, return_counts=True)[
+        1:
+    ]
+    middles = np.stack([np.bincount(square, columns), np.bincount(square, rows)], axis=1) / count[:, None] + 0.5
+    return np.asarray(middles[count > FILLED * CELLS**2] / scale)
+
+
+def _linked(joints_px: Floats, places_px: Floats, longest_px: float) -> tuple[Floats, Indices]:
+    """Link places (m, 2), px, to a tree's joints (n, 2) by the shortest links: those reached (k, 2), and their parents.
+
+    Parents count from the tree's first joint on through the places, each after its parent.
+    """
+    nearest = np.array([np.hypot(*(joints_px - place).T).argmin() for place in places_px], dtype=np.int64)
+    away = np.hypot(*(places_px - joints_px[nearest]).T)
+    waiting, order = np.ones(len(places_px), dtype=np.bool_), list[int]()
+    while waiting.any():
+        place = int(np.where(waiting, away, np.inf).argmin())
+        if away[place] > longest_px:
+            break
+        waiting[place] = False
+        distance = np.hypot(*(places_px - places_px[place]).T)
+        closer = waiting & (distance < away)
+        away[closer], nearest[closer] = distance[closer], len(joints_px) + len(order)
+        order.append(place)
+    return places_px[order], nearest[order]
+
+
+def _lifted(tree: Skeleton, places_px: Floats, parents: Indices, camera: Camera, volume: CrownVolume) -> Floats:
+    """Place new joints (k, 2), px, in the world (k, 3), metres, at their parents' depth, within the volume."""
+    depth = np.concatenate([camera.depth(tree.points), np.zeros(len(places_px))])
+    for joint in range(len(tree), len(depth)):
+        depth[joint] = depth[parents[joint]]
+    points = camera.world_from_pixels(places_px, depth[len(tree) :])
+    middle, half = camera.depth(volume.axis(points[:, 1])), WITHIN * volume.half_depth(points)
+    return camera.world_from_pixels(places_px, np.clip(depth[len(tree) :], middle - half, middle + half))
+
+
+def _radii(tree: Skeleton, points: Floats, parents: Indices) -> Floats:
+    """Radii of all joints (n,), metres: a new twig has the area of all ends that it bears, its branch's at most.
+
+    Source: the pipe model, Shinozaki et al. 1964.
+    """
+    new = np.arange(len(points)) >= len(tree)
+    whole = Skeleton(points, np.where(new, 0.0, np.resize(tree.radii, len(points))), parents)
+    radii = tree.radii.min() * np.sqrt(accumulate_to_root(whole, (new & (child_counts(whole) == 0)).astype(np.float64)))
+    radii[: len(tree)] = tree.radii
+    for joint in range(len(tree), len(points)):
+        radii[joint] = min(radii[joint], radii[parents[joint]])
+    return np.asarray(radii)
