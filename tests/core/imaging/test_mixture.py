@@ -8,8 +8,11 @@ from hypothesis import strategies as st
 
 from treestroke.core.imaging.mixture import (
     Mixture,
+    Start,
+    by_splitting,
     component_shares,
     distance,
+    far_apart,
     fit_mixture,
     join_mixtures,
     log_components,
@@ -43,11 +46,20 @@ def test_equal_colours_give_an_equal_mixture() -> None:
     assert np.array_equal(first.covariances, second.covariances)
 
 
+def test_noise_hardly_changes_a_mixture_from_splitting() -> None:
+    colours = np.vstack([blob(GREEN, 900, 25), blob(SKY, 300, 10, 1), blob((150, 140, 60), 500, 30, 2)])
+    noisy = np.clip(colours + np.random.default_rng(3).integers(-1, 2, colours.shape), 0, 255).astype(np.uint8)
+    fits = (fit_mixture(samples, 8, by_splitting) for samples in (colours, noisy))
+    first, second = (log_density(mixture, colours.astype(float)) for mixture in fits)
+    assert np.abs(first - second).mean() < 0.05
+
+
+@pytest.mark.parametrize("start", [far_apart, by_splitting])
 @pytest.mark.parametrize(("distinct", "components"), [(1, 1), (3, 1), (6, 3), (40, 10)])
-def test_few_distinct_colours_give_few_components(distinct: int, components: int) -> None:
+def test_few_distinct_colours_give_few_components(distinct: int, components: int, start: Start) -> None:
     colours = np.repeat(blob(GREEN, distinct, spread=30), 5, axis=0)
     assert len(np.unique(colours, axis=0)) == distinct
-    assert len(fit_mixture(colours, 10)) == components
+    assert len(fit_mixture(colours, 10, start)) == components
 
 
 def test_one_pixel_is_enough() -> None:

@@ -27,6 +27,14 @@ def test_a_stroke_beside_its_trunk_by_its_width_finds_it(half: float, side: int)
     assert way == pytest.approx([2 * half * side, 0.0], abs=0.5 * half + 1)
 
 
+@pytest.mark.parametrize("side", [-1, 1], ids=["left", "right"])
+def test_a_trunk_lit_from_one_side_is_found_too(side: int) -> None:
+    lit = photo(8, 200 + 16 * side)
+    lit[160:, 200 + 16 * side : 208 + 16 * side] += 90
+    way = way_to_trunk(lit, STROKE, CROWN, HEIGHT)
+    assert way == pytest.approx([16 * side, 0.0], abs=8)
+
+
 @pytest.mark.parametrize("half", [3.0, 8.0, 15.0, 40.0])
 @pytest.mark.parametrize("aside", [-0.7, 0.0, 0.7])
 def test_a_stroke_on_its_trunk_stays(half: float, aside: float) -> None:

@@ -1,6 +1,6 @@
 """Gaussian mixtures over colours (docs/decisions/0005 says why they are our own)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,13 @@ ENOUGH = 3e-3
 """A fit ends when a round increases the mean log likelihood by less."""
 MIDDLE = 127.5
 """Subtracted from channels before they are squared, so that no digits are lost: the middle of their range."""
+RARE = 0.75
+"""Power of a group's size by which its squared spread is divided: at 0 common colours are split first, at 1 rare ones.
+"""
 _ROWS, _COLUMNS = np.triu_indices(3)
+
+Start = Callable[[Floats, int], Floats]
+"""Divides samples (n, 3) into k groups, from which a fit starts: shares (n, k), 0 or 1."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,33 +54,13 @@ class Mixture:
         return Mixture(weights / weights.sum(), self.means[kept], self.covariances[kept])
 
 
-def fit_mixture(colours: NDArray[np.uint8], components: int) -> Mixture:
-    """Fit a mixture to colours (n, 3), sRGB, 0 to 255, by expectation maximisation from a k-means++ start.
+def far_apart(samples: Floats, count: int) -> Floats:
+    """Assign each sample (n, 3) to the nearest of k samples drawn far from each other: shares (n, k), 0 or 1.
 
-    Fewer than twice as many distinct colours as components give fewer components. The start is seeded, so equal colours
-    give an equal mixture.
+    The draw is seeded. Rare colours get components of their own, as a limb's among leaves must.
 
-    Source: Dempster, Laird and Rubin 1977; the start: Arthur and Vassilvitskii 2007.
+    Source: k-means++, Arthur and Vassilvitskii 2007.
     """
-    samples = colours.reshape(-1, 3).astype(np.float64)
-    distinct = len(np.unique(samples @ (1.0, 256.0, 65536.0)))
-    if distinct < 2 * components:
-        components = max(1, distinct // 2)
-    terms = _terms(samples)
-    share, before = _nearest_seed(samples, components), -np.inf
-    for _ in range(MOST_ROUNDS):
-        mixture = _most_likely(share, terms)
-        parts = log_components(mixture, samples)
-        total = log_sum(parts)
-        likelihood = float(total.mean())
-        if likelihood - before < ENOUGH:
-            break
-        share, before = np.exp(parts - total[:, None]), likelihood
-    return mixture
-
-
-def _nearest_seed(samples: Floats, count: int) -> Floats:
-    """Assign each sample (n, 3) to the nearest of k samples drawn far from each other: shares (n, k), 0 or 1."""
     rng = np.random.default_rng(0)
     chosen = int(rng.integers(len(samples)))
     nearest = ((samples - samples[chosen]) ** 2).sum(axis=1)
@@ -86,6 +72,59 @@ def _nearest_seed(samples: Floats, count: int) -> Floats:
         seeds[away < nearest] = seed
         nearest = np.minimum(nearest, away)
     return np.asarray(np.eye(count)[seeds])
+
+
+def by_splitting(samples: Floats, count: int) -> Floats:
+    """Split the group that is most spread out across its longest axis at its mean, until there are k groups.
+
+    Returns shares (n, k), 0 or 1. Nothing is drawn, so that nearly equal colours, of the same photo at another size or
+    with a camera's noise, are divided nearly alike.
+
+    Source: Orchard and Bouman 1991, "Color quantization of images", section III; we weigh a group's size by
+    `RARE`.
+    """
+    groups, axes = [np.arange(len(samples))], [_longest_axis(samples)]
+    for _ in range(1, count):
+        widest = max(range(len(groups)), key=lambda group: axes[group][0])
+        members, (_, middle, axis) = groups[widest], axes[widest]
+        ahead = (samples[members] - middle) @ axis > 0
+        groups[widest : widest + 1] = [members[~ahead], members[ahead]]
+        axes[widest : widest + 1] = [_longest_axis(samples[part]) for part in groups[widest : widest + 2]]
+    share = np.zeros((len(samples), count))
+    for group, members in enumerate(groups):
+        share[members, group] = 1.0
+    return share
+
+
+def _longest_axis(samples: Floats) -> tuple[float, Floats, Floats]:
+    """Return how far samples (n, 3) are spread along their longest axis, their mean (3,) and that axis (3,)."""
+    middle = samples.mean(axis=0)
+    squares, axes = np.linalg.eigh((samples - middle).T @ (samples - middle))
+    return float(squares[-1]) / len(samples) ** RARE, middle, axes[:, -1]
+
+
+def fit_mixture(colours: NDArray[np.uint8], components: int, start: Start = far_apart) -> Mixture:
+    """Fit a mixture to colours (n, 3), sRGB, 0 to 255, by expectation maximisation.
+
+    Fewer than twice as many distinct colours as components give fewer components. Equal colours give an equal mixture.
+
+    Source: Dempster, Laird and Rubin 1977.
+    """
+    samples = colours.reshape(-1, 3).astype(np.float64)
+    distinct = len(np.unique(samples @ (1.0, 256.0, 65536.0)))
+    if distinct < 2 * components:
+        components = max(1, distinct // 2)
+    terms = _terms(samples)
+    share, before = start(samples, components), -np.inf
+    for _ in range(MOST_ROUNDS):
+        mixture = _most_likely(share, terms)
+        parts = log_components(mixture, samples)
+        total = log_sum(parts)
+        likelihood = float(total.mean())
+        if likelihood - before < ENOUGH:
+            break
+        share, before = np.exp(parts - total[:, None]), likelihood
+    return mixture
 
 
 def _most_likely(share: Floats, terms: Floats) -> Mixture:

@@ -14,13 +14,17 @@ FURTHEST, WIDEST = 0.13, 0.05
 """How far beside its stroke a trunk is looked for, and its greatest half width, as shares of the tree's height."""
 ALONG, ACROSS = 0.006, 0.004
 """Distance between the places that are compared, along the stroke and across it, as shares of the tree's height."""
-FEWEST = 20
+FEWEST = 12
 """Least number of places along the stroke below the crown."""
-APART = 3.0
-"""Greatest distance of a trunk from its stroke, in half widths: a hasty hand misses it by its width, not by more."""
-CLEAR, CLEARER = 2.4, 1.4
-"""Least contrast of a trunk beside the stroke, in deviations of its colours, and how many times that of any stripe
-under the stroke it must be: of 40 strokes on their trunks none is moved, of 51 beside them by their width 31 are."""
+APART = 4.0
+"""Greatest distance of a trunk from its stroke, in half widths of its clearest stripe, which may be its lit side alone:
+a hasty hand misses a trunk by its width, not by more."""
+ASIDE = 0.8
+"""Stripes overlap whose middles are nearer than this share of both their half widths together."""
+CLEAR, CLEARER = 2.0, 1.6
+"""Least contrast of a trunk beside the stroke, in deviations of its colours, and how many times that of any other
+stripe under the stroke it must be: of 131 strokes on their trunks, some by their edges, none is moved; of 177 beside
+them by once or one and a half times their width 106 are moved onto them and 3 away from them."""
 NOISE = 4.0
 """Added to deviations, steps of 255: no stripe is smoother than a camera's noise."""
 
@@ -43,8 +47,10 @@ def way_to_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: floa
     middle, half = offsets[middle], half * step
     near = np.where(np.abs(middle) <= APART * half + 2 * step, contrast, 0.0)
     best = int(near.argmax())
-    under = contrast[np.abs(middle) <= half + 1.5 * step].max(initial=0.0)
-    return across * middle[best] if near[best] > max(CLEAR, CLEARER * under) else np.zeros(2)
+    under = np.abs(middle) <= half + 1.5 * step
+    other = np.abs(middle - middle[best]) >= ASIDE * (half + half[best])
+    least = max(CLEAR, CLEARER * float(contrast[under & other].max(initial=0.0)))
+    return across * middle[best] if near[best] > least and not under[best] else np.zeros(2)
 
 
 def _stripes(colours: Floats, widest: int) -> tuple[Floats, Floats, Floats]:
