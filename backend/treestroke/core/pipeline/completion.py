@@ -241,7 +241,7 @@ def _reach(cut: _Cut, middle: float | None, pointed: bool) -> Floats:
         furthest = min(_point(cut), chord_px) if pointed else min(_dome(cut), chord_px / 2)
         return np.asarray(min(furthest, MOST_REACH * cut.depth) * (inward if pointed else parabola))
     furthest = min(max(cut.depth - 2 * middle, 0.0), MOST_REACH * cut.depth)
-    return np.minimum(np.maximum(cut.far - 2 * middle, 0.0), furthest * np.sqrt(parabola))
+    return np.asarray(np.minimum(np.maximum(cut.far - 2 * middle, 0.0), furthest * np.sqrt(parabola)))
 
 
 def _margin(cut: _Cut, reach: Floats, middle: float | None, source: Indices) -> tuple[Indices, Mask]:
