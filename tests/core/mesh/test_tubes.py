@@ -104,6 +104,17 @@ def test_bark_stands_on_the_ground_even_where_the_trunk_leans() -> None:
     assert np.hypot(low[:, 0], low[:, 2]).max() > 0.25
 
 
+@pytest.mark.parametrize("lean", [0.0, 0.4, 0.7])
+def test_a_trunk_is_cut_level_at_the_ground_and_is_no_wider_there(lean: float) -> None:
+    up = np.linspace(0.0, 3.0, 13)
+    points = np.column_stack([lean * up, up, 0.2 * np.sin(up)])
+    mesh = tubes(Skeleton(points, np.full(13, 0.2), np.arange(13) - 1))
+    low = mesh.positions[mesh.positions[:, 1] == 0.0]
+    assert mesh.positions[:, 1].min() == 0.0
+    assert np.hypot(low[:, 0], low[:, 2]).max() == pytest.approx(0.2, rel=1e-3)
+    assert low.mean(axis=0) == pytest.approx(np.zeros(3), abs=0.02)
+
+
 def test_the_root_swells_and_the_trunk_above_does_not() -> None:
     mesh = tubes(stick(joints=9, radius=0.1, tip_radius=0.1), TubeParams(root_swelling=1.5, buttress=0.0))
     reach = np.hypot(mesh.positions[:, 0], mesh.positions[:, 2])

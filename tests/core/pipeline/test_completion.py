@@ -69,6 +69,11 @@ def test_a_crown_inside_the_photo_stays_as_it_is(photo: np.ndarray) -> None:
     assert crown_of(read_photo(photo, strokes((150, 150), 124)))[2] == ()
 
 
+def test_a_crown_of_which_an_edge_cuts_hardly_anything_stays_as_it_is(photo: np.ndarray) -> None:
+    assert crown_of(cropped(photo, strokes((150, 150), 124), (33, 0, 300, 400)))[2] == ()
+    assert crown_of(cropped(photo, strokes((150, 150), 124), (45, 0, 300, 400)))[2] == ("left",)
+
+
 def test_what_the_photo_shows_stays_as_it_is(photo: np.ndarray) -> None:
     evidence = cropped(photo, strokes((150, 150), 124), BOXES["left"])
     found, (x, y), _ = crown_of(evidence)

@@ -3,7 +3,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
-from tests.conftest import EXAMPLES
+from tests.conftest import DATA, EXAMPLES
 
 from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.growing import grow_tree
@@ -92,3 +92,10 @@ def test_a_trunk_stroke_that_begins_above_the_foot_goes_on_down_the_visible_trun
     assert seen.traced.skeleton.points[0] == pytest.approx(trunk[0], abs=0.02 * whole.height_px)
     assert "trunk_lengthened" in [one.code for one in seen.warnings]
     assert "trunk_lengthened" not in [one.code for one in whole.warnings]
+
+
+def test_a_trunk_stroke_from_the_foot_is_not_led_on_into_dark_mulch() -> None:
+    photo, strokes = load_photo(DATA / "boxelder_lawn.jpg"), load_strokes(DATA / "boxelder_lawn.strokes.json")
+    seen = read_photo(photo, strokes)
+    assert seen.warnings == ()
+    assert np.array_equal(seen.working.strokes.branches[0].points, strokes.branches[0].points)

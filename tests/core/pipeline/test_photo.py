@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -53,6 +54,23 @@ def test_the_same_seed_gives_the_same_arrays(maple: TreeModel) -> None:
 def test_another_seed_gives_another_tree(maple: TreeModel) -> None:
     other = modelled(MAPLE, seed=1)
     assert not np.array_equal(other.bark.mesh.positions, maple.bark.mesh.positions)
+
+
+@pytest.mark.parametrize("name", ["redbud_park", "cherry_blossom"])
+def test_a_trunk_that_leaves_the_photo_at_the_bottom_is_cut_level_at_the_origin(name: str) -> None:
+    photo, strokes = given(DATA / name)
+    trunk = strokes.branches[0].points
+    row = int(trunk[0, 1] - 0.05 * np.ptp(trunk[:, 1]))
+    start = [np.interp(-row, -trunk[:, 1], trunk[:, 0]), row]
+    cut = Stroke(np.vstack([start, trunk[trunk[:, 1] < row]]))
+    evidence = read_photo(photo[:row], replace(strokes, branches=(cut,)))
+    tree = model_photo(evidence, ModelSettings(iterations=0), np.random.default_rng(0))
+    bark, skeleton = tree.bark.mesh.positions, tree.grown.skeleton
+    flat = bark[bark[:, 1] == 0.0]
+    above = skeleton.radii[(skeleton.points[:, 1] > 0.3) & (skeleton.points[:, 1] < 0.8)].max()
+    assert bark[:, 1].min() == 0.0
+    assert flat.mean(axis=0) == pytest.approx(np.zeros(3), abs=0.05)
+    assert np.ptp(flat[:, 0]) / 2 == pytest.approx(above, rel=0.1)
 
 
 def test_the_origin_is_in_the_trunk_s_foot_and_the_tree_is_as_high_as_asked(maple: TreeModel) -> None:

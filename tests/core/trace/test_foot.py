@@ -34,3 +34,17 @@ def test_a_foot_without_flare_or_behind_grass_stays_as_wide_as_the_trunk(hidden_
 def test_the_trunk_above_its_foot_stays_as_it_is() -> None:
     radii = np.linspace(12.0, 6.0, len(LINE))
     assert np.array_equal(flared(LINE, radii, picture(np.full(200, 25.0)))[30:], radii[30:])
+
+
+def test_a_leaning_trunk_without_flare_stays_even() -> None:
+    leaning = resample(np.array([[60.0, 180.0], [140.0, 20.0]]), 2.0)
+    y, x = np.mgrid[:200, :200] + 0.5
+    wood = np.abs(x - (60 + (180 - y) / 2)) < 12 / np.cos(np.arctan(0.5))
+    photo = np.where(wood[..., None], BARK, GRASS).astype(np.uint8)
+    assert flared(leaning, np.full(len(leaning), 12.0), photo) == pytest.approx(12.0, abs=1.0)
+
+
+def test_a_trunk_that_leaves_the_photo_at_the_bottom_is_as_wide_there_as_above() -> None:
+    half = 12 + 8 * np.clip((np.arange(200) - 155) / 25, 0, 1) ** 2
+    assert flared(LINE, RADII, picture(half))[0] > 18
+    assert np.array_equal(flared(LINE, RADII, picture(half)[:182]), RADII)

