@@ -6,7 +6,7 @@ import pytest
 from tests.pictures import wood_mask
 
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.trace import bare_crown
+from treestroke.core.trace import bare_crown, fine_twigs
 from treestroke.core.trace.bare_crown import find_twigs
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 
@@ -80,6 +80,7 @@ def test_twigs_that_cross_make_no_loop() -> None:
 def test_where_there_is_too_much_the_shortest_twigs_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     short = [([(110.0 + 0.56 * up, 60.0 + up), (100.0 + 0.56 * up, 57.0 + up)], 1.5) for up in range(20, 150, 26)]
     share = share_of([*LINES, *short])
+    monkeypatch.setattr(fine_twigs, "MOST", 0)
     every = len(traced(share).points)
     monkeypatch.setattr(bare_crown, "MOST_JOINTS", int(0.6 * every))
     fewer = traced(share)

@@ -27,10 +27,10 @@ JITTER = 0.06
 SLOPES = np.linspace(-STEEPEST, STEEPEST, 13)
 """Slopes with which a limb is tried: of those with which it stays in the crown, the one that ends nearest to its place
 is taken."""
-ROOM, AROUND = 1.05, 0.08
+ROOM, AROUND = 1.2, 0.08
 """Half the width of the sections that limbs may fill, relative to the crown's greatest within this share of the tree's
 height."""
-ROUNDED, LEAST = 3.0, 0.2
+ROUNDED, LEAST = 3.0, 0.25
 """Exponent of those sections, between a circle (2) and a square: limbs that are seen in their full length hide others
 that reach as far aslant; and least share of depth to that power, so that no limb at the edge is alone."""
 
