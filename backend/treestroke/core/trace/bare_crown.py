@@ -12,7 +12,7 @@ from treestroke.core.trace.centre_lines import thin
 from treestroke.core.trace.crown_picture import Window
 from treestroke.core.trace.fine_twigs import fine_twigs
 from treestroke.core.trace.found_limbs import chains, kept_pixels
-from treestroke.core.trace.limb_paths import LONGEST_GAP, join_strokes, shortest_paths
+from treestroke.core.trace.limb_paths import LONGEST_GAP, ON_WOOD, join_strokes, shortest_paths
 from treestroke.core.trace.ribbons import Ribbons
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 from treestroke.core.trace.snapping import blur
@@ -36,6 +36,10 @@ ASIDE_PX = 9
 STEP_PX, STEADY = 3.0, 1.0
 """Distance between joints along a twig, px, and standard deviation over which its pixels' steps are smoothed, relative
 to its half width, but no less than a pixel: nothing bends more sharply than it is thick."""
+MIDDLING_PX, MOST_RATIO = 4.0, 4.0
+"""Half width of wood along which a step costs `ON_WOOD`, px. Twice as thick it costs half, down to a share of one in
+this many, and thin wood in the same way more: where limbs cross, each goes on along its own wood.
+"""
 SLENDER = 0.3
 """Greatest half width of wood, relative to the length that goes on from there: what many twigs cover together is no
 limb."""
@@ -64,7 +68,8 @@ def find_twigs(builder: SkeletonBuilder, wood: Opacity, crown: Mask, height_px: 
     drawn = builder.skeleton()
     strokes = Skeleton(window.inside(drawn.points), drawn.radii * window.scale, drawn.parents)
     network = join_strokes(ribbons, strokes, share.shape)
-    paths = shortest_paths(network, share > TOUCHED, small_px)
+    thickness = np.clip(network.ribbons.half_widths / MIDDLING_PX, 1 / MOST_RATIO, MOST_RATIO)
+    paths = shortest_paths(network, share > TOUCHED, small_px, ON_WOOD / thickness)
     points = network.ribbons.points
     kept, beyond = kept_pixels(paths, network.ribbons.half_widths)
     half_widths = np.minimum(network.ribbons.half_widths, SLENDER * beyond + 1.0)
