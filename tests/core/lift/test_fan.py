@@ -39,6 +39,20 @@ def test_no_limb_turns_back_toward_the_picture_s_plane() -> None:
     assert (np.abs(depth[:, 1]) >= np.abs(depth[:, 0])).all()
 
 
+def test_limbs_in_one_line_of_sight_end_evenly_from_front_to_back() -> None:
+    ends = np.sort(fanned(tree_of([[(240.0, 190.0), (280.0, 160.0)]] * 12)).points[6::2, 2])
+    assert np.ptp(ends) > 3.0
+    assert np.diff(ends).max() < 0.25 * np.ptp(ends)
+
+
+def test_limbs_at_the_crown_s_edge_leave_the_picture_less_than_those_in_its_middle() -> None:
+    middle, edge = (
+        np.abs(fanned(tree_of([limb] * 12)).points[6::2, 2]).max()
+        for limb in ([(250.0, 200.0), (280.0, 110.0)], [(300.0, 200.0), (355.0, 160.0)])
+    )
+    assert edge < 0.95 * middle
+
+
 def test_limbs_in_one_line_of_sight_part_in_depth() -> None:
     ends = fanned(tree_of([LEFT, LEFT])).points[[6, 8], 2]
     assert abs(ends[0] - ends[1]) > 0.3

@@ -6,7 +6,7 @@ import pytest
 from tests.pictures import wood_mask
 
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.trace import bare_crown
+from treestroke.core.trace import bare_crown, fine_twigs
 from treestroke.core.trace.bare_crown import find_twigs
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 
@@ -77,9 +77,17 @@ def test_twigs_that_cross_make_no_loop() -> None:
     assert overlap(covered(builder), share_of(crossing) * CROWN) > 0.75
 
 
+def test_a_thick_limb_goes_on_along_its_own_wood_where_a_thin_one_leads_to_it_by_a_shorter_way() -> None:
+    thick, thin = [(200.0, 215.0), (80.0, 180.0), (170.0, 60.0)], [(200.0, 220.0), (150.0, 85.0)]
+    builder = traced(share_of([(thick, 14.0), (thin, 2.0)]))
+    beyond = [r for p, r in zip(builder.points, builder.radii, strict=True) if np.hypot(*(p - (125.0, 120.0))) < 20]
+    assert max(beyond) > 5.0
+
+
 def test_where_there_is_too_much_the_shortest_twigs_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
     short = [([(110.0 + 0.56 * up, 60.0 + up), (100.0 + 0.56 * up, 57.0 + up)], 1.5) for up in range(20, 150, 26)]
     share = share_of([*LINES, *short])
+    monkeypatch.setattr(fine_twigs, "MOST", 0)
     every = len(traced(share).points)
     monkeypatch.setattr(bare_crown, "MOST_JOINTS", int(0.6 * every))
     fewer = traced(share)

@@ -3,6 +3,8 @@
 import cv2
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from tests.pictures import disc, wood_mask
 
 from treestroke.core.geometry.polyline import resample
@@ -79,6 +81,24 @@ def test_a_limb_goes_on_behind_leaves_between_two_places_where_it_is_seen() -> N
     builder = traced(wood)
     assert covered(LEFT, builder, within=5.0) > 0.85
     assert np.count_nonzero(builder.skeleton().parents < 0) == 1
+
+
+@given(st.floats(-130, 130), st.floats(0.3, 0.6), st.floats(10, 20), st.floats(6, 12))
+@settings(max_examples=25, deadline=None)
+def test_a_limb_that_a_clump_of_leaves_hides_in_its_middle_is_one_limb_and_not_two(
+    aside: float, where: float, radius: float, width: float
+) -> None:
+    limb = [(200.0, 220.0), (200.0 + aside, 60.0)]
+    clump = disc(400, radius, (200.0 + where * aside, 220.0 - 160 * where))
+    tree = traced(wood_mask([(STEM, 16.0), (limb, width)], 400, 400) & ~clump).skeleton()
+    line = resample(np.array(limb), 1.0)
+    way = [int(np.linalg.norm(tree.points - limb[1], axis=1).argmin())]
+    while tree.parents[way[-1]] >= 0:
+        way.append(int(tree.parents[way[-1]]))
+    above = tree.points[way][tree.points[way, 1] < 215]
+    assert np.linalg.norm(above[:, None] - line, axis=2).min(axis=1).max() < 6.0
+    assert above[0, 1] < 75
+    assert np.count_nonzero(np.bincount(tree.parents[1:], minlength=len(tree)) == 0) <= 2
 
 
 def test_no_limb_goes_far_beyond_leaves_to_a_mere_speck() -> None:

@@ -10,8 +10,9 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.trace.appearance import MAX_ODDS, WoodOdds
 from treestroke.core.trace.centre_lines import thin
 from treestroke.core.trace.crown_picture import Window
+from treestroke.core.trace.fine_twigs import fine_twigs
 from treestroke.core.trace.found_limbs import chains, kept_pixels
-from treestroke.core.trace.limb_paths import LONGEST_GAP, join_strokes, shortest_paths
+from treestroke.core.trace.limb_paths import LONGEST_GAP, ON_WOOD, join_strokes, shortest_paths
 from treestroke.core.trace.ribbons import Ribbons
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder
 from treestroke.core.trace.snapping import blur
@@ -32,8 +33,16 @@ THIN_PX, AROUND_PX = 3.0, 4
 which that is measured, px."""
 ASIDE_PX = 9
 """Side of the square in which the middle of a limb lies around its stroke's line, px."""
-STEP_PX, STEADY_PX = 3.0, 1.0
-"""Distance between joints along a twig, and standard deviation over which its pixels' steps are smoothed, px."""
+STEP_PX, STEADY = 3.0, 1.0
+"""Distance between joints along a twig, px, and standard deviation over which its pixels' steps are smoothed, relative
+to its half width, but no less than a pixel: nothing bends more sharply than it is thick."""
+MIDDLING_PX, MOST_RATIO = 4.0, 4.0
+"""Half width of wood along which a step costs `ON_WOOD`, px. Twice as thick it costs half, down to a share of one in
+this many, and thin wood in the same way more: where limbs cross, each goes on along its own wood.
+"""
+SLENDER = 0.3
+"""Greatest half width of wood, relative to the length that goes on from there: what many twigs cover together is no
+limb."""
 FINEST = 2.5e-4
 """Radius of the finest twig, as a share of the tree's height: a fourth of a pixel in a tree 1,000 px high."""
 TOLERANCE_PX = 0.25
@@ -59,20 +68,35 @@ def find_twigs(builder: SkeletonBuilder, wood: Opacity, crown: Mask, height_px: 
     drawn = builder.skeleton()
     strokes = Skeleton(window.inside(drawn.points), drawn.radii * window.scale, drawn.parents)
     network = join_strokes(ribbons, strokes, share.shape)
-    paths = shortest_paths(network, share > TOUCHED, small_px)
-    points, half_widths = network.ribbons.points, network.ribbons.half_widths
+    thickness = np.clip(network.ribbons.half_widths / MIDDLING_PX, 1 / MOST_RATIO, MOST_RATIO)
+    paths = shortest_paths(network, share > TOUCHED, small_px, ON_WOOD / thickness)
+    points = network.ribbons.points
+    kept, beyond = kept_pixels(paths, network.ribbons.half_widths)
+    half_widths = np.minimum(network.ribbons.half_widths, SLENDER * beyond + 1.0)
     joint_at = np.full(len(points), -1)
-    for chain in _longest(list(chains(paths, *kept_pixels(paths, half_widths)))):
+    for chain in _longest(list(chains(paths, kept, beyond))):
         first = int(joint_at[chain[0]])
         joint = first if first >= 0 else int(np.linalg.norm(strokes.points - points[chain[0]], axis=1).argmin())
-        line = np.vstack([window.inside(builder.points[joint]), points[chain[1:]]])
-        even = resample(blur(resample(line, 1.0), STEADY_PX), STEP_PX)
+        line, wide = np.vstack([window.inside(builder.points[joint]), points[chain[1:]]]), half_widths[chain[1:]]
+        even = resample(blur(resample(line, 1.0), STEADY * max(1.0, float(np.median(wide)))), STEP_PX)
         along = arc_lengths(line)
-        widths = np.interp(np.linspace(0.0, along[-1], len(even)), along[1:], half_widths[chain[1:]])
+        widths = np.interp(np.linspace(0.0, along[-1], len(even)), along[1:], wide)
         radii = np.clip(non_increasing(widths) / window.scale, FINEST * height_px, builder.radii[joint])
         before = len(builder.points)
         builder.add_chain(joint, window.outside(even), radii, stroke=-1)
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
+    _add_fine(builder, share > SEEN, window, FINEST * height_px)
+
+
+def _add_fine(builder: SkeletonBuilder, wood: Mask, window: Window, finest_px: float) -> None:
+    """Add the twigs that stand too densely to be told apart; ``wood`` (h, w) lies in the window."""
+    points, radii = builder.arrays()
+    tree = fine_twigs(wood, Skeleton(window.inside(points), radii * window.scale, np.array(builder.parents)))
+    outside, thick = window.outside(tree.points), np.maximum(tree.radii / window.scale, finest_px)
+    for middle in range(len(points), len(tree), 2):
+        bearer, twig = int(tree.parents[middle]), slice(middle, middle + 2)
+        radii_px = np.minimum(np.append(0.0, thick[twig]), builder.radii[bearer])
+        builder.add_chain(bearer, np.vstack([builder.points[bearer], outside[twig]]), radii_px, stroke=-1)
 
 
 def _longest(twigs: list[list[int]]) -> list[list[int]]:

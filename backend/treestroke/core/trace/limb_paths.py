@@ -93,10 +93,14 @@ def join_strokes(ribbons: Ribbons, strokes: Skeleton, shape: tuple[int, int]) ->
     return Network(Ribbons(pixels, width[at].astype(np.float64)), stroked[at], onward[at].astype(np.float64))
 
 
-def shortest_paths(network: Network, leafy: Mask, height_px: float) -> Paths:
-    """Return the shortest paths from the strokes to all ribbons; ``leafy`` (h, w) is where leaves may hide a limb."""
+def shortest_paths(network: Network, leafy: Mask, height_px: float, on_wood: Floats | float = ON_WOOD) -> Paths:
+    """Return the shortest paths from the strokes to all ribbons; ``leafy`` (h, w) is where leaves may hide a limb.
+
+    ``on_wood`` is what a step to a pixel (n,) of wood costs, relative to a straight gap of the same length.
+    """
     pixels = network.ribbons.pixels
-    steps = [[(other, ON_WOOD, 0.0) for other in others] for others in neighbours(pixels, leafy.shape)]
+    costs = np.broadcast_to(on_wood, len(pixels)).tolist()
+    steps = [[(other, costs[other], 0.0) for other in others] for others in neighbours(pixels, leafy.shape)]
     for start, end, gap, cost in _gaps(network, leafy, LONGEST_GAP * height_px):
         steps[start].append((end, cost, gap))
     return _dijkstra(steps, np.flatnonzero(network.stroked).tolist())
