@@ -79,7 +79,7 @@ class _Gaps:
 def cover_gaps(
     leaves: Leaves, skeleton: Skeleton, crown: LeafCrown, params: GapParams, rng: np.random.Generator
 ) -> list[Leaves]:
-    """Set cards over what the leaves leave open in each view, in smaller and smaller sizes, and before bare wood.
+    """Set cards before the wood that each view would show, and over what is open then, in smaller and smaller sizes.
 
     Places too far from any branch stay open.
     """
@@ -90,8 +90,8 @@ def cover_gaps(
     for grid in crown.grids:
         gaps = _Gaps(grid, crown, seats, skeleton.radii[seats.joints], far)
         nearest = _nearest_cards(patches, gaps)
-        patches += _cover_view(nearest, patches, gaps, params, rng)
         patches += _cover_wood(nearest, patches, gaps, params, rng)
+        patches += _cover_view(nearest, patches, gaps, params, rng)
     return patches[1:]
 
 
@@ -101,6 +101,24 @@ def _nearest_cards(patches: Sequence[Leaves], gaps: _Gaps) -> Depths:
     for patch in patches:
         gaps.crown.hide(nearest, patch, gaps.grid)
     return nearest
+
+
+def _cover_wood(
+    nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
+) -> list[Leaves]:
+    """Set cards before the wood that a view would show where its picture shows foliage, a share of it by density."""
+    grid, crown, added = gaps.grid, gaps.crown, list[Leaves]()
+    cells, wood = grid.cells_of(gaps.seats.points), grid.camera.depth(gaps.seats.points) - gaps.radii
+    hidden = grid.inside.ravel()[cells] & (rng.random(len(cells)) < params.share)
+    for scale in WOOD_SIZES:
+        shown = np.flatnonzero(hidden & (wood < nearest[cells]))[: max(0, _left([*patches, *added], params))]
+        seats, half_sizes = gaps.seats.at(shown), scale * crown.half_sizes(len(shown), rng)
+        toward = grid.camera.toward_viewer(seats.points)
+        centres = seats.points + (gaps.radii[shown] + BEFORE * half_sizes)[:, None] * toward
+        outward = unit(centres - crown.middle, UP) + toward
+        added.append(crown.dressed(pose_over(seats, centres, half_sizes, outward, rng), seats, rng)[0])
+        crown.hide(nearest, added[-1], grid)
+    return added
 
 
 def _cover_view(
@@ -120,24 +138,6 @@ def _cover_view(
         foliage, background = newly_hidden(nearest, patch, gaps.crown.outlines, gaps.grid)
         added.append(patch.select((foliage > 0) & (foliage >= WORTH * background)))
         gaps.crown.hide(nearest, added[-1], gaps.grid)
-    return added
-
-
-def _cover_wood(
-    nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
-) -> list[Leaves]:
-    """Set cards before the wood that a view would show where its picture shows foliage, a share of it by density."""
-    grid, crown, added = gaps.grid, gaps.crown, list[Leaves]()
-    cells, wood = grid.cells_of(gaps.seats.points), grid.camera.depth(gaps.seats.points) - gaps.radii
-    hidden = grid.inside.ravel()[cells] & (rng.random(len(cells)) < params.share)
-    for scale in WOOD_SIZES:
-        shown = np.flatnonzero(hidden & (wood < nearest[cells]))[: max(0, _left([*patches, *added], params))]
-        seats, half_sizes = gaps.seats.at(shown), scale * crown.half_sizes(len(shown), rng)
-        toward = grid.camera.toward_viewer(seats.points)
-        centres = seats.points + (gaps.radii[shown] + BEFORE * half_sizes)[:, None] * toward
-        outward = unit(centres - crown.middle, UP) + toward
-        added.append(crown.dressed(pose_over(seats, centres, half_sizes, outward, rng), seats, rng)[0])
-        crown.hide(nearest, added[-1], grid)
     return added
 
 
