@@ -34,9 +34,9 @@ def card(half_m: float, at: np.ndarray = MIDDLE, turn: float = 0.6) -> Leaves:
 
 
 def hidden(cards: Leaves, outlines: Outlines, grid: FoliageGrid) -> np.ndarray:
-    covered = np.zeros(grid.inside.size, dtype=bool)
-    cover(covered, cards, outlines, grid)
-    return covered
+    nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
+    cover(nearest, cards, outlines, grid)
+    return np.isfinite(nearest)
 
 
 @pytest.mark.parametrize("half_m", [0.02, 0.05, 0.15, 0.25])
@@ -64,10 +64,18 @@ def test_shares_tell_cards_inside_from_those_at_the_edge_and_beside(outlines, gr
 
 
 def test_what_is_covered_is_not_hidden_anew(outlines, grid):
-    covered = np.zeros(grid.inside.size, dtype=bool)
-    assert newly_hidden(covered, card(0.2), outlines, grid)[0][0] == 1
-    cover(covered, card(0.2), outlines, grid)
-    assert newly_hidden(covered, card(0.2), outlines, grid)[0][0] < 0.2
+    nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
+    assert newly_hidden(nearest, card(0.2), outlines, grid)[0][0] == 1
+    cover(nearest, card(0.2), outlines, grid)
+    assert newly_hidden(nearest, card(0.2), outlines, grid)[0][0] < 0.2
+
+
+def test_the_nearest_card_counts(outlines, grid):
+    nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
+    for away in (0.0, 0.5, -0.3):
+        cover(nearest, card(0.2, MIDDLE + np.array([0.0, 0.0, away])), outlines, grid)
+    depths = grid.camera.depth(np.array([MIDDLE, MIDDLE + np.array([0.0, 0.0, 0.5])]))
+    assert nearest[np.isfinite(nearest)] == pytest.approx(depths.min())
 
 
 def test_a_column_is_as_broad_as_a_square_of_its_area(photo, mask, volume, grid):

@@ -214,3 +214,15 @@ def test_no_card_s_centre_lies_outside_a_side_that_was_drawn(scene, camera, off)
     centres = without_buds(place((tree, mask, slim, photo, atlas)), mask, camera).centres
     assert slim.admits(centres, 0.0).all()
     assert np.percentile(centres[:, 2], [1, 99]) == pytest.approx([(off - 60) / 36, min(off + 60, 117) / 36], abs=0.35)
+
+
+def test_no_wood_is_seen_before_the_foliage(scene, mask, volume, photo, atlas, camera):
+    tree, crown = scene[0], leaf_crown([view_of(photo, mask, camera)], volume, atlas, 1.0, np.random.default_rng(0))
+    grid, leaves = crown.grids[0], place(scene)
+    nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
+    crown.hide(nearest, leaves, grid)
+    limbs = tree.points[tree.parents] + np.linspace(0, 1, 50)[:, None, None] * (tree.points - tree.points[tree.parents])
+    wood, radii = limbs[:, 2:].reshape(-1, 3), np.tile(tree.radii[2:], 50)
+    cells = grid.cells_of(wood)
+    seen = grid.inside.ravel()[cells] & (camera.depth(wood) - radii < nearest[cells])
+    assert seen.mean() < 0.1

@@ -17,6 +17,8 @@ TINT = 12.0
 """Difference in hue and saturation between cover and background, steps of 255, below which a tint tells nothing."""
 FRINGE = 0.03
 """Side of the window in which gaps are near enough to tint what is beside them, a share of the cover's height."""
+BORDER = 0.1
+"""Weight of a cover's colour at its border, into which the background shines, relative to that amid it."""
 OPEN = 0.05
 """Opacity below which a pixel shows the background alone."""
 LUMA = np.array([0.299, 0.587, 0.114], dtype=np.float32)
@@ -29,9 +31,9 @@ def unmixed(picture: Picture, opacity: Opacity, sure: Mask) -> Picture:
     """Estimate the colours F (h, w, 3), sRGB, of a cover from pixels I = a F + (1 - a) B with opacities a (h, w).
 
     First guesses of F and of the background B are the mean colours beside each pixel: of what surely has the cover's
-    colour (``sure`` (h, w)), by the least opacity around it, since the background shines into a leaf's border; and of
-    what nothing covers, so that B is the wall or the sky at that height and in the gaps. What they leave unexplained of
-    the pixel is added to F in proportion to its opacity. Where nothing covers, the picture stays.
+    colour (``sure`` (h, w)), amid it rather than at its border, into which the background shines; and of what nothing
+    covers, so that B is the wall or the sky at that height and in the gaps. What they leave unexplained of the pixel is
+    added to F in proportion to its opacity. Where nothing covers, the picture stays.
 
     A matte takes light leaves before a light sky for thin ones. So the more opaque a pixel is, the more of its own
     lightness it keeps; hue and saturation are F's. It takes leaves' edges for leaves, too: so beside gaps, what leads
@@ -47,7 +49,7 @@ def unmixed(picture: Picture, opacity: Opacity, sure: Mask) -> Picture:
     height, colours = int(rows[-1] - rows[0]) + 1, picture.astype(np.float32)
     sure_share = np.where(sure if sure.any() else covered, opacity, np.float32(0))
     inner = np.asarray(cv2.erode(sure_share, np.ones((3, 3), np.uint8)), dtype=np.float32)
-    front = _beside(colours, inner if inner.any() else sure_share, height)[covered]
+    front = _beside(colours, sure_share * (inner + np.float32(BORDER)), height)[covered]
     back = _beside(colours, (~covered).astype(np.float32), height)[covered]
     own, share = colours[covered], opacity[covered][:, None]
     left = share * (own - share * front - (1 - share) * back)

@@ -1,4 +1,4 @@
-"""Adds cards where cards leave gaps in the foliage."""
+"""Adds cards where cards leave gaps in the foliage, or wood stands before them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ import numpy as np
 
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.arrangement import Seats, pose_over, seats_along
-from treestroke.core.leaf.coverage import newly_hidden
+from treestroke.core.leaf.coverage import Depths, newly_hidden
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.leaf_crown import SIDES, LeafCrown
 from treestroke.core.leaf.leaves import Leaves
@@ -26,6 +26,11 @@ FITTING = 0.55
 WORTH = 4.0
 """How many times as much open foliage such a card hides as background (2 costs 2 % of the silhouette's precision for
 1 % of its recall; 7 crowns)."""
+WOOD_SIZES = (1.0, 0.6)
+"""Sizes of the cards that hang before wood, round by round (4 to 7 % of a crown's front was bark where the photo shows
+leaves; the overlap of leaves alone rises by 0.025; 3 crowns)."""
+BEFORE = 0.3
+"""How far such a card's middle stands before the bark, in halves of its side."""
 NEAR, REACH = 0.045, 0.08
 """How far such a card usually and at most stands off its branch in the picture, as shares of the tree's height."""
 FAR_SHARE = 0.02
@@ -52,18 +57,29 @@ class GapParams:
 
 @dataclass(frozen=True, eq=False)
 class _Gaps:
-    """What covers the gaps of one view: the view's grid, the seats, and how many cards may stand far from theirs."""
+    """What covers the gaps of one view.
+
+    Attributes
+    ----------
+    grid, crown
+        The view's foliage, and the crown.
+    seats, radii
+        Places on all branches, and the branches' radii there (n,), metres.
+    far
+        How many cards may stand far from their seat, in each round.
+    """
 
     grid: FoliageGrid
     crown: LeafCrown
     seats: Seats
+    radii: Floats
     far: int
 
 
 def cover_gaps(
     leaves: Leaves, skeleton: Skeleton, crown: LeafCrown, params: GapParams, rng: np.random.Generator
 ) -> list[Leaves]:
-    """Set cards over what the leaves leave open in each view, in smaller and smaller sizes.
+    """Set cards before the wood that each view would show, and over what is open then, in smaller and smaller sizes.
 
     Places too far from any branch stay open.
     """
@@ -72,29 +88,62 @@ def cover_gaps(
         return []
     far, patches = int(FAR_SHARE * len(leaves) / len(SIZES)), [leaves]
     for grid in crown.grids:
-        patches += _cover_view(patches, _Gaps(grid, crown, seats, far), params, rng)
+        gaps = _Gaps(grid, crown, seats, skeleton.radii[seats.joints], far)
+        nearest = _nearest_cards(patches, gaps)
+        patches += _cover_wood(nearest, patches, gaps, params, rng)
+        patches += _cover_view(nearest, patches, gaps, params, rng)
     return patches[1:]
 
 
-def _cover_view(patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator) -> list[Leaves]:
-    """Set cards over what all ``patches`` leave open in one view; the first of them does not count as added."""
-    grid, crown, inside = gaps.grid, gaps.crown, gaps.grid.inside.ravel()
-    nearest, covered, added = _nearest_seats(gaps.seats, grid), np.zeros(inside.size, dtype=np.bool_), list[Leaves]()
-    for patch in patches[:-1]:
-        crown.hide(covered, patch, grid)
+def _nearest_cards(patches: Sequence[Leaves], gaps: _Gaps) -> Depths:
+    """Depth (cells,), metres, of the nearest card in each cell of a view; infinite where there is none."""
+    nearest = np.full(gaps.grid.inside.size, np.inf, dtype=np.float32)
+    for patch in patches:
+        gaps.crown.hide(nearest, patch, gaps.grid)
+    return nearest
+
+
+def _cover_wood(
+    nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
+) -> list[Leaves]:
+    """Set cards before the wood that a view would show where its picture shows foliage, a share of it by density."""
+    grid, crown, added = gaps.grid, gaps.crown, list[Leaves]()
+    cells, wood = grid.cells_of(gaps.seats.points), grid.camera.depth(gaps.seats.points) - gaps.radii
+    hidden = grid.inside.ravel()[cells] & (rng.random(len(cells)) < params.share)
+    for scale in WOOD_SIZES:
+        shown = np.flatnonzero(hidden & (wood < nearest[cells]))[: max(0, _left([*patches, *added], params))]
+        seats, half_sizes = gaps.seats.at(shown), scale * crown.half_sizes(len(shown), rng)
+        toward = grid.camera.toward_viewer(seats.points)
+        centres = seats.points + (gaps.radii[shown] + BEFORE * half_sizes)[:, None] * toward
+        outward = unit(centres - crown.middle, UP) + toward
+        added.append(crown.dressed(pose_over(seats, centres, half_sizes, outward, rng), seats, rng)[0])
+        crown.hide(nearest, added[-1], grid)
+    return added
+
+
+def _cover_view(
+    nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
+) -> list[Leaves]:
+    """Set cards over what all ``patches`` leave open in one view, and bring its ``nearest`` cards up to date."""
+    inside, seat_of, added = gaps.grid.inside.ravel(), _nearest_seats(gaps.seats, gaps.grid), list[Leaves]()
     for scale in SIZES:
-        crown.hide(covered, (added or patches)[-1], grid)
-        open_cells = np.flatnonzero(inside & ~covered)
-        left = params.most - sum(map(len, [*patches[1:], *added]))
+        open_cells = np.flatnonzero(inside & np.isinf(nearest))
+        left = _left([*patches, *added], params)
         surplus = len(open_cells) - (1 - TARGET * params.share) * inside.sum()
         if surplus <= 0 or left <= 0:
             break
         count = min(_count(surplus, scale, gaps), left, len(open_cells))
         chosen = rng.choice(open_cells, count, replace=False)
-        patch = _patch(chosen, gaps.seats.at(nearest[chosen]), scale, gaps, rng)
-        foliage, background = newly_hidden(covered, patch, crown.outlines, grid)
+        patch = _patch(chosen, gaps.seats.at(seat_of[chosen]), scale, gaps, rng)
+        foliage, background = newly_hidden(nearest, patch, gaps.crown.outlines, gaps.grid)
         added.append(patch.select((foliage > 0) & (foliage >= WORTH * background)))
+        gaps.crown.hide(nearest, added[-1], gaps.grid)
     return added
+
+
+def _left(patches: Sequence[Leaves], params: GapParams) -> int:
+    """Count the cards that may be added yet; the first of the ``patches`` does not count as added."""
+    return params.most - sum(map(len, patches[1:]))
 
 
 def _count(cells: float, scale: float, gaps: _Gaps) -> int:

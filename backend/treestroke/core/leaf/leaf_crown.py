@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
 from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
-from treestroke.core.leaf.coverage import Outlines, cover, outlines_of, share_inside
+from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_inside
 from treestroke.core.leaf.grid import FoliageGrid, foliage_grid
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
@@ -94,9 +93,9 @@ class LeafCrown:
         kept = self._fitting(leaves, fitting)
         return leaves.select(kept), kept
 
-    def hide(self, covered: NDArray[np.bool_], leaves: Leaves, grid: FoliageGrid) -> None:
-        """Mark in ``covered``, flags (cells,), flat as a view's grid, what cards hide."""
-        cover(covered, leaves, self.outlines, grid)
+    def hide(self, nearest: Depths, leaves: Leaves, grid: FoliageGrid) -> None:
+        """Lower the depth of the ``nearest`` card (cells,), metres, flat as a view's grid, to that of these cards."""
+        cover(nearest, leaves, self.outlines, grid)
 
     def _fitting(self, leaves: Leaves, least: float) -> Mask:
         """Which cards (m,) lie in the volume, and in the foliage, or behind the wood, of each view that sees them."""

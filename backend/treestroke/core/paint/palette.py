@@ -16,7 +16,7 @@ INNER_SHARE = 0.1
 """Share of the foliage that must remain when pixels count by their neighbours; in thinner foliage they count alone."""
 SPRAY = 0.014
 """Side of the window over which a spray's colour is averaged, as a share of the foliage's width."""
-UNSHADED = 2.4
+UNSHADED = 2.2
 """Gain in linear light from leaves in a photo, which shade each other, to leaves alone: a viewer shades them again (at
 2.0 crowns came out 4 darker, CIE Lab, in the median of 17 photos, and their colours as much paler)."""
 CONTRAST = 1.7
