@@ -112,6 +112,7 @@ export const drawingText = {
       stroke_turned: 'The trunk was drawn from the top down. It was turned.',
       trunk_completed: 'Something hides the foot of the trunk. It goes on to the ground.',
       trunk_lengthened: 'The trunk line began above the ground. It was made longer.',
+      trunk_shortened: 'The trunk line began on the ground before the trunk. It was made shorter.',
       trunk_moved: 'The trunk line was moved onto the trunk.',
     },
     /** Warnings that a stroke may mean no tree, by their codes. */

@@ -8,7 +8,7 @@ from tests.conftest import EXAMPLES
 from treestroke.core.pipeline.photo import trace_photo
 from treestroke.service.loading import load_photo, load_strokes
 
-MAPLE = EXAMPLES / "sugar_maple_autumn"
+MAPLE, OAK = EXAMPLES / "sugar_maple_autumn", EXAMPLES / "oak_02"
 
 
 def test_a_trunk_stroke_beside_its_trunk_is_moved_onto_it_with_a_warning() -> None:
@@ -22,3 +22,18 @@ def test_a_trunk_stroke_beside_its_trunk_is_moved_onto_it_with_a_warning() -> No
     assert drawn.skeleton is not None
     assert moved.skeleton is not None
     assert np.linalg.norm(moved.skeleton.points[0] - drawn.skeleton.points[0]) < 8
+
+
+def test_a_trunk_stroke_from_the_grass_before_the_trunk_begins_at_its_foot() -> None:
+    photo, strokes = load_photo(OAK.with_suffix(".jpg")), load_strokes(OAK.with_suffix(".strokes.json"))
+    trunk, *others = strokes.branches
+    height = np.ptp(np.vstack([strokes.crown.points, trunk.points])[:, 1])
+    longer = np.vstack([trunk.points[0] + [0.0, 0.07 * height], trunk.points])
+    grass = replace(strokes, branches=(replace(trunk, points=longer), *others))
+    drawn, shortened = trace_photo(photo, strokes), trace_photo(photo, grass)
+    assert "trunk_shortened" not in [warning.code for warning in drawn.warnings]
+    (warning,) = [warning for warning in shortened.warnings if warning.code == "trunk_shortened"]
+    assert "on the ground" in warning.detail
+    assert drawn.skeleton is not None
+    assert shortened.skeleton is not None
+    assert np.linalg.norm(shortened.skeleton.points[0] - drawn.skeleton.points[0]) < 0.02 * height

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.pictures import noisy
 
-from treestroke.core.trace.trunk_place import way_to_trunk
+from treestroke.core.trace.trunk_place import ground_before_trunk, way_to_trunk
 
 SIZE, HEIGHT = 400, 360.0
 CROWN = np.arange(SIZE)[:, None] < np.full(SIZE, 160)
@@ -39,6 +39,34 @@ def test_a_trunk_lit_from_one_side_is_found_too(side: int) -> None:
 @pytest.mark.parametrize("aside", [-0.7, 0.0, 0.7])
 def test_a_stroke_on_its_trunk_stays(half: float, aside: float) -> None:
     assert not way_to_trunk(photo(half, 200 + aside * half), STROKE, CROWN, HEIGHT).any()
+
+
+def test_a_stroke_on_the_dark_side_of_a_trunk_stays() -> None:
+    striped = photo(15.0)
+    striped[160:, 186:192] += 90
+    assert not way_to_trunk(striped, STROKE + np.array([4.0, 0.0]), CROWN, HEIGHT).any()
+
+
+def standing(foot: int, lawn: int) -> np.ndarray:
+    """Draw a trunk down to the row ``foot`` on a lawn that begins at the row ``lawn``."""
+    flat = photo(8.0).astype(float)
+    flat[lawn:], flat[160:lawn] = (90, 140, 50), (180, 200, 220)
+    flat[160:foot, 192:208] = (90, 75, 60)
+    return noisy(flat)
+
+
+@pytest.mark.parametrize("before", [15, 30])
+def test_a_stroke_that_begins_on_the_ground_before_the_trunk_is_too_long(before: int) -> None:
+    length = ground_before_trunk(standing(380 - before, 300), STROKE, CROWN, HEIGHT)
+    assert length == pytest.approx(before, abs=6)
+
+
+def test_a_stroke_from_the_foot_is_not_too_long() -> None:
+    assert ground_before_trunk(standing(380, 300), STROKE, CROWN, HEIGHT) == 0
+
+
+def test_a_foot_that_something_hides_is_none_on_the_ground() -> None:
+    assert ground_before_trunk(standing(350, 350), STROKE, CROWN, HEIGHT) == 0
 
 
 def test_a_pole_far_beside_is_not_the_trunk() -> None:

@@ -1,17 +1,23 @@
-"""A trunk's stroke that was drawn beside its trunk is moved onto it."""
+"""A trunk's stroke that was drawn beside its trunk is moved onto it; one that begins before its foot is shortened."""
 
 from dataclasses import replace
 
 import numpy as np
 
+from treestroke.core.geometry.polyline import arc_lengths, place_at
 from treestroke.core.pipeline.working_copy import WorkingCopy
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.strokes import StrokeWarning
-from treestroke.core.trace.trunk_place import way_to_trunk
+from treestroke.core.trace.trunk_place import ground_before_trunk, way_to_trunk
 
 
 def on_its_trunk(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
-    """Return the working copy with the trunk's stroke on the trunk, and a warning where it had to be moved."""
+    """Return the working copy with the trunk's stroke on the trunk, from its foot on, and warnings where it was not."""
+    return _from_its_foot(_beside_no_more(working, foliage), foliage)
+
+
+def _beside_no_more(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
+    """Move the trunk's stroke onto the trunk."""
     trunk, *others = working.strokes.branches
     way = way_to_trunk(working.photo, trunk.points, foliage.region, working.height_px(foliage.mask))
     if not way.any():
@@ -21,4 +27,18 @@ def on_its_trunk(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
     detail = f"it runs beside the trunk and was moved onto it, by {np.hypot(*way) / working.frame.scale:.0f} px"
     strokes = replace(working.strokes, branches=(moved, *others))
     warning = StrokeWarning("trunk_moved", "branches/0", detail)
+    return replace(working, strokes=strokes, warnings=(*working.warnings, warning))
+
+
+def _from_its_foot(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
+    """Leave out the part of the trunk's stroke that lies on the ground before the trunk."""
+    trunk, *others = working.strokes.branches
+    length = ground_before_trunk(working.photo, trunk.points, foliage.region, working.height_px(foliage.mask))
+    if length == 0:
+        return working
+    rest = trunk.points[arc_lengths(trunk.points) > length]
+    shortened = replace(trunk, points=np.vstack([place_at(trunk.points, length), rest]))
+    detail = f"it begins on the ground before the trunk, and was shortened by {length / working.frame.scale:.0f} px"
+    strokes = replace(working.strokes, branches=(shortened, *others))
+    warning = StrokeWarning("trunk_shortened", "branches/0", f"{detail}; draw it from where the trunk stands")
     return replace(working, strokes=strokes, warnings=(*working.warnings, warning))
