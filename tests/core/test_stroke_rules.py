@@ -34,6 +34,11 @@ def test_points_outside_are_clamped_to_the_photo() -> None:
     assert mended.strokes.crown.points.tolist() == [[0, 0], [400, 0], [400, 160], [0, 160]]
 
 
+def test_a_trunk_begun_below_the_photo_has_no_level_run_along_its_edge() -> None:
+    mended = mend(branches=([[150, 340], [165, 325], [190, 310], [200, 290], [200, 150]],))
+    assert mended.strokes.branches[0].points.tolist() == [[190, 300], [200, 290], [200, 150]]
+
+
 @pytest.mark.parametrize(
     ("strokes", "message", "code"),
     [

@@ -44,10 +44,10 @@ CROSSING = StrokeWarning("crown_crosses_itself", "crown", "the crown crosses its
 def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     """Return strokes that were checked against a photo of the given size, px, and mended where possible.
 
-    Points are clamped to the photo; a later branch that starts away from every earlier one is joined to the
-    nearest of them by one more point at its start, with a warning; a trunk drawn from its top down to the root is
-    turned, with a warning; a further stem starts on the ground; a crown that crosses itself is kept (fill it with
-    `fill_outline`), with a warning.
+    Points are clamped to the photo, and of those that a branch has below its lower edge the last one stays; a later
+    branch that starts away from every earlier one is joined to the nearest of them by one more point at its start, with
+    a warning; a trunk drawn from its top down to the root is turned, with a warning; a further stem starts on the
+    ground; a crown that crosses itself is kept (fill it with `fill_outline`), with a warning.
 
     Raises
     ------
@@ -72,6 +72,7 @@ def mend_strokes(strokes: Strokes, width: int, height: int) -> MendedStrokes:
     if not inside.branches:
         return MendedStrokes(inside, warnings)
     inside, turned = _upward(inside)
+    inside = replace(inside, branches=tuple(_from_lower_edge(branch, height) for branch in inside.branches))
     _check_trunk(inside, crown, coarse, max(width, height))
     _check_rise(inside.branches[0])
     _check_scale(inside)
@@ -122,6 +123,15 @@ def _upward(strokes: Strokes) -> tuple[Strokes, tuple[StrokeWarning, ...]]:
         return strokes, ()
     detail = "the trunk was drawn from its top down, and was turned; draw it from the root up"
     return replace(strokes, branches=(turned, *rest)), (StrokeWarning("stroke_turned", "branches/0", detail),)
+
+
+def _from_lower_edge(branch: Stroke, height: int) -> Stroke:
+    """Return a branch stroke that was begun below the photo's lower edge from where it comes into the photo.
+
+    Clamped to the edge, what lies below it would be a level run of wood.
+    """
+    outside = int(np.logical_and.accumulate(branch.points[:, 1] >= height).sum())
+    return replace(branch, points=branch.points[min(max(outside - 1, 0), len(branch.points) - 2) :])
 
 
 def _rises(trunk: Stroke) -> bool:
