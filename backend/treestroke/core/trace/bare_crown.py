@@ -85,13 +85,13 @@ def find_twigs(builder: SkeletonBuilder, wood: Opacity, crown: Mask, height_px: 
         before = len(builder.points)
         builder.add_chain(joint, window.outside(even), radii, stroke=-1)
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
-    _add_fine(builder, share > SEEN, window, FINEST * height_px)
+    _add_fine(builder, share, window, FINEST * height_px)
 
 
-def _add_fine(builder: SkeletonBuilder, wood: Mask, window: Window, finest_px: float) -> None:
-    """Add the twigs that stand too densely to be told apart; ``wood`` (h, w) lies in the window."""
+def _add_fine(builder: SkeletonBuilder, share: Opacity, window: Window, finest_px: float) -> None:
+    """Add the twigs that stand too densely to be told apart, by the share (h, w) of wood in the window."""
     points, radii = builder.arrays()
-    tree = fine_twigs(wood, Skeleton(window.inside(points), radii * window.scale, np.array(builder.parents)))
+    tree = fine_twigs(share, Skeleton(window.inside(points), radii * window.scale, np.array(builder.parents)))
     outside, thick = window.outside(tree.points), np.maximum(tree.radii / window.scale, finest_px)
     for middle in range(len(points), len(tree), 2):
         bearer, twig = int(tree.parents[middle]), slice(middle, middle + 2)

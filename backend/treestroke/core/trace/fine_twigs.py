@@ -6,15 +6,19 @@ beyond what was traced, twigs are drawn as they grow: from what bears them outwa
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.types import Floats, Indices, Mask
+from treestroke.core.types import Floats, Indices, Mask, Opacity
 
-CELLS_PX = (24, 12, 7, 5)
-"""Sides of the cells in which one twig each is drawn, px, from the longest twigs to the shortest."""
-MOST = 2500
+LAYERS = ((0.3, 24), (0.3, 12), (0.3, 7), (0.3, 5), (0.12, 14), (0.12, 9))
+"""Shares of a pixel from which on wood there is drawn, and sides of the cells in which one twig each is, px: from the
+longest twigs to the shortest, and then those that are finer than a pixel."""
+SOLID = 0.5
+"""Share of a pixel from which on a twig is as thick as what is seen of it."""
+MOST = 3000
 """Greatest number of twigs: where there are more, those are left out that show least."""
 TRIED = 8
 """Number of joints along the ways from which wood is looked for, the cheapest first."""
@@ -34,31 +38,33 @@ _ALONG = np.linspace(0.0, 1.0, 9)[1:-1, None, None, None]
 """Places along a twig where wood is looked for."""
 
 
-def fine_twigs(wood: Mask, traced: Skeleton) -> Skeleton:
-    """Return a skeleton (2D, px) with twigs where it leaves wood (h, w) uncovered; its own joints come first.
+def fine_twigs(share: Opacity, traced: Skeleton) -> Skeleton:
+    """Return a skeleton (2D, px) with twigs where it leaves wood uncovered; its own joints come first.
 
-    Twigs have two joints each and are nowhere thicker than what bears them.
+    ``share`` (h, w) is that of each pixel that wood covers. Twigs have two joints each and are nowhere thicker than
+    what bears them; where wood covers little of each pixel, they are so thin that they cover as little.
     """
-    tree, before = traced, len(traced)
-    for cell_px in CELLS_PX:
-        room = MOST - (len(tree) - before) // 2
-        tips, radii = _tips(wood & ~_drawn(tree, wood.shape), cell_px)
-        if not len(tips) or room <= 0:
+    tree, first, covered = traced, 0, np.zeros(share.shape, dtype=np.uint8)
+    for seen, cell_px in LAYERS:
+        wood, room = share > seen, MOST - (len(tree) - len(traced)) // 2
+        if not room:
             break
+        _draw(tree, first, covered)
+        tips, radii = _tips(wood & (covered == 0), cell_px)
+        radii = radii * np.minimum(1.0, sample_nearest(share, tips, 0.0) / SOLID)
         bearers, is_borne = _bearers(tips, tree, wood)
         clearest = np.flatnonzero(is_borne)[np.argsort(-radii[is_borne], kind="stable")[:room]]
-        tree = _with_twigs(tree, bearers[clearest], tips[clearest], radii[clearest])
+        first, tree = len(tree), _with_twigs(tree, bearers[clearest], tips[clearest], radii[clearest])
     return tree
 
 
-def _drawn(tree: Skeleton, shape: tuple[int, ...]) -> Mask:
-    """Draw a skeleton (2D, px) as a mask (h, w)."""
-    drawn = np.zeros(shape, dtype=np.uint8)
-    ends, breadths = np.rint(tree.points * 16).astype(np.int64).tolist(), (2 * tree.radii + 1.5).astype(int).tolist()
-    for joint, parent in enumerate(tree.parents.tolist()):
-        if parent >= 0:
-            cv2.line(drawn, ends[parent], ends[joint], 1, breadths[joint], cv2.LINE_8, 4)
-    return drawn > 0
+def _draw(tree: Skeleton, first: int, covered: NDArray[np.uint8]) -> None:
+    """Draw the joints of a skeleton (2D, px) from ``first`` on into a mask (h, w)."""
+    joints = first + np.flatnonzero(tree.parents[first:] >= 0)
+    starts, ends = (np.rint(16 * tree.points[of]).astype(np.int64).tolist() for of in (tree.parents[joints], joints))
+    breadths = (2 * tree.radii[joints] + 1.5).astype(np.int64).tolist()
+    for start, end, breadth in zip(starts, ends, breadths, strict=True):
+        cv2.line(covered, start, end, 1, breadth, cv2.LINE_8, 4)
 
 
 def _tips(left: Mask, cell_px: int) -> tuple[Floats, Floats]:
@@ -84,31 +90,34 @@ def _bearers(tips: Floats, tree: Skeleton, wood: Mask) -> tuple[Indices, Mask]:
     """Return the joint (n,) that bears a twig to each tip (n, 2), px, at the least cost, and whether one may (n,)."""
     bearers, is_borne, headings = np.zeros(len(tips), dtype=np.int64), np.zeros(len(tips), dtype=bool), _headings(tree)
     side_px = LENGTH_PX[1]
+    x, y = tree.points.T.copy() / side_px - 0.5
     squares, square_of = np.unique(tips // side_px, axis=0, return_inverse=True)
-    for number, square in enumerate(squares):
-        here = square_of.ravel() == number
-        near = np.flatnonzero((np.abs(tree.points / side_px - square - 0.5) < 1.0).all(axis=1))
+    for number, (column, row) in enumerate(squares.tolist()):
+        here = np.flatnonzero(square_of.ravel() == number)
+        near = np.flatnonzero((np.abs(x - column) < 1.0) & (np.abs(y - row) < 1.0))
         if len(near):
-            cost = _costs(tips[here], tree.points[near], headings[near], wood)
-            bearers[here], is_borne[here] = near[cost.argmin(axis=1)], np.isfinite(cost.min(axis=1))
+            best, cost = _cheapest(tips[here], tree.points[near], headings[near], wood)
+            bearers[here], is_borne[here] = near[best], np.isfinite(cost)
     return bearers, is_borne
 
 
-def _costs(tips: Floats, points: Floats, headings: Floats, wood: Mask) -> Floats:
-    """Return what twigs from points (m, 2) of limbs with headings (m, 2) to tips (n, 2), px, cost: (n, m)."""
-    way = tips[:, None] - points
-    length = np.hypot(way[..., 0], way[..., 1])
-    forward = (way * headings).sum(axis=2) / np.maximum(length, 1e-9)
+def _cheapest(tips: Floats, points: Floats, headings: Floats, wood: Mask) -> tuple[Indices, Floats]:
+    """Return from which points (m, 2) of limbs with such headings (m, 2) twigs to tips (n, 2), px, cost least: (n,).
+
+    Return the costs (n,), too; they are infinite where no twig may be.
+    """
+    way_x, way_y = tips[:, :1] - points[:, 0], tips[:, 1:] - points[:, 1]
+    length = np.hypot(way_x, way_y)
+    forward = (way_x * headings[:, 0] + way_y * headings[:, 1]) / np.maximum(length, 1e-9)
     cost = length * (1.0 + ASIDE * (1.0 - forward))
     cost[(length < LENGTH_PX[0]) | (length > LENGTH_PX[1]) | (forward < FORWARD)] = np.inf
-    least = np.argsort(cost, axis=1)[:, :TRIED]
+    tried = np.argpartition(cost, min(TRIED, len(points)) - 1, axis=1)[:, :TRIED]
     rows = np.arange(len(tips))[:, None]
-    on_wood = sample_nearest(wood, points[least] + _ALONG * way[rows, least], False).mean(axis=0)
-    tried = np.full(cost.shape, np.inf)
-    tried[rows, least] = np.where(
-        on_wood < ON_WOOD, np.inf, cost[rows, least] + STRAY * length[rows, least] * (1.0 - on_wood)
-    )
-    return tried
+    on_wood = sample_nearest(wood, tips[:, None] + _ALONG * (points[tried] - tips[:, None]), False).mean(axis=0)
+    cost = cost[rows, tried] + STRAY * length[rows, tried] * (1.0 - on_wood)
+    cost[on_wood < ON_WOOD] = np.inf
+    best = cost.argmin(axis=1)
+    return tried[rows[:, 0], best], cost[rows[:, 0], best]
 
 
 def _with_twigs(tree: Skeleton, bearers: Indices, tips: Floats, radii: Floats) -> Skeleton:
