@@ -14,7 +14,7 @@ from treestroke.core.progress import Report, silent
 from treestroke.core.segment.bare import wood_in_crown
 from treestroke.core.segment.foliage import Foliage, segment_foliage
 from treestroke.core.segment.form import crown_form
-from treestroke.core.segment.kind import KindOdds, kind_odds, likeliest
+from treestroke.core.segment.kind import UNJUDGED, KindOdds, kind_odds, likeliest
 from treestroke.core.strokes import Sketch, Strokes, StrokeWarning
 from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.crown_picture import see_crown
@@ -34,13 +34,14 @@ class PhotoEvidence:
     """What photo and strokes show, at the working size, and a sketch of the tree's left side where there is one.
 
     Nothing is traced without a branch stroke. ``foliage`` is the wood in a bare tree's crown once its trunk is known;
-    ``outlined`` is what the crown stroke alone tells. ``completed`` names the photo's edges beyond which the crown was
-    completed.
+    ``outlined`` is what the crown stroke alone tells, ``odds`` the probability of each kind of foliage. ``completed``
+    names the photo's edges beyond which the crown was completed.
     """
 
     working: WorkingCopy
     foliage: Foliage
     outlined: Foliage
+    odds: KindOdds
     traced: Traced | None
     side: Drawing | None = None
     completed: tuple[str, ...] = ()
@@ -57,11 +58,6 @@ class PhotoEvidence:
     def height_px(self) -> float:
         """The tree's height, px of the working copy."""
         return self.working.height_px(self.foliage.mask)
-
-    @property
-    def odds(self) -> KindOdds:
-        """Probability of each kind of foliage by the photo."""
-        return kind_odds(self.foliage.cues)
 
     def taken(self, settings: ModelSettings) -> Taken:
         """Return what the tree is taken for; a branch stroke is needed."""
@@ -97,10 +93,11 @@ def read_photo(
         crown = working.strokes.crown.points
         outlined = segment_foliage(working.photo, crown, report=report, cut_out=working.cut_out)
     if not strokes.branches:
-        return PhotoEvidence(working, outlined, outlined, None, side_drawing)
+        return PhotoEvidence(working, outlined, outlined, UNJUDGED, None, side_drawing)
     report("trace", 0.0)
     working, wood = on_its_trunk(working, outlined), None
-    kind = likeliest(kind_odds(outlined.cues))
+    odds = kind_odds(outlined.cues, working.strokes.crown.points, working.strokes.branches[0].points)
+    kind = likeliest(odds)
     surroundings = Surroundings(outlined.leaf, outlined.ground, outlined.region, outlined.mask, broad=kind == "leaves")
     if kind == "bare":
         wood = _wood(outlined, working, known)
@@ -112,7 +109,7 @@ def read_photo(
         seen = see_crown(working.photo, surroundings, height_px)
     traced = trace_branches(working.photo, working.strokes, surroundings, seen)
     working, traced = on_the_ground(working, traced, height_px)
-    return PhotoEvidence(working, foliage, outlined, traced, side_drawing)
+    return PhotoEvidence(working, foliage, outlined, odds, traced, side_drawing)
 
 
 def _wood(outlined: Foliage, working: WorkingCopy, known: PhotoEvidence | None) -> Foliage | None:

@@ -239,8 +239,9 @@ def _view(frame: _Frame, settings: ModelSettings, leafy: Mask, stem: StemPixels)
         return taken, View(frame.camera, blank, leaves_from, opacity, leafy, leafy, unseen_stem), False
     if frame.scale != 1.0:
         photo = np.asarray(cv2.resize(photo, leafy.shape[::-1], interpolation=cv2.INTER_AREA), dtype=np.uint8)
-    foliage = segment_foliage(photo, frame.evidence.front.crown * frame.scale)
-    odds = kind_odds(foliage.cues)
+    crown_px = frame.evidence.front.crown * frame.scale
+    foliage = segment_foliage(photo, crown_px)
+    odds = kind_odds(foliage.cues, crown_px, stem.points_px)
     view = View(frame.camera, photo, leaves_from, opacity, foliage.pure, leafy, stem)
     return taken_for(odds, "round", settings), view, likeliest(odds) != "bare"
 

@@ -8,8 +8,9 @@ from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.segment.kind import KindOdds, likeliest
 from treestroke.core.types import FOLIAGE_KINDS, TREE_FORMS, FoliageKind, TreeForm
 
-ASK_BELOW = 0.6
-"""Sureness below which a person should be asked what the twigs bear."""
+ASK_BELOW = 0.7
+"""Sureness below which a person should be asked what the twigs bear: that of 22 % of the pictures whose trees were left
+out of the fit, and of 68 % of those among them that were taken wrongly."""
 _KINDS: dict[str, FoliageKind] = {kind: kind for kind in FOLIAGE_KINDS}
 _FORMS: dict[str, TreeForm] = {form: form for form in TREE_FORMS}
 

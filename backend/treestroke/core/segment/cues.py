@@ -5,12 +5,14 @@ They are measured on a copy of the crown that always has the same size, so that 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.types import Mask, Picture
+from treestroke.core.types import Floats, Mask, Picture
 
 Cues = Mapping[str, float]
 """What was measured, by name; `crown_cues` says what each name means."""
@@ -19,6 +21,12 @@ COPY_SIZE = 256.0
 """Square root of the crown's area in the copy, px: there a leaf of most trees is 1 to 4 px long."""
 LEAST_PIXELS = 50
 """Foliage of fewer pixels in the copy is too little to be judged: the whole crown is judged in its place."""
+LEAST_INNER_PIXELS = 200
+"""Where fewer pixels of the copy lie inside the foliage, its edges are judged too."""
+TURN_PX = 6
+"""The outline's direction is taken over twice as many of its points: shorter steps are those of single leaves."""
+MOST_FREE = 3.0
+"""A trunk's length below the crown counts up to this many heights of the crown."""
 
 _Map = NDArray[np.float32]
 
@@ -32,18 +40,18 @@ class _Copy:
     mask: Mask
     crown: Mask
 
-    @property
+    @cached_property
     def weights(self) -> _Map:
         """1 in the foliage, else 0."""
         return self.mask.astype(np.float32)
 
-    @property
+    @cached_property
     def filled(self) -> _Map:
         """Brightness with what is not foliage replaced by the brightness of the foliage near by."""
         near = _blurred(self.grey * self.weights, 6) / np.maximum(_blurred(self.weights, 6), 1e-3)
         return np.where(self.mask, self.grey, near).astype(np.float32)
 
-    @property
+    @cached_property
     def brightness(self) -> float:
         """Mean brightness of the foliage."""
         return max(_mean(self.grey, self.weights), 20.0)
@@ -55,17 +63,31 @@ def crown_cues(photo: Picture, mask: Mask, crown: Mask) -> Cues:
     Returns
     -------
     By name. Colour: ``tint``, how much green or red exceed blue in the median pixel; ``greenish``, share of green
-    pixels. Light: ``clumps``, contrast of details of 2 to 4 px; ``light_top``, brightness of the upper half over the
-    lower one's; ``tiers``, how much rows differ in brightness compared with columns. Lines: ``fine_lines`` and
-    ``coarse_lines``, how parallel edges are near by, 0 to 1; ``from_top`` and ``from_centre``, how far fine and coarse
-    lines radiate from the crown's top or centre, -1 to 1; ``drooping``, how far coarse lines sink outward; ``level``,
-    how far fine lines lie level (upright ones below 0); ``contrast``, fine lines' over the whole crown's.
-    Cover: ``cover``, the crown's share that is foliage; ``thinness``, the foliage's share in thin lines; ``runs``,
-    length of level runs of foliage over that of upright ones. Outline: see `_outline_cues`. Ratios without a bound are
-    logarithms.
+    pixels. Light: ``light_top``, brightness of the upper half over the lower one's; ``fine_grain``, contrast of details
+    under 1 px over that of 1 to 2 px, inside the foliage; ``coarse_grain``, that of 1 to 2 px over that of 2 to 4 px.
+    Lines: ``fine_lines`` and ``coarse_lines``, how parallel edges are near by, 0 to 1; how far lines radiate, -1 to 1,
+    fine ones ``from_top`` of the crown, coarse ones ``from_centre`` and ``from_foot``; ``level``, how far fine lines
+    lie level (upright ones below 0). Outline: see `_outline_cues`. Ratios without a bound are logarithms.
     """
     copy = _copy(photo, mask, crown)
-    return {**_colour_cues(copy), **_light_cues(copy), **_line_cues(copy), **_cover_cues(copy), **_outline_cues(copy)}
+    return {**_colour_cues(copy), **_light_cues(copy), **_line_cues(copy), **_outline_cues(copy)}
+
+
+def standing_cues(crown_px: Floats, trunk_px: Floats) -> Cues:
+    """Measure how a crown (n, 2) stands on its trunk (m, 2), both px.
+
+    Returns
+    -------
+    By name. ``slim``, the tree's height over its crown's width, a logarithm; ``flat``, how much wider than high the
+    crown is, if the trunk below it is as long as it is wide, and less on a shorter one.
+    """
+    (left, top), (right, bottom) = crown_px.min(axis=0), crown_px.max(axis=0)
+    width, high = max(right - left, 1.0), max(bottom - top, 1.0)
+    free = float(np.clip(trunk_px[:, 1].max() - bottom, 0.0, MOST_FREE * high))
+    return {
+        "slim": float(np.log((high + free) / width)),
+        "flat": min(free / width, 1.0) * max(0.0, float(np.log(width / high))),
+    }
 
 
 def _copy(photo: Picture, mask: Mask, crown: Mask) -> _Copy:
@@ -95,41 +117,31 @@ def _colour_cues(copy: _Copy) -> dict[str, float]:
 
 
 def _light_cues(copy: _Copy) -> dict[str, float]:
-    filled, weights = copy.filled, copy.weights
-    detail = _blurred(filled, 2) - _blurred(filled, 4)
     upper, lower = np.array_split(copy.grey[copy.mask], 2)  # in the order of the rows
-    rows, columns = (_bands(filled, weights, axis) / copy.brightness for axis in (1, 0))
+    inner = np.asarray(cv2.erode(copy.weights, _disc(7)), dtype=np.float32)
+    inner = inner if inner.sum() >= LEAST_INNER_PIXELS else copy.weights
+    softer = [copy.filled, *(_blurred(copy.filled, size) for size in (1, 2, 4))]
+    least = 0.002 * copy.brightness
+    fine, middling, coarse = (np.sqrt(_mean((a - b) ** 2, inner)) + least for a, b in pairwise(softer))
     return {
-        "clumps": float(np.log(np.sqrt(_mean(detail**2, weights)) / copy.brightness + 1e-3)),
         "light_top": float(np.log((upper.mean() + 5.0) / (lower.mean() + 5.0))),
-        "tiers": float(np.log((rows + 0.003) / (columns + 0.003))),
+        "fine_grain": float(np.log(fine / middling)),
+        "coarse_grain": float(np.log(middling / coarse)),
     }
-
-
-def _bands(brightness: _Map, weights: _Map, axis: int) -> float:
-    """Return how much rows (axis 1) or columns (axis 0) differ in brightness, 0 to 255, at 2 to 6 px."""
-    count = weights.sum(axis=axis)
-    profile = ((brightness * weights).sum(axis=axis) / np.maximum(count, 1))[count > 10][None]
-    if profile.size < 20:
-        return 0.0
-    return float((_blurred(profile, 1.5) - _blurred(profile, 6)).std())
 
 
 def _line_cues(copy: _Copy) -> dict[str, float]:
     rows, columns = np.nonzero(copy.mask)
-    top, centre = (float(columns.mean()), float(np.percentile(rows, 1))), (float(columns.mean()), float(rows.mean()))
+    column, (highest, lowest) = float(columns.mean()), np.percentile(rows, (1, 99))
     fine = _Lines.of(copy.grey, copy.weights, 1.0, 3.0)
     coarse = _Lines.of(copy.filled, copy.weights, 2.0, 7.0)
-    disc = _disc(5)
-    strokes = np.maximum(*(cv2.morphologyEx(copy.grey, how, disc) for how in (cv2.MORPH_TOPHAT, cv2.MORPH_BLACKHAT)))
     return {
         "fine_lines": fine.parallel,
         "coarse_lines": coarse.parallel,
-        "from_top": fine.radiating(top),
-        "from_centre": coarse.radiating(centre),
-        "drooping": coarse.drooping(centre[0]),
+        "from_top": fine.radiating((column, float(highest))),
+        "from_centre": coarse.radiating((column, float(rows.mean()))),
+        "from_foot": coarse.radiating((column, float(lowest))),
         "level": fine.level,
-        "contrast": float(np.log((_mean(strokes, copy.weights) + 0.5) / (copy.grey[copy.crown].std() + 3.0))),
     }
 
 
@@ -174,30 +186,14 @@ class _Lines:
         twice = 2 * np.arctan2(rows - point[1], columns - point[0])
         return _mean(self.cosine * np.cos(twice) + self.sine * np.sin(twice), self.weights)
 
-    def drooping(self, column: float) -> float:
-        """How far lines sink away from a column, px; -1 (they rise) to 1."""
-        outward = np.sign(np.arange(self.sine.shape[1], dtype=np.float32) - column)
-        return _mean(self.sine * outward, self.weights)
-
-
-def _cover_cues(copy: _Copy) -> dict[str, float]:
-    cells = np.pad(copy.mask.astype(np.uint8), 8)
-    opened = cv2.morphologyEx(cells, cv2.MORPH_OPEN, _disc(5))
-    level, upright = (int(np.abs(np.diff(cells.astype(np.int8), axis=axis)).sum()) for axis in (0, 1))
-    return {
-        "cover": float(copy.mask.sum()) / float(copy.crown.sum()),
-        "thinness": 1.0 - float(opened.sum()) / float(cells.sum()),
-        "runs": float(np.log((level + 20) / (upright + 20))),
-    }
-
 
 def _outline_cues(copy: _Copy) -> dict[str, float]:
     """Measure the crown's outline, without its holes.
 
-    ``aspect``, height over width; ``ragged``, length over that of its convex hull; as shares of the greatest width
-    those at the ``tip`` (an 11th of the height), at the ``shoulder`` (a sixth below the top) and at the ``foot`` (an
-    8th); ``taper``, width of the upper quarter over the lower half's; ``widest``, where it is widest, 0 (top) to 1;
-    ``hanging``, how far its sides reach below its middle, in heights.
+    ``aspect``, height over width, a logarithm; as shares of the greatest width those at the ``shoulder`` (a sixth below
+    the top) and at the ``foot`` (an 8th), and without gaps those at the ``top`` and ``low`` down, at five sevenths;
+    ``taper``, width of the upper quarter over the lower half's; ``widest``, where it is widest, 0 (top) to 1; ``wavy``,
+    how far it turns at each place, radians.
     """
     filled, outline = _closed(copy.mask)
     rows = np.flatnonzero(filled.any(axis=1))
@@ -206,18 +202,26 @@ def _outline_cues(copy: _Copy) -> dict[str, float]:
     widths = (filled.shape[1] - left - right).astype(np.float32)
     count, most = len(rows), float(np.percentile(widths, 95))
     smooth = _blurred(widths[None], max(1.0, count / 12))[0]
-    foot = (filled.shape[0] - filled[::-1].argmax(axis=0))[columns].astype(np.float64)
-    outer, _, middle, _, end = np.array_split(foot, 5)
+    covered = filled[rows].sum(axis=1, dtype=np.float32)
+    cover = _blurred(covered[None], max(1.0, count / 16))[0] / float(np.percentile(covered, 95))
     return {
         "aspect": float(np.log(len(rows) / len(columns))),
-        "ragged": float(np.log(cv2.arcLength(outline, True) / max(cv2.arcLength(cv2.convexHull(outline), True), 1.0))),
-        "tip": float(widths[: max(1, count // 11)].mean()) / most,
+        "top": float(cover[0]),
         "shoulder": float(smooth[count // 6]) / most,
+        "low": float(cover[5 * (count - 1) // 7]),
         "foot": float(widths[-max(1, count // 8) :].mean()) / most,
         "taper": float(widths[: max(1, count // 4)].mean() / max(float(widths[-max(2, count // 2) :].mean()), 1.0)),
         "widest": float(smooth.argmax()) / count,
-        "hanging": float(min(np.percentile(outer, 75), np.percentile(end, 75)) - np.median(middle)) / count,
+        "wavy": _turning(outline),
     }
+
+
+def _turning(outline: NDArray[np.int32]) -> float:
+    """Return how far an outline (n, 1, 2) turns at each place, radians."""
+    points = outline[:, 0].astype(np.float64)
+    along = np.roll(points, -TURN_PX, axis=0) - np.roll(points, TURN_PX, axis=0)
+    angles = np.arctan2(along[:, 1], along[:, 0])
+    return float(np.abs(np.angle(np.exp(1j * (np.roll(angles, -TURN_PX) - angles)))).mean())
 
 
 def _closed(mask: Mask) -> tuple[Mask, NDArray[np.int32]]:
