@@ -23,6 +23,10 @@ ON_EDGE = (1 / 3, 2 / 3, 1.0)
 """Shares of an edge's length at which it is marked."""
 FILLED = 0.2
 """Share of a square that such foliage must fill."""
+GOLDEN = 0.618
+"""Golden section: the places chosen in one square after the other lie at its multiples, so that no grid shows."""
+BALANCE = 0.4
+"""Weight of a link's way along new twigs to the tree, over its own length: without it twigs wander."""
 LONGEST = 0.1
 """Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
 WITHIN = 0.9
@@ -32,13 +36,13 @@ WITHIN = 0.9
 def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> Grown:
     """Add twigs to the foliage that lies out of reach of all branches in the picture: ends of boughs, mostly.
 
-    Joints stand in the middle of such foliage, and the shortest links join them to the tree and to each other, the
-    nearest first: so twigs run along the foliage, and across a gap where it is narrowest. They stand above the ground,
-    as deep as the branch that they leave, as far as the crown's ``volume`` is. What was there keeps its place and
-    radius. The foliage does not include wood.
+    Joints stand amid such foliage, and links join them to the tree and to each other, those first that are short and
+    lead to the tree on a short way: so twigs run along the foliage, and across a gap where it is narrow. They stand
+    above the ground, as deep as the branch that they leave, as far as the crown's ``volume`` is. What was there keeps
+    its place and radius. The foliage does not include wood.
 
-    Source: the minimum spanning tree, Prim 1957; for branches as by Livny et al. 2010, "Automatic reconstruction of
-    tree skeletal structures from point clouds", section 4.
+    Source: the minimum spanning tree, Prim 1957, balanced with the length of the way to its root, Cuntz et al. 2010,
+    "One rule to grow them all".
     """
     tree, camera = grown.skeleton, foliage.camera
     joints_px = camera.pixels_from_world(tree.points)
@@ -55,7 +59,7 @@ def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> 
 
 
 def _out_of_reach(joints_px: Floats, parents: Indices, foliage: Mask, height_px: float) -> Floats:
-    """Middles (m, 2), px, of the foliage (h, w) in each square that lies out of reach of a tree's joints (n, 2), px."""
+    """Choose a place (m, 2), px, in each square amid foliage (h, w) out of reach of a tree's joints (n, 2), px."""
     cell_px = max(1.0, SPACING * height_px / CELLS)
     size = np.maximum(np.rint(np.array(foliage.shape[::-1]) / cell_px).astype(np.int64), 1)
     scale = size / foliage.shape[::-1]
@@ -67,30 +71,32 @@ def _out_of_reach(joints_px: Floats, parents: Indices, foliage: Mask, height_px:
         free[row, column] = 0
     away = cv2.distanceTransform(free, cv2.DIST_L2, 5)
     rows, columns = np.nonzero(covered & (away > REACH * height_px / cell_px))
-    square, count = np.unique(rows // CELLS * int(size[0]) + columns // CELLS, return_inverse=True, return_counts=True)[
-        1:
-    ]
-    middles = np.stack([np.bincount(square, columns), np.bincount(square, rows)], axis=1) / count[:, None] + 0.5
-    return np.asarray(middles[count > FILLED * CELLS**2] / scale)
+    square = rows // CELLS * int(size[0]) + columns // CELLS
+    order = np.argsort(square, kind="stable")
+    first, count = np.unique(square[order], return_index=True, return_counts=True)[1:]
+    first, count = first[count > FILLED * CELLS**2], count[count > FILLED * CELLS**2]
+    chosen = order[first + np.floor(count * (GOLDEN * np.arange(len(count)) % 1)).astype(np.int64)]
+    return np.asarray((np.stack([columns, rows], axis=1)[chosen] + 0.5) / scale)
 
 
 def _linked(joints_px: Floats, places_px: Floats, longest_px: float) -> tuple[Floats, Indices]:
-    """Link places (m, 2), px, to a tree's joints (n, 2) by the shortest links: those reached (k, 2), and their parents.
+    """Link places (m, 2), px, to a tree's joints (n, 2) one by one: those reached (k, 2), and their parents (k,).
 
     Parents count from the tree's first joint on through the places, each after its parent.
     """
     nearest = np.array([np.hypot(*(joints_px - place).T).argmin() for place in places_px], dtype=np.int64)
-    away = np.hypot(*(places_px - joints_px[nearest]).T)
+    away, before = np.hypot(*(places_px - joints_px[nearest]).T), np.zeros(len(places_px))
     waiting, order = np.ones(len(places_px), dtype=np.bool_), list[int]()
-    while waiting.any():
-        place = int(np.where(waiting, away, np.inf).argmin())
-        if away[place] > longest_px:
+    for number in range(len(joints_px), len(joints_px) + len(places_px)):
+        cost = np.where(waiting & (away <= longest_px), away + BALANCE * before, np.inf)
+        place = int(cost.argmin())
+        if np.isinf(cost[place]):
             break
-        waiting[place] = False
-        distance = np.hypot(*(places_px - places_px[place]).T)
-        closer = waiting & (distance < away)
-        away[closer], nearest[closer] = distance[closer], len(joints_px) + len(order)
         order.append(place)
+        waiting[place], way = False, before[place] + away[place]
+        distance = np.hypot(*(places_px - places_px[place]).T)
+        closer = waiting & (distance + BALANCE * way < away + BALANCE * before)
+        away[closer], before[closer], nearest[closer] = distance[closer], way, number
     return places_px[order], nearest[order]
 
 
