@@ -15,8 +15,9 @@ from treestroke.core.types import Opacity, Picture
 
 SURE_LEAF, SURE_GROUND = 0.8, 0.25
 """Likelihoods from which on a pixel, with its eight neighbours, is nothing but foliage, or nothing but background."""
-REACHES_PX = (3.0, 12.0, 48.0)
-"""Distances, px, over which sure colours are averaged: the nearest that there are count."""
+REACHES, LEAST_REACH_PX = (0.00375, 0.015, 0.06), 1.5
+"""Distances over which sure colours are averaged, as shares of the picture's longer side, and the least, px: the
+nearest that there are count. (With distances in pixels photos of 900 and 2400 px agree by 0.952 instead of 0.959.)"""
 FURTHER = 0.03
 """Weight of what lies within the next greater distance."""
 ASIDE, ASIDE_FROM = 20.0, 16.0
@@ -66,7 +67,8 @@ def _near_by(pixels: Picture, sure: NDArray[np.bool_]) -> _Map:
     masked = np.asarray(cv2.bitwise_and(pixels, pixels, mask=mask), dtype=np.uint8)
     weighted = np.dstack([_resized(masked, size), _resized(mask, size)]).astype(np.float32)
     total = np.full(weighted.shape, 1e-12, dtype=np.float32)
-    for rank, reach in enumerate(REACHES_PX):
+    for rank, share in enumerate(REACHES):
+        reach = max(LEAST_REACH_PX, share * max(sure.shape))
         total += np.float32(FURTHER**rank) * _blurred(weighted, reach / 2)
     return _resized(total[..., :3] * (np.float32(255) / total[..., 3:]), (width, height))
 
