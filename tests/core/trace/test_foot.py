@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.geometry.polyline import resample
-from treestroke.core.trace.foot import flared
+from treestroke.core.trace.foot import flared, leaves_photo
 
 LINE = resample(np.array([[100.0, 180.0], [100.0, 20.0]]), 2.0)
 RADII = np.full(len(LINE), 12.0)
@@ -44,7 +44,6 @@ def test_a_leaning_trunk_without_flare_stays_even() -> None:
     assert flared(leaning, np.full(len(leaning), 12.0), photo) == pytest.approx(12.0, abs=1.0)
 
 
-def test_a_trunk_that_leaves_the_photo_at_the_bottom_is_as_wide_there_as_above() -> None:
-    half = 12 + 8 * np.clip((np.arange(200) - 155) / 25, 0, 1) ** 2
-    assert flared(LINE, RADII, picture(half))[0] > 18
-    assert np.array_equal(flared(LINE, RADII, picture(half)[:182]), RADII)
+@pytest.mark.parametrize(("rows", "cut"), [(200, False), (182, True)])
+def test_a_trunk_that_begins_at_the_lower_edge_leaves_the_photo(rows: int, cut: bool) -> None:
+    assert leaves_photo(LINE, RADII, picture(np.full(200, 12.0))[:rows]) is cut

@@ -116,6 +116,18 @@ def test_an_erase_stroke_does_not_drop_a_stroked_branch() -> None:
     assert np.array_equal(kept.skeleton.points[kept.stroke >= 0], crossed.skeleton.points[crossed.stroke >= 0])
 
 
+def test_a_foot_at_the_lower_edge_is_looked_at_only_where_the_tree_was_cut_out() -> None:
+    wood = TREE[:430].copy()
+    wood[421:, 210:231] = True
+    photo, crown, radius = wood_photo(wood), INSIDE[:430], []
+    for cut_out in (False, True):
+        around = Surroundings(LEAVES, BEHIND, crown, crown, cut_out=cut_out)
+        traced = trace_branches(photo, stroked(STEM), around, see_crown(photo, around, HEIGHT))
+        radius.append(traced.skeleton.radii[0])
+    assert radius[0] < 7.0
+    assert radius[1] > 8.5
+
+
 @pytest.mark.parametrize("below", [0.5, 1.5, 2.5, 4.0])
 def test_a_trunk_whose_stroke_begins_just_below_the_crown_is_traced(below: float) -> None:
     assert trace(stroked([(220.0, 250.0 + below), (220.0, 100.0)])).skeleton.points[0, 1] == 250.0 + below

@@ -20,7 +20,7 @@ from treestroke.core.trace.appearance import Surroundings
 from treestroke.core.trace.crown_picture import see_crown
 from treestroke.core.trace.drawing import Drawing
 from treestroke.core.trace.tracing import Traced, trace_branches
-from treestroke.core.types import Picture
+from treestroke.core.types import FoliageKind, Picture
 
 UNCLEAR = StrokeWarning(
     "crown_unclear",
@@ -98,7 +98,7 @@ def read_photo(
     working, wood = on_its_trunk(working, outlined), None
     odds = kind_odds(outlined.cues, working.strokes.crown.points, working.strokes.branches[0].points)
     kind = likeliest(odds)
-    surroundings = Surroundings(outlined.leaf, outlined.ground, outlined.region, outlined.mask, broad=kind == "leaves")
+    surroundings = _surroundings(outlined, kind, working)
     if kind == "bare":
         wood = _wood(outlined, working, known)
         surroundings = replace(surroundings, leaf=None, bare_wood=None if wood is None else wood.alpha)
@@ -110,6 +110,12 @@ def read_photo(
     traced = trace_branches(working.photo, working.strokes, surroundings, seen)
     working, traced = on_the_ground(working, traced, height_px)
     return PhotoEvidence(working, foliage, outlined, odds, traced, side_drawing)
+
+
+def _surroundings(outlined: Foliage, kind: FoliageKind, working: WorkingCopy) -> Surroundings:
+    """Return what surrounds the branches of a tree of this kind in leaf."""
+    masks, cut_out = (outlined.region, outlined.mask), working.cut_out is not None
+    return Surroundings(outlined.leaf, outlined.ground, *masks, broad=kind == "leaves", cut_out=cut_out)
 
 
 def _wood(outlined: Foliage, working: WorkingCopy, known: PhotoEvidence | None) -> Foliage | None:

@@ -58,6 +58,8 @@ class Surroundings:
         (h, w) share of each pixel that wood covers in a bare crown; None in leaves.
     broad
         Whether its leaves are broad: shade between sprays of needles or scales makes lines like limbs.
+    cut_out
+        Whether the tree was cut out: nothing surrounds it, and the picture's lower edge is the ground.
     """
 
     leaf: Mixture | None
@@ -66,6 +68,7 @@ class Surroundings:
     foliage: Mask
     bare_wood: Opacity | None = None
     broad: bool = False
+    cut_out: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,7 +23,7 @@ STRONGEST = 1.2
 EVEN = 0.2
 """Standard deviation of height over which a foot's width is averaged, in radii of the trunk above it."""
 CUT = 0.4
-"""A trunk that begins this near the photo's lower edge, in radii, is cut by it: what the photo shows is no foot."""
+"""A trunk that begins this near the photo's lower edge, in radii, is cut by it."""
 ALONG, ACROSS = 2.0, 1.0
 """Standard deviations, steps, over which colours are averaged along and across a trunk before edges are taken."""
 
@@ -33,10 +33,8 @@ def flared(line_px: Floats, radii: Floats, photo: Picture) -> Floats:
 
     Down from the trunk above, whose width is known, both sides follow the strongest edges, row by row. They only move
     outward, so that a foot hidden by grass stays as wide as the trunk. (Of 30 feet with known outline, 27 are within
-    10 % of it 0.3 radii above the ground.) A trunk that leaves the photo at the bottom keeps its radii.
+    10 % of it 0.3 radii above the ground.)
     """
-    if len(photo) - line_px[0, 1] < CUT * radii[0]:
-        return radii
     arcs = arc_lengths(line_px)
     trunk = float(np.interp(HEIGHT * radii[0], arcs, radii))
     step = max(1.0, trunk / FINEST)
@@ -50,6 +48,11 @@ def flared(line_px: Floats, radii: Floats, photo: Picture) -> Floats:
     widths = step * blur(np.mean(sides, axis=0), EVEN * trunk / step)
     seen = np.interp(arcs, (reach[-1] - reach)[::-1], widths[::-1], right=0.0)
     return np.maximum(radii, seen)
+
+
+def leaves_photo(line_px: Floats, radii: Floats, photo: Picture) -> bool:
+    """Return whether the lower edge of a photo (h, w, 3) cuts a stem, a line (n, 2), px, with radii (n,): no foot."""
+    return bool(len(photo) - line_px[0, 1] < CUT * radii[0])
 
 
 def _edges(line_px: Floats, photo: Picture, step: float, most: int) -> Floats:

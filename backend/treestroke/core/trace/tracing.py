@@ -18,7 +18,7 @@ from treestroke.core.strokes import Stroke, Strokes
 from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
 from treestroke.core.trace.bare_crown import TOLERANCE_PX, find_twigs, odds_of_share
 from treestroke.core.trace.crown_picture import CrownPicture
-from treestroke.core.trace.foot import flared
+from treestroke.core.trace.foot import flared, leaves_photo
 from treestroke.core.trace.found_limbs import find_limbs
 from treestroke.core.trace.giant import fork_of, is_giant, upright
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
@@ -110,7 +110,7 @@ class _Evidence:
     """What a stroke is judged by.
 
     The photo (h, w, 3); odds by the strokes' colours and the wood by them (h, w), to which a stroke is pulled; the wood
-    by the crown's odds, whose width is measured; the crown (h, w), and the tree's height, px.
+    by the crown's odds, whose width is measured; the crown (h, w), the tree's height, px, and whether it was cut out.
     """
 
     photo: Picture
@@ -119,6 +119,7 @@ class _Evidence:
     wood: Mask
     crown: Mask
     height_px: float
+    cut_out: bool
 
 
 def trace_branches(
@@ -143,7 +144,8 @@ def trace_branches(
     wood = smooth > 0
     builder = SkeletonBuilder()
     sure_wood = _smoothed(odds.by_strokes, unit) > 0
-    evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, surroundings.crown, height_px)
+    crown, cut_out = surroundings.crown, surroundings.cut_out
+    evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, crown, height_px, cut_out)
     _follow_strokes(builder, strokes.branches, evidence, params)
     if bare_wood is None:
         thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
@@ -200,7 +202,8 @@ def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) 
     aside = root[0] - centred[0, 0]
     if abs(aside) < BESIDE * min(radii[0], widest):
         centred[:, 0] += aside * np.clip(1 - arc_lengths(centred) / radii[0], 0.0, 1.0)
-    return centred, flared(centred, radii, evidence.photo) if seen.sum() > CLEAR * len(seen) else radii
+    cut = leaves_photo(centred, radii, evidence.photo) and not evidence.cut_out
+    return centred, radii if cut or seen.sum() <= CLEAR * len(seen) else flared(centred, radii, evidence.photo)
 
 
 def _assumed(sides: tuple[Floats, Floats], bare: Mask, usual_px: float) -> tuple[Floats, Floats]:
