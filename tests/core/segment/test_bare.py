@@ -87,3 +87,11 @@ def test_wood_that_is_not_found_along_the_trunk_is_none() -> None:
     aside = TRUNK - np.array([0.0, 60.0]) + np.array([20.0, 0.0])
     assert wood_in_crown(foliage, picture, TRUNK - np.array([0.0, 60.0])) is not None
     assert wood_in_crown(foliage, picture, aside) is None
+
+
+def test_a_stroke_may_go_on_between_limbs_above_the_trunk() -> None:
+    picture = photo(sky())
+    beyond = np.vstack([TRUNK, [(200.0, 60.0)]])
+    wood = wood_in_crown(segment_foliage(picture, CROWN), picture, beyond)
+    assert wood is not None
+    assert np.abs(wood.alpha - share())[inside()].mean() < 0.03

@@ -40,9 +40,10 @@ MAX_ODDS = 6.0
 MOST_COVER = 0.48
 """Greatest share of a bare crown that wood covers: over more, it cannot be told from the background (0.18 to 0.40 on 10
 photos where it can)."""
-LEAST_OF_TRUNK = 0.75
-"""Least share of the trunk under its stroke that must be found as wood (0.89 to 1 where wood can be told; 0.47 where a
-slope was taken for it)."""
+LOWEST, LEAST_OF_TRUNK = 0.33, 0.75
+"""Lowest share of the trunk's stroke in the crown by which wood is judged, as a stroke may go on between limbs where
+the trunk forks; and least share of it that must be found as wood (0.89 to 1 where wood can be told; 0.43 where a slope
+was taken for it)."""
 
 
 def wood_in_crown(foliage: Foliage, photo: Picture, trunk_px: Floats) -> Foliage | None:
@@ -54,7 +55,8 @@ def wood_in_crown(foliage: Foliage, photo: Picture, trunk_px: Floats) -> Foliage
     alpha = wood_matte(photo, foliage.region, trunk_px)
     covered = alpha > HALF
     trunk = foliage.region & _drawn(trunk_px, covered.shape, max(2, round(UNDER * max(covered.shape))))
-    is_told = not trunk.any() or covered[trunk].mean() > LEAST_OF_TRUNK
+    on_trunk = covered[trunk][int((1 - LOWEST) * trunk.sum()) :]
+    is_told = not len(on_trunk) or on_trunk.mean() > LEAST_OF_TRUNK
     if not is_told or not covered.any() or covered[foliage.region].mean() > MOST_COVER:
         return None
     return replace(foliage, alpha=alpha, mask=covered, pure=covered)
