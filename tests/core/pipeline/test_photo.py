@@ -174,7 +174,7 @@ def test_without_a_branch_stroke_the_foliage_alone_is_traced() -> None:
 
 
 def test_what_was_seen_of_the_crown_is_kept_between_strokes_and_changes_nothing() -> None:
-    photo, strokes = given(EXAMPLES / "burr_oak_dusk")
+    photo, strokes = given(EXAMPLES / "oak_02")
     first = read_photo(photo, Strokes(strokes.crown, strokes.branches[:-1]))
     before, again, anew = (
         read.traced for read in (first, read_photo(photo, strokes, first), read_photo(photo, strokes))
