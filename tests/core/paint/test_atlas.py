@@ -25,8 +25,8 @@ def test_the_picture_takes_less_than_a_megabyte(atlas):
 def test_colours_are_near_the_photos(atlas, photo, mask):
     mean = lab_from_rgb(np.rint(atlas.colours).astype(np.uint8)).mean(axis=0)
     lighter, redder, yellower = mean - lab_from_rgb(photo[mask]).mean(axis=0)
-    assert 0 < lighter < 12  # leaves alone are lighter than a crown, whose leaves shade each other
-    assert max(abs(redder), abs(yellower)) < 7
+    assert 0 < lighter < 14  # leaves alone are lighter than a crown, whose leaves shade each other
+    assert max(abs(redder), abs(yellower)) < 9
 
 
 def test_every_tile_is_another_drawing(atlas):

@@ -83,8 +83,8 @@ def test_a_limb_goes_on_behind_leaves_between_two_places_where_it_is_seen() -> N
     assert np.count_nonzero(builder.skeleton().parents < 0) == 1
 
 
-@given(st.floats(-130, 130), st.floats(0.3, 0.6), st.floats(10, 20), st.floats(6, 12))
-@settings(max_examples=25, deadline=None)
+@given(st.floats(-130, 130), st.floats(0.3, 0.6), st.floats(8, 16), st.floats(6, 12))
+@settings(max_examples=50, deadline=None)
 def test_a_limb_that_a_clump_of_leaves_hides_in_its_middle_is_one_limb_and_not_two(
     aside: float, where: float, radius: float, width: float
 ) -> None:
@@ -95,10 +95,10 @@ def test_a_limb_that_a_clump_of_leaves_hides_in_its_middle_is_one_limb_and_not_t
     way = [int(np.linalg.norm(tree.points - limb[1], axis=1).argmin())]
     while tree.parents[way[-1]] >= 0:
         way.append(int(tree.parents[way[-1]]))
-    above = tree.points[way][tree.points[way, 1] < 215]
-    assert np.linalg.norm(above[:, None] - line, axis=2).min(axis=1).max() < 6.0
-    assert above[0, 1] < 75
-    assert np.count_nonzero(np.bincount(tree.parents[1:], minlength=len(tree)) == 0) <= 2
+    assert tree.points[way[0], 1] < 75
+    crown = tree.points[tree.points[:, 1] < 215]  # every joint there lies on that limb
+    assert np.linalg.norm(crown[:, None] - line, axis=2).min(axis=1).max() < 10.0
+    assert np.count_nonzero(np.diff(tree.points[way, 1]) < -3) == 0  # and the limb nowhere turns back
 
 
 def test_no_limb_goes_far_beyond_leaves_to_a_mere_speck() -> None:
