@@ -173,6 +173,12 @@ def test_without_a_branch_stroke_the_foliage_alone_is_traced() -> None:
     assert np.array_equal(traced.foliage, trace_photo(photo, strokes).foliage)
 
 
+def test_limbs_under_strokes_are_wood_though_blossoms_are_nearer_to_the_trunk_s_colour() -> None:
+    traced = read_photo(*given(DATA / "cherry_blossom")).traced
+    assert traced is not None
+    assert traced.measured[traced.stroke > 0].mean() > 0.7
+
+
 def test_what_was_seen_of_the_crown_is_kept_between_strokes_and_changes_nothing() -> None:
     photo, strokes = given(EXAMPLES / "oak_02")
     first = read_photo(photo, Strokes(strokes.crown, strokes.branches[:-1]))

@@ -57,10 +57,10 @@ def find_limbs(builder: SkeletonBuilder, picture: CrownPicture, odds: Odds, smoo
         before = len(builder.points)
         builder.add_chain(joint, even, radii, stroke=-1)
         joint_at[chain[1:]] = before + np.linalg.norm(points[chain[1:], None] - even[1:], axis=2).argmin(axis=1)
-    return _drawn(points[kept], half_widths[kept], odds.shape)
+    return drawn_ribbons(points[kept], half_widths[kept], odds.shape)
 
 
-def _drawn(points: Floats, half_widths: Floats, shape: tuple[int, ...]) -> Mask:
+def drawn_ribbons(points: Floats, half_widths: Floats, shape: tuple[int, ...]) -> Mask:
     """Draw ribbons, by points (n, 2) of their centre lines and their half widths (n,), px, into a picture (h, w)."""
     wood = np.zeros(shape, dtype=np.uint8)
     for (x, y), half_width in zip(points.tolist(), half_widths.tolist(), strict=True):

@@ -19,7 +19,7 @@ from treestroke.core.trace.appearance import Odds, Surroundings, wood_odds
 from treestroke.core.trace.bare_crown import TOLERANCE_PX, find_twigs, odds_of_share
 from treestroke.core.trace.crown_picture import CrownPicture
 from treestroke.core.trace.foot import flared, leaves_photo
-from treestroke.core.trace.found_limbs import find_limbs
+from treestroke.core.trace.found_limbs import drawn_ribbons, find_limbs
 from treestroke.core.trace.giant import fork_of, is_giant, upright
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
@@ -147,6 +147,9 @@ def trace_branches(
     crown, cut_out = surroundings.crown, surroundings.cut_out
     evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, crown, height_px, cut_out)
     _follow_strokes(builder, strokes.branches, evidence, params)
+    wood |= sure_wood & drawn_ribbons(
+        *builder.arrays(), wood.shape
+    )  # the crown's own odds may miss a limb's shady side
     if bare_wood is None:
         thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
         wood |= find_limbs(builder, picture, odds.by_crown, smooth, thinnest_px)
