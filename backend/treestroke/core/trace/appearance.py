@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 Odds = NDArray[np.float32]
+Kind = TypeVar("Kind", bound=np.generic)
 
 COMPONENTS = 5
 """Components of the mixture of branch colours (Tan et al. 2008, section 2)."""
@@ -109,12 +111,12 @@ def wood_odds(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, sur
     inside = np.full_like(outside, -MAX_ODDS) if among_leaves is None else _odds(among_leaves, rest)
     place = table_index(photo)
     by_strokes = np.take(np.concatenate([outside, inside]), place | crown.astype(np.uint16) << 3 * TABLE_BITS)
-    by_crown = by_strokes.copy()
+    by_crown = by_strokes
     wood = [mixture for mixture in (bare, among_leaves) if mixture is not None]
     others = _others_in_crown(bare, surroundings) if surroundings.bare_wood is None else None
     if wood and others is not None:
-        table = _learnt_odds(photo[crown], _odds(join_mixtures(wood, [1.0] * len(wood)), others), ground)
-        by_crown[crown] = table[place[crown]]
+        odds = _odds(join_mixtures(wood, [1.0] * len(wood)), others)
+        by_crown = np.where(crown, _learnt_odds(photo, place, crown, odds, ground)[place], by_strokes)
     return WoodOdds(by_strokes, by_crown)
 
 
@@ -132,14 +134,17 @@ def _others_in_crown(bare: Mixture | None, surroundings: Surroundings) -> Mixtur
     return join_mixtures([leaf.select(differs), ground], [0.5, 0.5])
 
 
-def _learnt_odds(pixels: Picture, odds: Odds, ground: Mixture) -> Odds:
-    """Return log odds for each colour of the table, learnt from what such odds tell apart among pixels (n, 3)."""
-    known = odds[table_index(pixels)]
+def _learnt_odds(photo: Picture, place: NDArray[np.uint16], crown: Mask, odds: Odds, ground: Mixture) -> Odds:
+    """Return log odds for each colour of the table, learnt from what such odds tell apart in a crown (h, w).
+
+    ``place`` (h, w) is where the table has each pixel's colour.
+    """
+    known, pixels, colours = odds[place[crown]], np.flatnonzero(crown), photo.reshape(-1, 3)
     found, left = pixels[known > SURE], pixels[known <= 0]
     if min(len(found), len(left)) < MIN_LEARNT:
         return odds
-    others = join_mixtures([fit_mixture(_subsample(left), OTHER_COMPONENTS), ground], [1 - BEHIND, BEHIND])
-    return _odds(fit_mixture(_subsample(found), COMPONENTS), others)
+    others = join_mixtures([fit_mixture(colours[_subsample(left)], OTHER_COMPONENTS), ground], [1 - BEHIND, BEHIND])
+    return _odds(fit_mixture(colours[_subsample(found)], COMPONENTS), others)
 
 
 def _odds(branch: Mixture, rest: Mixture) -> Odds:
@@ -157,8 +162,8 @@ def _pixels_under(photo: Picture, lines_px: Sequence[Floats], breadth_px: float,
     return np.asarray(sample_nearest(photo, places, 0), dtype=np.uint8), sample_nearest(crown, places, False)
 
 
-def _subsample(pixels: Picture) -> Picture:
-    """Return evenly spaced pixels (m, 3) of many (n, 3)."""
+def _subsample(pixels: NDArray[Kind]) -> NDArray[Kind]:
+    """Return evenly spaced ones of many pixels (n, ...)."""
     return pixels[:: max(1, len(pixels) // MAX_SAMPLES)]
 
 

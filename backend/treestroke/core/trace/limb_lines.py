@@ -72,7 +72,7 @@ def find_lines(picture: Bytes, inside: Mask, height_px: float) -> Lines:
     for number in range(DIRECTIONS):
         turn, size = _turned((height, width), np.pi * number / DIRECTIONS)
         turned = cv2.warpAffine(picture, turn, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        planes = np.dstack(_level_lines(np.asarray(turned, dtype=np.uint8), length_px))
+        planes = cv2.merge(_level_lines(np.asarray(turned, dtype=np.uint8), length_px))
         darker, lighter, thickness = cv2.split(
             cv2.warpAffine(planes, turn, (width, height), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
         )
@@ -155,13 +155,14 @@ def _long_and_clear(rarity: NDArray[np.float32], direction: Bytes, likely: Mask,
 
     Along a piece the direction changes but slowly.
     """
-    middle = (rarity > FAINT) & _highest_across(rarity, direction)
-    chosen = np.zeros_like(middle)
+    middle = np.nonzero((rarity > FAINT) & _highest_across(rarity, direction))
+    towards, chosen = direction[middle], np.zeros(rarity.shape, dtype=bool)
     for number in range(DIRECTIONS):
-        piece = middle & ((direction + DIRECTIONS + 1 - number) % DIRECTIONS <= 2)
-        grown = cv2.dilate(piece.astype(np.uint8), np.ones((3, 3), np.uint8))
+        at = tuple(axis[(towards + DIRECTIONS + 1 - number) % DIRECTIONS <= 2] for axis in middle)
+        piece = np.zeros(rarity.shape, dtype=np.uint8)
+        piece[at] = 1
+        grown = cv2.dilate(piece, np.ones((3, 3), np.uint8))
         count, labels, stats, _ = cv2.connectedComponentsWithStats(grown, connectivity=8)
-        at = np.nonzero(piece)
         label = labels[at]
         extent = np.hypot(stats[:, cv2.CC_STAT_WIDTH], stats[:, cv2.CC_STAT_HEIGHT]) - 2
         total, pixels = np.bincount(label, rarity[at], count), np.bincount(label, minlength=count)
