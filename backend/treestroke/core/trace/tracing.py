@@ -147,9 +147,8 @@ def trace_branches(
     crown, cut_out = surroundings.crown, surroundings.cut_out
     evidence = _Evidence(photo, odds.by_strokes, sure_wood, wood, crown, height_px, cut_out)
     _follow_strokes(builder, strokes.branches, evidence, params)
-    wood |= sure_wood & drawn_ribbons(
-        *builder.arrays(), wood.shape
-    )  # the crown's own odds may miss a limb's shady side
+    # The crown's own odds may miss a limb's shady side.
+    wood |= sure_wood & drawn_ribbons(*builder.arrays(), wood.shape)
     if bare_wood is None:
         thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
         wood |= find_limbs(builder, picture, odds.by_crown, smooth, thinnest_px)
