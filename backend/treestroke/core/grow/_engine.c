@@ -40,7 +40,7 @@ typedef struct {
     PyObject_HEAD
     int height, width, subtrees, angles, shoots, turn;
     uint8_t *mask;
-    double *middle, *radius, *scale, spacing, closeness, keep, cosine;
+    double *middle, *radius, *near, *deep, *scale, spacing, closeness, keep, cosine;
     Vec foot, *turned, *base, *tip;
     Steer *steer;
     int *count;
@@ -88,8 +88,8 @@ static int inside(const Engine *e, Vec p) {
     if (!(p.x >= 0 && p.y >= 0 && p.x < e->width && p.y < e->height)) return 0;
     int r = (int)p.y; /* rounds down, as it is not negative */
     if (!e->mask[(size_t)r * e->width + (int)p.x]) return 0;
-    double x = p.x - e->middle[r];
-    return x * x + p.z * p.z <= e->radius[r] * e->radius[r];
+    double x = (p.x - e->middle[r]) / e->radius[r], z = (p.z - e->near[r]) / e->deep[r];
+    return x * x + z * z <= 1;
 }
 
 /* Number of the shoot's leading samples inside the crown; 0 where it grows inward or too little of it is kept. */
@@ -633,15 +633,17 @@ static int read_library(Engine *e, PyObject *counts, PyObject *parents, PyObject
 
 static int engine_init(PyObject *self, PyObject *args, PyObject *Py_UNUSED(keywords)) {
     Engine *e = (Engine *)self;
-    PyObject *mask, *middle, *radius, *counts, *parents, *fractions, *vectors;
+    PyObject *mask, *middle, *radius, *near, *deep, *counts, *parents, *fractions, *vectors;
     if (e->mask) { PyErr_SetString(PyExc_ValueError, "an engine is initialised once"); return -1; }
-    if (!PyArg_ParseTuple(args, "(ii)OOO(ddd)ddddOOOO", &e->height, &e->width, &mask, &middle, &radius, &e->foot.x,
-                          &e->foot.y, &e->foot.z, &e->spacing, &e->closeness, &e->keep, &e->cosine, &counts, &parents,
+    if (!PyArg_ParseTuple(args, "(ii)OOOOO(ddd)ddddOOOO", &e->height, &e->width, &mask, &middle, &radius, &near, &deep,
+                          &e->foot.x, &e->foot.y, &e->foot.z, &e->spacing, &e->closeness, &e->keep, &e->cosine, &counts, &parents,
                           &fractions, &vectors)) return -1;
     for (int i = 0; i < BUCKETS; i++) e->bucket[i] = -1;
     if (!(e->mask = copied(mask, 1, (Py_ssize_t)e->height * e->width, NULL))) return -1;
     if (!(e->middle = copied(middle, 8, e->height, NULL))) return -1;
     if (!(e->radius = copied(radius, 8, e->height, NULL))) return -1;
+    if (!(e->near = copied(near, 8, e->height, NULL))) return -1;
+    if (!(e->deep = copied(deep, 8, e->height, NULL))) return -1;
     return read_library(e, counts, parents, fractions, vectors);
 }
 
@@ -656,7 +658,7 @@ static void engine_free(PyObject *self) {
         Groups *g = i ? &e->near_groups : &e->groups;
         free(g->x); free(g->y); free(g->low); free(g->high); free(g->slope); free(g->sum); free(g->size);
     }
-    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->scale, e->steer, e->turned, e->base, e->tip, e->count, e->library, e->segments,
+    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->near, e->deep, e->scale, e->steer, e->turned, e->base, e->tip, e->count, e->library, e->segments,
                      e->visits, e->grid, e->next, e->slots, e->best, e->gain, e->found};
     for (size_t i = 0; i < sizeof(owned) / sizeof(*owned); i++) free(owned[i]);
     PyTypeObject *type = Py_TYPE(self);

@@ -30,13 +30,12 @@ class CompiledEvaluator:
     """An `Evaluator` on the extension ``_engine``; the head of ``_engine.c`` says how it saves work."""
 
     def __init__(self, space: GrowthSpace, library: tuple[Subtree, ...], rules: Rules) -> None:
-        turned = turn_library(library, rules.angles)
+        turned, sections = turn_library(library, rules.angles), space.sections
         self._order = np.zeros(0, dtype=np.int64)
         self._engine = Engine(
             space.mask.shape,
             np.ascontiguousarray(space.mask, dtype=np.uint8),
-            _contiguous(space.middle),
-            _contiguous(space.radius),
+            *map(_contiguous, (sections.middle_px, sections.radius_px, sections.near_px, sections.deep_px)),
             tuple(space.foot.tolist()),
             rules.spacing,
             rules.closeness,

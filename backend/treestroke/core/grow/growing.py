@@ -36,7 +36,7 @@ class Growing:
         evaluator: Evaluator,
     ) -> None:
         self.params, self.space, self.library = params, space, library
-        self.foot, self.top = float(space.foot[1]), float(np.argmax(space.radius > 0))
+        self.foot, self.top = float(space.foot[1]), float(np.flatnonzero(space.mask.any(axis=1))[0])
         self.evaluator = evaluator
         self.chains = _chains(visible, space, params)
         self.count = len(self.chains)
@@ -48,7 +48,7 @@ class Growing:
         self._add_chains(visible)
         self._tell_evaluator(0)
         self.evaluator.add_attractors(space.grid(params.attractors))
-        self.turned = 0
+        self.evaluator.add_attractors(space.depths)
 
     def run(self, rng: np.random.Generator, report: Report) -> list[tuple[int, int, int]]:
         """Replace branch after branch; list the (branch, subtree, angle) chosen."""
@@ -103,7 +103,7 @@ class Growing:
 
     def _under_the_crown(self, y: float) -> bool:
         """Tell whether a height (y, px) is below the crown's bulk, where its section is no wider than a stem."""
-        radius = self.space.radius
+        radius = self.space.sections.radius_px
         narrow = radius[int(np.clip(y, 0, len(radius) - 1))] < NARROW * float(radius.max())
         return bool(narrow and y > int(np.argmax(radius)))
 
@@ -114,8 +114,6 @@ class Growing:
         choice = Choice(-1, 0, 0, 0.0)
         for in_space in orders[self.params.mode]:
             if choice.branch < 0:
-                if in_space:
-                    self._turn_tips()
                 choice = self.evaluator.best(candidates, in_space)
         return choice
 
@@ -166,16 +164,11 @@ class Growing:
         Where the habit lets limbs rise far, they reach for a share of the height above them.
         """
         middle, chord = (self.bases[branch] + self.tips[branch]) / 2, self.tips[branch] - self.bases[branch]
-        row = int(np.clip(middle[1], 0, len(self.space.radius) - 1))
+        row = int(np.clip(middle[1], 0, len(self.space.mask) - 1))
         above = self.params.habit.stretch * (row - self.top)
-        reach = max(float(self.space.radius[row]), above) / max(math.sqrt(float(chord @ chord)), 1e-9)
+        reach = max(float(self.space.sections.radius_px[row]), above) / max(math.sqrt(float(chord @ chord)), 1e-9)
         stretch = [min(max(reach / tree.longest, 1.0), MOST_STRETCH) for tree in self.library]
         return np.where([tree.replaces != "limb" for tree in self.library], stretch, 0.0)
-
-    def _turn_tips(self) -> None:
-        """Add the tips of new branches, turned by a quarter, to the attractors in space."""
-        self.evaluator.add_attractors(self.space.turned(self.tips[self.turned : self.count]))
-        self.turned = self.count
 
 
 def rules_for(params: GrowthParams, unit: float) -> Rules:

@@ -150,9 +150,7 @@ def _fitting(paths: Floats, space: GrowthSpace, start: Floats, most_gap: float) 
 
 def _inside(paths: Floats, space: GrowthSpace) -> Mask:
     """Tell which points (m, k, 3) lie in the crown, clear of its surface."""
-    row = np.clip(np.floor(paths[..., 1]).astype(np.int64), 0, len(space.middle) - 1)
-    inner = np.hypot(paths[..., 0] - space.middle[row], paths[..., 2]) <= WITHIN * space.radius[row]
-    return np.asarray(space.inside(paths) & inner)
+    return np.asarray(space.inside(paths) & (space.reach(paths) <= WITHIN))
 
 
 def _near(points: Floats, centre: Floats, reach: float) -> Floats:

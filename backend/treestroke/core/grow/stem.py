@@ -43,7 +43,8 @@ def with_leader(skeleton: Skeleton, mask: NDArray[np.bool_], sections: Sections,
     stem = stem_of(skeleton)
     for aim in np.arange(share, highest + SLACK, -0.05):
         y = rows[-1] + 1 - aim * height
-        top = np.array([sections.middle_px[int(np.clip(y, 0, len(mask) - 1))], y, 0.0])
+        row = int(np.clip(y, 0, len(mask) - 1))
+        top = np.array([sections.middle_px[row], y, sections.near_px[row]])
         points = _straight_line(skeleton.points[stem[-1]], top, JOINT_SHARE * height)
         inside = in_mask(points, mask)
         if inside.any() and inside[int(np.argmax(inside)) :].all():

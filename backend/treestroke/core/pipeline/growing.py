@@ -20,6 +20,7 @@ from treestroke.core.grow.reaching import reaching
 from treestroke.core.grow.replacement import REACHED_PX, CrownToFill, Replacement, grow
 from treestroke.core.grow.trimming import trimmed
 from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.lift.clumps import in_clumps
 from treestroke.core.lift.fan import fan_out
 from treestroke.core.lift.hidden_limbs import with_hidden_limbs
 from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
@@ -201,6 +202,8 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     if taken.foliage == "palm":
         traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
     crown = _crown_of(evidence, traced, taken.foliage, settings)
+    if crown.side is None and not (crown.kind == "palm" or crown.kind == "bare" and traced.whole):
+        crown = replace(crown, volume=in_clumps(crown.volume, crown.front, rng))
     lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
     report("grow", 0.0)
     room = CrownToFill(crown.volume, crown.front)
@@ -214,7 +217,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
         grown = grow(lifted.tree, room, method, rng, report)
     leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):
-        grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera))
+        grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera), crown.volume)
         grown = reaching(grown, Silhouette(leafy & ~crown.wood, crown.camera), crown.volume)
     return _FilledCrown(evidence, traced, taken, crown, lifted, leafy, grown)
 

@@ -1,0 +1,101 @@
+"""A crown volume in which foliage stands in clumps, as its front shows it, with an assumed depth."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from treestroke.core.geometry.outline_volume import TurnedOutline, TwoOutlines
+from treestroke.core.types import Floats, Mask
+
+AROUND = 1
+"""Cells about a clump in which leaves may hang."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """A grid of cubes.
+
+    Attributes
+    ----------
+    filled
+        (x, y, z) whether a cell is filled.
+    corner
+        (3,) least x, y and z of the grid.
+    side
+        Side of a cell, in the unit of its corner.
+    """
+
+    filled: Mask
+    corner: Floats
+    side: float
+
+    def hold(self, points: Floats) -> Mask:
+        """Tell which points (n, 3) lie in filled cells: flags (n,)."""
+        place = np.floor((points - self.corner) / self.side).astype(np.int64)
+        size = np.array(self.filled.shape)
+        within = ((place >= 0) & (place < size)).all(axis=1)
+        x, y, z = np.clip(place, 0, size - 1).T
+        return np.asarray(within & self.filled[x, y, z])
+
+    def grown(self, count: int) -> "Cells":
+        """Fill every cell within ``count`` cells of a filled one, along the axes."""
+        filled = self.filled
+        for _ in range(count):
+            padded = np.pad(filled, 1)
+            filled = filled | padded[2:, 1:-1, 1:-1] | padded[:-2, 1:-1, 1:-1]
+            filled = filled | padded[1:-1, 2:, 1:-1] | padded[1:-1, :-2, 1:-1]
+            filled = filled | padded[1:-1, 1:-1, 2:] | padded[1:-1, 1:-1, :-2]
+        return Cells(filled, self.corner, self.side)
+
+
+@dataclass(frozen=True, eq=False)
+class ClumpedCrown(TwoOutlines):
+    """A crown whose foliage stands in clumps; its depth, a second outline, is assumed.
+
+    Attributes
+    ----------
+    clumps, fringed
+        Where foliage stands, px of the front camera's picture, z toward the viewer from the root's plane; and the same
+        with the cells around.
+    """
+
+    clumps: Cells
+    fringed: Cells
+
+    @property
+    def depth_seen(self) -> bool:
+        """Whether a picture shows how deep the crown is: here it is assumed."""
+        return False
+
+    @property
+    def shape(self) -> str:
+        """What the sections are, in words that follow "the solid"."""
+        return "whose level sections are ellipses as wide as the crown's front and about as deep"
+
+    def inside(self, points_world: Floats) -> Mask:
+        """Tell which points (n, 3), metres, lie in clumps and in all silhouettes: flags (n,)."""
+        return np.asarray(self.shown(points_world) & self.clumps.hold(self._picture(points_world)))
+
+    def admits(self, points_world: Floats, slack_m: float) -> Mask:
+        """Tell which points (n, 3), metres, lie in clumps, or nearly, or within ``slack_m``, metres, of Z = 0: (n,)."""
+        near = self.fringed.hold(self._picture(points_world))
+        return np.asarray(near | (np.abs(points_world[:, 2]) <= slack_m))
+
+    def _picture(self, points_world: Floats) -> Floats:
+        """Carry world points (n, 3), metres, into the picture (n, 3), px, z toward the viewer."""
+        flat = self.camera.pixels_from_world(points_world)
+        return np.column_stack([flat, self.camera.pixels_from_metres(points_world[:, 2])])
+
+
+def clumped(outline: TurnedOutline, near_px: Floats, deep_px: Floats, clumps: Cells) -> ClumpedCrown:
+    """Return an outline's volume, as deep as assumed (h,), with foliage in these cells, all px of its picture."""
+    return ClumpedCrown(
+        outline.camera,
+        outline.middle_px,
+        outline.radius_px,
+        outline.silhouettes,
+        near_px,
+        deep_px,
+        clumps,
+        clumps.grown(AROUND),
+    )
