@@ -76,10 +76,9 @@ class ClumpedCrown(TwoOutlines):
         """Tell which points (n, 3), metres, lie in clumps and in all silhouettes: flags (n,)."""
         return np.asarray(self.shown(points_world) & self.clumps.hold(self._picture(points_world)))
 
-    def admits(self, points_world: Floats, slack_m: float) -> Mask:
-        """Tell which points (n, 3), metres, lie in clumps, or nearly, or within ``slack_m``, metres, of Z = 0: (n,)."""
-        near = self.fringed.hold(self._picture(points_world))
-        return np.asarray(near | (np.abs(points_world[:, 2]) <= slack_m))
+    def admits(self, points_world: Floats, slack_m: float) -> Mask:  # noqa: ARG002 - clumps cover the whole front
+        """Tell which points (n, 3), metres, lie in clumps or beside them: flags (n,); ``slack_m`` has no effect."""
+        return self.fringed.hold(self._picture(points_world))
 
     def _picture(self, points_world: Floats) -> Floats:
         """Carry world points (n, 3), metres, into the picture (n, 3), px, z toward the viewer."""

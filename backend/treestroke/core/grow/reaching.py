@@ -29,8 +29,10 @@ BALANCE = 0.4
 """Weight of a link's way along new twigs to the tree, over its own length: without it twigs wander."""
 LONGEST = 0.1
 """Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
-WITHIN = 0.9
-"""Share of the crown's depth that new joints may use."""
+WITHIN, DEPTHS = 0.9, 33
+"""Share of the crown's depth that new joints may use, and at how many depths foliage is looked for."""
+STEEPEST = 1.0
+"""Greatest slope of a link's depth against its length in the picture."""
 
 
 def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> Grown:
@@ -101,13 +103,24 @@ def _linked(joints_px: Floats, places_px: Floats, longest_px: float) -> tuple[Fl
 
 
 def _lifted(tree: Skeleton, places_px: Floats, parents: Indices, camera: Camera, volume: CrownVolume) -> Floats:
-    """Place new joints (k, 2), px, in the world (k, 3), metres, at their parents' depth, within the volume."""
+    """Place new joints (k, 2), px, in the world (k, 3), metres: near their parents' depth, amid the volume's foliage.
+
+    A twig goes for the nearest depth with foliage, but no steeper than `STEEPEST`.
+    """
+    flat = np.vstack([camera.world_from_pixels(camera.pixels_from_world(tree.points)), camera.world_from_pixels(places_px)])
+    new = flat[len(tree) :]
+    length = np.sqrt(((new - flat[parents[len(tree) :]]) ** 2).sum(axis=1))
+    middle, half = camera.depth(volume.axis(new[:, 1])), WITHIN * volume.half_depth(new)
+    depths = middle[:, None] + half[:, None] * np.linspace(-1, 1, DEPTHS)
+    leafy = volume.admits(camera.world_from_pixels(np.repeat(places_px, DEPTHS, axis=0), depths.ravel()), 0.0)
+    leafy = leafy.reshape(depths.shape)
     depth = np.concatenate([camera.depth(tree.points), np.zeros(len(places_px))])
-    for joint in range(len(tree), len(depth)):
-        depth[joint] = depth[parents[joint]]
-    points = camera.world_from_pixels(places_px, depth[len(tree) :])
-    middle, half = camera.depth(volume.axis(points[:, 1])), WITHIN * volume.half_depth(points)
-    return camera.world_from_pixels(places_px, np.clip(depth[len(tree) :], middle - half, middle + half))
+    for joint, parent in enumerate(parents[len(tree) :].tolist()):
+        there = depths[joint, leafy[joint]] if leafy[joint].any() else depths[joint]
+        wanted = float(there[np.abs(there - depth[parent]).argmin()])
+        most = STEEPEST * float(length[joint])
+        depth[len(tree) + joint] = depth[parent] + np.clip(wanted - depth[parent], -most, most)
+    return camera.world_from_pixels(places_px, depth[len(tree) :])
 
 
 def _radii(tree: Skeleton, points: Floats, parents: Indices) -> Floats:

@@ -33,7 +33,7 @@ RELIEF = 0.4
 """Share of the crown's depth over which the clumps of its front are spread."""
 SHALLOWEST = 0.5
 """Least depth of a section, over the trend of its width."""
-CORE = 0.4
+CORE = 0.2
 """Share of the sections' radius within which foliage stands anywhere."""
 CANDIDATES = 600
 """Places that are tried for unseen clumps."""
@@ -41,7 +41,7 @@ HEIGHTS = 0.15
 """How much higher or lower than its model an unseen clump may stand, as a share of the crown's height."""
 BAY = 0.15
 """Width of the gaps, as a share of the crown's height, by which it is told how open a crown is."""
-APART, CLOSE = 1.3, 0.25
+APART, CLOSE = 2.0, 0.25
 """Greatest and least distance between clumps, over the sum of their radii: no side stays empty, none is packed."""
 AT_ONCE = 12
 """Clumps that are added before the crown is looked at again."""
@@ -229,4 +229,20 @@ def _filled(crown: _Crown, clumps: Floats) -> tuple[Mask, int]:
         filled[block] |= (x[block[0]] + 0.5 - clump[0]) ** 2 + (y[:, block[1]] + 0.5 - clump[1]) ** 2 + (
             z[:, :, block[2]] + 0.5 - clump[2]
         ) ** 2 <= clump[3] ** 2
-    return filled & crown.mask.T[:, :, None], nearest
+    return _with_all_columns(filled & crown.mask.T[:, :, None], crown.mask.T), nearest
+
+
+def _with_all_columns(filled: Mask, front: Mask) -> Mask:
+    """Fill a cell of (x, y, z) in each column before the ``front`` (x, y) that has none, as deep as the nearest that has."""
+    shown = filled.any(axis=2)
+    x, y = np.nonzero(front & ~shown)
+    if not shown.any() or len(x) == 0:
+        return filled
+    labels = cv2.distanceTransformWithLabels((~shown).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)[1]
+    columns = np.argwhere(shown)
+    column = np.zeros(int(labels.max()) + 1, dtype=np.int64)
+    column[labels[shown]] = np.arange(len(columns))
+    nearest = filled[tuple(columns[column[labels[x, y]]].T)]
+    middle = (nearest * np.arange(filled.shape[2])).sum(axis=1) // nearest.sum(axis=1)
+    filled[x, y, middle] = True
+    return filled

@@ -20,6 +20,8 @@ UPRIGHT = 0.4
 """Share of the steepest slope that an upright limb may take: upright limbs lean little in depth too."""
 SEEN = 0.3
 """Share of a limb's length, with all that it bears, that is seen among leaves if it lies on the viewer's side."""
+AMID = 1.0
+"""How much distance counts for a limb all of whose outer joints lie amid foliage, beside one that has none."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ def lift(tree: FrontTree, crown: FrontCrown, rng: np.random.Generator, params: L
         first = int(flat.parents[chain[0]] >= 0 or len(chain) > 1)
         toward = bool(is_seen[chain[min(first, len(chain) - 1)]])
         options = _options(flat.points[chain], float(depth[chain[0]]), toward, crown.volume, params)
-        best = options[_furthest(options, placed, rng)]
+        best = options[_furthest(options, placed, crown.volume, rng)]
         depth[chain[first:]] = best[first:, 2]
         placed.append(best)
     return Skeleton(np.column_stack([flat.points[:, :2], depth]), flat.radii, flat.parents)
@@ -148,13 +150,17 @@ def _leaning(points: Floats) -> float:
     return float(UPRIGHT + (1 - UPRIGHT) * abs(chord[0]) / max(float(np.hypot(*chord)), 1e-9))
 
 
-def _furthest(options: Floats, placed: list[Floats], rng: np.random.Generator) -> int:
-    """Choose the option (k, n, 3) whose outer joints keep most distance from all that is placed; ties at random."""
+def _furthest(options: Floats, placed: list[Floats], volume: CrownVolume, rng: np.random.Generator) -> int:
+    """Choose the option (k, n, 3) whose outer joints keep most distance from all that is placed, amid foliage.
+
+    Ties are broken at random.
+    """
     others = np.concatenate(placed)
     outer = options[:, options.shape[1] // 2 :]
     away = np.zeros((*outer.shape[:2], len(others)))
     for axis in range(3):
         away += (outer[:, :, None, axis] - others[:, axis]) ** 2
-    gaps = np.sqrt(away.min(axis=-1)).mean(axis=-1)
+    leafy = volume.inside(outer.reshape(-1, 3)).reshape(outer.shape[:2]).mean(axis=1)
+    gaps = np.sqrt(away.min(axis=-1)).mean(axis=-1) * (1 + AMID * leafy)
     best = np.flatnonzero(gaps >= gaps.max() * (1 - 1e-9))
     return int(best[rng.integers(len(best))])
