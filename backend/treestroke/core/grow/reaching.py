@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
+from treestroke.core.geometry.crown_volume import FLAT, CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, child_counts
@@ -31,7 +31,7 @@ LONGEST = 0.1
 """Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
 WITHIN, DEPTHS = 0.9, 33
 """Share of the crown's depth that new joints may use, and at how many depths foliage is looked for."""
-STEEPEST = 1.0
+STEEPEST = 2.0
 """Greatest slope of a link's depth against its length in the picture."""
 
 
@@ -49,7 +49,8 @@ def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> 
     tree, camera = grown.skeleton, foliage.camera
     joints_px = camera.pixels_from_world(tree.points)
     height_px = float(np.ptp(joints_px[:, 1]))
-    places_px = _out_of_reach(joints_px, tree.parents, foliage.mask, height_px)
+    amid = volume.admits(tree.points, FLAT * float(np.ptp(tree.points[:, 1])))
+    places_px = _out_of_reach(joints_px, np.where(amid, tree.parents, -1), foliage.mask, height_px)
     places_px = places_px[camera.world_from_pixels(places_px)[:, 1] > tree.points[:, 1].min()]
     places_px, parents = _linked(joints_px, places_px, LONGEST * height_px)
     if len(parents) == 0:
@@ -67,9 +68,10 @@ def _out_of_reach(joints_px: Floats, parents: Indices, foliage: Mask, height_px:
     scale = size / foliage.shape[::-1]
     covered = cv2.resize(foliage.astype(np.uint8) * np.uint8(255), size.tolist(), interpolation=cv2.INTER_AREA) > 127
     free = np.ones(covered.shape, dtype=np.uint8)
-    start = joints_px[np.maximum(parents, 0)]
+    ends = np.flatnonzero(parents >= 0)
+    start, end = joints_px[parents[ends]], joints_px[ends]
     for share in ON_EDGE:
-        column, row = np.clip((start + share * (joints_px - start)) * scale, 0, size - 1).astype(np.int64).T
+        column, row = np.clip((start + share * (end - start)) * scale, 0, size - 1).astype(np.int64).T
         free[row, column] = 0
     away = cv2.distanceTransform(free, cv2.DIST_L2, 5)
     rows, columns = np.nonzero(covered & (away > REACH * height_px / cell_px))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
+from treestroke.core.geometry.crown_volume import FLAT, CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -17,9 +17,6 @@ front IoU of 6 crowns is 0.857, 0.861 and 0.866, with as much foliage covered: f
 shorter one (`reaching`)."""
 BARE = 1.0
 """The same for wood that the front's foliage hides, but that no foliage surrounds."""
-FLAT = 0.02
-"""Distance from the root's plane, as a share of the tree's height, at which wood may lie outside a volume whose depth is
-assumed."""
 SAMPLES = 4
 """Places on each edge at which it is seen whether foliage is there."""
 

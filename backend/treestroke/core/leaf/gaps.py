@@ -37,6 +37,8 @@ FAR_SHARE = 0.02
 """Share of the cards that may stand further off than NEAR: an end of the crown that growth did not reach."""
 THICKNESS = 0.012
 """Standard deviation of such cards' depth about that of their branch, as a share of the tree's height."""
+DEPTHS = (-0.015, 0.015, -0.03, 0.03, -0.045, 0.045)
+"""Depths beside that of their branch, as shares of the tree's height, to which such cards are moved for foliage."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,10 @@ def _cover_view(
     nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
 ) -> list[Leaves]:
     """Set cards over what all ``patches`` leave open in one view, and bring its ``nearest`` cards up to date."""
-    inside, seat_of, added = gaps.grid.inside.ravel(), _nearest_seats(gaps.seats, gaps.grid), list[Leaves]()
+    inside, added = gaps.grid.inside.ravel(), list[Leaves]()
+    leafy = gaps.crown.admits(gaps.seats.points)
+    seats = gaps.seats.at(leafy) if leafy.any() else gaps.seats
+    seat_of = _nearest_seats(seats, gaps.grid)
     for scale in SIZES:
         open_cells = np.flatnonzero(inside & np.isinf(nearest))
         left = _left([*patches, *added], params)
@@ -134,7 +139,7 @@ def _cover_view(
             break
         count = min(_count(surplus, scale, gaps), left, len(open_cells))
         chosen = rng.choice(open_cells, count, replace=False)
-        patch = _patch(chosen, gaps.seats.at(seat_of[chosen]), scale, gaps, rng)
+        patch = _patch(chosen, seats.at(seat_of[chosen]), scale, gaps, rng)
         foliage, background = newly_hidden(nearest, patch, gaps.crown.outlines, gaps.grid)
         added.append(patch.select((foliage > 0) & (foliage >= WORTH * background)))
         gaps.crown.hide(nearest, added[-1], gaps.grid)
@@ -186,7 +191,22 @@ def _centres(cells: Indices, seats: Seats, gaps: _Gaps, rng: np.random.Generator
     beyond = distance > NEAR * height
     kept = np.flatnonzero((distance <= REACH * height) & (~beyond | (np.cumsum(beyond) <= gaps.far)))
     depth = depth[kept] - rng.normal(0, THICKNESS * height, len(kept))
-    return camera.world_from_pixels(points_px[kept], depth), kept
+    return _amid_foliage(points_px[kept], depth, gaps), kept
+
+
+def _amid_foliage(points_px: Floats, depth: Floats, gaps: _Gaps) -> Floats:
+    """Place points (n, 2), px, in the world (n, 3), metres: as near to these depths (n,), metres, as there is foliage.
+
+    They stay at their depth where there is none near.
+    """
+    camera, crown = gaps.grid.camera, gaps.crown
+    placed = camera.world_from_pixels(points_px, depth)
+    for away in DEPTHS:
+        bare = np.flatnonzero(~crown.admits(placed))
+        moved = camera.world_from_pixels(points_px[bare], depth[bare] + away * crown.height)
+        leafy = crown.admits(moved)
+        placed[bare[leafy]] = moved[leafy]
+    return placed
 
 
 def _seen_from(grid: FoliageGrid, centres: Floats, outward: Floats) -> Floats:

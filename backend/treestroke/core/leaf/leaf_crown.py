@@ -7,7 +7,7 @@ import numpy as np
 
 from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import in_picture
-from treestroke.core.geometry.crown_volume import CrownVolume
+from treestroke.core.geometry.crown_volume import FLAT, CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
 from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
 from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_inside
@@ -28,9 +28,6 @@ LEAST_LIGHT = 0.55
 FITTING = 0.92
 """Share of a card's opaque dots that must lie in the foliage. Higher loses more of the foliage at its outline than it
 gains beside it (5 photos: 0.96 costs 1 to 3 % of silhouette IoU)."""
-FLAT = 0.02
-"""Distance from the root's plane, as a share of the tree's height, at which a card may lie outside a volume whose depth
-is assumed: such volumes come from smoothed outlines."""
 LEAST_SIZE, MOST_SIZE = 0.3, 3.0
 """Bounds of the factor on a card's side, which is 1.5 to 3 % of the foliage's breadth."""
 MIDDLE = 0.6
@@ -97,6 +94,10 @@ class LeafCrown:
         """Lower the depth of the ``nearest`` card (cells,), metres, flat as a view's grid, to that of these cards."""
         cover(nearest, leaves, self.outlines, grid)
 
+    def admits(self, points: Floats) -> Mask:
+        """Tell where leaves may be by the volume alone: flags (n,) of points (n, 3), metres."""
+        return self.volume.admits(points, FLAT * self.height)
+
     def _fitting(self, leaves: Leaves, least: float) -> Mask:
         """Which cards (m,) lie in the volume, and in the foliage, or behind the wood, of each view that sees them."""
         fits, excluded = np.zeros((2, len(leaves)), dtype=np.bool_)
@@ -105,7 +106,7 @@ class LeafCrown:
             shown = behind & (share_inside(leaves, self.outlines, grid) >= least)
             fits |= shown
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
-        return np.asarray(fits & ~excluded & self.volume.admits(leaves.centres, FLAT * self.height))
+        return np.asarray(fits & ~excluded & self.admits(leaves.centres))
 
 
 def leaf_crown(

@@ -31,8 +31,12 @@ SUNK = 0.8
 """Share of its radius that a clump lies under the crown's surface."""
 RELIEF = 0.4
 """Share of the crown's depth over which the clumps of its front are spread."""
+LEAN = 0.6
+"""How far sections stand before or behind the stem, over how far they stand beside it."""
 SHALLOWEST = 0.5
 """Least depth of a section, over the trend of its width."""
+SEEN_THROUGH = 8.0
+"""How much deeper it is spread for each unit of the front's openness: through an open crown its back is seen."""
 CORE = 0.2
 """Share of the sections' radius within which foliage stands anywhere."""
 CANDIDATES = 600
@@ -41,7 +45,7 @@ HEIGHTS = 0.15
 """How much higher or lower than its model an unseen clump may stand, as a share of the crown's height."""
 BAY = 0.15
 """Width of the gaps, as a share of the crown's height, by which it is told how open a crown is."""
-APART, CLOSE = 2.0, 0.25
+APART, CLOSE = 1.3, 0.25
 """Greatest and least distance between clumps, over the sum of their radii: no side stays empty, none is packed."""
 AT_ONCE = 12
 """Clumps that are added before the crown is looked at again."""
@@ -111,7 +115,7 @@ def _deep(crown: _Crown, root: Floats, rng: np.random.Generator) -> _Crown:
     stem = root[0] + (centre_x - root[0]) * np.clip((root[1] - height) / max(root[1] - centre_y, 1.0), 0.0, 1.5)
     trend, aside = (smoothed(column, TREND * len(height)) for column in (crown.radius, crown.middle - stem))
     deep = np.maximum(trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng), SHALLOWEST * trend)
-    return replace(crown, near=_other_phases(aside, rng), deep=deep)
+    return replace(crown, near=LEAN * _other_phases(aside, rng), deep=deep)
 
 
 def _other_phases(values: Floats, rng: np.random.Generator) -> Floats:
@@ -131,7 +135,8 @@ def _seen_clumps(crown: _Crown, rng: np.random.Generator) -> Floats:
     row = crown.rows(discs[:, 1])
     aside = np.abs(discs[:, 0] - crown.middle[row]) / crown.radius[row]
     room = np.maximum(np.sqrt(np.maximum(1 - aside**2, 0.0)) * crown.deep[row] - SUNK * discs[:, 2], 0.0)
-    place = np.where(_reach(crown, discs) >= AT_OUTLINE, rng.uniform(-1, 1, len(discs)), 1 - RELIEF * rng.random(len(discs)))
+    relief = min(2.0, RELIEF + SEEN_THROUGH * _openness(crown.mask, len(crown.mask)))
+    place = np.where(_reach(crown, discs) >= AT_OUTLINE, rng.uniform(-1, 1, len(discs)), 1 - relief * rng.random(len(discs)))
     return np.column_stack([discs[:, :2], crown.near[row] + place * room, discs[:, 2]])
 
 
