@@ -7,9 +7,6 @@ import numpy as np
 from treestroke.core.geometry.outline_volume import TurnedOutline, TwoOutlines
 from treestroke.core.types import Floats, Mask
 
-AROUND = 1
-"""Cells about a clump in which leaves may hang."""
-
 
 @dataclass(frozen=True, eq=False)
 class Cells:
@@ -37,16 +34,6 @@ class Cells:
         x, y, z = np.clip(place, 0, size - 1).T
         return np.asarray(within & self.filled[x, y, z])
 
-    def grown(self, count: int) -> "Cells":
-        """Fill every cell within ``count`` cells of a filled one, along the axes."""
-        filled = self.filled
-        for _ in range(count):
-            padded = np.pad(filled, 1)
-            filled = filled | padded[2:, 1:-1, 1:-1] | padded[:-2, 1:-1, 1:-1]
-            filled = filled | padded[1:-1, 2:, 1:-1] | padded[1:-1, :-2, 1:-1]
-            filled = filled | padded[1:-1, 1:-1, 2:] | padded[1:-1, 1:-1, :-2]
-        return Cells(filled, self.corner, self.side)
-
 
 @dataclass(frozen=True, eq=False)
 class ClumpedCrown(TwoOutlines):
@@ -54,13 +41,11 @@ class ClumpedCrown(TwoOutlines):
 
     Attributes
     ----------
-    clumps, fringed
-        Where foliage stands, px of the front camera's picture, z toward the viewer from the root's plane; and the same
-        with the cells around.
+    clumps
+        Where foliage stands, px of the front camera's picture, z toward the viewer from the root's plane.
     """
 
     clumps: Cells
-    fringed: Cells
 
     @property
     def depth_seen(self) -> bool:
@@ -74,11 +59,11 @@ class ClumpedCrown(TwoOutlines):
 
     def inside(self, points_world: Floats) -> Mask:
         """Tell which points (n, 3), metres, lie in clumps and in all silhouettes: flags (n,)."""
-        return np.asarray(self.shown(points_world) & self.clumps.hold(self._picture(points_world)))
+        return np.asarray(self.shown(points_world) & self.admits(points_world, 0.0))
 
     def admits(self, points_world: Floats, slack_m: float) -> Mask:  # noqa: ARG002 - clumps cover the whole front
-        """Tell which points (n, 3), metres, lie in clumps or beside them: flags (n,); ``slack_m`` has no effect."""
-        return self.fringed.hold(self._picture(points_world))
+        """Tell which points (n, 3), metres, lie in clumps: flags (n,); ``slack_m`` has no effect."""
+        return self.clumps.hold(self._picture(points_world))
 
     def _picture(self, points_world: Floats) -> Floats:
         """Carry world points (n, 3), metres, into the picture (n, 3), px, z toward the viewer."""
@@ -96,5 +81,4 @@ def clumped(outline: TurnedOutline, near_px: Floats, deep_px: Floats, clumps: Ce
         near_px,
         deep_px,
         clumps,
-        clumps.grown(AROUND),
     )

@@ -106,7 +106,7 @@ class LeafCrown:
             shown = behind & (share_inside(leaves, self.outlines, grid) >= least)
             fits |= shown
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
-        return np.asarray(fits & ~excluded & self.admits(leaves.centres))
+        return np.asarray(fits & ~excluded)
 
 
 def leaf_crown(

@@ -31,6 +31,8 @@ SUNK = 0.8
 """Share of its radius that a clump lies under the crown's surface."""
 RELIEF = 0.4
 """Share of the crown's depth over which the clumps of its front are spread."""
+DEEP = 1.15
+"""Depth of the sections over their width: clumps lie under their surface."""
 LEAN = 0.6
 """How far sections stand before or behind the stem, over how far they stand beside it."""
 SHALLOWEST = 0.5
@@ -45,8 +47,8 @@ HEIGHTS = 0.15
 """How much higher or lower than its model an unseen clump may stand, as a share of the crown's height."""
 BAY = 0.15
 """Width of the gaps, as a share of the crown's height, by which it is told how open a crown is."""
-APART, CLOSE = 1.3, 0.25
-"""Greatest and least distance between clumps, over the sum of their radii: no side stays empty, none is packed."""
+CLOSE = 0.25
+"""Least distance between clumps, over the sum of their radii."""
 AT_ONCE = 12
 """Clumps that are added before the crown is looked at again."""
 VIEWS_RAD = np.radians([45.0, 90.0, 135.0])
@@ -114,7 +116,7 @@ def _deep(crown: _Crown, root: Floats, rng: np.random.Generator) -> _Crown:
     centre_x, centre_y = (float((crown.radius * of).sum() / crown.radius.sum()) for of in (crown.middle, height))
     stem = root[0] + (centre_x - root[0]) * np.clip((root[1] - height) / max(root[1] - centre_y, 1.0), 0.0, 1.5)
     trend, aside = (smoothed(column, TREND * len(height)) for column in (crown.radius, crown.middle - stem))
-    deep = np.maximum(trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng), SHALLOWEST * trend)
+    deep = DEEP * np.maximum(trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng), SHALLOWEST * trend)
     return replace(crown, near=LEAN * _other_phases(aside, rng), deep=deep)
 
 
@@ -152,15 +154,23 @@ def _unseen_clumps(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Flo
     views = [_View(crown, seen, azimuth) for azimuth in VIEWS_RAD]
     wanted = _openness(crown.mask, len(crown.mask))
     clear = np.min([_apart(places, clump) for clump in seen], axis=0, initial=np.inf)
+    missing = _front_area(crown, seen)
     chosen = list[int]()
-    while len(places) and (best := int(clear.argmax())) >= 0 and clear[best] > CLOSE:
-        if len(chosen) % AT_ONCE == 0 and clear[best] < APART and np.mean([view.openness for view in views]) <= wanted:
+    while len(places) and clear[best := int(clear.argmax())] > CLOSE:
+        if missing <= 0 and len(chosen) % AT_ONCE == 0 and np.mean([view.openness for view in views]) <= wanted:
             break
         chosen.append(best)
+        missing += _front_area(crown, places[best, None])
         for view in views:
             view.add(places[best])
         clear = np.minimum(clear, _apart(places, places[best]))
     return places[chosen]
+
+
+def _front_area(crown: _Crown, clumps: Floats) -> float:
+    """Area of the clumps (n, 4) in the front half of the crown, less that of those in its back half."""
+    before = clumps[:, 2] - crown.near[crown.rows(clumps[:, 1])]
+    return float((clumps[:, 3] ** 2 * np.sign(before)).sum())
 
 
 def _candidates(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Floats:

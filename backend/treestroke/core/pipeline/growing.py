@@ -202,6 +202,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     if taken.foliage == "palm":
         traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
     crown = _crown_of(evidence, traced, taken.foliage, settings)
+    leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.side is None and not (crown.kind == "palm" or crown.kind == "bare" and traced.whole):
         crown = replace(crown, volume=in_clumps(crown.volume, crown.front, rng))
     lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
@@ -215,7 +216,6 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
         library = choose_library(settings.library, crown.kind, lifted.tree, taken.form)
         method = Replacement(library, growth_for(crown.kind, settings.iterations, taken.form))
         grown = grow(lifted.tree, room, method, rng, report)
-    leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):
         grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera), crown.volume)
         grown = reaching(grown, Silhouette(leafy & ~crown.wood, crown.camera), crown.volume)
