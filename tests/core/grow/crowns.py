@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
-from treestroke.core.geometry.outline_volume import TurnedOutline, turned_outline
-from treestroke.core.grow.growth_space import GrowthSpace, PixelFrame, growth_space, pixel_frame
+from treestroke.core.geometry.outline_volume import Sections, TurnedOutline, sections_of, turned_outline
+from treestroke.core.grow.growth_space import GrowthSpace, growth_space, in_picture
 from treestroke.core.grow.replacement import CrownToFill
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -24,17 +24,17 @@ class Case(NamedTuple):
         return CrownToFill(self.volume, Silhouette(self.mask, self.camera))
 
     @property
-    def frame(self) -> PixelFrame:
-        return pixel_frame(self.volume, self.camera)
+    def sections(self) -> Sections:
+        return sections_of(self.volume, self.camera)
 
     @property
     def visible(self) -> Skeleton:
-        """The skeleton in growth's frame, px."""
+        """The skeleton in the picture, px."""
         radii = self.camera.pixels_from_metres(self.skeleton.radii)
-        return Skeleton(self.frame.pixels_of(self.skeleton.points), radii, self.skeleton.parents)
+        return Skeleton(in_picture(self.camera, self.skeleton.points), radii, self.skeleton.parents)
 
     def space(self, foot: tuple[float, float, float] = (160.0, 275.0, 0.0)) -> GrowthSpace:
-        return growth_space(self.crown.front, self.frame.sections, np.array(foot))
+        return growth_space(self.volume, self.crown.front, np.array(foot))
 
 
 def trunk_case(top: float = 120.0) -> Case:

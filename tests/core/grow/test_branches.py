@@ -58,7 +58,7 @@ def test_the_stem_goes_to_the_highest_joint_past_a_heavy_limb() -> None:
 def test_a_low_stem_is_carried_on_inside_the_foliage() -> None:
     case = trunk_case(top=250.0)
     px = case.visible
-    longer = with_leader(px, case.mask, case.frame.sections, 0.65)
+    longer = with_leader(px, case.mask, case.sections, 0.65)
     assert longer.points[-1, 1] <= 280 - 0.6 * 240
     assert in_mask(longer.points[len(px) :], case.mask).all()
     np.testing.assert_array_equal(longer.points[: len(px)], px.points)
@@ -67,7 +67,7 @@ def test_a_low_stem_is_carried_on_inside_the_foliage() -> None:
 def test_a_high_stem_stays_as_it_is() -> None:
     case = trunk_case()
     px = case.visible
-    assert with_leader(px, case.mask, case.frame.sections, 0.65) is px
+    assert with_leader(px, case.mask, case.sections, 0.65) is px
 
 
 def test_the_foot_is_where_the_stem_enters_the_foliage() -> None:

@@ -11,8 +11,8 @@ from treestroke.core.types import Floats, Mask
 
 CameraT = TypeVar("CameraT", bound=Camera, covariant=True)
 FLAT = 0.02
-"""Distance from the root's plane, as a share of the tree's height, at which wood and leaves may lie outside a volume whose
-depth is assumed: such volumes come from smoothed outlines."""
+"""Distance from the root's plane, as a share of the tree's height, at which wood and leaves may lie outside a volume
+whose depth is assumed: such volumes come from smoothed outlines."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The compiled evaluator of growth; arrays are C-contiguous, lengths px of the crown's frame (see `Crown`)."""
+"""The compiled evaluator of growth; arrays are C-contiguous, lengths px of the picture (see `GrowthSpace`)."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,8 @@ class Engine:
         mask: NDArray[np.uint8],
         middle: Floats,
         radius: Floats,
+        near: Floats,
+        deep: Floats,
         foot: tuple[float, float, float],
         spacing: float,
         closeness: float,

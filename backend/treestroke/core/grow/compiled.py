@@ -35,7 +35,10 @@ class CompiledEvaluator:
         self._engine = Engine(
             space.mask.shape,
             np.ascontiguousarray(space.mask, dtype=np.uint8),
-            *map(_contiguous, (sections.middle_px, sections.radius_px, sections.near_px, sections.deep_px)),
+            _contiguous(sections.middle_px),
+            _contiguous(sections.radius_px),
+            _contiguous(sections.near_px),
+            _contiguous(sections.deep_px),
             tuple(space.foot.tolist()),
             rules.spacing,
             rules.closeness,

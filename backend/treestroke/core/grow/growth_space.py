@@ -12,6 +12,8 @@ from treestroke.core.types import Floats, Indices, Mask
 
 REFERENCE_WIDTH = 1000.0
 """Crown width, px, to which the pixel figures of growth refer (a photo of 1,500 px)."""
+SHELL = 0.5
+"""How far out in its section, as a share of the way, a place attracts branches: what is inside is filled on the way."""
 LEAST_PX = 1e-9
 """What stands for the width and depth of a section where there is no crown, px."""
 
@@ -31,7 +33,7 @@ class GrowthSpace:
     unit
         Pixels per pixel of the reference crown.
     depths
-        (m, 3) places spread evenly over the crown's volume.
+        (m, 3) places spread evenly over the outer part of the crown's volume.
     """
 
     mask: Mask
@@ -82,11 +84,10 @@ def growth_space(crown: CrownVolume, front: Silhouette[OrthographicCamera], foot
     if front.mask.shape != (front.camera.height, front.camera.width):
         raise ValueError(f"the foliage mask {front.mask.shape} does not fit the camera {front.camera}")
     of = sections_of(crown, front.camera)
-    sections = Sections(
-        of.middle_px, np.maximum(of.radius_px, LEAST_PX), of.near_px, np.maximum(of.deep_px, LEAST_PX)
-    )
+    sections = Sections(of.middle_px, np.maximum(of.radius_px, LEAST_PX), of.near_px, np.maximum(of.deep_px, LEAST_PX))
     unit = max(2 * float(of.radius_px.max()) / REFERENCE_WIDTH, 1e-3)
-    depths = in_picture(front.camera, crown_cells(crown).middles)
+    middles = crown_cells(crown).middles
+    depths = in_picture(front.camera, middles[crown.reach(middles) >= SHELL])
     return GrowthSpace(np.ascontiguousarray(front.mask), sections, foot, unit, depths)
 
 

@@ -116,7 +116,9 @@ def _deep(crown: _Crown, root: Floats, rng: np.random.Generator) -> _Crown:
     centre_x, centre_y = (float((crown.radius * of).sum() / crown.radius.sum()) for of in (crown.middle, height))
     stem = root[0] + (centre_x - root[0]) * np.clip((root[1] - height) / max(root[1] - centre_y, 1.0), 0.0, 1.5)
     trend, aside = (smoothed(column, TREND * len(height)) for column in (crown.radius, crown.middle - stem))
-    deep = DEEP * np.maximum(trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng), SHALLOWEST * trend)
+    deep = DEEP * np.maximum(
+        trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng), SHALLOWEST * trend
+    )
     return replace(crown, near=LEAN * _other_phases(aside, rng), deep=deep)
 
 
@@ -128,7 +130,7 @@ def _other_phases(values: Floats, rng: np.random.Generator) -> Floats:
     spectrum = np.fft.rfft(np.concatenate([values, values[::-1]]))
     turn = np.exp(2j * np.pi * rng.random(len(spectrum)))
     turn[0] = rng.choice((-1.0, 1.0))
-    return np.asarray(np.fft.irfft(spectrum * turn, 2 * len(values))[: len(values)])
+    return np.asarray(np.fft.irfft(spectrum * turn, 2 * len(values))[: len(values)], dtype=np.float64)
 
 
 def _seen_clumps(crown: _Crown, rng: np.random.Generator) -> Floats:
@@ -138,7 +140,9 @@ def _seen_clumps(crown: _Crown, rng: np.random.Generator) -> Floats:
     aside = np.abs(discs[:, 0] - crown.middle[row]) / crown.radius[row]
     room = np.maximum(np.sqrt(np.maximum(1 - aside**2, 0.0)) * crown.deep[row] - SUNK * discs[:, 2], 0.0)
     relief = min(2.0, RELIEF + SEEN_THROUGH * _openness(crown.mask, len(crown.mask)))
-    place = np.where(_reach(crown, discs) >= AT_OUTLINE, rng.uniform(-1, 1, len(discs)), 1 - relief * rng.random(len(discs)))
+    place = np.where(
+        _reach(crown, discs) >= AT_OUTLINE, rng.uniform(-1, 1, len(discs)), 1 - relief * rng.random(len(discs))
+    )
     return np.column_stack([discs[:, :2], crown.near[row] + place * room, discs[:, 2]])
 
 
@@ -181,19 +185,22 @@ def _candidates(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Floats
     around = np.cumsum(crown.radius + crown.deep)
     row = np.searchsorted(around / around[-1], rng.random(CANDIDATES))
     azimuth = rng.uniform(0, 2 * np.pi, CANDIDATES)
-    away = np.abs(seen[at_outline, 1] - row[:, None]) + HEIGHTS * len(around) * rng.random((CANDIDATES, len(at_outline)))
+    away = np.abs(seen[at_outline, 1] - row[:, None]) + HEIGHTS * len(around) * rng.random(
+        (CANDIDATES, len(at_outline))
+    )
     model = at_outline[away.argmin(axis=1)]
     surface = 1 / np.hypot(np.cos(azimuth) / crown.radius[row], np.sin(azimuth) / crown.deep[row])
     out = np.maximum(_reach(crown, seen[:, [0, 1, 3]])[model] * surface - seen[model, 3], 0.0)
     x, z = crown.middle[row] + out * np.cos(azimuth), crown.near[row] + out * np.sin(azimuth)
     room = cv2.distanceTransform(np.pad(crown.mask.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     radius = np.minimum(seen[model, 3], room[row, np.clip(x, 0, room.shape[1] - 1).astype(np.int64)])
-    return np.column_stack([x, row + 0.5, z, radius])[radius >= SMALLEST]
+    return np.asarray(np.column_stack([x, row + 0.5, z, radius])[radius >= SMALLEST])
 
 
 def _apart(clumps: Floats, other: Floats) -> Floats:
     """Distance of clumps (n, 4) from another (4,), over the sum of their radii: (n,)."""
-    return np.asarray(np.sqrt(((clumps[:, :3] - other[:3]) ** 2).sum(axis=1)) / (clumps[:, 3] + other[3]))
+    away = np.sqrt(((clumps[:, :3] - other[:3]) ** 2).sum(axis=1))
+    return np.asarray(away / (clumps[:, 3] + other[3]))
 
 
 def _openness(silhouette: Mask, height: int) -> float:
@@ -248,12 +255,14 @@ def _filled(crown: _Crown, clumps: Floats) -> tuple[Mask, int]:
 
 
 def _with_all_columns(filled: Mask, front: Mask) -> Mask:
-    """Fill a cell of (x, y, z) in each column before the ``front`` (x, y) that has none, as deep as the nearest that has."""
-    shown = filled.any(axis=2)
+    """Fill a cell of (x, y, z) in each column of the ``front`` (x, y) that has none, as deep as in the nearest other."""
+    shown = np.asarray(filled.any(axis=2))
     x, y = np.nonzero(front & ~shown)
     if not shown.any() or len(x) == 0:
         return filled
-    labels = cv2.distanceTransformWithLabels((~shown).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)[1]
+    labels = cv2.distanceTransformWithLabels((~shown).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)[
+        1
+    ]
     columns = np.argwhere(shown)
     column = np.zeros(int(labels.max()) + 1, dtype=np.int64)
     column[labels[shown]] = np.arange(len(columns))

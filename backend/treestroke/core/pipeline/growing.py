@@ -201,10 +201,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
         raise ValueError("nothing grows without a branch stroke")
     if taken.foliage == "palm":
         traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
-    crown = _crown_of(evidence, traced, taken.foliage, settings)
-    leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
-    if crown.side is None and not (crown.kind == "palm" or crown.kind == "bare" and traced.whole):
-        crown = replace(crown, volume=in_clumps(crown.volume, crown.front, rng))
+    crown = _crown_of(evidence, traced, taken.foliage, settings, rng)
     lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
     report("grow", 0.0)
     room = CrownToFill(crown.volume, crown.front)
@@ -216,6 +213,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
         library = choose_library(settings.library, crown.kind, lifted.tree, taken.form)
         method = Replacement(library, growth_for(crown.kind, settings.iterations, taken.form))
         grown = grow(lifted.tree, room, method, rng, report)
+    leafy = evidence.foliage.covered if crown.shows_leaves else frayed(crown.front.mask, rng)
     if crown.kind not in ("bare", "palm"):
         grown = trimmed(grown, Silhouette(leafy | crown.wood, crown.camera), crown.volume)
         grown = reaching(grown, Silhouette(leafy & ~crown.wood, crown.camera), crown.volume)
@@ -242,8 +240,13 @@ def _completed(evidence: PhotoEvidence, settings: ModelSettings) -> PhotoEvidenc
     return replace(evidence, working=whole.working, foliage=whole.foliage, traced=whole.traced, completed=whole.sides)
 
 
-def _crown_of(evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settings: ModelSettings) -> _PhotoCrown:
-    """Close the foliage to a crown and make a volume of it; ``kind`` is what its twigs are to bear."""
+def _crown_of(
+    evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settings: ModelSettings, rng: np.random.Generator
+) -> _PhotoCrown:
+    """Close the foliage to a crown and make a volume of it; ``kind`` is what its twigs are to bear.
+
+    Foliage stands in clumps where it is not all seen, as that of a palm or the twigs of a bare tree.
+    """
     foliage, shown = evidence.foliage, shown_kind(evidence.odds, settings)
     wood = drawn(traced.skeleton, foliage.mask.shape)
     shows_leaves = shown != "bare" or kind == "bare"
@@ -252,10 +255,13 @@ def _crown_of(evidence: PhotoEvidence, traced: Traced, kind: FoliageKind, settin
     outline = turned_outline(front)
     bulged = outline.widened(BULGE)
     if evidence.side is None:
-        return _PhotoCrown(kind, shows_leaves, wood, front, outline, bulged, None)
+        as_traced = kind == "palm" or (kind == "bare" and traced.whole)
+        volume = bulged if as_traced else in_clumps(bulged, front, rng)
+        return _PhotoCrown(kind, shows_leaves, wood, front, outline, volume, None)
     side = side_of(evidence.side, crown_height, evidence.height_px, front.camera)
-    as_seen, volume = outline.with_side(side.crown), bulged.with_side(side.crown)
-    return _PhotoCrown(kind, shows_leaves, wood, front, as_seen, volume, side)
+    return _PhotoCrown(
+        kind, shows_leaves, wood, front, outline.with_side(side.crown), bulged.with_side(side.crown), side
+    )
 
 
 def _lifted(
