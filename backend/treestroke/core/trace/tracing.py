@@ -191,9 +191,10 @@ def _snapped(line: Floats, odds: Odds, reach: float, step: float) -> Floats:
     beside = int(np.ceil(reach + BLURRED * sigma)) + 1
     low = np.maximum(np.floor(line.min(axis=0)).astype(np.int64) - beside, 0)
     high = np.ceil(line.max(axis=0)).astype(np.int64) + beside
-    around = odds[low[1] : high[1], low[0] : high[0]]
-    smooth = np.asarray(cv2.GaussianBlur(around, (0, 0), sigma), dtype=np.float32)
-    return np.asarray(snap(line - low, smooth, reach, step) + low)
+    box = slice(low[1], high[1]), slice(low[0], high[0])
+    smooth = np.zeros_like(odds)
+    smooth[box] = cv2.GaussianBlur(odds[box], (0, 0), sigma)
+    return snap(line, smooth, reach, step)
 
 
 def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
