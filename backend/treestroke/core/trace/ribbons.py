@@ -59,8 +59,8 @@ def find_ribbons(
     Wood is told by log odds (h, w), as they are and averaged over the grain of bark (``smooth``).
     """
     wood = crown & ((odds > 0) | (smooth > 0))
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(wood.astype(np.uint8), connectivity=8)
-    area, shortest = stats[:, cv2.CC_STAT_AREA], SHORTEST * height_px
+    count, labels = cv2.connectedComponents(wood.astype(np.uint8), connectivity=8)
+    area, shortest = np.bincount(labels.reshape(-1), minlength=count), SHORTEST * height_px
     sure = np.zeros(count, dtype=bool)
     sure[labels[wood & (smooth > SURE)]] = True
     sure &= area > shortest
