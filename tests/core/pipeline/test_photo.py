@@ -56,6 +56,18 @@ def test_another_seed_gives_another_tree(maple: TreeModel) -> None:
     assert not np.array_equal(other.bark.mesh.positions, maple.bark.mesh.positions)
 
 
+def test_lines_among_the_maple_s_leaves_make_no_net_of_limbs() -> None:
+    traced = read_photo(*given(MAPLE)).traced
+    assert traced is not None
+    found, points, parents = traced.stroke < 0, traced.skeleton.points, traced.skeleton.parents
+    length, start = np.zeros(len(points)), np.arange(len(points))
+    for joint in np.flatnonzero(found):
+        start[joint] = start[parents[joint]]
+        length[joint] = length[parents[joint]] + np.linalg.norm(points[joint] - points[parents[joint]])
+    assert 10 < found.sum() < 30
+    assert (length <= 1.4 * np.linalg.norm(points - points[start], axis=1))[found].all()
+
+
 @pytest.mark.parametrize("name", ["redbud_park", "cherry_blossom"])
 def test_a_trunk_that_leaves_the_photo_at_the_bottom_is_cut_level_at_the_origin(name: str) -> None:
     photo, strokes = given(DATA / name)

@@ -106,13 +106,16 @@ def test_no_limb_goes_far_beyond_leaves_to_a_mere_speck() -> None:
     assert min(traced(wood).stroke) == 0
 
 
-def test_a_gap_of_sky_is_gone_round_where_leaves_hide_a_way() -> None:
-    beyond = [(240.0, 250.0), (330.0, 100.0)]
+@pytest.mark.parametrize("before_sky", [True, False])
+def test_a_gap_of_sky_is_gone_round_where_leaves_hide_a_way(before_sky: bool) -> None:
+    beyond = [(238.0, 207.0), (340.0, 130.0)]
     wood = wood_mask([(STEM, 16.0), (LEFT, 11.0), (RIGHT, 11.0), (beyond, 6.0)], 400, 400)
-    wood[:, 215:242] &= ~(wood_mask([(beyond, 8.0)], 400, 400)[:, 215:242])
     sky = np.zeros_like(wood)
-    sky[230:330, 212:400] = True
-    assert covered(beyond, traced(wood, foliage=~sky | wood)) > 0.8
+    sky[206:330, 212:400] = before_sky
+    builder = traced(wood, foliage=~sky | wood)
+    assert covered(beyond, builder) > 0.8
+    hidden = [y for x, y in builder.points if 212 < x < 234 and y > 180]
+    assert max(hidden) < 206 if before_sky else max(hidden) > 210
 
 
 def test_limbs_far_from_all_that_is_traced_are_not_reached() -> None:

@@ -1,10 +1,12 @@
 """Small networks whose shortest paths are known."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.trace.limb_paths import Network, join_strokes, shortest_paths
+from treestroke.core.trace.limb_paths import HEADING_PX, WINDING, Network, join_strokes, shortest_paths
 from treestroke.core.trace.ribbons import Ribbons
 
 SIZE = 120
@@ -71,3 +73,31 @@ def test_a_way_before_the_sky_costs_more_than_one_behind_leaves() -> None:
     lines = (level(56, 60, 70), level(64, 60, 68), level(60, 76, 100))
     assert (56, 67) in way_to((60, 99), network(*lines))[0]
     assert (64, 66) in way_to((60, 99), network(*lines), sky)[0]
+
+
+@pytest.mark.parametrize("start", [66, 70])
+def test_a_ribbon_is_not_entered_at_the_end_from_which_it_leads_back(start: int) -> None:
+    way, _ = way_to((64, 91), network(level(60, 60, 80), level(64, start, 92)))
+    assert all(after[1] >= before[1] for before, after in pairwise(way))
+
+
+def test_the_more_a_limb_turns_at_a_gap_the_shorter_that_is() -> None:
+    upright = np.column_stack([np.arange(20, 90), np.full(70, 74)])
+    straight, across = network(level(50, 74, 100)), network(upright)
+    assert not straight.stroked[shortest_paths(straight, LEAVES, 130.0).order].all()
+    assert across.stroked[shortest_paths(across, LEAVES, 130.0).order].all()
+
+
+def test_a_way_that_winds_ends() -> None:
+    turn = np.linspace(0.0, 5.5, 400)
+    spiral = np.unique(np.column_stack([60 - 22 * np.sin(turn), 84 - 22 * np.cos(turn)]).astype(int), axis=0)
+    net = network(level(60, 60, 63), spiral)
+    paths = shortest_paths(net, LEAVES, 100.0)
+    length, start = np.zeros(len(paths.before)), np.arange(len(paths.before))
+    for pixel in paths.order[paths.before[paths.order] >= 0]:
+        before = paths.before[pixel]
+        length[pixel] = length[before] + np.hypot(*(net.ribbons.points[pixel] - net.ribbons.points[before]))
+        start[pixel] = start[before]
+    straight = np.hypot(*(net.ribbons.points - net.ribbons.points[start]).T)
+    assert (length <= WINDING * straight + HEADING_PX).all()
+    assert 40 < length.max() < 110

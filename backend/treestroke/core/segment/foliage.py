@@ -210,10 +210,10 @@ def _without_pores(found: Mask, width_px: float) -> Mask:
 
 def _pieces(mask: Mask, over_px: float, up_to_px: float) -> Mask:
     """Keep the connected pieces of a mask with areas between those of squares as wide."""
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=4)
-    kept = np.zeros(count, dtype=bool)
-    area = stats[1:, cv2.CC_STAT_AREA]
-    kept[1:] = (over_px**2 < area) & (area <= up_to_px**2)
+    _, labels = cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)
+    area = np.bincount(labels.reshape(-1))
+    kept = (over_px**2 < area) & (area <= up_to_px**2)
+    kept[0] = False
     return np.asarray(kept[labels])
 
 

@@ -19,7 +19,7 @@ from treestroke.core.imaging.mixture import (
     table_index,
 )
 from treestroke.core.imaging.sampling import sample_nearest
-from treestroke.core.types import Floats, Mask, Opacity, Picture
+from treestroke.core.types import Floats, Indices, Mask, Opacity, Picture
 
 Odds = NDArray[np.float32]
 Kind = TypeVar("Kind", bound=np.generic)
@@ -107,16 +107,19 @@ def wood_odds(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, sur
     among_leaves = model if leaf is None else _without_leaf_components(model, leaf)
     among_leaves = among_leaves if bare is None else _wood_components(among_leaves, bare)
     rest = ground if leaf is None else join_mixtures([leaf, ground], [0.5, 0.5])
-    outside = _odds(bare or model, ground)
-    inside = np.full_like(outside, -MAX_ODDS) if among_leaves is None else _odds(among_leaves, rest)
     place = table_index(photo)
-    by_strokes = np.take(np.concatenate([outside, inside]), place | crown.astype(np.uint16) << 3 * TABLE_BITS)
-    by_crown = by_strokes
+    shown = np.flatnonzero(np.bincount(place.reshape(-1), minlength=2 ** (3 * TABLE_BITS)))
+    outside = _odds(bare or model, ground, shown)
+    inside = np.full_like(outside, -MAX_ODDS) if among_leaves is None else _odds(among_leaves, rest, shown)
+    at = place | crown.astype(np.uint16) << 3 * TABLE_BITS
+    by_strokes = by_crown = np.take(np.concatenate([outside, inside]), at)
     wood = [mixture for mixture in (bare, among_leaves) if mixture is not None]
     others = _others_in_crown(bare, surroundings) if surroundings.bare_wood is None else None
     if wood and others is not None:
-        odds = _odds(join_mixtures(wood, [1.0] * len(wood)), others)
-        by_crown = np.where(crown, _learnt_odds(photo, place, crown, odds, ground)[place], by_strokes)
+        odds = _odds(join_mixtures(wood, [1.0] * len(wood)), others, shown)
+        of_crown = np.flatnonzero(crown)
+        learnt = _learnt(photo, of_crown, odds[place.reshape(-1)[of_crown]], ground)
+        by_crown = np.take(np.concatenate([outside, odds if learnt is None else _odds(*learnt, shown)]), at)
     return WoodOdds(by_strokes, by_crown)
 
 
@@ -134,24 +137,25 @@ def _others_in_crown(bare: Mixture | None, surroundings: Surroundings) -> Mixtur
     return join_mixtures([leaf.select(differs), ground], [0.5, 0.5])
 
 
-def _learnt_odds(photo: Picture, place: NDArray[np.uint16], crown: Mask, odds: Odds, ground: Mixture) -> Odds:
-    """Return log odds for each colour of the table, learnt from what such odds tell apart in a crown (h, w).
+def _learnt(photo: Picture, pixels: Indices, known: Odds, ground: Mixture) -> tuple[Mixture, Mixture] | None:
+    """Return the colours of wood and of all else, learnt from what log odds (n,) tell apart in a crown, if enough.
 
-    ``place`` (h, w) is where the table has each pixel's colour.
+    ``pixels`` (n,) are the crown's in the photo (h, w, 3), row by row.
     """
-    known, pixels, colours = odds[place[crown]], np.flatnonzero(crown), photo.reshape(-1, 3)
     found, left = pixels[known > SURE], pixels[known <= 0]
     if min(len(found), len(left)) < MIN_LEARNT:
-        return odds
+        return None
+    colours = photo.reshape(-1, 3)
     others = join_mixtures([fit_mixture(colours[_subsample(left)], OTHER_COMPONENTS), ground], [1 - BEHIND, BEHIND])
-    return _odds(fit_mixture(colours[_subsample(found)], COMPONENTS), others)
+    return fit_mixture(colours[_subsample(found)], COMPONENTS), others
 
 
-def _odds(branch: Mixture, rest: Mixture) -> Odds:
-    """Return the log odds of a branch for each colour of the colour table."""
-    colours = table_colours()
-    odds = log_density(branch, colours) - log_density(rest, colours)
-    return np.clip(odds, -MAX_ODDS, MAX_ODDS).astype(np.float32)
+def _odds(branch: Mixture, rest: Mixture, shown: Indices) -> Odds:
+    """Return the log odds of a branch for the colours of the colour table that a photo shows (n,); 0 for the others."""
+    colours, odds = table_colours(), np.zeros(2 ** (3 * TABLE_BITS), dtype=np.float32)
+    of_shown = log_density(branch, colours[shown]) - log_density(rest, colours[shown])
+    odds[shown] = np.clip(of_shown, -MAX_ODDS, MAX_ODDS)
+    return odds
 
 
 def _pixels_under(photo: Picture, lines_px: Sequence[Floats], breadth_px: float, crown: Mask) -> tuple[Picture, Mask]:

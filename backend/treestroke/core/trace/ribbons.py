@@ -59,8 +59,8 @@ def find_ribbons(
     Wood is told by log odds (h, w), as they are and averaged over the grain of bark (``smooth``).
     """
     wood = crown & ((odds > 0) | (smooth > 0))
-    count, labels, stats, _ = cv2.connectedComponentsWithStats(wood.astype(np.uint8), connectivity=8)
-    area, shortest = stats[:, cv2.CC_STAT_AREA], SHORTEST * height_px
+    count, labels = cv2.connectedComponents(wood.astype(np.uint8), connectivity=8)
+    area, shortest = np.bincount(labels.reshape(-1), minlength=count), SHORTEST * height_px
     sure = np.zeros(count, dtype=bool)
     sure[labels[wood & (smooth > SURE)]] = True
     sure &= area > shortest
@@ -75,10 +75,7 @@ def find_ribbons(
 
 def headings(ribbons: Ribbons, reach_px: int) -> Floats:
     """Return the unit direction (n, 2) of the centre lines around each pixel, by their second moments."""
-    low = ribbons.pixels.min(axis=0)
-    at = tuple((ribbons.pixels - low).T)
-    lines = np.zeros(ribbons.pixels.max(axis=0) - low + 1, dtype=np.float64)
-    lines[at] = 1.0
+    lines, at = _drawn(ribbons)
     y, x = np.arange(lines.shape[0])[:, None], np.arange(lines.shape[1])[None]
 
     def around(values: Floats) -> Floats:
@@ -96,10 +93,7 @@ def _clear(ribbons: Ribbons, smooth: NDArray[np.float32], height_px: float) -> t
 
     Tell, too, whether so much is clear that colours show limbs.
     """
-    low = ribbons.pixels.min(axis=0)
-    at = tuple((ribbons.pixels - low).T)
-    lines = np.zeros(ribbons.pixels.max(axis=0) - low + 1, dtype=np.float64)
-    lines[at] = 1.0
+    lines, at = _drawn(ribbons)
     count = _sums(lines, AROUND_PX)[at]
     lines[at] = _clearness(ribbons, smooth)
     clearness = _sums(lines, AROUND_PX)[at] / count
@@ -124,6 +118,15 @@ def _clearness(ribbons: Ribbons, smooth: NDArray[np.float32]) -> Floats:
         sample_nearest(seen, ribbons.points + steps + side * beside, -1.0).mean(axis=0) for side in (0, -1, 1)
     )
     return np.asarray((on - np.maximum(left, right)) / 2)
+
+
+def _drawn(ribbons: Ribbons) -> tuple[Floats, tuple[Indices, ...]]:
+    """Return a picture (h, w) of the centre lines, as large as they need, and where it has their pixels."""
+    low = ribbons.pixels.min(axis=0)
+    at = tuple((ribbons.pixels - low).T)
+    lines = np.zeros(ribbons.pixels.max(axis=0) - low + 1, dtype=np.float64)
+    lines[at] = 1.0
+    return lines, at
 
 
 def _sums(values: Floats, reach_px: int) -> Floats:

@@ -37,6 +37,8 @@ STEADY = 4.0
 """Standard deviation, in steps of a line, over which its place in the wood is averaged."""
 GRAIN = 1.5
 """Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
+BLURRED = 4.5
+"""How far a Gaussian blur reaches, in standard deviations."""
 BESIDE = 0.5
 """A stem begins where its stroke does, up to this share of its radius beside the middle of the wood, or of the greatest
 usual radius if it is a giant."""
@@ -171,9 +173,8 @@ def _follow_strokes(
     """Add each stroke's line, pulled onto its branch, to the skeleton."""
     height_px = evidence.height_px
     reach, step = params.snap_share * height_px, max(1.0, 0.006 * height_px)
-    smooth_odds = np.asarray(cv2.GaussianBlur(evidence.odds, (0, 0), max(0.8, 0.3 * reach)), dtype=np.float32)
     for index, stroke in enumerate(branches):
-        line, parent = snap(stroke.points, smooth_odds, reach, step), -1
+        line, parent = _snapped(stroke.points, evidence.odds, reach, step), -1
         if is_stem(stroke, branches[:index], height_px, TOUCH_SHARE * max(evidence.wood.shape)):
             line, radii = _stem(line, stroke.points[0], evidence, params)
         else:
@@ -182,6 +183,18 @@ def _follow_strokes(
             radii = drawn_radii(line, stroke.width)
         radii = np.maximum(radii, params.thinnest_px * height_px / REFERENCE_SIDE)
         builder.add_chain(parent, line, radii, stroke=index)
+
+
+def _snapped(line: Floats, odds: Odds, reach: float, step: float) -> Floats:
+    """Snap a stroke (n, 2), px, to log odds (h, w) averaged over a branch's width, which are needed around it alone."""
+    sigma = max(0.8, 0.3 * reach)
+    beside = int(np.ceil(reach + BLURRED * sigma)) + 1
+    low = np.maximum(np.floor(line.min(axis=0)).astype(np.int64) - beside, 0)
+    high = np.ceil(line.max(axis=0)).astype(np.int64) + beside
+    box = slice(low[1], high[1]), slice(low[0], high[0])
+    smooth = np.zeros_like(odds)
+    smooth[box] = cv2.GaussianBlur(odds[box], (0, 0), sigma)
+    return snap(line, smooth, reach, step)
 
 
 def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
