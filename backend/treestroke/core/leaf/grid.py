@@ -59,10 +59,8 @@ class FoliageGrid:
 
     @property
     def breadth_m(self) -> float:
-        """Breadth of the foliage, metres: its width, or that of a square as large where it is a narrow column."""
-        columns = np.flatnonzero(self.inside.any(axis=0))
-        square = float(np.sqrt(np.count_nonzero(self.inside)))
-        return self.cell_m * max(float(columns[-1] - columns[0] + 1), square)
+        """Breadth of the foliage, metres."""
+        return self.cell_m * breadth(self.inside)
 
     def cells_of(self, points_world: Floats) -> Indices:
         """Index (n,) into the flattened grid of the cells onto which world points (n, 3), metres, project.
@@ -87,6 +85,12 @@ class FoliageGrid:
     def deeper(self, cells: Indices, depth_m: Floats) -> Mask:
         """Tell whether leaves may lie at depths (n, p), metres, in cells of flat index (n, p): flags (n, p)."""
         return np.asarray(self.leaves_from.ravel()[cells] < depth_m)
+
+
+def breadth(foliage: Mask) -> float:
+    """Breadth, px, of a foliage (h, w): its width, or that of a square as large where it is a narrow column."""
+    columns = np.flatnonzero(foliage.any(axis=0))
+    return max(float(columns[-1] - columns[0] + 1), float(np.sqrt(np.count_nonzero(foliage))))
 
 
 def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:

@@ -41,6 +41,8 @@ class LeafStyle:
         A leaf, (h, w, 4) uint8, sRGB with straight alpha, its stalk down, reduced to its opaque part; None to draw one.
     straps
         Whether a palm bears strap leaves instead of fronds.
+    length
+        Length of a leaf that the photo shows, as a share of the spray's side; None to draw it as long as the species'.
 
     Raises
     ------
@@ -53,6 +55,7 @@ class LeafStyle:
     shown: bool = True
     picture: NDArray[np.uint8] | None = None
     straps: bool = False
+    length: float | None = None
 
     def __post_init__(self) -> None:
         if self.picture is not None:
@@ -199,9 +202,10 @@ def _ignoring_photo(recolour: Recolour | None) -> Recolour | None:
 
 def _tile(kind: SprayKind, colours: Floats, style: LeafStyle, rng: np.random.Generator) -> NDArray[np.uint8]:
     """Draw one spray (side, side, 4) in colours drawn from (m, 3), CIE Lab."""
+    species = style.species if style.length is None else replace(style.species, length=style.length)
     if style.picture is not None:
-        return draw_pictured_leaves(style.picture, style.species, TILE_SIDE, colours, rng)
-    return draw_spray(kind, TILE_SIDE, colours, rng, style.species)
+        return draw_pictured_leaves(style.picture, species, TILE_SIDE, colours, rng)
+    return draw_spray(kind, TILE_SIDE, colours, rng, species)
 
 
 def _windows() -> list[tuple[slice, slice]]:

@@ -45,7 +45,7 @@ def draw_species_leaves(species: Species, side: int, colours: Floats, rng: np.ra
     if species.leaf_shape is None:
         raise ValueError("a spray of leaves needs a species with a leaf shape")
     leaf, canvas = leaf_shape(species.leaf_shape), Canvas(side, colours, LEAVES, rng)
-    shoots = draw_shoots(rng, species.shoots, 0.78 - 0.6 * species.length, 0.5 - 0.6 * species.length)
+    shoots = draw_shoots(rng, species.shoots, *shoot_room(species.length))
     poses = leaf_poses(shoots, species.arrangement, species.length, rng)
     outlines, details = _posed(leaf, poses, rng)
     canvas.lines(shoots, canvas.wood, 0.01)
@@ -58,6 +58,11 @@ def draw_species_leaves(species: Species, side: int, colours: Floats, rng: np.ra
             if canvas.is_full():
                 break
     return canvas.tile()
+
+
+def shoot_room(length: float) -> tuple[float, float]:
+    """Return how long shoots may be, and how far from the middle they may reach, so that leaves at their tips fit."""
+    return 0.78 - 0.6 * length, 0.5 - 0.6 * length
 
 
 def leaf_poses(shoots: Floats, arrangement: LeafArrangement, length: float, rng: np.random.Generator) -> LeafPoses:
@@ -114,14 +119,17 @@ def _draw_leaf(canvas: Canvas, leaf: LeafShape, outline: Floats, details: Floats
         canvas.lines(vein[None], paint[RIB], 0.003)
 
 
-def draw_ovate_leaves(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
+def draw_ovate_leaves(length: float, side: int, colours: Floats, rng: np.random.Generator) -> Picture:
     """Draw a forked twig with ovate leaves along its shoots, leaving out leaves that would hide others.
+
+    ``length`` is that of a leaf in the mean, a share of the side.
 
     Returns
     -------
     (side, side, 4) uint8, sRGB with straight alpha, in colours drawn from (m, 3), CIE Lab.
     """
-    canvas, shoots = Canvas(side, colours, OVATE_LEAVES, rng), draw_shoots(rng, int(rng.integers(6, 10)), 0.66)
+    canvas = Canvas(side, colours, OVATE_LEAVES, rng)
+    shoots = draw_shoots(rng, int(rng.integers(6, 10)), *shoot_room(length))
     shoot = rng.integers(len(shoots), size=OVATE_LEAVES)
     share, turn = rng.uniform(0.15, 1.0, OVATE_LEAVES), np.where(np.arange(OVATE_LEAVES) % 2, 1.0, -1.0)
     share[: len(shoots)], shoot[: len(shoots)] = 1.0, np.arange(len(shoots))
@@ -129,7 +137,7 @@ def draw_ovate_leaves(side: int, colours: Floats, rng: np.random.Generator) -> P
     ahead = base - along(shoots[shoot], share - 0.1)
     spread = turn * rng.uniform(0.3, 1.3, OVATE_LEAVES) * (1.15 - share)
     angle = angle_of(ahead) + spread + rng.normal(0, 0.2, OVATE_LEAVES)
-    outlines, midribs = _ovate_outlines(base, angle, rng)
+    outlines, midribs = _ovate_outlines(base, angle, length, rng)
     canvas.lines(shoots, canvas.wood, 0.01)
     fitting = np.flatnonzero(fits_canvas(outlines))
     rims, cores = canvas.cells(outlines[fitting]), canvas.cells(midribs[fitting, 2:7])
@@ -139,12 +147,12 @@ def draw_ovate_leaves(side: int, colours: Floats, rng: np.random.Generator) -> P
     return canvas.tile()
 
 
-def _ovate_outlines(base: Floats, angle: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:
+def _ovate_outlines(base: Floats, angle: Floats, length: float, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Outline leaves with a drawn-out tip: edges (p, 16, 2), left side up and right side down, and midribs (p, 8, 2).
 
     All leaves of a spray share one form, from slender to broad, in different sizes.
     """
-    form, size = rng.uniform(0.5, 0.74), rng.uniform(0.17, 0.31, (len(base), 1, 1))
+    form, size = rng.uniform(0.5, 0.74), length * rng.uniform(0.7, 1.3, (len(base), 1, 1))
     breadth = form * rng.uniform(0.8, 1.15, (len(base), 1, 1)) * size
     t = np.linspace(0, 1, 8)[:, None]
     profile = 1.25 * np.sin(np.pi * t**0.8) * (1 - 0.45 * t)

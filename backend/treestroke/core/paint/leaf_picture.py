@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.paint.broad_leaves import LeafPoses, leaf_poses
+from treestroke.core.paint.broad_leaves import LeafPoses, leaf_poses, shoot_room
 from treestroke.core.paint.canvas import Canvas, fits_canvas
 from treestroke.core.paint.cut_outs import mean_lab, resized_premultiplied
 from treestroke.core.paint.palette import Palette, lab_from_rgb, rgb_from_lab
@@ -67,7 +67,7 @@ def draw_pictured_leaves(
     """
     height, width = picture.shape[:2]
     length = min(species.length, WIDEST * height / width)
-    shoots = draw_shoots(rng, species.shoots, 0.78 - 0.6 * length, 0.5 - 0.6 * length)
+    shoots = draw_shoots(rng, species.shoots, *shoot_room(length))
     poses, canvas = leaf_poses(shoots, species.arrangement, length, rng), Canvas(side, colours, 1, rng)
     stamp = _stamp(picture, round(length * canvas.side), colours, rng)
     breadth = rng.uniform(*BREADTH_SEEN, len(poses.size))

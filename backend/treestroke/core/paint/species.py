@@ -71,7 +71,7 @@ class Species:
     """
 
     leaf_shape: LeafShapeName | None = None
-    length: float = 0.26
+    length: float = 0.24
     arrangement: LeafArrangement = "alternate"
     shoots: int = 7
     needles: NeedleArrangement | None = None

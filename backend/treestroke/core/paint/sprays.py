@@ -34,7 +34,7 @@ def draw_spray(
         case "broad" if species.leaf_shape is not None:
             return draw_species_leaves(species, side, colours, rng)
         case "broad":
-            return draw_ovate_leaves(side, colours, rng)
+            return draw_ovate_leaves(species.length, side, colours, rng)
         case "needles" if species.needles is not None:
             return draw_species_needles(species.needles, side, colours, rng)
         case "needles":

@@ -11,7 +11,8 @@ from treestroke.core.geometry.mesh import Surface
 from treestroke.core.grow.palm import is_forked
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
-from treestroke.core.leaf.leaf_crown import LEAST_SIZE, MOST_SIZE, leaf_crown
+from treestroke.core.leaf.grid import breadth
+from treestroke.core.leaf.leaf_crown import LEAST_SIZE, MOST_SIZE, SIDES, leaf_crown
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
@@ -21,8 +22,9 @@ from treestroke.core.mesh.seen_light import lit_as_seen
 from treestroke.core.mesh.tubes import TubeParams, tubes
 from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
 from treestroke.core.paint.cut_outs import opaque_part, reduced
+from treestroke.core.paint.leaf_scale import bounded_length, leaf_length_px
 from treestroke.core.paint.seasons import size_and_density
-from treestroke.core.paint.species import AUTO, SPECIES
+from treestroke.core.paint.species import AUTO, SPECIES, Species
 from treestroke.core.paint.sprays import CARD_SIZE
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
@@ -90,7 +92,8 @@ def _leaves(
         return no_leaves(), None
     species = SPECIES.get(settings.species, AUTO)
     straps = tree.kind == "palm" and is_forked(tree.grown)
-    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps)
+    length = _seen_length(leafy[0], species) if tree.kind == "leaves" and tree.appearance.shows_leaves else None
+    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps, length)
     atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)
@@ -103,6 +106,13 @@ def _leaves(
     )
     params = LeafParams(density * settings.leaf_density, kind=tree.kind)
     return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas
+
+
+def _seen_length(view: View, species: Species) -> float | None:
+    """Length of a leaf that a view shows, as a share of the side of a card of usual size; None where it shows none."""
+    spray_px = 0.5 * sum(SIDES) * breadth(view.foliage)
+    seen_px = leaf_length_px(view.picture, view.own_colour, spray_px)
+    return None if seen_px is None else bounded_length(seen_px / spray_px, species)
 
 
 def _coloured(views: tuple[View, ...]) -> tuple[Picture, Opacity]:
