@@ -130,7 +130,7 @@ def _feather_shoots(rng: np.random.Generator) -> Floats:
     share = np.linspace(0.04, 0.9, FEATHER_SHOOTS) + rng.uniform(-0.015, 0.015, FEATHER_SHOOTS)
     turn = np.where((np.arange(FEATHER_SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
     angle = turn * rng.uniform(0.5, 0.8, FEATHER_SHOOTS) * (1.1 - 0.35 * share)
-    outline = np.interp(share, [0.0, 0.25, 1.0], [0.24, 0.46, 0.12])
+    outline = np.interp(share, [0.0, 0.25, 1.0], [0.2, 0.36, 0.1])
     length = outline * rng.uniform(0.6, 1.05, FEATHER_SHOOTS)
     bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.4, (FEATHER_SHOOTS, 1)) * t
     foot = along(twig, share)
