@@ -5,7 +5,7 @@ import pytest
 from tests.core.grow.crowns import trunk_case
 
 from treestroke.core.grow.grown import Grown
-from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit, Rise
+from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit, Rise, habit_of
 from treestroke.core.grow.library import choose_library
 from treestroke.core.grow.params import growth_for
 from treestroke.core.grow.replacement import Replacement, grow
@@ -56,6 +56,14 @@ def test_a_spires_limbs_are_flatter_and_its_lowest_the_lowest() -> None:
     low = heights < np.median(heights)
     assert np.abs(sines).mean() < 0.55 * np.abs(limbs("round")[1]).mean()
     assert sines[low].mean() < sines[~low].mean() - 0.1
+
+
+def test_a_spire_of_scales_stands_where_one_of_needles_lies_in_layers() -> None:
+    generations, heights = np.array([1, 1, 2]), np.array([0.2, 0.9, 0.5])
+    needles, scales = (habit_of("spire", kind).steering(generations, heights) for kind in ("needles", "scales"))
+    assert (scales[:, 1] > needles[:, 1] + 0.2).all()
+    assert habit_of("spire", "needles") is HABITS["spire"]
+    assert habit_of("weeping", "scales") is HABITS["weeping"]
 
 
 def test_columns_and_several_stems_stand_and_weeping_trees_hang() -> None:

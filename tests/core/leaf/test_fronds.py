@@ -3,9 +3,9 @@ import pytest
 from tests.core.leaf.conftest import view_of
 
 from treestroke.core.geometry.crown_volume import Silhouette
-from treestroke.core.grow.palm import grow_palm
+from treestroke.core.grow.palm import PIECES, grow_palm
 from treestroke.core.grow.replacement import CrownToFill
-from treestroke.core.leaf.fronds import BARE_FOOT, HALF_SIDE, set_fronds
+from treestroke.core.leaf.fronds import BARE_FOOT, set_fronds
 from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
@@ -29,25 +29,38 @@ def leaves(palm, crown) -> Leaves:
     return set_fronds(palm, crown, 1.0, np.random.default_rng(0))
 
 
-def test_pieces_lie_on_the_midribs_along_them(palm: Skeleton, leaves: Leaves) -> None:
+def test_leaflets_stand_aside_from_both_sides_of_their_midribs(palm: Skeleton, leaves: Leaves) -> None:
     assert (leaves.joints >= 40).all()
     way = palm.points[leaves.joints] - palm.points[palm.parents[leaves.joints]]
-    cosines = (way * leaves.ups).sum(axis=1) / np.linalg.norm(way, axis=1) / np.linalg.norm(leaves.ups, axis=1)
-    assert cosines.min() > 0.99
+    way /= np.linalg.norm(way, axis=1, keepdims=True)
+    rights, ups = (side / np.linalg.norm(side, axis=1, keepdims=True) for side in (leaves.rights, leaves.ups))
+    assert np.abs((way * rights).sum(axis=1)).min() > 0.99
+    side = (np.cross(way, [0.0, 1.0, 0.0]) * ups).sum(axis=1)
+    np.testing.assert_array_equal(leaves.flips, (way * rights).sum(axis=1) < 0)
+    assert 0.4 < (side > 0).mean() < 0.6
+    feet, ends = leaves.centres - leaves.ups, palm.points[leaves.joints]
+    assert np.linalg.norm(np.cross(feet - ends, way), axis=1).max() < 1e-6
 
 
-def test_each_frond_bears_pieces_of_one_tile(palm: Skeleton, leaves: Leaves) -> None:
-    frond = (leaves.joints - 40) // 12
-    assert len(np.unique(frond)) == (len(palm) - 40) // 12
-    assert all(len(np.unique(leaves.tiles[frond == number])) == 1 for number in np.unique(frond))
+def test_leaflets_hang_from_level_midribs(palm: Skeleton, leaves: Leaves) -> None:
+    way = palm.points[leaves.joints] - palm.points[palm.parents[leaves.joints]]
+    level = np.abs(way[:, 1]) < 0.3 * np.linalg.norm(way, axis=1)
+    ups = leaves.ups[level] / np.linalg.norm(leaves.ups[level], axis=1, keepdims=True)
+    assert level.sum() > 100
+    assert ups[:, 1].mean() < -0.15
+
+
+def test_cards_on_one_edge_of_a_midrib_have_one_colour(leaves: Leaves) -> None:
+    assert all(len(np.unique(leaves.tiles[leaves.joints == joint])) == 1 for joint in np.unique(leaves.joints))
     assert len(np.unique(leaves.tiles)) > 3
 
 
-def test_pieces_are_small_at_both_ends_of_a_frond(leaves: Leaves) -> None:
-    place, size = (leaves.joints - 40) % 12, np.linalg.norm(leaves.ups, axis=1)
+def test_leaflets_are_short_at_both_ends_of_a_frond(leaves: Leaves) -> None:
+    place, size = (leaves.joints - 40) % PIECES, np.linalg.norm(leaves.ups, axis=1)
     middle = np.median(size[(place > 2) & (place < 7)])
-    assert np.median(size[place == 11]) < 0.75 * middle
-    assert 0 < BARE_FOOT < HALF_SIDE < 0.25
+    assert np.median(size[place == PIECES - 1]) < 0.75 * middle
+    assert np.median(size[place == 1]) < middle
+    assert 0 < BARE_FOOT < 0.25
 
 
 def test_a_palm_bears_fronds_and_half_the_density_half_as_many(palm: Skeleton, crown, leaves: Leaves) -> None:

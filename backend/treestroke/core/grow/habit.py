@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from treestroke.core.types import Floats, Indices, TreeForm
+from treestroke.core.types import Floats, FoliageKind, Indices, TreeForm
 
 STEERED = 3
 """Generations of branches that a form steers; finer shoots fill what these leave empty."""
@@ -79,3 +79,11 @@ HABITS: Mapping[TreeForm, Habit] = MappingProxyType(
     }
 )
 """Judged on renders from four sides of an oak, an aspen and a pine."""
+
+UPRIGHT_SPIRE = Habit(Rise(0.5, 0.2, 1.2), Rise(0.7, 0.35, 0.45), sag=0.1)
+"""A spire of scales (cypress, thuja): upright plumes without tiers (judged on two cypresses)."""
+
+
+def habit_of(form: TreeForm, kind: FoliageKind) -> Habit:
+    """Return the habit of a form, which for a spire depends on what its twigs bear."""
+    return UPRIGHT_SPIRE if form == "spire" and kind == "scales" else HABITS[form]

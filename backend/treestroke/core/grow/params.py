@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from treestroke.core.grow.habit import HABITS, UNSTEERED, Habit
+from treestroke.core.grow.habit import UNSTEERED, Habit, habit_of
 from treestroke.core.types import CONIFEROUS, FoliageKind, TreeForm
 
 
@@ -90,7 +90,7 @@ def growth_for(kind: FoliageKind, iterations: int = 300, form: TreeForm = "round
     Conifers and spires have one leader and many whorls, bare trees finer twigs; limbs that hang, or leave a stem low
     down to fill the whole crown, may grow inward.
     """
-    params = replace(_growth_of_kind(kind, iterations), habit=HABITS[form])
+    params = replace(_growth_of_kind(kind, iterations), habit=habit_of(form, kind))
     return replace(params, **_OF_FORM.get(form, {}))
 
 

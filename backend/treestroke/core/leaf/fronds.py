@@ -1,4 +1,4 @@
-"""Sets the leaflets of palm fronds on their midribs."""
+"""Sets the leaflets of palm fronds, or the blades of strap leaves, on their midribs."""
 
 from dataclasses import replace
 
@@ -13,50 +13,59 @@ from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Mask
 
-HALF_SIDE = 0.165
-"""Half the side of a card that shows a piece of a frond, as a share of the frond's length (judged on five palms)."""
-PROFILE = ((0.0, 0.1, 0.4, 0.8, 1.0), (0.25, 0.75, 1.0, 0.8, 0.3))
-"""Size of the pieces along a frond: places, 0 to 1, and factors."""
+REACH = 0.18
+"""How far leaflets reach aside from the midrib where they are longest, as a share of the frond's length (judged on five
+palms)."""
+PROFILE = ((0.0, 0.12, 0.4, 0.75, 1.0), (0.3, 0.8, 1.0, 0.8, 0.35))
+"""Length of the leaflets along a frond: places, 0 to 1, and factors."""
+BREADTH = 0.17
+"""Breadth of a card along the midrib, as a share of the frond's length."""
 BARE_FOOT = 0.08
 """Share of a frond, from its foot on, without leaflets."""
-SPACING = 0.025
-"""Distance between pieces, as a share of the mean frond's length, at density 1."""
-ROLL, SCATTER = 0.7, 0.2
-"""Angle by which every other piece is turned about its midrib to either side, and its standard deviation, rad: leaflets
-stand off in two planes, so that a frond is broad from the side, too."""
+SPACING = 0.014
+"""Distance between cards, one on each side in turn, as a share of the mean frond's length, at density 1."""
+RAISED, HANGING, SCATTER = 0.35, 0.9, 0.12
+"""Weights of the midrib's upper side and of gravity in the direction of leaflets, beside 1 for the level one, and their
+standard deviation: leaflets stand in a V about the midrib of a young frond, and hang from that of an old one."""
+ROLL = 0.8
+"""Standard deviation by which a frond is twisted about its midrib, rad."""
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
-"""Sizes at which a piece is tried until it fits the foliage; the last one stays as it is."""
-FITTING = 0.8
-"""Share of a piece's opaque dots that must lie in the foliage: leaflets fray the outline."""
+"""Sizes at which a card is tried until it fits the foliage; the last one stays as it is."""
+FITTING = 0.5
+"""Share of a card's opaque dots that must lie in the foliage: leaflets fray the outline."""
 
 
 def set_fronds(skeleton: Skeleton, crown: LeafCrown, density: float, rng: np.random.Generator) -> Leaves:
-    """Set pieces of fronds along the thin limbs of a palm (metres), which are its midribs, each level across."""
+    """Set cards of leaflets along both sides of the thin limbs of a palm (metres), which are its midribs."""
     midribs = thin_edges(skeleton)
     along, length, frond = _places(skeleton, midribs)
     weights = midribs * (along >= BARE_FOOT)
     wood = float((edge_lengths(skeleton) * weights).sum())
     count = round(density * wood / max(SPACING * float(length[midribs].mean()), 1e-9))
     seats = seats_along(skeleton, weights.astype(np.float64), count, rng)
-    half_sizes = HALF_SIDE * length[seats.joints] * np.interp(along[seats.joints], *PROFILE)
+    sides, sizes = np.where(np.arange(len(seats)) % 2, 1.0, -1.0), length[seats.joints, None]
+    reach = REACH * np.interp(along[seats.joints], *PROFILE)
+    half = 0.5 * sizes * np.column_stack([np.full(len(seats), BREADTH), reach])
+    roll = rng.normal(0, ROLL, len(skeleton))[frond[seats.joints]]
     order, found = np.arange(len(seats)), []
     for scale in SHRINKING:
         tried = seats.at(order)
-        leaves = crown.coloured(_pose(tried, scale * half_sizes[order], rng), tried, rng)
+        poses = _pose(tried, sides[order], roll[order], scale * half[order], rng)
+        leaves = replace(crown.coloured(poses, tried, rng), flips=sides[order] > 0)
         inside = np.max([share_inside(leaves, crown.outlines, grid) for grid in crown.grids], axis=0)
         kept = (inside >= FITTING) | (scale == SHRINKING[-1])
         found.append(leaves.select(kept))
         order = order[~kept]
     leaves = join_leaves(found)
-    return replace(leaves, tiles=_of_one_colour(leaves.tiles, frond[leaves.joints]))
+    return replace(leaves, tiles=_of_one_colour(leaves))
 
 
-def _of_one_colour(tiles: Indices, fronds: Indices) -> Indices:
-    """Give all pieces of a frond the tile (m,) of its middle one, by the frond (m,) that each is a piece of."""
-    order = np.argsort(fronds, kind="stable")
-    _, first, count = np.unique(fronds[order], return_index=True, return_counts=True)
-    found = np.empty_like(tiles)
-    found[order] = np.repeat(tiles[order[first + count // 2]], count)
+def _of_one_colour(leaves: Leaves) -> Indices:
+    """Return the tiles (m,) with which the cards on one edge of a midrib all show that of the middle one."""
+    order = np.argsort(leaves.joints, kind="stable")
+    _, first, count = np.unique(leaves.joints[order], return_index=True, return_counts=True)
+    found = np.empty_like(leaves.tiles)
+    found[order] = np.repeat(leaves.tiles[order[first + count // 2]], count)
     return found
 
 
@@ -76,10 +85,18 @@ def _places(skeleton: Skeleton, midribs: Mask) -> tuple[Floats, Floats, Indices]
     return far / np.maximum(length, 1e-12), length, last
 
 
-def _pose(seats: Seats, half_sizes: Floats, rng: np.random.Generator) -> Poses:
-    """Lay a piece of half size (n,) along the midrib at each of n seats."""
-    axis, n = seats.directions, len(seats)
-    level = unit(np.cross(axis, UP), np.array([1.0, 0.0, 0.0]))
-    roll = (ROLL * np.where(np.arange(n) % 2, 1.0, -1.0) + rng.normal(0, SCATTER, n))[:, None]
-    right = np.cos(roll) * level + np.sin(roll) * np.cross(level, axis)
-    return Poses(seats.points, right * half_sizes[:, None], axis * half_sizes[:, None], np.cross(right, axis)[:, 1])
+def _pose(seats: Seats, sides: Floats, roll: Floats, half: Floats, rng: np.random.Generator) -> Poses:
+    """Set a card of half sizes (n, 2), metres, on each of n seats, its foot on the midrib.
+
+    ``sides`` (n,) are 1 for the midrib's right, -1 for its left; it is twisted by ``roll`` (n,), rad.
+    """
+    ahead, n = seats.directions, len(seats)
+    level = unit(np.cross(ahead, UP), np.array([1.0, 0.0, 0.0]))
+    above = np.cross(level, ahead)
+    cos, sin = np.cos(roll)[:, None], np.sin(roll)[:, None]
+    level, above = cos * level + sin * above, cos * above - sin * level
+    weights = np.array([RAISED, -HANGING]) + rng.normal(0, SCATTER, (n, 2))
+    out = sides[:, None] * level + weights[:, :1] * above + weights[:, 1:] * UP
+    out = unit(out - (out * ahead).sum(axis=1, keepdims=True) * ahead, UP)
+    right = -sides[:, None] * ahead
+    return Poses(seats.points + half[:, 1:] * out, right * half[:, :1], out * half[:, 1:], out[:, 1])

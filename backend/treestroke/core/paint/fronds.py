@@ -2,58 +2,56 @@
 
 import numpy as np
 
-from treestroke.core.paint.canvas import DARK, LIGHT, PLAIN, RIB, Canvas, fits_canvas
-from treestroke.core.paint.shoots import heading
+from treestroke.core.paint.canvas import LIGHT, PLAIN, RIB, Canvas
 from treestroke.core.types import Floats, Picture
 
-LEAFLETS = 16
-"""Leaflets on each side of a piece."""
+LEAFLETS = 8
+"""Leaflets of a piece."""
+FEET, SLANT = (0.06, 0.42), 0.5
+"""Where leaflets begin on the bottom edge, and how far their tips lie further to the right."""
 
 
 def draw_frond_piece(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
-    """Draw a piece of a frond whose midrib rises from the middle of the bottom edge to that of the top.
+    """Draw the leaflets on one side of a piece of a frond, whose midrib runs along the bottom edge to the right.
 
-    Its leaflets reach from the midrib to both sides, forward, and bend down at their tips. Pieces that overlap along a
-    midrib make a frond.
+    They rise to the right, side by side. Pieces that overlap along a midrib make one side of a frond.
 
     Returns
     -------
     (side, side, 4) uint8, sRGB with straight alpha, in colours drawn from (m, 3), CIE Lab.
     """
     leaflets = _leaflets(rng)
-    leaflets = leaflets[fits_canvas(leaflets)]
     canvas = Canvas(side, colours, len(leaflets), rng)
-    for number, leaflet in enumerate(leaflets):
-        shade = (PLAIN, DARK, LIGHT, PLAIN)[number % 4]
-        canvas.polygon(leaflet, canvas.paints[number, shade])
-    canvas.lines(np.array([[[0.5, 0.96], [0.5, 0.04]]]), canvas.paints[0, RIB], 0.022)
+    for leaflet, paint in zip(leaflets, canvas.paints, strict=True):
+        canvas.polygon(leaflet, paint[PLAIN])
     return canvas.tile()
 
 
 def draw_strap_piece(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
-    """Draw a piece of a strap leaf, as dracaenas and yuccas bear it: a blade that runs through the square, with a rib.
+    """Draw half a strap leaf, as dracaenas and yuccas bear it: a blade along the bottom edge, where its rib is.
 
     Returns
     -------
     (side, side, 4) uint8, sRGB with straight alpha, in colours drawn from (m, 3), CIE Lab.
     """
-    canvas, half = Canvas(side, colours, 1, rng), rng.uniform(0.11, 0.15)
-    for shade, left, right in ((DARK, -half, 0.02), (LIGHT, -0.02, half), (RIB, -0.012, 0.012)):
-        blade = np.array([[left, 0.97], [right, 0.97], [right, 0.03], [left, 0.03]]) + np.array([0.5, 0.0])
-        canvas.polygon(blade, canvas.paints[0, shade])
+    canvas, width = Canvas(side, colours, 1, rng), rng.uniform(0.2, 0.26)
+    for shade, low, high in ((LIGHT, 0.0, width), (PLAIN, 0.0, 0.6 * width), (RIB, 0.0, 0.05)):
+        left, right, bottom, top = 0.03, 0.97, 0.97 - low, 0.97 - high
+        canvas.polygon(np.array([[left, bottom], [right, bottom], [right, top], [left, top]]), canvas.paints[0, shade])
     return canvas.tile()
 
 
 def _leaflets(rng: np.random.Generator) -> Floats:
-    """Place blades (p, 6, 2) in pairs, some of them torn short."""
-    place = np.repeat(np.linspace(0.94, 0.24, LEAFLETS), 2) + rng.uniform(-0.012, 0.012, 2 * LEAFLETS)
-    turn = np.tile([1.0, -1.0], LEAFLETS)
-    angle = turn * rng.uniform(0.75, 1.05, 2 * LEAFLETS)
-    length = rng.uniform(0.38, 0.5, 2 * LEAFLETS) * np.where(rng.random(2 * LEAFLETS) < 0.12, 0.6, 1.0)
-    foot = np.stack([np.full(2 * LEAFLETS, 0.5), place], axis=1)
-    middle = foot + 0.55 * length[:, None] * heading(angle)
-    tip = middle + 0.45 * length[:, None] * heading(angle + turn * rng.uniform(-0.1, 0.45, 2 * LEAFLETS))
-    across = 0.5 * rng.uniform(0.032, 0.046, 2 * LEAFLETS)[:, None] * heading(angle + np.pi / 2)
+    """Place blades (p, 6, 2) side by side, bent forward, some of them torn short."""
+    foot = np.stack(
+        [np.linspace(*FEET, LEAFLETS) + rng.uniform(-0.02, 0.02, LEAFLETS), np.full(LEAFLETS, 0.97)], axis=1
+    )
+    slant = SLANT + rng.uniform(-0.08, 0.08, LEAFLETS)
+    way = np.stack([slant, np.full(LEAFLETS, -0.92)], axis=1)
+    way *= np.where(rng.random(LEAFLETS) < 0.15, 0.6, rng.uniform(0.85, 1.0, LEAFLETS))[:, None]
+    bow = rng.uniform(-0.12, 0.0, LEAFLETS)[:, None] * np.array([1.0, 0.3])
+    middle, tip = foot + 0.5 * way + bow, foot + way
+    across = 0.5 * rng.uniform(0.042, 0.06, LEAFLETS)[:, None] * np.array([1.0, 0.35])
     return np.stack(
         [
             foot - 0.5 * across,

@@ -7,7 +7,7 @@ from treestroke.core.paint.shoots import along, angle_of, draw_shoots, heading
 from treestroke.core.paint.species import NeedleArrangement
 from treestroke.core.types import Floats, Picture
 
-FEATHER_SHOOTS = 12
+FEATHER_SHOOTS = 18
 """Side shoots of a spray where the species is unknown."""
 NEEDLES_PER_SIDE = 300.0
 """Needles on a shoot as long as the spray's side."""
@@ -129,8 +129,8 @@ def _feather_shoots(rng: np.random.Generator) -> Floats:
     twig = np.stack([0.5 + bow * np.sin(np.pi * t), 0.97 - 0.9 * t], axis=1)
     share = np.linspace(0.04, 0.9, FEATHER_SHOOTS) + rng.uniform(-0.015, 0.015, FEATHER_SHOOTS)
     turn = np.where((np.arange(FEATHER_SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
-    angle = turn * rng.uniform(0.7, 1.0, FEATHER_SHOOTS) * (1.1 - 0.35 * share)
-    outline = np.interp(share, [0.0, 0.3, 1.0], [0.42, 0.62, 0.12])
+    angle = turn * rng.uniform(0.5, 0.8, FEATHER_SHOOTS) * (1.1 - 0.35 * share)
+    outline = np.interp(share, [0.0, 0.25, 1.0], [0.2, 0.36, 0.1])
     length = outline * rng.uniform(0.6, 1.05, FEATHER_SHOOTS)
     bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.4, (FEATHER_SHOOTS, 1)) * t
     foot = along(twig, share)

@@ -26,7 +26,7 @@ def draw_scale_spray(side: int, colours: Floats, rng: np.random.Generator) -> Pi
     fitting = np.flatnonzero(fits_canvas(twigs))
     for number, group in enumerate(np.array_split(rng.permutation(fitting), 36)):
         paint = canvas.paints[group[0] if len(group) else 0]
-        canvas.lines(twigs[group], paint[(DARK, PLAIN, LIGHT)[number // 12]], 0.0125)
+        canvas.lines(twigs[group], paint[(DARK, PLAIN, LIGHT)[number // 12]], 0.019)
     return canvas.tile()
 
 
@@ -36,8 +36,8 @@ def _plume(rng: np.random.Generator) -> Floats:
     twig = np.stack([0.5 + rng.uniform(-0.08, 0.08) * t**2, 0.97 - 0.88 * t], axis=1)
     share = np.linspace(0.03, 0.92, SHOOTS) + rng.uniform(-0.02, 0.02, SHOOTS)
     turn = np.where((np.arange(SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
-    length = np.interp(share, [0.0, 0.25, 1.0], [0.45, 0.6, 0.14]) * rng.uniform(0.65, 1.1, SHOOTS)
-    bent = turn[:, None] * (rng.uniform(0.55, 0.95, (SHOOTS, 1)) - rng.uniform(0.15, 0.5, (SHOOTS, 1)) * t)
+    length = np.interp(share, [0.0, 0.25, 1.0], [0.3, 0.46, 0.14]) * rng.uniform(0.65, 1.1, SHOOTS)
+    bent = turn[:, None] * (rng.uniform(0.45, 0.8, (SHOOTS, 1)) - rng.uniform(0.15, 0.5, (SHOOTS, 1)) * t)
     way = (length[:, None] * t)[..., None] * heading(bent)
     return np.concatenate([twig[None], along(twig, share)[:, None] + way])
 

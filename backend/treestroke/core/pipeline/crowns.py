@@ -8,7 +8,7 @@ from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Mask
 
-CLOSED_SHARE = {"leaves": 0.02, "needles": 0.035, "scales": 0.02, "palm": 0.02, "bare": 0.05}
+CLOSED_SHARE = {"leaves": 0.02, "needles": 0.035, "scales": 0.02, "palm": 0.0, "bare": 0.05}
 """Gaps narrower than this share of the crown's size are closed, by what the picture shows."""
 LEAFED_SHARE = 0.14
 """The same for a bare tree that is given leaves: the gaps between its twigs."""
