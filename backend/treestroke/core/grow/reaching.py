@@ -31,6 +31,8 @@ LONGEST = 0.1
 """Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
 WITHIN = 0.9
 """Share of the crown's depth that new joints may use."""
+STEEPEST = 2.0
+"""Greatest slope of a link's depth against its length in the picture."""
 
 
 def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> Grown:
@@ -101,13 +103,19 @@ def _linked(joints_px: Floats, places_px: Floats, longest_px: float) -> tuple[Fl
 
 
 def _lifted(tree: Skeleton, places_px: Floats, parents: Indices, camera: Camera, volume: CrownVolume) -> Floats:
-    """Place new joints (k, 2), px, in the world (k, 3), metres, at their parents' depth, within the volume."""
+    """Place new joints (k, 2), px, in the world (k, 3), metres, at their parents' depth or toward the volume's.
+
+    A link is no steeper than `STEEPEST`.
+    """
+    flat = camera.world_from_pixels(np.vstack([camera.pixels_from_world(tree.points), places_px]))
+    steps = STEEPEST * np.sqrt(((flat - flat[np.maximum(parents, 0)]) ** 2).sum(axis=1))
+    middle, half = camera.depth(volume.axis(flat[:, 1])), WITHIN * volume.half_depth(flat)
     depth = np.concatenate([camera.depth(tree.points), np.zeros(len(places_px))])
     for joint in range(len(tree), len(depth)):
-        depth[joint] = depth[parents[joint]]
-    points = camera.world_from_pixels(places_px, depth[len(tree) :])
-    middle, half = camera.depth(volume.axis(points[:, 1])), WITHIN * volume.half_depth(points)
-    return camera.world_from_pixels(places_px, np.clip(depth[len(tree) :], middle - half, middle + half))
+        before = depth[parents[joint]]
+        wanted = np.clip(before, middle[joint] - half[joint], middle[joint] + half[joint])
+        depth[joint] = before + np.clip(wanted - before, -steps[joint], steps[joint])
+    return camera.world_from_pixels(places_px, depth[len(tree) :])
 
 
 def _radii(tree: Skeleton, points: Floats, parents: Indices) -> Floats:
