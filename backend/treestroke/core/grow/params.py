@@ -102,13 +102,5 @@ def _growth_of_kind(kind: FoliageKind, iterations: int) -> GrowthParams:
     if kind in CONIFEROUS:
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":
-        return GrowthParams(
-            iterations,
-            attractors=4000,
-            closeness_px=6.0,
-            inward_cosine=0.55,
-            limb_piece=0.14,
-            tip_px=0.2,
-            twigs=6000,
-        )
+        return GrowthParams(iterations, tip_px=0.2, twigs=6000)
     return GrowthParams(iterations)
