@@ -24,6 +24,17 @@ def test_type_1_has_shoots_at_the_end_and_type_2_along_the_support() -> None:
         assert subtree.fractions[subtree.parents < 0].min() <= 0.4
 
 
+@pytest.mark.parametrize("subtree", TYPE_1 + TYPE_2)
+def test_a_predefined_subtree_goes_on_and_bears_no_shoot_longer_than_what_is_left_of_its_path(subtree: Subtree) -> None:
+    lengths, on_support = np.linalg.norm(subtree.vectors, axis=1), subtree.parents < 0
+    goes_on = int(np.flatnonzero(on_support & (subtree.fractions == 1.0))[0])
+    assert subtree.vectors[goes_on, 1] >= np.cos(np.radians(20)) * lengths[goes_on]
+    for shoot in np.delete(np.arange(len(lengths)), goes_on):
+        parent, fraction = subtree.parents[shoot], subtree.fractions[shoot]
+        left = 1 - fraction + lengths[goes_on] if parent < 0 else lengths[parent]
+        assert lengths[shoot] <= 0.75 * left
+
+
 def test_auto_takes_visible_subtrees_where_there_are_enough() -> None:
     assert all(tree in TYPE_1 + TYPE_2 for tree in choose_library("auto", "leaves", stick()))
     taken = [tree for tree in choose_library("auto", "leaves", oak()) if tree not in TYPE_1 + TYPE_2]

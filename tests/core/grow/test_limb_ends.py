@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from tests.core.grow.crowns import limbed_case, trunk_case
 
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.grow.growth_space import GrowthSpace, in_mask
 from treestroke.core.grow.limb_ends import LEAST_REACH, MOST_REACH, with_limbs_extended
 from treestroke.core.grow.stem import foot_of
@@ -37,6 +38,15 @@ def test_what_is_there_stays_and_what_is_new_stays_in_the_crown() -> None:
     np.testing.assert_array_equal(longer.points[: len(tree)], tree.points)
     assert len(longer) > len(tree)
     assert crown.inside(longer.points[len(tree) :]).all()
+
+
+def test_no_limb_that_goes_on_ends_in_a_curl() -> None:
+    case = limbed_case()
+    crown = case.space(foot_of(case.visible, case.mask))
+    longer = with_limbs_extended(case.visible, crown)
+    ends = np.setdiff1d(np.arange(len(case.visible), len(longer)), longer.parents)
+    outward = unit(longer.points[ends] - crown.foot)
+    assert ((longer.points[ends] - longer.points[longer.parents[ends]]) * outward).sum(axis=1).min() > 0
 
 
 def test_wood_that_goes_on_tapers() -> None:

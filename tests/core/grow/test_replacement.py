@@ -79,11 +79,12 @@ def test_a_trunk_alone_fills_the_crown_from_all_sides() -> None:
 
 
 def depth_over_width(case: Case, mode: Literal["image", "alternating"]) -> float:
-    """Grow with nothing but the visible tree's own subtrees; compare the spreads, mean of four seeds."""
+    """Grow with nothing but the visible tree's own subtrees, free to point anywhere: mean spread of four seeds."""
     library, found = visible_subtrees(case.skeleton), []
+    params = GrowthParams(60, mode=mode, stem_piece=0.2, inward_cosine=0.0)
     for seed in range(4):
         rng = np.random.default_rng(seed)
-        tree = grow(case.skeleton, case.crown, Replacement(library, GrowthParams(60, mode=mode)), rng)
+        tree = grow(case.skeleton, case.crown, Replacement(library, params), rng)
         found.append(new_points(case, tree)[:, 2].std() / new_points(case, tree)[:, 0].std())
     return float(np.mean(found))
 

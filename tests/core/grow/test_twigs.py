@@ -37,6 +37,14 @@ def test_twigs_stand_on_thin_wood_within_the_crown(crown: GrowthSpace) -> None:
     assert (form.parents[22::2] == np.arange(21, len(form.points), 2)).all()
 
 
+def test_twigs_stand_evenly_along_their_branch_however_close_its_joints_are(crown: GrowthSpace) -> None:
+    form = branch()
+    form.points[2:, 0] = np.r_[np.linspace(161, 175, 12), np.linspace(180, 236, 7)]
+    seats = with_twigs(form, crown, 15, np.random.default_rng(0)).parents[21::2]
+    near = form.points[seats[seats < 21], 0] <= 176
+    assert near.mean() == pytest.approx(15 / 76, abs=0.1)
+
+
 def test_no_more_twigs_than_asked(crown: GrowthSpace) -> None:
     assert len(grown(crown, 5).points) <= 21 + 2 * 5
     assert len(grown(crown, 0).points) == 21

@@ -40,6 +40,8 @@ TURNS = 6
 LENGTHS = (1.0, 0.75, 0.5, 0.3)
 RISE = 0.35
 """Weight of the vertical in the direction of a curve's end (phototropism)."""
+OUTWARD = 0.3
+"""Least cosine between a curve's end and the direction from the crown's foot to it: no limb curls back."""
 WITHIN = 0.92
 """Share of the crown's radius that curves may use."""
 MOST_EXTENDED = 20
@@ -60,8 +62,8 @@ class _End(NamedTuple):
 def with_limbs_extended(skeleton: Skeleton, space: GrowthSpace) -> Skeleton:
     """Extend the limbs of a visible tree (px) that end under the crown, or in it with free space ahead.
 
-    An extension ends inside the crown and below the tree's highest joint. It may cross a gap between the limb's end
-    and the foliage. Its radii fall from the limb's own.
+    An extension ends inside the crown, below the tree's highest joint, and points outward there. It may cross a gap
+    between the limb's end and the foliage. Its radii fall from the limb's own.
 
     Source: our own; the choice by free space follows Okabe et al. 2005.
     """
@@ -140,7 +142,9 @@ def _curves(start: Floats, direction: Floats, chords: Floats, step: float) -> Fl
 
 
 def _fitting(paths: Floats, space: GrowthSpace, start: Floats, most_gap: float) -> tuple[Floats, Mask]:
-    """Keep the paths (m, k, 3) that soon enter the crown and stay in it; flag their points (m, k) there."""
+    """Keep the paths (m, k, 3) that soon enter the crown, stay in it, end outward; flag their points (m, k) there."""
+    away, ends = unit(paths[:, -1] - space.foot), unit(paths[:, -1] - paths[:, -2])
+    paths = paths[(away * ends).sum(axis=1) >= OUTWARD]
     inside = _inside(paths, space)
     beyond = np.logical_or.accumulate(inside, axis=1)
     first = paths[np.arange(len(paths)), inside.argmax(axis=1)]

