@@ -117,5 +117,5 @@ def test_the_smallest_crowns_have_a_volume(size: tuple[int, int]) -> None:
     mask[100 : 100 + size[1], 200 : 200 + size[0]] = True
     crown = crown_of(mask)
     centre = CAMERA.world_from_pixels(np.argwhere(mask)[:, ::-1] + 0.5)
-    deep = [crown.admits(centre + [0, 0, z], 0.0) for z in np.linspace(-1, 1, 101)]
+    deep = [crown.admits(centre + np.array([0, 0, z]), 0.0) for z in np.linspace(-1, 1, 101)]
     assert np.any(deep, axis=0).mean() > 0.9

@@ -255,7 +255,7 @@ def _filled(crown: _Crown, clumps: Floats) -> tuple[Mask, int]:
 
 
 def _with_all_columns(filled: Mask, front: Mask) -> Mask:
-    """Fill a cell of (x, y, z) in each column of the ``front`` (x, y) that has none, as deep as in the nearest other."""
+    """Fill a cell of (x, y, z) in each column of the ``front`` (x, y) that has none, as deep as in the nearest."""
     shown = np.asarray(filled.any(axis=2))
     x, y = np.nonzero(front & ~shown)
     if not shown.any() or len(x) == 0:
