@@ -27,8 +27,8 @@ class CrownCells:
         Side of a cell, metres.
     shape
         Cells along X, Y and Z.
-    middles
-        (n, 3) middles, metres, of the cells inside.
+    count
+        Cells whose middle is inside.
     wood
         (cells,) length of the branches in each cell, metres, flat; changed by `add_wood`.
     """
@@ -37,13 +37,13 @@ class CrownCells:
     corner: Floats
     side: float
     shape: tuple[int, int, int]
-    middles: Floats
+    count: int
     wood: Floats
 
     @property
     def cubic_metres(self) -> float:
         """Volume of the cells inside."""
-        return len(self.middles) * self.side**3
+        return self.count * self.side**3
 
     @property
     def size(self) -> float:
@@ -74,7 +74,7 @@ class CrownCells:
 def crown_cells(volume: CrownVolume) -> CrownCells:
     """Lay about `CELLS` cells over a crown; none of them is inside where the crown is empty."""
     coarse = _cells_over(volume, max(float(np.ptp(volume.bounds, axis=0).max()) / _COARSE, 1e-6))
-    if len(coarse.middles) == 0:
+    if coarse.count == 0:
         return coarse
     return _cells_over(volume, (coarse.cubic_metres / CELLS) ** (1 / 3))
 
@@ -85,7 +85,8 @@ def _cells_over(volume: CrownVolume, side: float) -> CrownCells:
     across, up, deep = (np.maximum(np.ceil((high - low) / side), 1)).astype(int).tolist()
     corner = (low + high - side * np.array([across, up, deep])) / 2
     middles = corner + side * (np.indices((across, up, deep)).reshape(3, -1).T + 0.5)
-    return CrownCells(volume, corner, side, (across, up, deep), middles[volume.inside(middles)], np.zeros(len(middles)))
+    count = int(volume.inside(middles).sum())
+    return CrownCells(volume, corner, side, (across, up, deep), count, np.zeros(len(middles)))
 
 
 def _blurred(values: Floats) -> Floats:

@@ -7,11 +7,12 @@ import numpy as np
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.geometry.outline_volume import Sections, sections_of
-from treestroke.core.grow.crown_cells import crown_cells
 from treestroke.core.types import Floats, Indices, Mask
 
 REFERENCE_WIDTH = 1000.0
 """Crown width, px, to which the pixel figures of growth refer (a photo of 1,500 px)."""
+DEPTHS = 2500
+"""Number of places within the crown's sections that may attract branches in space."""
 SHELL = 0.5
 """How far out in its section, as a share of the way, a place attracts branches: what is inside is filled on the way."""
 LEAST_PX = 1e-9
@@ -86,9 +87,23 @@ def growth_space(crown: CrownVolume, front: Silhouette[OrthographicCamera], foot
     of = sections_of(crown, front.camera)
     sections = Sections(of.middle_px, np.maximum(of.radius_px, LEAST_PX), of.near_px, np.maximum(of.deep_px, LEAST_PX))
     unit = max(2 * float(of.radius_px.max()) / REFERENCE_WIDTH, 1e-3)
-    middles = crown_cells(crown).middles
-    depths = in_picture(front.camera, middles[crown.reach(middles) >= SHELL])
+    places = _lattice(of)
+    points = out_of_picture(front.camera, places)
+    depths = places[crown.inside(points) & (crown.reach(points) >= SHELL)]
     return GrowthSpace(np.ascontiguousarray(front.mask), sections, foot, unit, depths)
+
+
+def _lattice(sections: Sections) -> Floats:
+    """Spread points (m, 3), px, evenly over a box about a crown: about `DEPTHS` of them lie within its sections."""
+    rows = np.flatnonzero(sections.radius_px > 0)
+    middle, radius, near, deep = (
+        column[rows] for column in (sections.middle_px, sections.radius_px, sections.near_px, sections.deep_px)
+    )
+    step = max(float(np.cbrt(np.pi * (radius * deep).sum() / DEPTHS)), 1.0)
+    low = np.array([(middle - radius).min(), rows[0], (near - deep).min()])
+    high = np.array([(middle + radius).max(), rows[-1] + 1.0, (near + deep).max()])
+    axes = (np.arange(start + step / 2, end, step) for start, end in zip(low, high, strict=True))
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def in_picture(camera: OrthographicCamera, points_world: Floats) -> Floats:

@@ -156,7 +156,7 @@ def grow_small(
     cells.add_wood(skeleton.points, edge_lengths(skeleton) * volume.shown(skeleton.points))
     points, parents, born = [skeleton.points], [skeleton.parents], [np.zeros(len(main), dtype=np.int64)]
     left, count, branches = params.most, len(main), parents_from_main(main, params.share, _pieces(1, len(main), params))
-    for number in range(1, params.levels + 1 if len(cells.middles) else 1):
+    for number in range(1, params.levels + 1 if cells.count else 1):
         quota = int(np.ceil(left / (FAN ** np.arange(params.levels - number + 1)).sum()))
         shoots = _grown_level(branches, cells, _Plan(number, quota, params), rng)
         joints = _numbered(shoots, branches, count)
@@ -227,7 +227,7 @@ def _level_rules(branches: ParentBranches, branch: Indices, cells: CrownCells, p
     longest = params.longest * size
     likely = np.minimum(lengths[branch], longest).sum() / SPARE
     reached = max(1, int((cells.around() > 0).sum()))
-    return _Level(lengths, longest, float(cells.wood.sum() + likely) / min(reached, len(cells.middles)), cells, params)
+    return _Level(lengths, longest, float(cells.wood.sum() + likely) / min(reached, cells.count), cells, params)
 
 
 def _buds(branches: ParentBranches, cells: CrownCells, count: int, spacing: float) -> Indices:

@@ -100,14 +100,18 @@ class LeafCrown:
         return self.volume.admits(points, FLAT * self.height)
 
     def _fitting(self, leaves: Leaves, least: float) -> Mask:
-        """Which cards (m,) lie in the volume, and in the foliage, or behind the wood, of each view that sees them."""
+        """Which cards (m,) lie in the foliage, or behind the wood, of each view that sees them.
+
+        Where depth is seen they lie in the volume; else leaves about its surface may reach out of it.
+        """
         fits, excluded = np.zeros((2, len(leaves)), dtype=np.bool_)
         for grid in self.grids:
             behind = grid.deeper(grid.cells_of(leaves.centres), grid.camera.depth(leaves.centres))
             shown = behind & (share_inside(leaves, self.outlines, grid) >= least)
             fits |= shown
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
-        return np.asarray(fits & ~excluded)
+        in_volume = self.admits(leaves.centres) | (not self.volume.depth_seen)
+        return np.asarray(fits & ~excluded & in_volume)
 
 
 def leaf_crown(

@@ -39,7 +39,7 @@ SHALLOWEST = 0.5
 """Least depth of a section, over the trend of its width."""
 SEEN_THROUGH = 8.0
 """How much deeper it is spread for each unit of the front's openness: through an open crown its back is seen."""
-CORE = 0.2
+CORE = 0.45
 """Share of the sections' radius within which foliage stands anywhere."""
 CANDIDATES = 600
 """Places that are tried for unseen clumps."""
@@ -51,6 +51,9 @@ CLOSE = 0.25
 """Least distance between clumps, over the sum of their radii."""
 AT_ONCE = 12
 """Clumps that are added before the crown is looked at again."""
+OPENER = 1.2
+"""Openness of the clumps from the sides over that of the front: no leaf reaches beyond the front, but leaves at the
+sides reach beyond their clumps."""
 VIEWS_RAD = np.radians([45.0, 90.0, 135.0])
 """Sides from which it is looked at."""
 
@@ -92,7 +95,7 @@ def in_clumps(outline: TurnedOutline, front: Silhouette[OrthographicCamera], rng
     corner = np.array([columns[0], rows[0]], dtype=np.float64)
     side = float(max(np.ptp(rows), np.ptp(columns)) + 1) / CELLS
     crown = _coarse(outline, mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], corner, side)
-    crown = _deep(crown, (np.array(camera.root_px) - corner) / side, rng)
+    crown = _deep(crown, (camera.pixels_from_world(np.zeros((1, 3)))[0] - corner) / side, rng)
     seen = _seen_clumps(crown, rng)
     filled, nearest = _filled(crown, np.vstack([seen, _unseen_clumps(crown, seen, rng)]))
     cells = Cells(filled, np.array([*corner, side * nearest]), side)
@@ -156,7 +159,7 @@ def _unseen_clumps(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Flo
     """Return clumps (m, 4) on the other sides, each the furthest of many from all before it."""
     places = _candidates(crown, seen, rng)
     views = [_View(crown, seen, azimuth) for azimuth in VIEWS_RAD]
-    wanted = _openness(crown.mask, len(crown.mask))
+    wanted = OPENER * _openness(crown.mask, len(crown.mask))
     clear = np.min([_apart(places, clump) for clump in seen], axis=0, initial=np.inf)
     missing = _front_area(crown, seen)
     chosen = list[int]()
