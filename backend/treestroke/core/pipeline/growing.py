@@ -38,7 +38,6 @@ from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind
-from treestroke.core.pipeline.trunk_stroke import UNCLEAR_TRUNK
 from treestroke.core.pipeline.working_copy import WORKING_SIDE
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.branched import branched
@@ -58,7 +57,7 @@ BULGE = 1.08
 BARE_BREADTH = 0.5
 """Share of a visible branch's width in front of which no leaf hangs; more would show sky beside thinner wood."""
 READ = "the foliage and branches as they were read in the photo"
-DOUBTFUL = ("outside_photo", UNCLEAR.code, UNCLEAR_TRUNK)
+DOUBTFUL = ("outside_photo", UNCLEAR.code, "trunk_unclear")
 """Codes of warnings after which the strokes may not describe a tree."""
 
 

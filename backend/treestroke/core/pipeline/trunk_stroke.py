@@ -11,8 +11,6 @@ from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.trunk_place import ground_before_trunk, way_to_trunk
 from treestroke.core.types import Floats
 
-UNCLEAR_TRUNK = "trunk_unclear"
-
 
 def on_its_trunk(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
     """Return the working copy with the trunk's stroke on the trunk, from its foot on, and warnings where it was not."""
@@ -39,7 +37,7 @@ def _doubt(way: Floats) -> StrokeWarning:
     """Say that nothing is seen under the trunk's stroke, but something at the end of a way (2,), px, from it."""
     side = "right" if way[0] > 0 else "left"
     detail = f"no trunk is seen under it, but something like one {np.hypot(*way):.0f} px to its {side}"
-    return StrokeWarning(UNCLEAR_TRUNK, "branches/0", f"{detail}; draw it on the trunk, from where that stands")
+    return StrokeWarning("trunk_unclear", "branches/0", f"{detail}; draw it on the trunk, from where that stands")
 
 
 def _from_its_foot(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
