@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear")
+_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear", "trunk_unclear")
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
 

@@ -3,7 +3,7 @@ import type { State } from './state'
 import { type StrokeRef, strokeAt } from './strokes'
 
 /** Codes of the warnings that are doubts: that a stroke may not mean a tree. */
-const DOUBTS = ['outside_photo', 'crown_unclear']
+const DOUBTS = ['outside_photo', 'crown_unclear', 'trunk_unclear']
 
 /** A warning of the service, and the stroke that it is about. */
 export interface StrokeRemark {

@@ -119,6 +119,7 @@ export const drawingText = {
     doubts: {
       outside_photo: (stroke: string) => `${stroke}: much of it is outside the photo. Draw it again on the photo.`,
       crown_unclear: 'The crown looks like its background. Draw around the leaves, or use another photo.',
+      trunk_unclear: 'No trunk is seen under the trunk line. Draw it on the trunk, from where that stands.',
     },
   },
   length: {

@@ -14,6 +14,7 @@ export const scoreText = {
   doubts: {
     outside_photo: 'Strokes lie outside the photo.',
     crown_unclear: 'The crown looks much like what is around it.',
+    trunk_unclear: 'No trunk is seen under the trunk line.',
     kind_unsure: 'It is unclear whether the tree has leaves. Choose Foliage in Settings.',
   } as Readonly<Record<string, string>>,
   /** By the least silhouette fit that each needs, the best first. */

@@ -24,6 +24,18 @@ def test_a_trunk_stroke_beside_its_trunk_is_moved_onto_it_with_a_warning() -> No
     assert np.linalg.norm(moved.skeleton.points[0] - drawn.skeleton.points[0]) < 8
 
 
+def test_a_trunk_stroke_far_beside_its_trunk_is_doubted_and_stays() -> None:
+    photo, strokes = load_photo(MAPLE.with_suffix(".jpg")), load_strokes(MAPLE.with_suffix(".strokes.json"))
+    trunk, *others = strokes.branches
+    beside = replace(strokes, branches=(replace(trunk, points=trunk.points - np.array([56.0, 0.0])), *others))
+    traced = trace_photo(photo, beside)
+    (warning,) = [warning for warning in traced.warnings if warning.stroke == "branches/0"]
+    assert warning.code == "trunk_unclear"
+    assert "px to its right; draw it on the trunk" in warning.detail
+    assert traced.skeleton is not None
+    assert abs(traced.skeleton.points[0, 0] - (trunk.points[0, 0] - 56)) < 15
+
+
 def test_a_trunk_stroke_from_the_grass_before_the_trunk_begins_at_its_foot() -> None:
     photo, strokes = load_photo(OAK.with_suffix(".jpg")), load_strokes(OAK.with_suffix(".strokes.json"))
     trunk, *others = strokes.branches

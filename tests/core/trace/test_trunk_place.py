@@ -23,7 +23,8 @@ def photo(half: float, middle: float = 200.0, trunk: tuple[int, int, int] = (90,
 @pytest.mark.parametrize("half", [3.0, 8.0, 15.0])
 @pytest.mark.parametrize("side", [-1, 1], ids=["left", "right"])
 def test_a_stroke_beside_its_trunk_by_its_width_finds_it(half: float, side: int) -> None:
-    way = way_to_trunk(photo(half, 200 + 2 * half * side), STROKE, CROWN, HEIGHT)
+    way, is_sure = way_to_trunk(photo(half, 200 + 2 * half * side), STROKE, CROWN, HEIGHT)
+    assert is_sure
     assert way == pytest.approx([2 * half * side, 0.0], abs=0.5 * half + 1)
 
 
@@ -31,20 +32,21 @@ def test_a_stroke_beside_its_trunk_by_its_width_finds_it(half: float, side: int)
 def test_a_trunk_lit_from_one_side_is_found_too(side: int) -> None:
     lit = photo(8, 200 + 16 * side)
     lit[160:, 200 + 16 * side : 208 + 16 * side] += 90
-    way = way_to_trunk(lit, STROKE, CROWN, HEIGHT)
+    way, is_sure = way_to_trunk(lit, STROKE, CROWN, HEIGHT)
+    assert is_sure
     assert way == pytest.approx([16 * side, 0.0], abs=8)
 
 
 @pytest.mark.parametrize("half", [3.0, 8.0, 15.0, 40.0])
 @pytest.mark.parametrize("aside", [-0.7, 0.0, 0.7])
 def test_a_stroke_on_its_trunk_stays(half: float, aside: float) -> None:
-    assert not way_to_trunk(photo(half, 200 + aside * half), STROKE, CROWN, HEIGHT).any()
+    assert not way_to_trunk(photo(half, 200 + aside * half), STROKE, CROWN, HEIGHT)[0].any()
 
 
 def test_a_stroke_on_the_dark_side_of_a_trunk_stays() -> None:
     striped = photo(15.0)
     striped[160:, 186:192] += 90
-    assert not way_to_trunk(striped, STROKE + np.array([4.0, 0.0]), CROWN, HEIGHT).any()
+    assert not way_to_trunk(striped, STROKE + np.array([4.0, 0.0]), CROWN, HEIGHT)[0].any()
 
 
 def standing(foot: int, lawn: int) -> np.ndarray:
@@ -69,14 +71,29 @@ def test_a_foot_that_something_hides_is_none_on_the_ground() -> None:
     assert ground_before_trunk(standing(350, 350), STROKE, CROWN, HEIGHT) == 0
 
 
-def test_a_pole_far_beside_is_not_the_trunk() -> None:
-    assert not way_to_trunk(photo(4.0, 230.0), STROKE, CROWN, HEIGHT).any()
+def test_a_pole_far_beside_is_not_taken_for_the_trunk() -> None:
+    assert not way_to_trunk(photo(4.0, 230.0), STROKE, CROWN, HEIGHT)[1]
+
+
+@pytest.mark.parametrize("side", [-1, 1], ids=["left", "right"])
+def test_a_stroke_far_beside_what_stands_out_is_doubted(side: int) -> None:
+    way, is_sure = way_to_trunk(photo(4.0, 200 + 30 * side), STROKE, CROWN, HEIGHT)
+    assert not is_sure
+    assert way == pytest.approx([30 * side, 0.0], abs=4)
+
+
+def test_a_stroke_on_its_trunk_beside_another_one_is_not_doubted() -> None:
+    two = photo(8.0)
+    two[160:, 228:236] = (20, 20, 20)
+    way, is_sure = way_to_trunk(two, STROKE, CROWN, HEIGHT)
+    assert is_sure
+    assert not way.any()
 
 
 @pytest.mark.parametrize("stroke", [STROKE[1:] - [0, 150], np.array([[200.0, 200.0], [200.0, 150.0]])[:, :] - [0, 60]])
 def test_a_stroke_inside_the_crown_stays(stroke: np.ndarray) -> None:
-    assert not way_to_trunk(photo(8.0, 216.0), stroke, CROWN, HEIGHT).any()
+    assert not way_to_trunk(photo(8.0, 216.0), stroke, CROWN, HEIGHT)[0].any()
 
 
 def test_where_nothing_stands_out_nothing_moves() -> None:
-    assert not way_to_trunk(photo(8.0, 216.0, (180, 200, 220)), STROKE[1:], CROWN, HEIGHT).any()
+    assert not way_to_trunk(photo(8.0, 216.0, (180, 200, 220)), STROKE[1:], CROWN, HEIGHT)[0].any()

@@ -58,7 +58,7 @@ BULGE = 1.08
 BARE_BREADTH = 0.5
 """Share of a visible branch's width in front of which no leaf hangs; more would show sky beside thinner wood."""
 READ = "the foliage and branches as they were read in the photo"
-DOUBTFUL = ("outside_photo", UNCLEAR.code)
+DOUBTFUL = ("outside_photo", UNCLEAR.code, "trunk_unclear")
 """Codes of warnings after which the strokes may not describe a tree."""
 
 

@@ -1,4 +1,4 @@
-"""A trunk's stroke that was drawn beside its trunk is moved onto it; one that begins before its foot is shortened."""
+"""A trunk's stroke beside its trunk is moved onto it, or doubted; one that begins before its foot is shortened."""
 
 from dataclasses import replace
 
@@ -9,6 +9,7 @@ from treestroke.core.pipeline.working_copy import WorkingCopy
 from treestroke.core.segment.foliage import Foliage
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.trace.trunk_place import ground_before_trunk, way_to_trunk
+from treestroke.core.types import Floats
 
 
 def on_its_trunk(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
@@ -17,17 +18,26 @@ def on_its_trunk(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
 
 
 def _beside_no_more(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
-    """Move the trunk's stroke onto the trunk."""
+    """Move the trunk's stroke onto the trunk; where it is not sure which that is, warn only."""
     trunk, *others = working.strokes.branches
-    way = way_to_trunk(working.photo, trunk.points, foliage.region, working.height_px(foliage.mask))
+    way, is_sure = way_to_trunk(working.photo, trunk.points, foliage.region, working.height_px(foliage.mask))
     if not way.any():
         return working
+    if not is_sure:
+        return replace(working, warnings=(*working.warnings, _doubt(way / working.frame.scale)))
     height, width = working.photo.shape[:2]
     moved = replace(trunk, points=np.clip(trunk.points + way, 0.0, (width, height)))
     detail = f"it runs beside the trunk and was moved onto it, by {np.hypot(*way) / working.frame.scale:.0f} px"
     strokes = replace(working.strokes, branches=(moved, *others))
     warning = StrokeWarning("trunk_moved", "branches/0", detail)
     return replace(working, strokes=strokes, warnings=(*working.warnings, warning))
+
+
+def _doubt(way: Floats) -> StrokeWarning:
+    """Say that nothing is seen under the trunk's stroke, but something at the end of a way (2,), px, from it."""
+    side = "right" if way[0] > 0 else "left"
+    detail = f"no trunk is seen under it, but something like one {np.hypot(*way):.0f} px to its {side}"
+    return StrokeWarning("trunk_unclear", "branches/0", f"{detail}; draw it on the trunk, from where that stands")
 
 
 def _from_its_foot(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:

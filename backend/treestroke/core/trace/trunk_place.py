@@ -28,6 +28,10 @@ CLEAR, CLEARER = 2.0, 1.6
 """Least contrast of a trunk beside the stroke, in deviations of its colours, and how many times that of any other
 stripe under the stroke it must be: of 150 strokes on their trunks, some by their edges, none is moved; of 200 beside
 them by once or one and a half times their width 105 are moved onto them and 2 away from them."""
+DOUBTED, DOUBTED_BY = 1.5, 2.5
+"""Least contrast of a stripe beside the stroke, and how many times that of any under it, that make the stroke doubtful:
+of 63 strokes on their trunks none is doubted; of 255 beside them by 1.5 to 2.5 times their width and not moved 88 are,
+86 of them toward the trunk."""
 NOISE = 4.0
 """Added to deviations, steps of 255: no stripe is smoother than a camera's noise."""
 
@@ -79,24 +83,28 @@ def _strip(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> 
     return _Strip(colours, offsets, across, along, step)
 
 
-def way_to_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> Floats:
-    """Return the way (2,), px, from a trunk's stroke (n, 2), root first, to the trunk beside it; zeros if it is on it.
+def way_to_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> tuple[Floats, bool]:
+    """Return the way (2,), px, from a trunk's stroke (n, 2), root first, to the trunk, and whether that is sure.
 
-    ``photo`` is (h, w, 3), sRGB; ``crown`` (h, w) is where leaves may be.
+    It is zero where the stroke is on the trunk, and where nothing beside it looks more like one. ``photo`` is
+    (h, w, 3), sRGB; ``crown`` (h, w) is where leaves may be.
     """
     strip = _strip(photo, stroke_px, crown, height_px)
     if strip is None:
-        return np.zeros(2)
+        return np.zeros(2), True
     step = strip.step
     middle, half, contrast = _stripes(strip.colours, max(1, int(WIDEST * height_px / step)))
     middle, half = strip.offsets[middle], half * step
     near = np.where(np.abs(middle) <= APART * half + 2 * step, contrast, 0.0)
-    best = int(near.argmax())
+    best, clearest = int(near.argmax()), int(contrast.argmax())
     under = np.abs(middle) <= half + 1.5 * step
     away = np.abs(middle - middle[best])
     rival = (away >= ASIDE * (half + half[best])) | (away + half[best] <= half)
     least = max(CLEAR, CLEARER * float(contrast[under & rival].max(initial=0.0)))
-    return strip.across * middle[best] if near[best] > least and not under[best] else np.zeros(2)
+    if near[best] > least and not under[best]:
+        return strip.across * middle[best], True
+    least = max(DOUBTED, DOUBTED_BY * float(contrast[under].max(initial=0.0)))
+    return (strip.across * middle[clearest], False) if contrast[clearest] > least else (np.zeros(2), True)
 
 
 def ground_before_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> float:
