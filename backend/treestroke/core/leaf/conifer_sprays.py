@@ -34,7 +34,7 @@ class Posture:
 
 
 POSTURES: dict[FoliageKind, Posture] = {
-    "needles": Posture(aside=0.7, rise=-0.12, level=1.6, scatter=0.3, stand_off=0.3),
+    "needles": Posture(aside=0.7, rise=-0.2, level=0.8, scatter=0.4, stand_off=0.3),
     "scales": Posture(aside=0.8, rise=0.9, level=0.15, scatter=0.45, stand_off=0.6),
 }
 """Judged on renders of four conifers from six sides."""

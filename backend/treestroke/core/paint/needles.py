@@ -107,8 +107,8 @@ def _larch_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
 def draw_flat_spray(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
     """Draw a flat spray as firs and spruces have it: a feather of shoots with short needles, narrow toward its tip.
 
-    Its outline is frayed, pointed and longer than wide, so that it does not read as a leaf where it is a few pixels
-    wide.
+    Its outline is frayed, pointed and three times as long as broad, so that it does not read as a lobed leaf where it
+    is a few pixels wide.
 
     Returns
     -------
