@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -22,8 +24,23 @@ def test_a_card_is_two_triangles_that_face_the_viewer(leaves, atlas):
 
 
 def test_corners_stand_half_extents_off_the_centre(leaves, atlas):
-    corners = cards(leaves, atlas).positions[4:8]
+    corners = cards(leaves, replace(atlas, fold=0.0)).positions[4:8]
     assert corners.tolist() == [[-1, 5.5, 1], [1, 5.5, 1], [1, 6.5, 1], [-1, 6.5, 1]]
+
+
+def test_a_card_is_folded_outward_along_its_tile_s_diagonal(leaves, atlas):
+    mesh = cards(leaves, replace(atlas, fold=0.4))
+    plain, mirrored = mesh.positions[4:8, 2], mesh.positions[8:12, 2]
+    assert plain == pytest.approx([1.2, 0.8, 1.2, 0.8])
+    assert mirrored == pytest.approx([0.8, 1.2, 0.8, 1.2])
+    for triangle in mesh.triangles[2:]:
+        assert (mesh.positions[triangle, 2] > 1).sum() == 2
+
+
+def test_fruit_is_not_folded(leaves, atlas):
+    heights = cards(leaves, replace(atlas, fold=0.4, fruit=5)).positions[:, 2]
+    assert np.ptp(heights[:4]) > 0.3
+    assert np.ptp(heights[4:]) == 0
 
 
 def test_a_card_holds_to_its_joint(leaves, atlas):

@@ -2,13 +2,17 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from tests.core.leaf.conftest import view_of
 
+from treestroke.core.geometry.vectors import unit
+from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.coverage import Outlines, cover, newly_hidden, outlines_of, share_inside
 from treestroke.core.leaf.grid import FoliageGrid, foliage_grid
 from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.paint.atlas import Atlas
 
 MIDDLE = np.array([0.0, 6.65, 0.0])
 
@@ -86,3 +90,25 @@ def test_a_column_is_as_broad_as_a_square_of_its_area(photo, mask, volume, grid)
     assert narrow.breadth_m == pytest.approx(float(metres(np.sqrt(column.sum()))), rel=0.02)
     across = np.count_nonzero(mask.any(axis=0))
     assert grid.breadth_m == pytest.approx(float(metres(float(across))), rel=0.02)
+
+
+def test_a_folded_card_is_seen_from_its_edge(outlines, grid):
+    across = card(0.2)
+    edge_on = replace(across, rights=0.2 * np.array([[0.0, 0.0, -1.0]]), ups=0.2 * np.array([[0.0, 1.0, 0.0]]))
+    flat, folded = (hidden(edge_on, replace(outlines, fold=fold), grid).sum() for fold in (0.0, 0.5))
+    assert folded > 4 * flat
+
+
+@pytest.mark.parametrize("flip", [False, True])
+def test_cells_of_a_folded_card_are_those_of_its_triangles(flip, grid):
+    tilted = replace(card(0.3), flips=np.array([flip]), rights=np.array([[0.2, 0.1, 0.2]]))
+    tilted = replace(tilted, ups=0.3 * unit(np.cross([[0.3, 0.2, 1.0]], tilted.rights)))
+    full = outlines_of(np.full((1, 64, 64), 255, np.uint8), fold=0.5)
+    flat_atlas = Atlas(np.zeros((2, 2, 4), np.uint8), np.array([[0.0, 0, 1, 1]]), np.zeros((1, 3)), fold=0.5)
+    mesh = cards(tilted, flat_atlas)
+    drawn = np.zeros(grid.inside.shape, np.uint8)
+    for triangle in mesh.triangles:
+        corners = grid.positions_of(mesh.positions[triangle].astype(float))
+        cv2.fillPoly(drawn, [np.floor(corners).astype(np.int32)], 1)
+    found = hidden(tilted, full, grid).reshape(drawn.shape)
+    assert (found & (drawn > 0)).sum() > 0.85 * (found | (drawn > 0)).sum()

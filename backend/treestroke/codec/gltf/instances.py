@@ -7,7 +7,7 @@ from treestroke.codec.gltf.tree import MATERIALS, Part, head_of
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.leaf.cards import CORNERS
+from treestroke.core.leaf.cards import CORNERS, HALVES, RIDGE
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas
 from treestroke.core.types import Floats
@@ -50,13 +50,13 @@ def _leaf_nodes(document: Document, cards: Leaves, atlas: Atlas) -> list[int]:
 
 def _card(atlas: Atlas, tile: int, flip: bool, size: float) -> Mesh:
     """Build the card of a tile, facing +Z; ``size`` is half its side, metres."""
-    flat = np.column_stack([CORNERS, np.zeros(4)])
-    normals = unit(flat * _BULGE + np.array([0.0, 0.0, 1.0]))
+    corners = np.column_stack([CORNERS, (-1.0 if flip else 1.0) * (0.0 if tile == atlas.fruit else atlas.fold) * RIDGE])
+    normals = unit(corners * np.array([_BULGE, _BULGE, 0.0]) + np.array([0.0, 0.0, 1.0]))
     left, top, right, bottom = atlas.boxes[tile]
     left, right = (right, left) if flip else (left, right)
     uvs = np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
-    triangles = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)
-    return Mesh((flat * size).astype(np.float32), normals.astype(np.float32), uvs.astype(np.float32), triangles)
+    triangles = HALVES[int(flip)]
+    return Mesh((corners * size).astype(np.float32), normals.astype(np.float32), uvs.astype(np.float32), triangles)
 
 
 def _placed(document: Document, cards: Leaves, size: float) -> dict[str, int]:

@@ -1,16 +1,20 @@
-"""Leaves as triangles: two for each card."""
+"""Leaves as triangles: two for each card, the halves of its fold."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Attachment, Mesh
 from treestroke.core.geometry.vectors import UP, unit
-from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.leaf.leaves import Leaves, fruit_among
 from treestroke.core.paint.atlas import Atlas
 from treestroke.core.types import Floats
 
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 """Corners of a card in half-extents, counter-clockwise from its lower left: x right, y up."""
+RIDGE = np.array([1.0, -1.0, 1.0, -1.0])
+"""Whether a corner lies on the card's fold, before its flat middle, or behind it; the other way round if mirrored."""
+HALVES = np.array([[[0, 1, 2], [0, 2, 3]], [[1, 2, 3], [1, 3, 0]]], dtype=np.uint32)
+"""Triangles on both sides of the fold: of a card, and of a mirrored one."""
 ROUNDNESS = 0.6
 """Weight of the direction out of the crown in a normal, against the card's own: the crown is shaded as a volume."""
 
@@ -23,10 +27,11 @@ def cards(leaves: Leaves, atlas: Atlas) -> Mesh:
     """
     m = len(leaves)
     corners = leaves.centres[:, None] + CORNERS[:, :1] * leaves.rights[:, None] + CORNERS[:, 1:] * leaves.ups[:, None]
-    positions = corners.reshape(-1, 3)
+    ridge = RIDGE * np.where(leaves.flips, -1.0, 1.0)[:, None] * ~fruit_among(leaves, atlas)[:, None]
+    positions = (corners + ridge[..., None] * leaves.ridges(atlas.fold)[:, None]).reshape(-1, 3)
     first = 4 * np.arange(m, dtype=np.uint32)[:, None, None]
-    triangles = (first + np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32)).reshape(-1, 3)
-    normals = _normals(leaves, positions) if m else positions
+    triangles = (first + HALVES[leaves.flips.astype(np.int64)]).reshape(-1, 3)
+    normals = _normals(leaves, corners.reshape(-1, 3)) if m else positions
     return Mesh(
         positions.astype(np.float32),
         normals.astype(np.float32),

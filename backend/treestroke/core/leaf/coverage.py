@@ -34,18 +34,21 @@ class Outlines:
         For each of `LATTICES`, k arrays (n, 2): all dots.
     probes
         (k, PROBES, 2) some of them, spread over the tile.
+    fold
+        How far cards are folded (`treestroke.core.paint.atlas.Atlas`).
     """
 
     dots: tuple[tuple[_Dots, ...], ...]
     probes: _Dots
+    fold: float
 
 
-def outlines_of(alphas: NDArray[np.uint8]) -> Outlines:
-    """Find the dots of tiles (k, side, side) of alpha."""
+def outlines_of(alphas: NDArray[np.uint8], fold: float = 0.0) -> Outlines:
+    """Find the dots of tiles (k, side, side) of alpha, on cards that are folded so far."""
     dots = tuple(tuple(_hiding_dots(alpha, side) for alpha in alphas) for side in LATTICES)
     probed = dots[LATTICES.index(PROBED)]
     spread = [np.linspace(0, len(d) - 1, PROBES).round().astype(np.int64) for d in probed]
-    return Outlines(dots, np.stack([d[index] for d, index in zip(probed, spread, strict=True)]))
+    return Outlines(dots, np.stack([d[index] for d, index in zip(probed, spread, strict=True)]), fold)
 
 
 def _hiding_dots(alpha: NDArray[np.uint8], side: int) -> _Dots:
@@ -57,7 +60,7 @@ def _hiding_dots(alpha: NDArray[np.uint8], side: int) -> _Dots:
 
 def share_inside(leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:
     """Share (m,) of each card's probes that project into the foliage, or onto wood that the card lies behind."""
-    cells = _Shown.of(leaves, grid).cells(outlines.probes[leaves.tiles], grid)
+    cells = _Shown.of(leaves, outlines.fold, grid).cells(outlines.probes[leaves.tiles], grid)
     return np.asarray(grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None]).mean(axis=1))
 
 
@@ -66,7 +69,7 @@ def newly_hidden(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: Foli
 
     Wood that a card lies behind is neither.
     """
-    cells = _Shown.of(leaves, grid).cells(outlines.probes[leaves.tiles], grid)
+    cells = _Shown.of(leaves, outlines.fold, grid).cells(outlines.probes[leaves.tiles], grid)
     free = np.isinf(nearest[cells])
     foliage = grid.inside.ravel()[cells]
     behind = grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None])
@@ -78,7 +81,7 @@ def cover(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid
 
     It is infinite where no card hides the cell.
     """
-    shown, depth = _Shown.of(leaves, grid), grid.camera.depth(leaves.centres).astype(np.float32)
+    shown, depth = _Shown.of(leaves, outlines.fold, grid), grid.camera.depth(leaves.centres).astype(np.float32)
     lattice = np.searchsorted(LATTICES[:-1], shown.sides)
     kinds = lattice * len(outlines.probes) + leaves.tiles
     order = np.argsort(kinds, kind="stable")
@@ -91,19 +94,21 @@ def cover(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid
 
 @dataclass(frozen=True, eq=False)
 class _Shown:
-    """Cards as a view shows them, in cells of its grid: their middles, and half-extents to the right and up (m, 2)."""
+    """Cards as a view shows them, in cells of its grid: their middles, half-extents right and up, and ridges (m, 2)."""
 
     middles: _Dots
     rights: _Dots
     ups: _Dots
+    ridges: _Dots
 
     @staticmethod
-    def of(leaves: Leaves, grid: FoliageGrid) -> "_Shown":
+    def of(leaves: Leaves, fold: float, grid: FoliageGrid) -> "_Shown":
         """Project cards' middles and extents; within a card, perspective is neglected."""
         rights = np.where(leaves.flips, -1.0, 1.0)[:, None] * leaves.rights
-        points = np.concatenate([leaves.centres, leaves.centres + rights, leaves.centres + leaves.ups])
-        middles, right, up = np.split(grid.positions_of(points).astype(np.float32), 3)
-        return _Shown(middles, right - middles, up - middles)
+        offsets = (np.zeros_like(rights), rights, leaves.ups, leaves.ridges(fold))
+        points = np.concatenate([leaves.centres + offset for offset in offsets])
+        middles, right, up, ridge = np.split(grid.positions_of(points).astype(np.float32), 4)
+        return _Shown(middles, right - middles, up - middles, ridge - middles)
 
     @property
     def sides(self) -> _Dots:
@@ -112,14 +117,16 @@ class _Shown:
 
     def select(self, index: Indices) -> "_Shown":
         """Select cards by index (k,)."""
-        return _Shown(self.middles[index], self.rights[index], self.ups[index])
+        return _Shown(self.middles[index], self.rights[index], self.ups[index], self.ridges[index])
 
     def cells(self, dots: _Dots, grid: FoliageGrid) -> Indices:
         """Flat cells (m, p) of dots (m or 1, p, 2) on the cards."""
         rows, columns = grid.inside.shape
+        before = 1 - np.abs(dots[..., 0] - dots[..., 1])
         x, y = (
             dots[..., 0] * self.rights[:, None, axis]
             + dots[..., 1] * self.ups[:, None, axis]
+            + before * self.ridges[:, None, axis]
             + self.middles[:, None, axis]
             for axis in (0, 1)
         )

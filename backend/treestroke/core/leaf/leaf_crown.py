@@ -138,7 +138,7 @@ def leaf_crown(
         grids=grids,
         volume=volume,
         colouring=colouring_of(grids, volume, tile_labs(atlas), atlas.recolour, rng),
-        outlines=outlines_of(alphas),
+        outlines=outlines_of(alphas, atlas.fold),
         middle=middle,
         height=max(top, top - bottom),
         side=side,

@@ -12,7 +12,9 @@ from treestroke.core.types import Floats, Indices, Mask
 
 @dataclass(frozen=True, eq=False)
 class Leaves:
-    """m flat cards; each shows one tile of the atlas, a spray that grows in the direction of ``ups``.
+    """m cards; each shows one tile of the atlas, a spray that grows in the direction of ``ups``.
+
+    A card is a rectangle, or one that is folded along the diagonal from its tile's lower left to the upper right.
 
     Attributes
     ----------
@@ -48,6 +50,11 @@ class Leaves:
     def __len__(self) -> int:
         return len(self.centres)
 
+    def ridges(self, fold: float) -> Floats:
+        """How far (m, 3), metres, the folds of cards stand before their flat middles, for a fold as an atlas has it."""
+        size = np.maximum(np.linalg.norm(self.rights, axis=1, keepdims=True), 1e-12)
+        return np.asarray(fold * np.cross(self.rights, self.ups) / size)
+
     def select(self, kept: Mask) -> "Leaves":
         """Keep the marked cards (m,), a mask."""
         return Leaves(*(getattr(self, field.name).compress(kept, axis=0) for field in fields(self)))
@@ -78,5 +85,6 @@ def leaf_area(leaves: Leaves, atlas: Atlas) -> float:
     """
     leaves = leaves.select(~fruit_among(leaves, atlas))
     drawn = (tile_alphas(atlas) >= 255 * ALPHA_CUT).mean(axis=(1, 2))
-    card_areas = 4 * np.linalg.norm(leaves.rights, axis=1) * np.linalg.norm(leaves.ups, axis=1)
+    folding = np.sqrt(1 + 2 * atlas.fold**2)  # over the area of a flat square
+    card_areas = 4 * folding * np.linalg.norm(leaves.rights, axis=1) * np.linalg.norm(leaves.ups, axis=1)
     return float((card_areas * drawn[leaves.tiles]).sum())

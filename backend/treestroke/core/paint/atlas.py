@@ -13,6 +13,9 @@ from treestroke.core.paint.species import AUTO, Species
 from treestroke.core.paint.sprays import SprayKind, draw_spray
 from treestroke.core.types import EVERGREEN, Floats, FoliageKind, Mask, Opacity, Picture
 
+FOLD = 0.5
+"""How far the fold of a card stands before its flat middle, and its other corners behind it, over half its side: a
+spray of leaves is no flat thing. Each half is turned by 35 degrees, so that few look like straws from their edge."""
 COLUMNS = 4
 """Tiles in a row; the atlas has as many rows."""
 TILE_SIDE = 256
@@ -78,6 +81,8 @@ class Atlas:
         Mapping from the photo's colours to the tiles', or None where they are the same.
     fruit
         Index of the tile that shows a fruit, or None; leaves do not show it.
+    fold
+        How far the folds of cards that show leaves stand before their middles, over half their side; 0 for flat cards.
     """
 
     image: NDArray[np.uint8]
@@ -85,6 +90,7 @@ class Atlas:
     colours: Floats
     recolour: Recolour | None = None
     fruit: int | None = None
+    fold: float = 0.0
 
 
 def leaf_atlas(
@@ -130,7 +136,8 @@ def leaf_atlas(
     for tile, window in enumerate(_windows()):
         cluster = tile % len(palette.members)
         image[window] = _tile(kinds[cluster % len(kinds)], palette.members[cluster], style, rng)
-    return Atlas(image, _boxes(), _mean_colours(image), recolour if style.shown else _ignoring_photo(recolour))
+    recolour = recolour if style.shown else _ignoring_photo(recolour)
+    return Atlas(image, _boxes(), _mean_colours(image), recolour, fold=FOLD if kind == "leaves" else 0.0)
 
 
 def tile_alphas(atlas: Atlas) -> NDArray[np.uint8]:

@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.paint.species import Species
-from treestroke.core.types import Mask, Opacity, Picture
+from treestroke.core.types import Indices, Mask, Opacity, Picture
 
 CLUMP = 1.5
 """Side of the window whose mean lightness is a clump's, over that of a spray."""
@@ -22,6 +22,8 @@ FURTHEST_PX = 24
 """Greatest distance at which places are compared, px."""
 INNER = 0.9
 """Least cover of a pixel, and of its neighbours, that is compared: gaps and edges before the sky tell nothing."""
+WINDOW_PX = 640
+"""Longest side of the part of the foliage that is compared, px: of large photos the middle."""
 FEWEST = 500
 """Fewest pixels from which a correlation is told."""
 
@@ -34,12 +36,11 @@ def leaf_length_px(photo: Picture, cover: Opacity | Mask, spray_px: float) -> fl
 
     Source: the correlation length of a random field, of lightness less that of clumps; its relation to a leaf is ours.
     """
-    inner = cv2.erode((np.asarray(cover, dtype=np.float32) >= INNER).astype(np.uint8), np.ones((3, 3), np.uint8))
-    if np.count_nonzero(inner) < FEWEST:
+    covered = np.asarray(cover >= np.float32(INNER))
+    box = _middle(np.flatnonzero(covered.any(axis=1))), _middle(np.flatnonzero(covered.any(axis=0)))
+    weight = np.asarray(cv2.erode(covered[box].astype(np.float32), np.ones((3, 3), np.uint8)), dtype=np.float32)
+    if np.count_nonzero(weight) < FEWEST:
         return None
-    rows, columns = np.flatnonzero(inner.any(axis=1)), np.flatnonzero(inner.any(axis=0))
-    box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-    weight = inner[box].astype(np.float32)
     lightness = cv2.cvtColor(np.ascontiguousarray(photo[box]), cv2.COLOR_RGB2LAB)[..., 0].astype(np.float32)
     detail = _detail(lightness, weight, CLUMP * spray_px)
     variance, before = float((detail * detail).sum() / weight.sum()), 1.0
@@ -57,6 +58,15 @@ def bounded_length(seen: float, species: Species) -> float:
     """Bound the length of a leaf that is seen, a share of the spray's side, by that of its species."""
     least, most = (factor * species.length for factor in LENGTHS)
     return min(max(seen, least), most, LONGEST)
+
+
+def _middle(places: Indices) -> slice:
+    """Range from the first to the last of the places (n,), in rising order, or `WINDOW_PX` in its middle."""
+    if len(places) == 0:
+        return slice(0, 1)
+    first, end = int(places[0]), int(places[-1]) + 1
+    cut = max(0, end - first - WINDOW_PX)
+    return slice(first + cut // 2, end - (cut - cut // 2))
 
 
 def _detail(lightness: NDArray[np.float32], weight: NDArray[np.float32], clump_px: float) -> NDArray[np.float32]:
