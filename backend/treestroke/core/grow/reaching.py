@@ -31,7 +31,7 @@ LONGEST = 0.1
 """Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
 WITHIN, DEPTHS = 0.9, 33
 """Share of the crown's depth that new joints may use, and at how many depths foliage is looked for."""
-STEEPEST = 2.0
+STEEPEST = 1.2
 """Greatest slope of a link's depth against its length in the picture."""
 
 
