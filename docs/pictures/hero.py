@@ -20,7 +20,7 @@ _HEIGHT, _GAP = 560, 8
 """Height of the picture, and the gap between its parts, px."""
 _SIDES_DEG = (90.0, 200.0)
 """From where the tree is seen in the two small parts, from the photo's side to its right."""
-_OBLIQUE_DEG = 40.0
+OBLIQUE_DEG = 40.0
 """How far `draw_preview` turns the tree in its second view."""
 _CROWN, _TRUNK, _CASING = (201, 242, 122), (255, 226, 174), (24, 20, 10)
 """Colours of the strokes as on the page, sRGB."""
@@ -30,7 +30,7 @@ def draw_hero(path: Path) -> None:
     """Grow the tree; draw the photo, the tree as the photo frames it, and two smaller views above each other."""
     model = treestroke.model(PHOTO, PHOTO.with_suffix(".strokes.json"))
     front, _ = views_of(model, 0.0)
-    sides = [views_of(model, np.radians(side - _OBLIQUE_DEG))[1] for side in _SIDES_DEG]
+    sides = [views_of(model, np.radians(side - OBLIQUE_DEG))[1] for side in _SIDES_DEG]
     half = (_HEIGHT - _GAP) // 2
     width = round(half * 1.2)
     small = [fitted(side, half, width) for side in sides]
