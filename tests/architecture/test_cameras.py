@@ -12,7 +12,6 @@ MAY_READ = {
 }
 SECTIONS = {
     "core/geometry/outline_volume.py": "stores outlines as rows of the picture that they were seen in",
-    "core/geometry/clumped_crown.py": "adds an assumed depth to such an outline",
     "core/lift/clumps.py": "takes the crown apart in the front picture",
     "core/grow/growing.py": "grows in pixels of the front picture",
     "core/grow/compiled.py": "grows in pixels of the front picture",

@@ -15,7 +15,7 @@ from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.grow.compiled import CompiledEvaluator
 from treestroke.core.grow.growing import Growing, rules_for
-from treestroke.core.grow.growth_space import growth_space, in_picture
+from treestroke.core.grow.growth_space import growth_space
 from treestroke.core.grow.library import TYPE_1, TYPE_2, Subtree, visible_subtrees
 from treestroke.core.grow.params import GrowthParams
 from treestroke.core.grow.reference import PlainEvaluator
@@ -66,7 +66,7 @@ def benchmark_library(skeleton: Skeleton) -> tuple[Subtree, ...]:
 def benchmark_growth(params: GrowthParams, make: type[CompiledEvaluator] | type[PlainEvaluator]) -> Growing:
     """Make the growth of the benchmark's tree, ready to run."""
     skeleton, to_fill = benchmark_tree()
-    points = in_picture(to_fill.front.camera, skeleton.points)
+    points = to_fill.front.camera.picture_space_from_world(skeleton.points)
     visible = Skeleton(points, skeleton.radii / 0.01, skeleton.parents)
     crown = growth_space(to_fill.volume, to_fill.front, foot_of(visible, to_fill.front.mask))
     library = benchmark_library(skeleton)

@@ -80,6 +80,13 @@ def test_perspective_makes_what_is_twice_as_far_half_as_large() -> None:
     assert camera.pixels_from_world(np.array([[1.0, 3.0, 0.0]])) == pytest.approx(np.array([[380.0, 180.0]]))
 
 
+def test_picture_space_has_pixels_in_all_directions() -> None:
+    camera, points = OrthographicCamera(300, 400, 0.02, (150.0, 390.0)), np.array([[1.0, 2.0, 0.5], [0.0, 0.0, 0.0]])
+    space = camera.picture_space_from_world(points)
+    assert space == pytest.approx(np.array([[200.0, 290.0, 25.0], [150.0, 390.0, 0.0]]))
+    assert camera.world_from_picture_space(space) == pytest.approx(points)
+
+
 def test_nothing_behind_a_perspective_camera_is_in_its_picture() -> None:
     points = np.array([[0.0, 2.0, 0.0], [0.0, 2.0, 20.0], [90.0, 2.0, 0.0]])
     assert in_picture(standing_at(0.0, 10.0, 0.0), points).tolist() == [True, False, False]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.geometry.camera import OrthographicCamera
-from treestroke.core.geometry.clumped_crown import Cells, ClumpedCrown, clumped
+from treestroke.core.geometry.clumped_crown import Cells, ClumpedCrown
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 
@@ -17,12 +17,20 @@ def crown() -> ClumpedCrown:
     filled = np.zeros((10, 10, 10), dtype=bool)
     filled[4:6, 4:6, 6:8] = True
     cells = Cells(filled, np.array([50.0, 50.0, -50.0]), 10.0)
-    return clumped(outline, np.zeros(200), 0.5 * outline.radius_px, cells)
+    return ClumpedCrown(
+        CAMERA,
+        outline.middle_px,
+        outline.radius_px,
+        outline.silhouettes,
+        near_px=np.zeros(200),
+        deep_px=0.5 * outline.radius_px,
+        clumps=cells,
+    )
 
 
 def test_foliage_stands_where_cells_are_filled(crown: ClumpedCrown) -> None:
     points = CAMERA.world_from_pixels(np.tile([[100.0, 100.0]], (4, 1)), -np.array([0.5, 1.5, 2.5, 3.5]))
-    assert crown.admits(points, 0.1).tolist() == [False, True, True, False]
+    assert crown.admits(points).tolist() == [False, True, True, False]
     assert crown.inside(points).tolist() == [False, True, True, False]
 
 

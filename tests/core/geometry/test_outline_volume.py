@@ -107,13 +107,13 @@ def test_the_axis_runs_where_both_sides_show_it(sphere: TurnedOutline, flattened
 
 def test_a_seen_side_admits_what_it_shows_at_any_place_across(sphere: TurnedOutline, flattened: TwoOutlines) -> None:
     points = np.vstack([world(x, 100, z) for x in (100, 155) for z in (-0.5, 0.5, 3.5, 4.5)])
-    assert flattened.admits(points, 0.0).tolist() == 2 * [False, True, True, False]
-    assert sphere.admits(points, 0.0).tolist() == 4 * [True] + [True, True, False, False]
+    assert flattened.admits(points).tolist() == 2 * [False, True, True, False]
+    assert sphere.admits(points).tolist() == 4 * [True] + [True, True, False, False]
 
 
 def test_an_assumed_depth_admits_what_stands_beside_the_sections_near_the_roots_plane(sphere: TurnedOutline) -> None:
     beside = np.vstack([world(165, 100, z) for z in (0.0, 0.2, 0.4)])
-    assert sphere.admits(beside, 0.3).tolist() == [True, True, False]
+    assert sphere.admits(beside).tolist() == [True, True, False]
 
 
 def test_inside_is_what_silhouettes_show_and_sections_hold(flattened: TwoOutlines) -> None:

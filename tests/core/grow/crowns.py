@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import Sections, TurnedOutline, sections_of, turned_outline
-from treestroke.core.grow.growth_space import GrowthSpace, growth_space, in_picture
+from treestroke.core.grow.growth_space import GrowthSpace, growth_space
 from treestroke.core.grow.replacement import CrownToFill
 from treestroke.core.skeleton.skeleton import Skeleton
 
@@ -31,7 +31,7 @@ class Case(NamedTuple):
     def visible(self) -> Skeleton:
         """The skeleton in the picture, px."""
         radii = self.camera.pixels_from_metres(self.skeleton.radii)
-        return Skeleton(in_picture(self.camera, self.skeleton.points), radii, self.skeleton.parents)
+        return Skeleton(self.camera.picture_space_from_world(self.skeleton.points), radii, self.skeleton.parents)
 
     def space(self, foot: tuple[float, float, float] = (160.0, 275.0, 0.0)) -> GrowthSpace:
         return growth_space(self.volume, self.crown.front, np.array(foot))

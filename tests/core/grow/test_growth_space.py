@@ -4,7 +4,7 @@ from tests.core.grow.crowns import trunk_case
 from tests.core.grow.sketched import CAMERA
 from tests.core.grow.sketched import crown as flat_crown
 
-from treestroke.core.grow.growth_space import GrowthSpace, growth_space, in_picture, out_of_picture
+from treestroke.core.grow.growth_space import GrowthSpace, growth_space
 
 
 @pytest.fixture
@@ -12,16 +12,11 @@ def crown() -> GrowthSpace:
     return trunk_case().space()
 
 
-def test_world_and_picture_are_inverse() -> None:
-    points = np.random.default_rng(0).normal(size=(20, 3))
-    np.testing.assert_allclose(out_of_picture(CAMERA, in_picture(CAMERA, points)), points, atol=1e-12)
-
-
 def test_a_crown_may_be_less_deep_than_wide_and_stand_before_its_stem() -> None:
     volume = flat_crown(off=15.0)
     space, angle = growth_space(volume, volume.silhouettes[0], np.zeros(3)), np.linspace(0, 2 * np.pi, 9)
     surface = volume.axis(np.full(9, 5.6)) + np.stack([1.8 * np.cos(angle), 0 * angle, 1.5 * np.sin(angle)], axis=1)
-    assert space.reach(in_picture(CAMERA, surface)) == pytest.approx(np.full(9, 1.0), rel=0.02)
+    assert space.reach(CAMERA.picture_space_from_world(surface)) == pytest.approx(np.full(9, 1.0), rel=0.02)
 
 
 def test_what_attracts_in_space_is_all_over_the_volume(crown: GrowthSpace) -> None:

@@ -212,7 +212,7 @@ def test_no_card_s_centre_lies_outside_a_side_that_was_drawn(scene, camera, off)
     side = np.roll(cv2.ellipse(np.zeros((400, 300), np.uint8), (150, 150), (60, 120), 0, 0, 360, 1, -1) > 0, off, 1)
     slim = volume.with_side(Silhouette(side, replace(camera, from_left=True)))
     centres = without_buds(place((tree, mask, slim, photo, atlas)), mask, camera).centres
-    assert slim.admits(centres, 0.0).all()
+    assert slim.admits(centres).all()
     assert np.percentile(centres[:, 2], [1, 99]) == pytest.approx([(off - 60) / 36, min(off + 60, 117) / 36], abs=0.35)
 
 

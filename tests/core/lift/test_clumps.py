@@ -70,7 +70,7 @@ def test_the_front_stays_as_it_is(front) -> None:
     depths = np.arange(-200, 200, 2) * 0.02
     shown = np.zeros(len(pixels), dtype=bool)
     for depth in depths:
-        shown |= crown.admits(CAMERA.world_from_pixels(pixels, depth), 0.0)
+        shown |= crown.admits(CAMERA.world_from_pixels(pixels, depth))
     assert shown.mean() > 0.97
     beside = np.stack([np.tile(np.arange(400), 2), np.repeat([20, 470], 400)], axis=1) + 0.5
     assert not any(crown.inside(CAMERA.world_from_pixels(beside, depth)).any() for depth in depths)
@@ -117,5 +117,5 @@ def test_the_smallest_crowns_have_a_volume(size: tuple[int, int]) -> None:
     mask[100 : 100 + size[1], 200 : 200 + size[0]] = True
     crown = crown_of(mask)
     centre = CAMERA.world_from_pixels(np.argwhere(mask)[:, ::-1] + 0.5)
-    deep = [crown.admits(centre + np.array([0, 0, z]), 0.0) for z in np.linspace(-1, 1, 101)]
+    deep = [crown.admits(centre + np.array([0, 0, z])) for z in np.linspace(-1, 1, 101)]
     assert np.any(deep, axis=0).mean() > 0.9

@@ -62,7 +62,7 @@ class Ellipsoid:
     def shown(self, points_world: Floats) -> Mask:
         return self.inside(points_world)
 
-    def admits(self, points_world: Floats, slack_m: float) -> Mask:
+    def admits(self, points_world: Floats) -> Mask:
         return self.inside(points_world)
 
     def reach(self, points_world: Floats) -> Floats:

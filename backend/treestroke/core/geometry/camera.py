@@ -103,6 +103,15 @@ class OrthographicCamera:
         up, depth = self.heights_from_rows(points_px[:, 1]), np.broadcast_to(depth_m, across.shape)
         return np.stack([depth, up, across] if self.from_left else [across, up, 0.0 - depth], axis=1)
 
+    def picture_space_from_world(self, points_world: Floats) -> Floats:
+        """Carry world points (n, 3), metres, into picture space (n, 3), px: z is how far before the root they are."""
+        near = self.pixels_from_metres(-self.depth(points_world))
+        return np.column_stack([self.pixels_from_world(points_world), near])
+
+    def world_from_picture_space(self, points_px: Floats) -> Floats:
+        """Carry points (n, 3) of picture space, px, into the world: (n, 3), metres."""
+        return self.world_from_pixels(points_px[:, :2], -self.metres_from_pixels(points_px[:, 2]))
+
     def depth(self, points_world: Floats) -> Floats:
         """Measure the depth (n,), metres, of world points (n, 3), metres; 0 at the root."""
         return np.asarray(points_world[:, 0] if self.from_left else 0.0 - points_world[:, 2])

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.geometry.outline_volume import TurnedOutline, TwoOutlines
+from treestroke.core.geometry.outline_volume import TwoOutlines
 from treestroke.core.types import Floats, Mask
 
 
@@ -42,7 +42,7 @@ class ClumpedCrown(TwoOutlines):
     Attributes
     ----------
     clumps
-        Where foliage stands, px of the front camera's picture, z toward the viewer from the root's plane.
+        Where foliage stands, in the front camera's picture space, px.
     """
 
     clumps: Cells
@@ -59,26 +59,8 @@ class ClumpedCrown(TwoOutlines):
 
     def inside(self, points_world: Floats) -> Mask:
         """Tell which points (n, 3), metres, lie in clumps and in all silhouettes: flags (n,)."""
-        return np.asarray(self.shown(points_world) & self.admits(points_world, 0.0))
+        return np.asarray(self.shown(points_world) & self.admits(points_world))
 
-    def admits(self, points_world: Floats, slack_m: float) -> Mask:  # noqa: ARG002 - clumps cover the whole front
-        """Tell which points (n, 3), metres, lie in clumps: flags (n,); ``slack_m`` has no effect."""
-        return self.clumps.hold(self._picture(points_world))
-
-    def _picture(self, points_world: Floats) -> Floats:
-        """Carry world points (n, 3), metres, into the picture (n, 3), px, z toward the viewer."""
-        flat = self.camera.pixels_from_world(points_world)
-        return np.column_stack([flat, self.camera.pixels_from_metres(points_world[:, 2])])
-
-
-def clumped(outline: TurnedOutline, near_px: Floats, deep_px: Floats, clumps: Cells) -> ClumpedCrown:
-    """Return an outline's volume, as deep as assumed (h,), with foliage in these cells, all px of its picture."""
-    return ClumpedCrown(
-        outline.camera,
-        outline.middle_px,
-        outline.radius_px,
-        outline.silhouettes,
-        near_px,
-        deep_px,
-        clumps,
-    )
+    def admits(self, points_world: Floats) -> Mask:
+        """Tell which points (n, 3), metres, lie in clumps: flags (n,)."""
+        return self.clumps.hold(self.camera.picture_space_from_world(points_world))

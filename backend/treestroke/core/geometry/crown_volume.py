@@ -10,9 +10,6 @@ from treestroke.core.geometry.camera import Camera
 from treestroke.core.types import Floats, Mask
 
 CameraT = TypeVar("CameraT", bound=Camera, covariant=True)
-FLAT = 0.02
-"""Distance from the root's plane, as a share of the tree's height, at which wood and leaves may lie outside a volume
-whose depth is assumed: such volumes come from smoothed outlines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,10 +82,10 @@ class CrownVolume(Protocol):
         Some lie outside the volume, where a limb was seen that reaches beyond the sections.
         """
 
-    def admits(self, points_world: Floats, slack_m: float) -> Mask:
+    def admits(self, points_world: Floats) -> Mask:
         """Tell which points (n, 3), metres, no picture excludes: flags (n,); wider than `inside`.
 
-        Where depth is assumed, points within ``slack_m``, metres, of the plane through the root are admitted too.
+        Where depth is assumed, points near the plane through the root may be admitted too.
         """
 
     def reach(self, points_world: Floats) -> Floats:

@@ -12,6 +12,9 @@ from treestroke.core.types import Floats, Indices, Mask
 
 SMOOTHED_SHARE = 0.02
 """Standard deviation, as a share of the crown's height, over which its outline is smoothed."""
+FLAT = 0.02
+"""Distance from the root's plane, as a share of the tree's height, at which wood and leaves may lie outside sections of
+assumed depth, which come from smoothed outlines."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,12 +111,13 @@ class TurnedOutline:
         """Tell which points (n, 3), metres, lie in all silhouettes: flags (n,)."""
         return shown_by_all(self.silhouettes, points_world)
 
-    def admits(self, points_world: Floats, slack_m: float) -> Mask:
-        """Tell which points (n, 3), metres, lie in the sections or within ``slack_m``, metres, of Z = 0: flags (n,).
+    def admits(self, points_world: Floats) -> Mask:
+        """Tell which points (n, 3), metres, lie in the sections or near Z = 0: flags (n,).
 
         The outline is smoothed, so that single twigs reach beyond the sections.
         """
-        return np.asarray((np.abs(points_world[:, 2]) <= slack_m) | (self.reach(points_world) <= 1.0))
+        near = np.abs(points_world[:, 2]) <= FLAT * float(self.bounds[1, 1])
+        return np.asarray(near | (self.reach(points_world) <= 1.0))
 
     def reach(self, points_world: Floats) -> Floats:
         """Measure the distance of points (n, 3), metres, from their section's centre over its radius: (n,)."""
@@ -196,8 +200,8 @@ class TwoOutlines(TurnedOutline):
         """What the sections are, in words that follow "the solid"."""
         return "whose level sections are ellipses as wide as the crown's front, as deep as its left side"
 
-    def admits(self, points_world: Floats, slack_m: float) -> Mask:  # noqa: ARG002 - no depth is assumed here
-        """Tell which points (n, 3), metres, lie within the left side's outline: flags (n,); ``slack_m`` has no effect.
+    def admits(self, points_world: Floats) -> Mask:
+        """Tell which points (n, 3), metres, lie within the left side's outline: flags (n,).
 
         A limb may reach the edge of both outlines at once, where no ellipse reaches.
         """

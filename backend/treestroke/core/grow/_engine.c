@@ -636,8 +636,8 @@ static int engine_init(PyObject *self, PyObject *args, PyObject *Py_UNUSED(keywo
     PyObject *mask, *middle, *radius, *near, *deep, *counts, *parents, *fractions, *vectors;
     if (e->mask) { PyErr_SetString(PyExc_ValueError, "an engine is initialised once"); return -1; }
     if (!PyArg_ParseTuple(args, "(ii)OOOOO(ddd)ddddOOOO", &e->height, &e->width, &mask, &middle, &radius, &near, &deep,
-                          &e->foot.x, &e->foot.y, &e->foot.z, &e->spacing, &e->closeness, &e->keep, &e->cosine, &counts, &parents,
-                          &fractions, &vectors)) return -1;
+                          &e->foot.x, &e->foot.y, &e->foot.z, &e->spacing, &e->closeness, &e->keep, &e->cosine,
+                          &counts, &parents, &fractions, &vectors)) return -1;
     for (int i = 0; i < BUCKETS; i++) e->bucket[i] = -1;
     if (!(e->mask = copied(mask, 1, (Py_ssize_t)e->height * e->width, NULL))) return -1;
     if (!(e->middle = copied(middle, 8, e->height, NULL))) return -1;
@@ -658,8 +658,9 @@ static void engine_free(PyObject *self) {
         Groups *g = i ? &e->near_groups : &e->groups;
         free(g->x); free(g->y); free(g->low); free(g->high); free(g->slope); free(g->sum); free(g->size);
     }
-    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->near, e->deep, e->scale, e->steer, e->turned, e->base, e->tip, e->count, e->library, e->segments,
-                     e->visits, e->grid, e->next, e->slots, e->best, e->gain, e->found};
+    void *owned[] = {e->first, e->away, e->mask, e->middle, e->radius, e->near, e->deep, e->scale, e->steer, e->turned,
+                     e->base, e->tip, e->count, e->library, e->segments, e->visits, e->grid, e->next, e->slots, e->best,
+                     e->gain, e->found};
     for (size_t i = 0; i < sizeof(owned) / sizeof(*owned); i++) free(owned[i]);
     PyTypeObject *type = Py_TYPE(self);
     type->tp_free(self);

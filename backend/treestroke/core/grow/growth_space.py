@@ -1,4 +1,4 @@
-"""The crown as growth sees it: in pixels of a front picture, (x, y, z) with y down and z toward the viewer."""
+"""The crown as growth sees it: in the picture space of its front, px."""
 
 from dataclasses import dataclass
 
@@ -88,7 +88,7 @@ def growth_space(crown: CrownVolume, front: Silhouette[OrthographicCamera], foot
     sections = Sections(of.middle_px, np.maximum(of.radius_px, LEAST_PX), of.near_px, np.maximum(of.deep_px, LEAST_PX))
     unit = max(2 * float(of.radius_px.max()) / REFERENCE_WIDTH, 1e-3)
     places = _lattice(of)
-    points = out_of_picture(front.camera, places)
+    points = front.camera.world_from_picture_space(places)
     depths = places[crown.inside(points) & (crown.reach(points) >= SHELL)]
     return GrowthSpace(np.ascontiguousarray(front.mask), sections, foot, unit, depths)
 
@@ -104,17 +104,6 @@ def _lattice(sections: Sections) -> Floats:
     high = np.array([(middle + radius).max(), rows[-1] + 1.0, (near + deep).max()])
     axes = (np.arange(start + step / 2, end, step) for start, end in zip(low, high, strict=True))
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-
-
-def in_picture(camera: OrthographicCamera, points_world: Floats) -> Floats:
-    """Carry world points (n, 3), metres, into a front camera's picture: (n, 3), px, z toward the viewer."""
-    flat = camera.pixels_from_world(points_world)
-    return np.column_stack([flat, camera.pixels_from_metres(-camera.depth(points_world))])
-
-
-def out_of_picture(camera: OrthographicCamera, points_px: Floats) -> Floats:
-    """Carry points of a front camera's picture (n, 3), px, z toward the viewer, into the world: (n, 3), metres."""
-    return camera.world_from_pixels(points_px[:, :2], -camera.metres_from_pixels(points_px[:, 2]))
 
 
 def in_mask(points: Floats, mask: Mask) -> Mask:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.crown_volume import FLAT, CrownVolume, Silhouette
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, child_counts
@@ -49,8 +49,8 @@ def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> 
     tree, camera = grown.skeleton, foliage.camera
     joints_px = camera.pixels_from_world(tree.points)
     height_px = float(np.ptp(joints_px[:, 1]))
-    amid = volume.admits(tree.points, FLAT * float(np.ptp(tree.points[:, 1])))
-    places_px = _out_of_reach(joints_px, np.where(amid, tree.parents, -1), foliage.mask, height_px)
+    amid = np.where(volume.admits(tree.points), tree.parents, -1)
+    places_px = _out_of_reach(joints_px, amid, foliage.mask, height_px)
     places_px = places_px[camera.world_from_pixels(places_px)[:, 1] > tree.points[:, 1].min()]
     places_px, parents = _linked(joints_px, places_px, LONGEST * height_px)
     if len(parents) == 0:
@@ -114,7 +114,7 @@ def _lifted(tree: Skeleton, places_px: Floats, parents: Indices, camera: Camera,
     length = np.sqrt(((new - flat[parents[len(tree) :]]) ** 2).sum(axis=1))
     middle, half = camera.depth(volume.axis(new[:, 1])), WITHIN * volume.half_depth(new)
     depths = middle[:, None] + half[:, None] * np.linspace(-1, 1, DEPTHS)
-    leafy = volume.admits(camera.world_from_pixels(np.repeat(places_px, DEPTHS, axis=0), depths.ravel()), 0.0)
+    leafy = volume.admits(camera.world_from_pixels(np.repeat(places_px, DEPTHS, axis=0), depths.ravel()))
     leafy = leafy.reshape(depths.shape)
     depth = np.concatenate([camera.depth(tree.points), np.zeros(len(places_px))])
     for joint, parent in enumerate(parents[len(tree) :].tolist()):

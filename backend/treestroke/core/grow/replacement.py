@@ -17,7 +17,7 @@ from treestroke.core.grow.evaluator import evaluator_for
 from treestroke.core.grow.form import VisibleTree, curve_shoots
 from treestroke.core.grow.growing import Growing, rules_for
 from treestroke.core.grow.grown import Grown
-from treestroke.core.grow.growth_space import growth_space, in_picture, out_of_picture
+from treestroke.core.grow.growth_space import growth_space
 from treestroke.core.grow.library import Subtree
 from treestroke.core.grow.limb_ends import with_limbs_extended
 from treestroke.core.grow.params import GrowthParams
@@ -71,7 +71,9 @@ def grow(
     if not method.library or not mask.any():
         raise ValueError(f"growth needs foliage and a subtree, got {mask.sum()} px and {len(method.library)}")
     camera = crown.front.camera
-    visible = Skeleton(in_picture(camera, skeleton.points), camera.pixels_from_metres(skeleton.radii), skeleton.parents)
+    visible = Skeleton(
+        camera.picture_space_from_world(skeleton.points), camera.pixels_from_metres(skeleton.radii), skeleton.parents
+    )
     visible = with_leader(visible, mask, sections_of(crown.volume, camera), params.leader)
     space = growth_space(crown.volume, crown.front, foot_of(visible, mask))
     visible = with_limbs_extended(visible, space) if params.iterations else visible
@@ -83,7 +85,7 @@ def grow(
     radii = pipe_radii(form.points, form.parents, form.measured, params.tip_px * space.unit)
     distances = growth.evaluator.image_distances()
     return Grown(
-        Skeleton(out_of_picture(camera, form.points), camera.metres_from_pixels(radii), form.parents),
+        Skeleton(camera.world_from_picture_space(form.points), camera.metres_from_pixels(radii), form.parents),
         form.born,
         np.array(choices, dtype=np.int64).reshape(-1, 3),
         float((distances <= REACHED_PX * space.unit).mean()) if len(distances) else 0.0,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from treestroke.core.geometry.camera import Camera
-from treestroke.core.geometry.crown_volume import FLAT, CrownVolume, Silhouette
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -41,9 +41,7 @@ def _worths(tree: Skeleton, foliage: Silhouette[Camera], volume: CrownVolume) ->
     along = ((np.arange(SAMPLES) + 0.5) / SAMPLES)[:, None, None]
     start = tree.points[np.maximum(tree.parents, 0)]
     places = (start + along * (tree.points - start)).reshape(-1, 3)
-    slack = FLAT * float(np.ptp(tree.points[:, 1]))
-    shown, leafy = foliage.shows(places), volume.admits(places, slack)
-    worth = np.where(shown, np.where(leafy, 1.0, -BARE), -CROSSING)
+    worth = np.where(foliage.shows(places), np.where(volume.admits(places), 1.0, -BARE), -CROSSING)
     return np.asarray(edge_lengths(tree) * worth.reshape(SAMPLES, -1).mean(axis=0))
 
 

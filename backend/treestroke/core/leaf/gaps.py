@@ -128,7 +128,7 @@ def _cover_view(
 ) -> list[Leaves]:
     """Set cards over what all ``patches`` leave open in one view, and bring its ``nearest`` cards up to date."""
     inside, added = gaps.grid.inside.ravel(), list[Leaves]()
-    leafy = gaps.crown.admits(gaps.seats.points)
+    leafy = gaps.crown.volume.admits(gaps.seats.points)
     seats = gaps.seats.at(leafy) if leafy.any() else gaps.seats
     seat_of = _nearest_seats(seats, gaps.grid)
     for scale in SIZES:
@@ -202,9 +202,9 @@ def _amid_foliage(points_px: Floats, depth: Floats, gaps: _Gaps) -> Floats:
     camera, crown = gaps.grid.camera, gaps.crown
     placed = camera.world_from_pixels(points_px, depth)
     for away in DEPTHS:
-        bare = np.flatnonzero(~crown.admits(placed))
+        bare = np.flatnonzero(~crown.volume.admits(placed))
         moved = camera.world_from_pixels(points_px[bare], depth[bare] + away * crown.height)
-        leafy = crown.admits(moved)
+        leafy = crown.volume.admits(moved)
         placed[bare[leafy]] = moved[leafy]
     return placed
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import in_picture
-from treestroke.core.geometry.crown_volume import FLAT, CrownVolume
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
 from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
 from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_inside
@@ -95,10 +95,6 @@ class LeafCrown:
         """Lower the depth of the ``nearest`` card (cells,), metres, flat as a view's grid, to that of these cards."""
         cover(nearest, leaves, self.outlines, grid)
 
-    def admits(self, points: Floats) -> Mask:
-        """Tell where leaves may be by the volume alone: flags (n,) of points (n, 3), metres."""
-        return self.volume.admits(points, FLAT * self.height)
-
     def _fitting(self, leaves: Leaves, least: float) -> Mask:
         """Which cards (m,) lie in the foliage, or behind the wood, of each view that sees them.
 
@@ -110,7 +106,7 @@ class LeafCrown:
             shown = behind & (share_inside(leaves, self.outlines, grid) >= least)
             fits |= shown
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
-        in_volume = self.admits(leaves.centres) | (not self.volume.depth_seen)
+        in_volume = self.volume.admits(leaves.centres) | (not self.volume.depth_seen)
         return np.asarray(fits & ~excluded & in_volume)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.crown_volume import FLAT, CrownVolume
+from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.geometry.outline_volume import half_widths_px
 from treestroke.core.leaf.arrangement import thin_edges
 from treestroke.core.leaf.grid import FoliageGrid
@@ -35,7 +35,7 @@ def leaf_weights(
     Source: Beer and Lambert's law, by which gaps in a canopy tell its leaf area (Monsi and Saeki 1953).
     """
     middles = (skeleton.points + skeleton.points[skeleton.parents]) / 2
-    leafy = thin_edges(skeleton) & volume.admits(middles, FLAT * height)
+    leafy = thin_edges(skeleton) & volume.admits(middles)
     weight = leafy * (1 - SHELL * np.minimum(volume.reach(middles), 1.0) ** 2)
     wood = weight * edge_lengths(skeleton)
     share = np.mean([_shares(middles, wood, grid, height, volume if even else None) for grid in grids], axis=0)

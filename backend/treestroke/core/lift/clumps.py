@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import OrthographicCamera
-from treestroke.core.geometry.clumped_crown import Cells, ClumpedCrown, clumped
+from treestroke.core.geometry.clumped_crown import Cells, ClumpedCrown
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import TurnedOutline
 from treestroke.core.geometry.polyline import smoothed
@@ -23,22 +23,19 @@ CELLS = 80
 """Cells along the crown's longer side."""
 EVEN, TREND = 0.04, 0.12
 """Standard deviations, as shares of the crown's height, over which its outline is evened, and averaged to a trend."""
+DEEP, SHALLOWEST = 1.15, 0.5
+"""Depth of the sections over their width, as clumps lie under their surface; and least depth over the width's trend."""
+LEAN = 0.6
+"""How far sections stand before or behind the stem, over how far they stand beside it."""
 LARGEST, SMALLEST = 0.12, 1.2
 """Radius of the largest clumps, as a share of the crown's size, and of the smallest, in cells."""
 AT_OUTLINE = 0.7
 """Clumps that reach this share of their section's radius are at the outline."""
 SUNK = 0.8
 """Share of its radius that a clump lies under the crown's surface."""
-RELIEF = 0.4
-"""Share of the crown's depth over which the clumps of its front are spread."""
-DEEP = 1.15
-"""Depth of the sections over their width: clumps lie under their surface."""
-LEAN = 0.6
-"""How far sections stand before or behind the stem, over how far they stand beside it."""
-SHALLOWEST = 0.5
-"""Least depth of a section, over the trend of its width."""
-SEEN_THROUGH = 8.0
-"""How much deeper it is spread for each unit of the front's openness: through an open crown its back is seen."""
+RELIEF, SEEN_THROUGH = 0.4, 8.0
+"""Share of the crown's half depth over which the clumps of its front are spread, and how much more for each unit of the
+front's openness: through an open crown its back is seen."""
 CORE = 0.45
 """Share of the sections' radius within which foliage stands anywhere."""
 CANDIDATES = 600
@@ -46,16 +43,16 @@ CANDIDATES = 600
 HEIGHTS = 0.15
 """How much higher or lower than its model an unseen clump may stand, as a share of the crown's height."""
 BAY = 0.15
-"""Width of the gaps, as a share of the crown's height, by which it is told how open a crown is."""
+"""Width of the gaps, as a share of the crown's height, that count for a crown's openness."""
 CLOSE = 0.25
 """Least distance between clumps, over the sum of their radii."""
 AT_ONCE = 12
-"""Clumps that are added before the crown is looked at again."""
+"""Clumps that are added before the crown's openness is measured again."""
 OPENER = 1.2
 """Openness of the clumps from the sides over that of the front: no leaf reaches beyond the front, but leaves at the
 sides reach beyond their clumps."""
 VIEWS_RAD = np.radians([45.0, 90.0, 135.0])
-"""Sides from which it is looked at."""
+"""Sides from which it is measured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +74,7 @@ class _Crown:
     deep: Floats
 
     def rows(self, y: Floats) -> NDArray[np.int64]:
-        """Return the rows (n,) of heights (n,)."""
+        """Return the rows (n,) that hold places y (n,)."""
         return np.clip(y.astype(np.int64), 0, len(self.mask) - 1)
 
 
@@ -101,7 +98,15 @@ def in_clumps(outline: TurnedOutline, front: Silhouette[OrthographicCamera], rng
     cells = Cells(filled, np.array([*corner, side * nearest]), side)
     row = (np.arange(camera.height) + 0.5 - corner[1]) / side - 0.5
     near_px, deep_px = (side * np.interp(row, np.arange(len(column)), column) for column in (crown.near, crown.deep))
-    return clumped(outline, near_px, deep_px, cells)
+    return ClumpedCrown(
+        camera,
+        outline.middle_px,
+        outline.radius_px,
+        outline.silhouettes,
+        near_px=near_px,
+        deep_px=deep_px,
+        clumps=cells,
+    )
 
 
 def _coarse(outline: TurnedOutline, mask: Mask, corner: Floats, side: float) -> _Crown:
@@ -119,9 +124,8 @@ def _deep(crown: _Crown, root: Floats, rng: np.random.Generator) -> _Crown:
     centre_x, centre_y = (float((crown.radius * of).sum() / crown.radius.sum()) for of in (crown.middle, height))
     stem = root[0] + (centre_x - root[0]) * np.clip((root[1] - height) / max(root[1] - centre_y, 1.0), 0.0, 1.5)
     trend, aside = (smoothed(column, TREND * len(height)) for column in (crown.radius, crown.middle - stem))
-    deep = DEEP * np.maximum(
-        trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng), SHALLOWEST * trend
-    )
+    varied = trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng)
+    deep = DEEP * np.maximum(varied, SHALLOWEST * trend)
     return replace(crown, near=LEAN * _other_phases(aside, rng), deep=deep)
 
 
@@ -143,16 +147,16 @@ def _seen_clumps(crown: _Crown, rng: np.random.Generator) -> Floats:
     aside = np.abs(discs[:, 0] - crown.middle[row]) / crown.radius[row]
     room = np.maximum(np.sqrt(np.maximum(1 - aside**2, 0.0)) * crown.deep[row] - SUNK * discs[:, 2], 0.0)
     relief = min(2.0, RELIEF + SEEN_THROUGH * _openness(crown.mask, len(crown.mask)))
-    place = np.where(
-        _reach(crown, discs) >= AT_OUTLINE, rng.uniform(-1, 1, len(discs)), 1 - relief * rng.random(len(discs))
-    )
-    return np.column_stack([discs[:, :2], crown.near[row] + place * room, discs[:, 2]])
+    beside, before = rng.uniform(-1, 1, len(discs)), 1 - relief * rng.random(len(discs))
+    clumps = np.insert(discs, 2, 0.0, axis=1)
+    clumps[:, 2] = crown.near[row] + np.where(_reach(crown, clumps) >= AT_OUTLINE, beside, before) * room
+    return clumps
 
 
-def _reach(crown: _Crown, discs: Floats) -> Floats:
-    """Return how far from its section's middle each disc (n, 3) reaches, over the section's radius: (n,)."""
-    row = crown.rows(discs[:, 1])
-    return np.asarray((np.abs(discs[:, 0] - crown.middle[row]) + discs[:, 2]) / crown.radius[row])
+def _reach(crown: _Crown, clumps: Floats) -> Floats:
+    """Return how far aside of its section's middle each clump (n, 4) reaches, over the section's radius: (n,)."""
+    row = crown.rows(clumps[:, 1])
+    return np.asarray((np.abs(clumps[:, 0] - crown.middle[row]) + clumps[:, 3]) / crown.radius[row])
 
 
 def _unseen_clumps(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Floats:
@@ -161,39 +165,39 @@ def _unseen_clumps(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Flo
     views = [_View(crown, seen, azimuth) for azimuth in VIEWS_RAD]
     wanted = OPENER * _openness(crown.mask, len(crown.mask))
     clear = np.min([_apart(places, clump) for clump in seen], axis=0, initial=np.inf)
-    missing = _front_area(crown, seen)
+    surplus = _surplus(crown, seen)
     chosen = list[int]()
     while len(places) and clear[best := int(clear.argmax())] > CLOSE:
-        if missing <= 0 and len(chosen) % AT_ONCE == 0 and np.mean([view.openness for view in views]) <= wanted:
+        if surplus <= 0 and len(chosen) % AT_ONCE == 0 and np.mean([view.openness for view in views]) <= wanted:
             break
         chosen.append(best)
-        missing += _front_area(crown, places[best, None])
+        surplus += _surplus(crown, places[best, None])
         for view in views:
             view.add(places[best])
         clear = np.minimum(clear, _apart(places, places[best]))
     return places[chosen]
 
 
-def _front_area(crown: _Crown, clumps: Floats) -> float:
-    """Area of the clumps (n, 4) in the front half of the crown, less that of those in its back half."""
+def _surplus(crown: _Crown, clumps: Floats) -> float:
+    """Sum of the squared radii of the clumps (n, 4) in the crown's front half, less that of those in its back half."""
     before = clumps[:, 2] - crown.near[crown.rows(clumps[:, 1])]
     return float((clumps[:, 3] ** 2 * np.sign(before)).sum())
 
 
 def _candidates(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Floats:
     """Return places for clumps (m, 4) all around: like those at the front's outline, and within its silhouette."""
-    at_outline = np.flatnonzero(_reach(crown, seen[:, [0, 1, 3]]) >= AT_OUTLINE)
+    reach = _reach(crown, seen)
+    at_outline = np.flatnonzero(reach >= AT_OUTLINE)
     if len(at_outline) == 0:
         return np.zeros((0, 4))
     around = np.cumsum(crown.radius + crown.deep)
     row = np.searchsorted(around / around[-1], rng.random(CANDIDATES))
     azimuth = rng.uniform(0, 2 * np.pi, CANDIDATES)
-    away = np.abs(seen[at_outline, 1] - row[:, None]) + HEIGHTS * len(around) * rng.random(
-        (CANDIDATES, len(at_outline))
-    )
+    astray = HEIGHTS * len(around) * rng.random((CANDIDATES, len(at_outline)))
+    away = np.abs(seen[at_outline, 1] - row[:, None]) + astray
     model = at_outline[away.argmin(axis=1)]
     surface = 1 / np.hypot(np.cos(azimuth) / crown.radius[row], np.sin(azimuth) / crown.deep[row])
-    out = np.maximum(_reach(crown, seen[:, [0, 1, 3]])[model] * surface - seen[model, 3], 0.0)
+    out = np.maximum(reach[model] * surface - seen[model, 3], 0.0)
     x, z = crown.middle[row] + out * np.cos(azimuth), crown.near[row] + out * np.sin(azimuth)
     room = cv2.distanceTransform(np.pad(crown.mask.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
     radius = np.minimum(seen[model, 3], room[row, np.clip(x, 0, room.shape[1] - 1).astype(np.int64)])
@@ -242,8 +246,8 @@ class _View:
 
 def _filled(crown: _Crown, clumps: Floats) -> tuple[Mask, int]:
     """Fill the cells (x, y, z) in the clumps and in the core, before the front's silhouette; and z of the first."""
-    deepest = np.abs(crown.near) + np.maximum(crown.deep, 0)
-    nearest = -int(np.ceil(max(float(deepest.max()), float((np.abs(clumps[:, 2]) + clumps[:, 3]).max(initial=0.0)))))
+    sections, balls = np.abs(crown.near) + crown.deep, np.abs(clumps[:, 2]) + clumps[:, 3]
+    nearest = -int(np.ceil(np.concatenate([sections, balls]).max()))
     height, width = crown.mask.shape
     x, y, z = np.ogrid[:width, :height, nearest:-nearest]
     core = np.hypot((x + 0.5 - crown.middle[y]) / crown.radius[y], (z + 0.5 - crown.near[y]) / crown.deep[y])
@@ -251,9 +255,9 @@ def _filled(crown: _Crown, clumps: Floats) -> tuple[Mask, int]:
     for clump in clumps:
         corner = np.maximum(np.floor(clump[:3] - clump[3] - (0, 0, nearest)), 0).astype(np.int64)
         block = tuple(slice(a, b) for a, b in zip(corner, corner + int(np.ceil(2 * clump[3])) + 1, strict=True))
-        filled[block] |= (x[block[0]] + 0.5 - clump[0]) ** 2 + (y[:, block[1]] + 0.5 - clump[1]) ** 2 + (
-            z[:, :, block[2]] + 0.5 - clump[2]
-        ) ** 2 <= clump[3] ** 2
+        near_x, near_y, near_z = x[block[0]], y[:, block[1]], z[:, :, block[2]]
+        squares = [(axis + 0.5 - middle) ** 2 for axis, middle in zip((near_x, near_y, near_z), clump, strict=False)]
+        filled[block] |= squares[0] + squares[1] + squares[2] <= clump[3] ** 2
     return _with_all_columns(filled & crown.mask.T[:, :, None], crown.mask.T), nearest
 
 
@@ -263,9 +267,8 @@ def _with_all_columns(filled: Mask, front: Mask) -> Mask:
     x, y = np.nonzero(front & ~shown)
     if not shown.any() or len(x) == 0:
         return filled
-    labels = cv2.distanceTransformWithLabels((~shown).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)[
-        1
-    ]
+    bare = (~shown).astype(np.uint8)
+    _, labels = cv2.distanceTransformWithLabels(bare, cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL)
     columns = np.argwhere(shown)
     column = np.zeros(int(labels.max()) + 1, dtype=np.int64)
     column[labels[shown]] = np.arange(len(columns))
