@@ -13,7 +13,7 @@ from tests.conftest import EXAMPLES
 import treestroke
 from treestroke.codec.gltf.tree import Part, encode_glb
 from treestroke.codec.image import decode_photo
-from treestroke.core.appearance import StemPixels, View
+from treestroke.core.appearance import Appearance, StemPixels, View
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.outline_volume import turned_outline
@@ -123,7 +123,7 @@ def test_drawing_the_leaf_atlas_and_hanging_the_leaves(benchmark: BenchmarkFixtu
         rng = np.random.default_rng(0)
         atlas = leaf_atlas(photo, mask, kind, rng)
         skeleton = subject.tree.grown.skeleton
-        crown = leaf_crown([view], subject.crown.volume, atlas, 1.0, rng)
+        crown = leaf_crown(Appearance((view,), True), subject.crown.volume, atlas, 1.0, rng)
         leaves = place_leaves(skeleton, crown, LeafParams(kind=kind), rng)
         return len(Surface(cards(leaves, atlas), atlas.image).mesh.triangles)
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 
@@ -90,10 +91,13 @@ class Appearance:
         One or more; the first sets the sizes of leaves.
     shows_leaves
         Whether they show leaves in their colours.
+    sides
+        Where foliage is imagined to be from sides that no view shows.
     """
 
     views: tuple[View, ...]
     shows_leaves: bool
+    sides: tuple[Silhouette[Camera], ...] = ()
 
     def __post_init__(self) -> None:
         if not self.views:

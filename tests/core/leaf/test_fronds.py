@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 from tests.core.leaf.conftest import view_of
 
+from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.grow.palm import PIECES, grow_palm
 from treestroke.core.grow.replacement import CrownToFill
@@ -21,7 +22,9 @@ def palm(mask, volume) -> Skeleton:
 
 @pytest.fixture(scope="module")
 def crown(mask, volume, photo, atlas):
-    return leaf_crown([view_of(photo, mask, volume.camera)], volume, atlas, 1.0, np.random.default_rng(0))
+    return leaf_crown(
+        Appearance((view_of(photo, mask, volume.camera),), True), volume, atlas, 1.0, np.random.default_rng(0)
+    )
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from tests.core.leaf.conftest import view_of
 
+from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.crown_volume import Silhouette, shown_by_all
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.geometry.outline_volume import TurnedOutline
@@ -42,7 +43,7 @@ def fruit(tree: Skeleton, volume: TurnedOutline, views: list[Silhouette]) -> Lea
 @pytest.fixture(scope="module")
 def leaves(tree, mask, volume, photo, atlas) -> Leaves:
     rng = np.random.default_rng(0)
-    crown = leaf_crown([view_of(photo, mask, volume.camera)], volume, atlas, 1.0, rng)
+    crown = leaf_crown(Appearance((view_of(photo, mask, volume.camera),), True), volume, atlas, 1.0, rng)
     return place_leaves(tree, crown, LeafParams(density=0.3), rng)
 
 

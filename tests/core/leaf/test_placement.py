@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial import cKDTree
 from tests.core.leaf.conftest import view_of
 
+from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.leaves import Leaves
@@ -19,7 +20,9 @@ HEIGHT = 10.0
 def place(scene, params=None, seed=0, leaves_from=None, size=1.0):
     tree, mask, volume, photo, atlas = scene
     view, rng = view_of(photo, mask, volume.camera, leaves_from), np.random.default_rng(seed)
-    return place_leaves(tree, leaf_crown([view], volume, atlas, size, rng), params or LeafParams(), rng)
+    return place_leaves(
+        tree, leaf_crown(Appearance((view,), True), volume, atlas, size, rng), params or LeafParams(), rng
+    )
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +97,7 @@ def test_foliage_that_covers_little_of_its_pixels_bears_no_leaves(tree, mask, vo
     view, rng = view_of(photo, mask, camera), np.random.default_rng(0)
     faint = mask & (np.arange(300) > 150)
     view = replace(view, opacity=np.where(faint, 0.3, view.opacity).astype(np.float32))
-    crown = leaf_crown([view], volume, atlas, 1.0, rng)
+    crown = leaf_crown(Appearance((view,), True), volume, atlas, 1.0, rng)
     drawn = shown(place_leaves(tree, crown, LeafParams(), rng), atlas, camera)
     assert (drawn & faint).sum() <= 0.03 * faint.sum()
 
@@ -217,7 +220,10 @@ def test_no_card_s_centre_lies_outside_a_side_that_was_drawn(scene, camera, off)
 
 
 def test_no_wood_is_seen_before_the_foliage(scene, mask, volume, photo, atlas, camera):
-    tree, crown = scene[0], leaf_crown([view_of(photo, mask, camera)], volume, atlas, 1.0, np.random.default_rng(0))
+    tree, crown = (
+        scene[0],
+        leaf_crown(Appearance((view_of(photo, mask, camera),), True), volume, atlas, 1.0, np.random.default_rng(0)),
+    )
     grid, leaves = crown.grids[0], place(scene)
     nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
     crown.hide(nearest, leaves, grid)

@@ -7,6 +7,7 @@ from treestroke.core.geometry.clumped_crown import ClumpedCrown
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import turned_outline
 from treestroke.core.lift.clumps import in_clumps
+from treestroke.core.lift.imagined import imagined_crown
 
 CAMERA = OrthographicCamera(400, 480, 0.02, (200.0, 460.0))
 
@@ -30,8 +31,8 @@ def broken_front() -> np.ndarray:
 
 
 def crown_of(mask: np.ndarray, seed: int = 0) -> ClumpedCrown:
-    front = Silhouette(mask, CAMERA)
-    return in_clumps(turned_outline(front), front, np.random.default_rng(seed))
+    front, rng = Silhouette(mask, CAMERA), np.random.default_rng(seed)
+    return in_clumps(imagined_crown(turned_outline(front), front, rng), np.zeros((0, 3)), rng)
 
 
 def seen_from(crown: ClumpedCrown, azimuth: float) -> np.ndarray:

@@ -1,16 +1,17 @@
 """Adds cards where cards leave gaps in the foliage, or wood stands before them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.arrangement import Seats, pose_over, seats_along
 from treestroke.core.leaf.coverage import Depths, newly_hidden
 from treestroke.core.leaf.grid import FoliageGrid
-from treestroke.core.leaf.leaf_crown import SIDES, LeafCrown
+from treestroke.core.leaf.leaf_crown import SIDES, Fit, LeafCrown
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
@@ -31,6 +32,11 @@ WOOD_SIZES = (1.0, 0.6)
 leaves; the overlap of leaves alone rises by 0.025; 3 crowns)."""
 BEFORE = 0.3
 """How far such a card's middle stands before the bark, in halves of its side."""
+FOR_SIDES = 0.35
+"""Share of such cards that are kept for the imagined sides."""
+STRICT_ROUNDS = 2
+"""Rounds in which cards over a photo's gaps keep out of the imagined sides' gaps; later the photo is worth more (at 6,
+thin crowns lose 1 % of their front)."""
 NEAR, REACH = 0.045, 0.08
 """How far such a card usually and at most stands off its branch in the picture, as shares of the tree's height."""
 FAR_SHARE = 0.02
@@ -69,6 +75,8 @@ class _Gaps:
         Places on all branches, and the branches' radii there (n,), metres.
     far
         How many cards may stand far from their seat, in each round.
+    imagined
+        Whether no picture shows the view: it does not say where wood is hidden.
     """
 
     grid: FoliageGrid
@@ -76,6 +84,15 @@ class _Gaps:
     seats: Seats
     radii: Floats
     far: int
+    imagined: bool
+
+
+@dataclass(frozen=True)
+class _Size:
+    """Size of the cards of a round, and whether they keep out of the gaps of the imagined sides."""
+
+    scale: float
+    in_sides: bool
 
 
 def cover_gaps(
@@ -89,11 +106,13 @@ def cover_gaps(
     if len(seats) == 0:
         return []
     far, patches = int(FAR_SHARE * len(leaves) / len(SIZES)), [leaves]
-    for grid in crown.grids:
-        gaps = _Gaps(grid, crown, seats, skeleton.radii[seats.joints], far)
-        nearest = _nearest_cards(patches, gaps)
-        patches += _cover_wood(nearest, patches, gaps, params, rng)
-        patches += _cover_view(nearest, patches, gaps, params, rng)
+    in_front = replace(params, most=int(params.most * (1 - FOR_SIDES * (len(crown.sides) > 0))))
+    for grid in (*crown.grids, *crown.sides):
+        gaps = _Gaps(grid, crown, seats, skeleton.radii[seats.joints], far, grid in crown.sides)
+        bounds, nearest = params if gaps.imagined else in_front, _nearest_cards(patches, gaps)
+        if not gaps.imagined:
+            patches += _cover_wood(nearest, patches, gaps, bounds, rng)
+        patches += _cover_view(nearest, patches, gaps, bounds, rng)
     return patches[1:]
 
 
@@ -128,18 +147,17 @@ def _cover_view(
 ) -> list[Leaves]:
     """Set cards over what all ``patches`` leave open in one view, and bring its ``nearest`` cards up to date."""
     inside, added = gaps.grid.inside.ravel(), list[Leaves]()
-    leafy = gaps.crown.volume.admits(gaps.seats.points)
-    seats = gaps.seats.at(leafy) if leafy.any() else gaps.seats
-    seat_of = _nearest_seats(seats, gaps.grid)
-    for scale in SIZES:
+    seat_of = _seats_of_cells(gaps)
+    for number, scale in enumerate(SIZES):
         open_cells = np.flatnonzero(inside & np.isinf(nearest))
         left = _left([*patches, *added], params)
         surplus = len(open_cells) - (1 - TARGET * params.share) * inside.sum()
         if surplus <= 0 or left <= 0:
             break
+        size = _Size(scale, gaps.imagined or number < STRICT_ROUNDS)
         count = min(_count(surplus, scale, gaps), left, len(open_cells))
         chosen = rng.choice(open_cells, count, replace=False)
-        patch = _patch(chosen, seats.at(seat_of[chosen]), scale, gaps, rng)
+        patch = _patch(gaps.seats.at(seat_of[chosen]), chosen, size, gaps, rng)
         foliage, background = newly_hidden(nearest, patch, gaps.crown.outlines, gaps.grid)
         added.append(patch.select((foliage > 0) & (foliage >= WORTH * background)))
         gaps.crown.hide(nearest, added[-1], gaps.grid)
@@ -157,26 +175,37 @@ def _count(cells: float, scale: float, gaps: _Gaps) -> int:
     return int(np.ceil(1.5 * cells / max(card_cells, 1.0)))
 
 
-def _nearest_seats(seats: Seats, grid: FoliageGrid) -> Indices:
-    """Find the seat nearest in the picture to each cell, flat, to within a cell."""
-    cells = grid.cells_of(seats.points)
-    free = np.ones(grid.inside.size, dtype=np.uint8)
+def _seats_of_cells(gaps: _Gaps) -> Indices:
+    """Find the seat of each cell, flat: the nearest in the picture amid foliage, or of all where that is not near."""
+    every, leafy = np.arange(len(gaps.seats)), np.flatnonzero(gaps.crown.volume.admits(gaps.seats.points))
+    nearest, _ = _nearest_seats(every, gaps)
+    if len(leafy) == 0:
+        return nearest
+    amid, away = _nearest_seats(leafy, gaps)
+    return np.where(away * gaps.grid.cell_m > NEAR * gaps.crown.height, nearest, amid)
+
+
+def _nearest_seats(index: Indices, gaps: _Gaps) -> tuple[Indices, NDArray[np.float32]]:
+    """Find which of some seats (n,) is nearest in the picture to each cell, flat, to within a cell, and how far."""
+    cells = gaps.grid.cells_of(gaps.seats.points[index])
+    free = np.ones(gaps.grid.inside.size, dtype=np.uint8)
     free[cells] = 0
-    _, labels = cv2.distanceTransformWithLabels(
-        free.reshape(grid.inside.shape), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+    away, labels = cv2.distanceTransformWithLabels(
+        free.reshape(gaps.grid.inside.shape), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
     )
     seat_of = np.zeros(int(labels.max()) + 1, dtype=np.int64)
-    seat_of[labels.ravel()[cells]] = np.arange(len(seats))
-    return np.asarray(seat_of[labels.ravel()])
+    seat_of[labels.ravel()[cells]] = index
+    return np.asarray(seat_of[labels.ravel()]), np.asarray(away.ravel(), dtype=np.float32)
 
 
-def _patch(cells: Indices, seats: Seats, scale: float, gaps: _Gaps, rng: np.random.Generator) -> Leaves:
-    """Set cards of one size over cells (m,), each hung from its seat; those that do not fit are left out."""
+def _patch(seats: Seats, cells: Indices, size: _Size, gaps: _Gaps, rng: np.random.Generator) -> Leaves:
+    """Set cards of one size over cells (m,), each hung from its seat (m,); those that do not fit are left out."""
     crown = gaps.crown
     centres, kept = _centres(cells, seats, gaps, rng)
-    seats, half_sizes = seats.at(kept), scale * crown.half_sizes(len(centres), rng)
+    seats, half_sizes = seats.at(kept), size.scale * crown.half_sizes(len(centres), rng)
     outward = _seen_from(gaps.grid, centres, unit(centres - crown.middle, UP))
-    return crown.dressed(pose_over(seats, centres, half_sizes, outward, rng), seats, rng, FITTING)[0]
+    poses = pose_over(seats, centres, half_sizes, outward, rng)
+    return crown.dressed(poses, seats, rng, Fit(FITTING, size.in_sides))[0]
 
 
 def _centres(cells: Indices, seats: Seats, gaps: _Gaps, rng: np.random.Generator) -> tuple[Floats, Indices]:

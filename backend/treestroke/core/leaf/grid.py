@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from treestroke.core.appearance import View
 from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.paint.palette import SPRAY, lab_from_rgb, unshaded
 from treestroke.core.types import Floats, Indices, Mask
 
@@ -127,6 +128,26 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         leaves_from=_depths(view.leaves_from[box], inside, size),
         labs=_spray_labs(_padded(colour), inside)[_nearest_inside(inside)],
     )
+
+
+def side_grid(side: Silhouette[Camera], front: FoliageGrid) -> FoliageGrid:
+    """Lay a grid over the foliage as it is imagined from a side, with cells as large as the front's; without colours.
+
+    Raises
+    ------
+    ValueError
+        The silhouette is empty.
+    """
+    rows, columns = np.flatnonzero(side.mask.any(axis=1)), np.flatnonzero(side.mask.any(axis=0))
+    if len(rows) == 0:
+        raise ValueError("a foliage grid needs a silhouette that shows foliage")
+    part = side.mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].astype(np.float32)
+    size = [max(1, round(length / front.step_px)) for length in part.shape[::-1]]
+    shrink = cv2.INTER_AREA if front.step_px >= 1 else cv2.INTER_NEAREST
+    inside = np.asarray(_padded(cv2.resize(part, size, interpolation=shrink)) > 0.5)
+    corner = float(columns[0]) - PADDING * front.step_px, float(rows[0]) - PADDING * front.step_px
+    leaves_from = np.where(inside, -np.inf, np.inf).astype(np.float32)
+    return FoliageGrid(side.camera, front.step_px, corner, front.cell_m, inside, leaves_from, np.zeros((0, 3)))
 
 
 def _depths(leaves_from: NDArray[np.float32], inside: Mask, size: tuple[int, int]) -> NDArray[np.float32]:

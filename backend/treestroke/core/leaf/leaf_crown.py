@@ -1,17 +1,16 @@
 """The crown that cards are placed in."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from treestroke.core.appearance import View
+from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
 from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
 from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_inside
-from treestroke.core.leaf.grid import FoliageGrid, foliage_grid
+from treestroke.core.leaf.grid import FoliageGrid, foliage_grid, side_grid
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
 from treestroke.core.paint.cut_outs import SOLID_ALPHA
@@ -29,10 +28,28 @@ LEAST_LIGHT = 0.55
 FITTING = 0.92
 """Share of a card's opaque dots that must lie in the foliage. Higher loses more of the foliage at its outline than it
 gains beside it (5 photos: 0.96 costs 1 to 3 % of silhouette IoU)."""
+FITTING_SIDES = 0.8
+"""The same for the imagined sides, which are less sure."""
 LEAST_SIZE, MOST_SIZE = 0.3, 3.0
 """Bounds of the factor on a card's side, which is 1.5 to 3 % of the foliage's breadth."""
 MIDDLE = 0.6
 """How far down from the foliage's top, as a share of its height, the point is that cards face away from."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How well cards must fit.
+
+    Attributes
+    ----------
+    share
+        Share of their opaque dots that must lie in the foliage.
+    in_sides
+        Whether they must fit the imagined sides too.
+    """
+
+    share: float = FITTING
+    in_sides: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +60,8 @@ class LeafCrown:
     ----------
     grids
         The foliage of each view, one at least.
+    sides
+        The foliage as it is imagined from sides that no view shows.
     volume, colouring, outlines
         Where the crown is, which tile goes where, and the tiles' opaque dots.
     middle
@@ -56,6 +75,7 @@ class LeafCrown:
     """
 
     grids: tuple[FoliageGrid, ...]
+    sides: tuple[FoliageGrid, ...]
     volume: CrownVolume
     colouring: Colouring
     outlines: Outlines
@@ -80,30 +100,27 @@ class LeafCrown:
         light = np.clip(FULL_LIGHT * brightness * light, LEAST_LIGHT, 1.0)
         return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
 
-    def dressed(
-        self, poses: Poses, seats: Seats, rng: np.random.Generator, fitting: float = FITTING
-    ) -> tuple[Leaves, Mask]:
-        """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,).
-
-        ``fitting`` is the share of their opaque dots that must lie in the foliage.
-        """
+    def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator, fit: Fit = Fit()) -> tuple[Leaves, Mask]:
+        """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,)."""
         leaves = self.coloured(poses, seats, rng)
-        kept = self._fitting(leaves, fitting)
+        kept = self._fitting(leaves, fit)
         return leaves.select(kept), kept
 
     def hide(self, nearest: Depths, leaves: Leaves, grid: FoliageGrid) -> None:
         """Lower the depth of the ``nearest`` card (cells,), metres, flat as a view's grid, to that of these cards."""
         cover(nearest, leaves, self.outlines, grid)
 
-    def _fitting(self, leaves: Leaves, least: float) -> Mask:
+    def _fitting(self, leaves: Leaves, fit: Fit) -> Mask:
         """Which cards (m,) lie in the foliage, or behind the wood, of each view that sees them.
 
         Where depth is seen they lie in the volume; else leaves about its surface may reach out of it.
         """
         fits, excluded = np.zeros((2, len(leaves)), dtype=np.bool_)
-        for grid in self.grids:
+        shares = [(grid, fit.share) for grid in self.grids]
+        shares += [(side, min(fit.share, FITTING_SIDES)) for side in self.sides if fit.in_sides]
+        for grid, share in shares:
             behind = grid.deeper(grid.cells_of(leaves.centres), grid.camera.depth(leaves.centres))
-            shown = behind & (share_inside(leaves, self.outlines, grid) >= least)
+            shown = behind & (share_inside(leaves, self.outlines, grid) >= share)
             fits |= shown
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
         in_volume = self.volume.admits(leaves.centres) | (not self.volume.depth_seen)
@@ -111,7 +128,7 @@ class LeafCrown:
 
 
 def leaf_crown(
-    views: Sequence[View], volume: CrownVolume, atlas: Atlas, size: float, rng: np.random.Generator
+    appearance: Appearance, volume: CrownVolume, atlas: Atlas, size: float, rng: np.random.Generator
 ) -> LeafCrown:
     """Gather what placing cards in a crown needs; ``size`` is a factor on their sides.
 
@@ -125,13 +142,15 @@ def leaf_crown(
     if not LEAST_SIZE <= size <= MOST_SIZE:
         raise ValueError(f"size must be {LEAST_SIZE} to {MOST_SIZE}, got {size}")
     alphas, inner = tile_alphas(atlas), volume.bounds.mean(axis=0)
-    grids = tuple(foliage_grid(view, inner) for view in views)
+    grids = tuple(foliage_grid(view, inner) for view in appearance.views)
+    sides = tuple(side_grid(side, grids[0]) for side in appearance.sides if side.mask.any())
     top, centre, bottom = _heights(grids[0], inner)
     side = size * grids[0].breadth_m
     middle = volume.axis(np.array([centre]))[0]
     middle[1] = centre
     return LeafCrown(
         grids=grids,
+        sides=sides,
         volume=volume,
         colouring=colouring_of(grids, volume, tile_labs(atlas), atlas.recolour, rng),
         outlines=outlines_of(alphas, atlas.fold),

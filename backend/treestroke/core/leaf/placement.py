@@ -30,7 +30,7 @@ from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind
 
 LAYERS = 10.0
 """Cards' opaque area over the foliage's area in the picture, at density 1 (a leaf area index)."""
-RESERVE = 0.25
+RESERVE = 0.35
 """Share of the cards reserved for what the first ones leave uncovered."""
 SHRINKING = (1.0, 0.8, 0.6, 0.45)
 """Sizes at which a card that does not fit the foliage is tried again, each time with another pose."""
@@ -85,7 +85,8 @@ def place_leaves(
         return set_fronds(skeleton, crown, params.density, rng)
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind in CONIFEROUS)
+    grids, even = (*crown.grids, *crown.sides), params.kind in CONIFEROUS
+    weights = leaf_weights(skeleton, grids, crown.volume, crown.height, even)
     along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params.kind, rng)
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)

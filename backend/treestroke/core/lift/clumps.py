@@ -1,32 +1,18 @@
-"""Takes a crown's front apart into clumps of foliage, and sets like ones on the sides that the photo does not show.
+"""Sets clumps of foliage in a crown: those that its front and its imagined side show, and more behind them.
 
-The front's silhouette is a sum of discs. Each stands for a ball of foliage: at the outline beside the stem, else before
-it. Balls like those at the outline, placed all around it, make the unseen sides, until the crown is as closed from the
-sides as from the front.
+Each picture's silhouette is a sum of discs. Each disc stands for a ball of foliage, at a depth at which the other
+picture has room for it; those on one limb stand together. Balls like those of the front, behind the stem, close the
+crown as much as it is closed in front.
 """
-
-from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-from treestroke.core.geometry.camera import OrthographicCamera
-from treestroke.core.geometry.clumped_crown import Cells, ClumpedCrown
-from treestroke.core.geometry.crown_volume import Silhouette
-from treestroke.core.geometry.outline_volume import TurnedOutline
-from treestroke.core.geometry.polyline import smoothed
+from treestroke.core.geometry.clumped_crown import ClumpedCrown
 from treestroke.core.imaging.discs import cover_with_discs
-from treestroke.core.types import Floats, Mask
+from treestroke.core.lift.imagined import ImaginedCrown
+from treestroke.core.types import Floats, Indices, Mask
 
-CELLS = 80
-"""Cells along the crown's longer side."""
-EVEN, TREND = 0.04, 0.12
-"""Standard deviations, as shares of the crown's height, over which its outline is evened, and averaged to a trend."""
-DEEP, SHALLOWEST = 1.15, 0.5
-"""Depth of the sections over their width, as clumps lie under their surface; and least depth over the width's trend."""
-LEAN = 0.6
-"""How far sections stand before or behind the stem, over how far they stand beside it."""
 LARGEST, SMALLEST = 0.12, 1.2
 """Radius of the largest clumps, as a share of the crown's size, and of the smallest, in cells."""
 AT_OUTLINE = 0.7
@@ -36,12 +22,15 @@ SUNK = 0.8
 RELIEF, SEEN_THROUGH = 0.4, 8.0
 """Share of the crown's half depth over which the clumps of its front are spread, and how much more for each unit of the
 front's openness: through an open crown its back is seen."""
+LIMBS, JITTER = 14, 0.1
+"""Limbs that are imagined to carry the clumps, and standard deviation of a clump's place about its limb's, as a share
+of the crown's depth there."""
+ON_LIMB = 4.0
+"""How far beside a limb that is seen, cells, a clump still hangs on it."""
 CORE = 0.45
 """Share of the sections' radius within which foliage stands anywhere."""
-CANDIDATES = 600
-"""Places that are tried for unseen clumps."""
-HEIGHTS = 0.15
-"""How much higher or lower than its model an unseen clump may stand, as a share of the crown's height."""
+COPIES = 4
+"""Places behind the stem that are tried for each clump of the front."""
 BAY = 0.15
 """Width of the gaps, as a share of the crown's height, that count for a crown's openness."""
 CLOSE = 0.25
@@ -55,118 +44,106 @@ VIEWS_RAD = np.radians([45.0, 90.0, 135.0])
 """Sides from which it is measured."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Crown:
-    """A crown's front and sections, in cells of a coarse picture.
+def in_clumps(crown: ImaginedCrown, limbs_px: Floats, rng: np.random.Generator) -> ClumpedCrown:
+    """Return the volume of a crown whose foliage stands in clumps.
 
-    Attributes
-    ----------
-    mask
-        (h, w) its front.
-    middle, radius, near, deep
-        (h,) as in `Sections`.
+    ``limbs_px`` (n, 3) are places on limbs that are seen, in the front camera's picture space, px.
+
+    Source: the medial axis, Blum 1967; best-candidate sampling, Mitchell 1991.
     """
-
-    mask: Mask
-    middle: Floats
-    radius: Floats
-    near: Floats
-    deep: Floats
-
-    def rows(self, y: Floats) -> NDArray[np.int64]:
-        """Return the rows (n,) that hold places y (n,)."""
-        return np.clip(y.astype(np.int64), 0, len(self.mask) - 1)
+    seen = _seen_clumps(crown, crown.cells_from_picture_space(limbs_px), rng)
+    beside = _side_clumps(crown, rng)
+    shown = np.vstack([seen, beside])
+    return crown.filled(_filled(crown, np.vstack([shown, _further_clumps(crown, seen, shown, rng)])))
 
 
-def in_clumps(outline: TurnedOutline, front: Silhouette[OrthographicCamera], rng: np.random.Generator) -> ClumpedCrown:
-    """Return the volume of a crown whose foliage stands in clumps, from its outline and its silhouette.
+def _seen_clumps(crown: ImaginedCrown, limbs: Floats, rng: np.random.Generator) -> Floats:
+    """Return the clumps that the front shows: (n, 4) x, y, z and radius, cells; ``limbs`` (m, 3) in cells.
 
-    Its sections are about as deep as wide, each by a guess of its own: depth, and how far the sections stand before or
-    behind the stem, vary along the height as width and middle do.
-
-    Source: surrogate data, Theiler et al. 1992 (the same spectrum, other phases); best-candidate sampling, Mitchell
-    1991.
+    Those at the outline stand anywhere from front to back, the others toward the viewer; in an open crown, and at the
+    outline, they stand on a limb where one is seen.
     """
-    mask, camera = front.mask, front.camera
-    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
-    corner = np.array([columns[0], rows[0]], dtype=np.float64)
-    side = float(max(np.ptp(rows), np.ptp(columns)) + 1) / CELLS
-    crown = _coarse(outline, mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], corner, side)
-    crown = _deep(crown, (camera.pixels_from_world(np.zeros((1, 3)))[0] - corner) / side, rng)
-    seen = _seen_clumps(crown, rng)
-    filled, nearest = _filled(crown, np.vstack([seen, _unseen_clumps(crown, seen, rng)]))
-    cells = Cells(filled, np.array([*corner, side * nearest]), side)
-    row = (np.arange(camera.height) + 0.5 - corner[1]) / side - 0.5
-    near_px, deep_px = (side * np.interp(row, np.arange(len(column)), column) for column in (crown.near, crown.deep))
-    return ClumpedCrown(
-        camera,
-        outline.middle_px,
-        outline.radius_px,
-        outline.silhouettes,
-        near_px=near_px,
-        deep_px=deep_px,
-        clumps=cells,
-    )
-
-
-def _coarse(outline: TurnedOutline, mask: Mask, corner: Floats, side: float) -> _Crown:
-    """Reduce a crown's silhouette, cropped to a corner (2,), px, to cells of a side, px; it is as deep as wide."""
-    size = [max(1, round(length / side)) for length in mask.shape[::-1]]
-    small = cv2.resize(mask.astype(np.uint8) * np.uint8(255), size, interpolation=cv2.INTER_AREA) > 127
-    row = np.minimum(corner[1] + (np.arange(size[1]) + 0.5) * side, len(outline.radius_px) - 1).astype(np.int64)
-    middle, radius = (outline.middle_px[row] - corner[0]) / side, np.maximum(outline.radius_px[row] / side, 0.5)
-    return _Crown(small, middle, radius, np.zeros(len(row)), radius)
-
-
-def _deep(crown: _Crown, root: Floats, rng: np.random.Generator) -> _Crown:
-    """Guess how deep the sections are, and how far before the root's plane; the tree's ``root`` (2,) is in cells."""
-    height = np.arange(len(crown.radius), dtype=np.float64)
-    centre_x, centre_y = (float((crown.radius * of).sum() / crown.radius.sum()) for of in (crown.middle, height))
-    stem = root[0] + (centre_x - root[0]) * np.clip((root[1] - height) / max(root[1] - centre_y, 1.0), 0.0, 1.5)
-    trend, aside = (smoothed(column, TREND * len(height)) for column in (crown.radius, crown.middle - stem))
-    varied = trend + _other_phases(smoothed(crown.radius, EVEN * len(height)) - trend, rng)
-    deep = DEEP * np.maximum(varied, SHALLOWEST * trend)
-    return replace(crown, near=LEAN * _other_phases(aside, rng), deep=deep)
-
-
-def _other_phases(values: Floats, rng: np.random.Generator) -> Floats:
-    """Return values (n,) that vary as much and as fast as the ones given, in another way; their mean's sign is random.
-
-    Source: surrogate data, Theiler et al. 1992: the same spectrum, with phases at random.
-    """
-    spectrum = np.fft.rfft(np.concatenate([values, values[::-1]]))
-    turn = np.exp(2j * np.pi * rng.random(len(spectrum)))
-    turn[0] = rng.choice((-1.0, 1.0))
-    return np.asarray(np.fft.irfft(spectrum * turn, 2 * len(values))[: len(values)], dtype=np.float64)
-
-
-def _seen_clumps(crown: _Crown, rng: np.random.Generator) -> Floats:
-    """Return the clumps that the front shows: (n, 4) x, y, z and radius, cells."""
-    discs = cover_with_discs(crown.mask, SMALLEST, LARGEST * float(np.sqrt(crown.mask.sum())))
-    row = crown.rows(discs[:, 1])
-    aside = np.abs(discs[:, 0] - crown.middle[row]) / crown.radius[row]
-    room = np.maximum(np.sqrt(np.maximum(1 - aside**2, 0.0)) * crown.deep[row] - SUNK * discs[:, 2], 0.0)
-    relief = min(2.0, RELIEF + SEEN_THROUGH * _openness(crown.mask, len(crown.mask)))
-    beside, before = rng.uniform(-1, 1, len(discs)), 1 - relief * rng.random(len(discs))
-    clumps = np.insert(discs, 2, 0.0, axis=1)
-    clumps[:, 2] = crown.near[row] + np.where(_reach(crown, clumps) >= AT_OUTLINE, beside, before) * room
+    discs = _discs(crown.front)
+    clumps, rows = np.insert(discs, 2, 0.0, axis=1), crown.rows(discs[:, 1])
+    relief = min(2.0, RELIEF + SEEN_THROUGH * _openness(crown.front))
+    share, outer = _by_limbs(discs, rng), _reach(crown, clumps) >= AT_OUTLINE
+    share = np.where(outer, share, 1 - relief / 2 * share)
+    clumps[:, 2] = _Room(crown.side, rows, discs[:, 2]).at_share(share) - crown.furthest
+    if len(limbs) == 0 or len(discs) == 0:
+        return clumps
+    away = np.hypot(*(discs[:, None, :2] - limbs[:, :2]).transpose(2, 0, 1))
+    nearest = away.argmin(axis=1)
+    hangs = (away.min(axis=1) <= discs[:, 2] + ON_LIMB) & (outer | (rng.random(len(discs)) < relief / 2))
+    on_limb = _Room(crown.side, rows, discs[:, 2]).nearest(limbs[nearest, 2] + crown.furthest) - crown.furthest
+    clumps[hangs, 2] = on_limb[hangs]
     return clumps
 
 
-def _reach(crown: _Crown, clumps: Floats) -> Floats:
+def _side_clumps(crown: ImaginedCrown, rng: np.random.Generator) -> Floats:
+    """Return the clumps (n, 4) that the side shows, anywhere from left to right."""
+    discs = _discs(crown.side)
+    x = _Room(crown.front, crown.rows(discs[:, 1]), discs[:, 2]).at_share(_by_limbs(discs, rng))
+    return np.column_stack([x, discs[:, 1], discs[:, 0] - crown.furthest, discs[:, 2]])
+
+
+def _discs(silhouette: Mask) -> Floats:
+    """Cover a silhouette (h, w) with discs: (n, 3) x, y and radius, cells."""
+    return cover_with_discs(silhouette, SMALLEST, LARGEST * float(np.sqrt(silhouette.sum())))
+
+
+def _by_limbs(discs: Floats, rng: np.random.Generator) -> Floats:
+    """Return shares (n,), 0 to 1, at random for discs (n, 3): alike for those that the same limb may carry.
+
+    Limbs end at discs that are far from each other, and each disc is on the nearest.
+    """
+    if len(discs) == 0:
+        return np.zeros(0)
+    end, away, limb = int(rng.integers(len(discs))), np.full(len(discs), np.inf), np.zeros(len(discs), dtype=np.int64)
+    for number in range(LIMBS):
+        from_end = np.hypot(*(discs[:, :2] - discs[end, :2]).T)
+        limb[from_end < away] = number
+        away = np.minimum(away, from_end)
+        end = int(away.argmax())
+    share = (rng.permutation(LIMBS) + rng.random(LIMBS)) / LIMBS
+    return np.clip(share[limb] + rng.normal(0, JITTER, len(discs)), 0, 1)
+
+
+class _Room:
+    """Where a silhouette has room for clumps, along a row each."""
+
+    def __init__(self, silhouette: Mask, rows: Indices, radii: Floats) -> None:
+        away = cv2.distanceTransform(np.pad(silhouette.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1][rows]
+        self._fits = away >= np.minimum(SUNK * radii, away.max(axis=1))[:, None]
+
+    def at_share(self, share: Floats) -> Floats:
+        """Return the places (n,) that have these shares (n,), 0 to 1, of the room to their left."""
+        number = np.maximum(np.ceil(share * self._fits.sum(axis=1)), 1)
+        return np.asarray((self._fits.cumsum(axis=1) >= number[:, None]).argmax(axis=1) + 0.5)
+
+    def nearest(self, places: Floats) -> Floats:
+        """Return the places (n,) with room that are nearest to some places (n,)."""
+        away = np.abs(np.arange(self._fits.shape[1]) + 0.5 - places[:, None])
+        return np.asarray(np.where(self._fits, away, np.inf).argmin(axis=1) + 0.5)
+
+
+def _reach(crown: ImaginedCrown, clumps: Floats) -> Floats:
     """Return how far aside of its section's middle each clump (n, 4) reaches, over the section's radius: (n,)."""
     row = crown.rows(clumps[:, 1])
     return np.asarray((np.abs(clumps[:, 0] - crown.middle[row]) + clumps[:, 3]) / crown.radius[row])
 
 
-def _unseen_clumps(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Floats:
-    """Return clumps (m, 4) on the other sides, each the furthest of many from all before it."""
-    places = _candidates(crown, seen, rng)
-    views = [_View(crown, seen, azimuth) for azimuth in VIEWS_RAD]
-    wanted = OPENER * _openness(crown.mask, len(crown.mask))
-    clear = np.min([_apart(places, clump) for clump in seen], axis=0, initial=np.inf)
-    surplus = _surplus(crown, seen)
-    chosen = list[int]()
+def _further_clumps(crown: ImaginedCrown, seen: Floats, shown: Floats, rng: np.random.Generator) -> Floats:
+    """Return clumps (m, 4) like those seen in front, behind the stem, each the furthest of many from all before it.
+
+    With them the back bears as much as the front, and the crown is as closed from the sides.
+    """
+    places = np.tile(seen, (COPIES, 1))
+    room = _Room(crown.side, crown.rows(places[:, 1]), places[:, 3])
+    places[:, 2] = room.at_share(0.5 * rng.random(len(places))) - crown.furthest
+    views = [_View(crown, shown, azimuth) for azimuth in VIEWS_RAD]
+    wanted = OPENER * _openness(crown.front)
+    clear = np.min([_apart(places, clump) for clump in shown], axis=0, initial=np.inf)
+    surplus, chosen = _surplus(crown, shown), list[int]()
     while len(places) and clear[best := int(clear.argmax())] > CLOSE:
         if surplus <= 0 and len(chosen) % AT_ONCE == 0 and np.mean([view.openness for view in views]) <= wanted:
             break
@@ -178,30 +155,10 @@ def _unseen_clumps(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Flo
     return places[chosen]
 
 
-def _surplus(crown: _Crown, clumps: Floats) -> float:
+def _surplus(crown: ImaginedCrown, clumps: Floats) -> float:
     """Sum of the squared radii of the clumps (n, 4) in the crown's front half, less that of those in its back half."""
     before = clumps[:, 2] - crown.near[crown.rows(clumps[:, 1])]
     return float((clumps[:, 3] ** 2 * np.sign(before)).sum())
-
-
-def _candidates(crown: _Crown, seen: Floats, rng: np.random.Generator) -> Floats:
-    """Return places for clumps (m, 4) all around: like those at the front's outline, and within its silhouette."""
-    reach = _reach(crown, seen)
-    at_outline = np.flatnonzero(reach >= AT_OUTLINE)
-    if len(at_outline) == 0:
-        return np.zeros((0, 4))
-    around = np.cumsum(crown.radius + crown.deep)
-    row = np.searchsorted(around / around[-1], rng.random(CANDIDATES))
-    azimuth = rng.uniform(0, 2 * np.pi, CANDIDATES)
-    astray = HEIGHTS * len(around) * rng.random((CANDIDATES, len(at_outline)))
-    away = np.abs(seen[at_outline, 1] - row[:, None]) + astray
-    model = at_outline[away.argmin(axis=1)]
-    surface = 1 / np.hypot(np.cos(azimuth) / crown.radius[row], np.sin(azimuth) / crown.deep[row])
-    out = np.maximum(reach[model] * surface - seen[model, 3], 0.0)
-    x, z = crown.middle[row] + out * np.cos(azimuth), crown.near[row] + out * np.sin(azimuth)
-    room = cv2.distanceTransform(np.pad(crown.mask.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1]
-    radius = np.minimum(seen[model, 3], room[row, np.clip(x, 0, room.shape[1] - 1).astype(np.int64)])
-    return np.asarray(np.column_stack([x, row + 0.5, z, radius])[radius >= SMALLEST])
 
 
 def _apart(clumps: Floats, other: Floats) -> Floats:
@@ -210,9 +167,9 @@ def _apart(clumps: Floats, other: Floats) -> Floats:
     return np.asarray(away / (clumps[:, 3] + other[3]))
 
 
-def _openness(silhouette: Mask, height: int) -> float:
-    """Share of a silhouette (h, w), its bays and holes closed, that is not covered; the crown's ``height`` is in px."""
-    wide = int(BAY * height) | 1
+def _openness(silhouette: Mask) -> float:
+    """Share of a crown's silhouette (h, w), its bays and holes closed, that is not covered."""
+    wide = int(BAY * len(silhouette)) | 1
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (wide, wide))
     whole = cv2.morphologyEx(np.pad(silhouette.astype(np.uint8), wide), cv2.MORPH_CLOSE, kernel)
     return float(1 - silhouette.sum() / max(int(whole.sum()), 1))
@@ -221,11 +178,11 @@ def _openness(silhouette: Mask, height: int) -> float:
 class _View:
     """The silhouette of a crown's clumps from a side."""
 
-    def __init__(self, crown: _Crown, clumps: Floats, azimuth: float) -> None:
+    def __init__(self, crown: ImaginedCrown, clumps: Floats, azimuth: float) -> None:
         self._turn = np.array([np.cos(azimuth), 0.0, -np.sin(azimuth), 0.0])
-        reach = int(np.ceil((crown.radius + crown.deep + np.abs(crown.near)).max())) + len(crown.mask)
+        reach = int(np.ceil((crown.radius + crown.deep + np.abs(crown.near)).max())) + len(crown.front)
         self._middle = reach - float(crown.middle.mean()) * self._turn[0]
-        self._picture = np.zeros((len(crown.mask), 2 * reach), dtype=np.uint8)
+        self._picture = np.zeros((len(crown.front), 2 * reach), dtype=np.uint8)
         half = CORE * np.hypot(crown.radius * self._turn[0], crown.deep * self._turn[2])
         middle = self._middle + crown.middle * self._turn[0] + crown.near * self._turn[2]
         column = np.arange(2 * reach) + 0.5
@@ -241,24 +198,24 @@ class _View:
     @property
     def openness(self) -> float:
         """How open the crown is from this side; see `_openness`."""
-        return _openness(self._picture > 0, len(self._picture))
+        return _openness(self._picture > 0)
 
 
-def _filled(crown: _Crown, clumps: Floats) -> tuple[Mask, int]:
-    """Fill the cells (x, y, z) in the clumps and in the core, before the front's silhouette; and z of the first."""
-    sections, balls = np.abs(crown.near) + crown.deep, np.abs(clumps[:, 2]) + clumps[:, 3]
-    nearest = -int(np.ceil(np.concatenate([sections, balls]).max()))
-    height, width = crown.mask.shape
-    x, y, z = np.ogrid[:width, :height, nearest:-nearest]
+def _filled(crown: ImaginedCrown, clumps: Floats) -> Mask:
+    """Fill the cells (x, y, z) in the clumps and in the core that front and side show."""
+    height, width = crown.front.shape
+    x, y, z = np.ogrid[:width, :height, -crown.furthest : crown.furthest]
     core = np.hypot((x + 0.5 - crown.middle[y]) / crown.radius[y], (z + 0.5 - crown.near[y]) / crown.deep[y])
     filled = core <= CORE
     for clump in clumps:
-        corner = np.maximum(np.floor(clump[:3] - clump[3] - (0, 0, nearest)), 0).astype(np.int64)
+        corner = np.maximum(np.floor(clump[:3] - clump[3] + (0, 0, crown.furthest)), 0).astype(np.int64)
         block = tuple(slice(a, b) for a, b in zip(corner, corner + int(np.ceil(2 * clump[3])) + 1, strict=True))
         near_x, near_y, near_z = x[block[0]], y[:, block[1]], z[:, :, block[2]]
         squares = [(axis + 0.5 - middle) ** 2 for axis, middle in zip((near_x, near_y, near_z), clump, strict=False)]
         filled[block] |= squares[0] + squares[1] + squares[2] <= clump[3] ** 2
-    return _with_all_columns(filled & crown.mask.T[:, :, None], crown.mask.T), nearest
+    filled = _with_all_columns(filled & crown.front.T[:, :, None] & crown.side, crown.front.T)
+    from_left = _with_all_columns(filled.transpose(2, 1, 0), crown.side.T).transpose(2, 1, 0)
+    return np.asarray(from_left & crown.front.T[:, :, None])
 
 
 def _with_all_columns(filled: Mask, front: Mask) -> Mask:

@@ -98,7 +98,7 @@ def _leaves(
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)
     crown = leaf_crown(
-        leafy,
+        replace(tree.appearance, views=leafy),
         tree.volume,
         atlas,
         float(np.clip(size * CARD_SIZE[tree.kind] * settings.leaf_size, LEAST_SIZE, MOST_SIZE)),

@@ -23,6 +23,7 @@ from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.lift.clumps import in_clumps
 from treestroke.core.lift.fan import fan_out
 from treestroke.core.lift.hidden_limbs import with_hidden_limbs
+from treestroke.core.lift.imagined import ImaginedCrown, imagined_crown
 from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
 from treestroke.core.pipeline.completion import completed, touches_edge
 from treestroke.core.pipeline.crowns import (
@@ -80,6 +81,8 @@ class _PhotoCrown:
         The crown's volume as wide as the photo shows it, and as growth may fill it.
     side
         The tree's left side, where there is a sketch of it.
+    imagined
+        Front and imagined side, where that is how the crown's volume comes about.
     """
 
     kind: FoliageKind
@@ -89,6 +92,7 @@ class _PhotoCrown:
     as_seen: CrownVolume
     volume: CrownVolume
     side: Side | None
+    imagined: ImaginedCrown | None
 
     @property
     def camera(self) -> OrthographicCamera:
@@ -203,6 +207,9 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
         traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
     crown = _crown_of(evidence, traced, taken.foliage, settings, rng)
     lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
+    if crown.imagined is not None:
+        limbs_px = crown.camera.picture_space_from_world(lifted.tree.points)
+        crown = replace(crown, volume=in_clumps(crown.imagined, limbs_px, rng))
     report("grow", 0.0)
     room = CrownToFill(crown.volume, crown.front)
     if crown.kind == "bare" and traced.whole:
@@ -255,12 +262,13 @@ def _crown_of(
     outline = turned_outline(front)
     bulged = outline.widened(BULGE)
     if evidence.side is None:
-        as_traced = kind == "palm" or (kind == "bare" and traced.whole)
-        volume = bulged if as_traced else in_clumps(bulged, front, rng)
-        return _PhotoCrown(kind, shows_leaves, wood, front, outline, volume, None)
+        if kind == "palm" or (kind == "bare" and traced.whole):
+            return _PhotoCrown(kind, shows_leaves, wood, front, outline, bulged, None, None)
+        imagined = imagined_crown(bulged, front, rng)
+        return _PhotoCrown(kind, shows_leaves, wood, front, outline, imagined.hull(), None, imagined)
     side = side_of(evidence.side, crown_height, evidence.height_px, front.camera)
     return _PhotoCrown(
-        kind, shows_leaves, wood, front, outline.with_side(side.crown), bulged.with_side(side.crown), side
+        kind, shows_leaves, wood, front, outline.with_side(side.crown), bulged.with_side(side.crown), side, None
     )
 
 
@@ -303,7 +311,10 @@ def _appearance(filled: _FilledCrown) -> Appearance:
             traced.skeleton.points[stem], np.where(traced.measured[stem], traced.skeleton.radii[stem], 0.0)
         ),
     )
-    return Appearance((view,), crown.shows_leaves)
+    if crown.imagined is None:
+        return Appearance((view,), crown.shows_leaves)
+    shown = np.where(view.foliage, view.opacity, view.leaves_from < np.inf) > 0.5
+    return Appearance((view,), crown.shows_leaves, (crown.imagined.side_of(shown),))
 
 
 def _leaves_from(filled: _FilledCrown) -> NDArray[np.float32]:
