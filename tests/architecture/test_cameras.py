@@ -12,7 +12,7 @@ MAY_READ = {
 }
 SECTIONS = {
     "core/geometry/outline_volume.py": "stores outlines as rows of the picture that they were seen in",
-    "core/lift/clumps.py": "takes the crown apart in the front picture",
+    "core/lift/imagined.py": "imagines the crown's side by its front picture",
     "core/grow/growing.py": "grows in pixels of the front picture",
     "core/grow/compiled.py": "grows in pixels of the front picture",
     "core/grow/growth_space.py": "grows in pixels of the front picture",

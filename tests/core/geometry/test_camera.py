@@ -103,3 +103,10 @@ def test_the_same_picture_at_its_own_size_shows_points_at_the_same_share_of_it()
 def test_a_pose_that_is_no_rotation_is_refused(pose: np.ndarray) -> None:
     with pytest.raises(ValueError, match="rotation"):
         PerspectiveCamera(640, 480, pose, 600.0, (320.0, 240.0))
+
+
+def test_a_camera_to_the_left_shows_the_same_heights_about_the_root() -> None:
+    left = CAMERA.to_the_left(250.0)
+    assert (left.width, left.height, left.from_left) == (500, 400, True)
+    seen = left.pixels_from_world(np.array([[7.0, 2.0, 1.0], [0.0, 0.0, 0.0]]))
+    assert seen == pytest.approx(np.array([[300.0, 290.0], [250.0, 390.0]]))

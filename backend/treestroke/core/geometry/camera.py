@@ -92,6 +92,10 @@ class OrthographicCamera:
         root_px = self.root_px[0] / reduction, self.root_px[1] / reduction
         return OrthographicCamera(*size, self.metres_per_pixel * reduction, root_px, self.from_left)
 
+    def to_the_left(self, reach_px: float) -> "OrthographicCamera":
+        """Return the camera of the left side at the front's scale and rows, ``reach_px`` to both sides of the root."""
+        return replace(self, width=int(np.ceil(2 * reach_px)), root_px=(reach_px, self.root_px[1]), from_left=True)
+
     def pixels_from_world(self, points_world: Floats) -> Floats:
         """Project world points (n, 3), metres, to picture points (n, 2), px."""
         x = self.root_px[0] + points_world[:, 2 if self.from_left else 0] / self.metres_per_pixel

@@ -87,10 +87,7 @@ class ImaginedCrown:
     def side_of(self, front: Mask) -> Silhouette[OrthographicCamera]:
         """Imagine from the left what the front camera's picture (h, w) shows of the crown."""
         camera, patches = self.outline.camera, self.patches
-        half_px = self.furthest * self.cell_px
-        left = OrthographicCamera(
-            int(np.ceil(2 * half_px)), camera.height, camera.metres_per_pixel, (half_px, camera.root_px[1]), True
-        )
+        left = camera.to_the_left(self.furthest * self.cell_px)
         row, down = np.divmod((np.arange(left.height) + 0.5 - self.corner_px[1]) / self.cell_px, 1)
         column, aside = np.divmod((np.arange(left.width) + 0.5) / self.cell_px, 1)
         here = np.ix_(self.rows(row), np.minimum(column.astype(np.int64), self.side.shape[1] - 1))
@@ -123,7 +120,7 @@ def imagined_crown(
     shown = _coarse(mask[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], cell)
     row = np.minimum(corner[1] + (np.arange(len(shown)) + 0.5) * cell, len(outline.radius_px) - 1).astype(np.int64)
     middle, radius = (outline.middle_px[row] - corner[0]) / cell, np.maximum(outline.radius_px[row] / cell, 0.5)
-    near, deep = _sections(middle, radius, (np.array(front.camera.root_px) - corner) / cell, rng)
+    near, deep = _sections(middle, radius, (front.camera.pixels_from_world(np.zeros((1, 3)))[0] - corner) / cell, rng)
     side, patches = _side(shown, (middle, radius), (near, deep), rng)
     return ImaginedCrown(outline, corner, cell, shown, middle, radius, near, deep, side, patches)
 
