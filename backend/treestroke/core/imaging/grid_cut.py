@@ -82,11 +82,11 @@ def _cut(level: _Level, band: Mask, known: Mask | None, smoothness: float) -> Ma
     graph = maxflow.Graph[float](count, 2 * count)
     nodes = graph.add_nodes(count)
     for step, before, after in _steps(cells, band.shape):
-        inner = np.flatnonzero(after)
-        both = inner[cut[cells[inner] + step]]
+        onward = np.flatnonzero(after)
+        both = onward[cut[cells[onward] + step]]
         weight = _border_costs(colours, cells[both], cells[both] + step, smoothness)
         graph.add_edges(both, node[cells[both] + step], weight, weight)
-        for inner, way in ((inner, step), (np.flatnonzero(before), -step)):
+        for inner, way in ((onward, step), (np.flatnonzero(before), -step)):
             rim = inner[outside[cells[inner] + way]]
             side = labels.ravel()[cells[rim] + way]
             cost = _border_costs(colours, cells[rim], cells[rim] + way, smoothness)
@@ -99,7 +99,7 @@ def _cut(level: _Level, band: Mask, known: Mask | None, smoothness: float) -> Ma
 
 
 def _steps(cells: Indices, shape: tuple[int, ...]) -> tuple[tuple[int, Indices, Indices], ...]:
-    """Steps to the next of cells (n,), flat, to the right and below, and how many cells lie before and after each so."""
+    """Return the steps from cells (n,), flat, to the right and below, and how many lie before and after each so."""
     row, column = np.divmod(cells, shape[1])
     return (1, column, shape[1] - 1 - column), (shape[1], row, shape[0] - 1 - row)
 

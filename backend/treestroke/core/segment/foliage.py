@@ -148,7 +148,7 @@ def segment_foliage(
         found = cut_grid(pixels, odds + log_odds_by_place(inside), region, params.smoothness, params.cut_pixels)
         report("foliage", 0.8)
         likely = leaf_likelihood(pixels, found if found.any() else inside, params.components, params.samples)
-        alpha = matte(pixels, likely * region) * region
+        alpha = matte(pixels, likely, region)
     else:
         found, alpha = known * region > HALF, known * region
     if not found.any() or not (alpha > HALF).any():
