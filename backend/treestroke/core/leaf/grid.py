@@ -84,7 +84,7 @@ class FoliageGrid:
 
     def deeper(self, cells: Indices, depth_m: Floats) -> Mask:
         """Tell whether leaves may lie at depths (n, p), metres, in cells of flat index (n, p): flags (n, p)."""
-        return np.asarray(self.leaves_from.ravel()[cells] < depth_m)
+        return np.asarray(self.leaves_from.take(cells) < depth_m)
 
 
 def breadth(foliage: Mask) -> float:
@@ -117,7 +117,8 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
     share = _padded(cv2.resize(part * view.opacity[box], size, interpolation=shrink))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
     weight = view.own_colour[box]
-    colour = cv2.resize(np.dstack([view.picture[box] * weight[..., None], weight]), size, interpolation=shrink)
+    weighted = cv2.multiply(view.picture[box].astype(np.float32), cv2.merge([weight] * 3))
+    colour = cv2.resize(cv2.merge([weighted, weight]), size, interpolation=shrink)
     return FoliageGrid(
         camera=view.camera,
         step_px=step,
