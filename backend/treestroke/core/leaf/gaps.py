@@ -127,14 +127,15 @@ def _cover_view(
     nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
 ) -> list[Leaves]:
     """Set cards over what all ``patches`` leave open in one view, and bring its ``nearest`` cards up to date."""
-    inside, added = gaps.grid.inside.ravel(), list[Leaves]()
+    added = list[Leaves]()
     leafy = gaps.crown.volume.admits(gaps.seats.points)
     seats = gaps.seats.at(leafy) if leafy.any() else gaps.seats
     seat_of = _nearest_seats(seats, gaps.grid)
+    foliage_cells = open_cells = np.flatnonzero(gaps.grid.inside)
     for scale in SIZES:
-        open_cells = np.flatnonzero(inside & np.isinf(nearest))
+        open_cells = open_cells[np.isinf(nearest[open_cells])]
         left = _left([*patches, *added], params)
-        surplus = len(open_cells) - (1 - TARGET * params.share) * inside.sum()
+        surplus = len(open_cells) - (1 - TARGET * params.share) * len(foliage_cells)
         if surplus <= 0 or left <= 0:
             break
         count = min(_count(surplus, scale, gaps), left, len(open_cells))
