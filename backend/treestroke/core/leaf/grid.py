@@ -126,7 +126,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         cell_m=step * float(view.camera.pixel_size(crown_middle[None])[0]),
         inside=inside,
         leaves_from=_depths(view.leaves_from[box], inside, size),
-        labs=_spray_labs(_padded(colour), inside)[_nearest_inside(inside)],
+        labs=_spray_labs(_padded(colour), inside).take(_nearest_inside(inside), axis=0),
     )
 
 
@@ -147,8 +147,10 @@ def _spray_labs(colour: NDArray[np.float32], inside: Mask) -> Floats:
     """Colour of the sprays at the cells inside (n, 3), CIE Lab, by each cell's colour times weight, and weight (4)."""
     sides = (round(SPRAY * CELLS_ACROSS), round(AROUND * SPRAY * CELLS_ACROSS))
     near, around = (cv2.blur(colour, (side, side)) for side in sides)
+    cells = np.flatnonzero(inside)
+    near, around = (np.asarray(part).reshape(-1, 4).take(cells, axis=0) for part in (near, around))
     total = near + np.float32(AROUND_WEIGHT) * around + np.float32(1e-9) * colour.mean(axis=(0, 1))
-    mean = total[inside][:, :3] / np.maximum(total[inside][:, 3:], np.float32(1e-20))
+    mean = total[:, :3] / np.maximum(total[:, 3:], np.float32(1e-20))
     return unshaded(lab_from_rgb(np.clip(np.rint(mean), 0, 255).astype(np.uint8)))
 
 
