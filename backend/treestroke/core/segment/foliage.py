@@ -210,11 +210,11 @@ def _without_pores(found: Mask, width_px: float) -> Mask:
 
 def _pieces(mask: Mask, over_px: float, up_to_px: float) -> Mask:
     """Keep the connected pieces of a mask with areas between those of squares as wide."""
-    _, labels = cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)
+    labels = np.asarray(cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)[1], dtype=np.int32)
     area = np.bincount(labels.reshape(-1))
     kept = (over_px**2 < area) & (area <= up_to_px**2)
     kept[0] = False
-    return np.asarray(kept[labels])
+    return np.asarray(kept.take(labels))
 
 
 def _surroundings(crown: Mask) -> tuple[slice, slice]:
