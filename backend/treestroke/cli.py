@@ -19,7 +19,6 @@ from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
-from treestroke.memory import keep_freed_memory
 from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
@@ -72,7 +71,6 @@ def run() -> NoReturn:
     """Run the command line and exit with its code; a programming error is printed as one line, too."""
     if "--debug" not in sys.argv:
         sys.excepthook = _one_line
-    keep_freed_memory()
     # treestroke has no pydantic plugins; to look for some takes longer than to check strokes.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     sys.exit(main())

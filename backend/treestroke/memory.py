@@ -3,7 +3,7 @@
 import ctypes
 import gc
 
-_NEW_OBJECTS = 10_000
+_NEW_OBJECTS = 100_000
 """Objects made since the last search for garbage that start the next one."""
 _LARGEST_KEPT, _MOST_KEPT = 32 * 2**20, 256 * 2**20
 """Bytes: the largest block of memory, and the most free memory, that the C library keeps; 32 MiB is its own limit."""
@@ -16,9 +16,8 @@ def keep_freed_memory() -> None:
 
     glibc hands each large freed block back to the system, which clears it page by page for the next array: half of
     all page faults of a model. Elsewhere nothing changes. Modules stay until the end and a tree leaves hardly any
-    cycles, so garbage is searched for less often than usual.
+    cycles, so garbage is searched for far less often than usual.
     """
-    gc.freeze()
     gc.set_threshold(_NEW_OBJECTS)
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:

@@ -1,6 +1,7 @@
 """What pictures show of a tree: where its leaves and wood are, and which colours they have."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,16 +69,17 @@ class View:
         if any(size != shape for size in sizes):
             raise ValueError(f"a view's maps must be of its camera's size {shape}, got {sizes}")
 
-    @property
+    @cached_property
     def foliage(self) -> Mask:
         """(h, w) pixels of the foliage."""
         return np.isneginf(self.leaves_from)
 
-    @property
+    @cached_property
     def own_colour(self) -> Opacity:
         """(h, w) share of each pixel that shows a leaf in its own colour."""
         own = self.leaf_coloured & self.foliage
-        leaves = own if own.sum() > OWN_COLOUR_SHARE * self.foliage.sum() else self.foliage
+        most = np.count_nonzero(own) > OWN_COLOUR_SHARE * np.count_nonzero(self.foliage)
+        leaves = own if most else self.foliage
         return np.where(leaves, self.opacity, np.float32(0))
 
 

@@ -71,13 +71,23 @@ def test_the_opacity_of_a_cut_out_is_taken_as_it_is() -> None:
 
 def test_where_colours_are_alike_the_likelihood_decides() -> None:
     likely = cv2.GaussianBlur(disc(SIZE, 100).astype(np.float32), (0, 0), 8)
-    assert np.abs(matte(np.full((SIZE, SIZE, 3), 90, np.uint8), likely) - likely).max() < 0.01
+    grey, region = np.full((SIZE, SIZE, 3), 90, np.uint8), np.ones((SIZE, SIZE), np.bool_)
+    assert np.abs(matte(grey, likely, region) - likely).max() < 0.01
 
 
 def test_mixed_pixels_follow_from_the_colours_beside_them() -> None:
     truth = np.tile(np.clip((np.arange(SIZE) - 146) / 8, 0, 1).astype(np.float32), (SIZE, 1))
     rough = (truth > 0.01).astype(np.float32)
-    assert np.abs(matte(composed(truth), rough) - truth).mean() < 0.02
+    region = np.ones(truth.shape, np.bool_)
+    assert np.abs(matte(composed(truth), rough, region) - truth).mean() < 0.02
+
+
+def test_nothing_is_covered_outside_the_region() -> None:
+    truth = np.tile(np.clip((np.arange(SIZE) - 146) / 8, 0, 1).astype(np.float32), (SIZE, 1))
+    region = disc(SIZE, 100)
+    alpha = matte(composed(truth), (truth > 0.5).astype(np.float32), region)
+    assert not alpha[~region].any()
+    assert alpha[region].max() > 0.9
 
 
 def test_windows_of_a_wall_behind_a_thin_crown_are_none_of_it() -> None:

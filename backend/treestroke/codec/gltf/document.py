@@ -168,7 +168,8 @@ class Document:
         if normalized:
             row["normalized"] = True
         if bounded:
-            low, high = np.atleast_1d(values.min(axis=0), values.max(axis=0))
+            columns = np.ascontiguousarray(values.T)  # numpy takes the least over a long first axis slowly
+            low, high = np.atleast_1d(columns.min(axis=-1), columns.max(axis=-1))
             row |= {"min": low.tolist(), "max": high.tolist()}
         return self.row("accessors", row)
 

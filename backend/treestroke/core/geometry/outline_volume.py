@@ -1,6 +1,7 @@
 """Crown volumes from the crown's outline: turned about its middle, or as deep as a second outline shows."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -61,7 +62,7 @@ class TurnedOutline:
         """The sections at the rows of the outline's own picture."""
         return Sections(self.middle_px, self.radius_px, np.zeros_like(self.radius_px), self.radius_px)
 
-    @property
+    @cached_property
     def bounds(self) -> Floats:
         """(2, 3) least and greatest corner of the box around the volume, metres; all 0 of an empty one."""
         rows = np.flatnonzero(self.radius_px > 0)

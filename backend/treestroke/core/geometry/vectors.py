@@ -10,7 +10,10 @@ UP = np.array([0.0, 1.0, 0.0])
 
 def unit(vectors: Floats, otherwise: Floats | float = 0.0) -> Floats:
     """Scale vectors (..., d) of any unit to length 1; those shorter than 1e-12 become ``otherwise``."""
-    length = np.sqrt((vectors**2).sum(axis=-1, keepdims=True))
+    # Channel by channel: numpy sums and broadcasts over short axes slowly.
+    length = np.sqrt(sum(vectors[..., axis] ** 2 for axis in range(vectors.shape[-1])))[..., None]
+    if (length > 1e-12).all():
+        return vectors / length
     return np.where(length > 1e-12, vectors / np.maximum(length, 1e-12), otherwise)
 
 

@@ -88,7 +88,8 @@ def _linked(joints_px: Floats, places_px: Floats, longest_px: float) -> tuple[Fl
 
     Parents count from the tree's first joint on through the places, each after its parent.
     """
-    nearest = np.array([np.hypot(*(joints_px - place).T).argmin() for place in places_px], dtype=np.int64)
+    x, y = np.ascontiguousarray(joints_px.T)
+    nearest = np.array([((x - to_x) ** 2 + (y - to_y) ** 2).argmin() for to_x, to_y in places_px], dtype=np.int64)
     away, before = np.hypot(*(places_px - joints_px[nearest]).T), np.zeros(len(places_px))
     waiting, order = np.ones(len(places_px), dtype=np.bool_), list[int]()
     for number in range(len(joints_px), len(joints_px) + len(places_px)):

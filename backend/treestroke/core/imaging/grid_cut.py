@@ -7,7 +7,7 @@ import maxflow
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.types import Floats, Mask, Picture
+from treestroke.core.types import Floats, Indices, Mask, Picture
 
 Energies = NDArray[np.float32]
 
@@ -73,36 +73,39 @@ def _cut(level: _Level, band: Mask, known: Mask | None, smoothness: float) -> Ma
     count = int(band.sum())
     if count == 0:
         return labels
-    index = np.zeros(band.shape, np.int64)
-    index[band] = np.arange(count)
-    to_true = np.maximum(level.odds, 0)[band].astype(np.float64)
-    to_false = np.maximum(-level.odds, 0)[band].astype(np.float64)
+    cells = np.flatnonzero(band)
+    node = np.zeros(band.size, np.int64)
+    node[cells] = np.arange(count)
+    odds = level.odds.ravel()[cells].astype(np.float64)
+    to_true, to_false = np.maximum(odds, 0), np.maximum(-odds, 0)
+    colours, cut, outside = level.pixels.reshape(-1, 3), band.ravel(), (level.region & ~band).ravel()
     graph = maxflow.Graph[float](count, 2 * count)
     nodes = graph.add_nodes(count)
-    for ahead, behind in _neighbours():
-        both = band[behind] & band[ahead]
-        weight = _border_costs(level.pixels[behind][both], level.pixels[ahead][both], smoothness)
-        graph.add_edges(index[behind][both], index[ahead][both], weight, weight)
-        for inner, outer in ((behind, ahead), (ahead, behind)):
-            rim = band[inner] & ~band[outer] & level.region[outer]
-            at, side = index[inner][rim], labels[outer][rim]
-            cost = _border_costs(level.pixels[inner][rim], level.pixels[outer][rim], smoothness)
-            np.add.at(to_true, at[side], cost[side])
-            np.add.at(to_false, at[~side], cost[~side])
+    for step, before, after in _steps(cells, band.shape):
+        onward = np.flatnonzero(after)
+        both = onward[cut[cells[onward] + step]]
+        weight = _border_costs(colours, cells[both], cells[both] + step, smoothness)
+        graph.add_edges(both, node[cells[both] + step], weight, weight)
+        for inner, way in ((onward, step), (np.flatnonzero(before), -step)):
+            rim = inner[outside[cells[inner] + way]]
+            side = labels.ravel()[cells[rim] + way]
+            cost = _border_costs(colours, cells[rim], cells[rim] + way, smoothness)
+            to_true[rim[side]] += cost[side]
+            to_false[rim[~side]] += cost[~side]
     graph.add_grid_tedges(nodes, to_true, to_false)
     graph.maxflow()
-    labels[band] = ~graph.get_grid_segments(nodes)
+    labels.reshape(-1)[cells] = ~graph.get_grid_segments(nodes)
     return labels
 
 
-def _neighbours() -> tuple[tuple[tuple[slice, slice], tuple[slice, slice]], ...]:
-    """Slices (next pixel, this pixel) of all neighbours to the right, then of all neighbours below."""
-    every, ahead, behind = slice(None), slice(1, None), slice(None, -1)
-    return ((every, ahead), (every, behind)), ((ahead, every), (behind, every))
+def _steps(cells: Indices, shape: tuple[int, ...]) -> tuple[tuple[int, Indices, Indices], ...]:
+    """Return the steps from cells (n,), flat, to the right and below, and how many lie before and after each so."""
+    row, column = np.divmod(cells, shape[1])
+    return (1, column, shape[1] - 1 - column), (shape[1], row, shape[0] - 1 - row)
 
 
-def _border_costs(this: Picture, following: Picture, smoothness: float) -> Floats:
-    """Return the cost (n,) of different labels between neighbouring colours (n, 3), sRGB."""
-    difference = this.astype(np.float32) - following.astype(np.float32)
+def _border_costs(colours: Picture, these: Indices, following: Indices, smoothness: float) -> Floats:
+    """Return the cost (n,) of different labels between neighbours, two times (n,) of colours (m, 3), sRGB."""
+    difference = colours.take(these, axis=0).astype(np.float32) - colours.take(following, axis=0)
     step = np.sqrt(np.einsum("nc,nc->n", difference, difference))
     return np.asarray(smoothness / np.maximum(step, SOFTEST_STEP), dtype=np.float64)

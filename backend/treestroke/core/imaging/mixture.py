@@ -118,7 +118,7 @@ def fit_mixture(colours: NDArray[np.uint8], components: int, start: Start = far_
     share, before = start(samples, components), -np.inf
     for _ in range(MOST_ROUNDS):
         mixture = _most_likely(share, terms)
-        parts = log_components(mixture, samples)
+        parts = _log_components(mixture, terms)
         total = log_sum(parts)
         likelihood = float(total.mean())
         if likelihood - before < ENOUGH:
@@ -148,13 +148,18 @@ def join_mixtures(mixtures: Sequence[Mixture], shares: Sequence[float]) -> Mixtu
 
 def log_components(mixture: Mixture, colours: Floats) -> Floats:
     """Logarithm (n, k) of each weighted component's density at colours (n, 3), sRGB, 0 to 255."""
+    return _log_components(mixture, _terms(colours))
+
+
+def _log_components(mixture: Mixture, terms: Floats) -> Floats:
+    """Logarithm (n, k) of each weighted component's density at colours of these terms (10, n)."""
     means, inverse = mixture.means - MIDDLE, np.linalg.inv(mixture.covariances)
     twisted = np.einsum("kij,kj->ki", inverse, means)
     constant = np.log(np.maximum(mixture.weights, 1e-12)) - 0.5 * np.linalg.slogdet(mixture.covariances)[1]
     constant -= 1.5 * np.log(2 * np.pi) + 0.5 * np.einsum("ki,ki->k", twisted, means)
     twice = np.where(_ROWS == _COLUMNS, -0.5, -1.0)
     form = np.column_stack([constant, twisted, twice * inverse[:, _ROWS, _COLUMNS]])
-    return np.asarray((form @ _terms(colours)).T)
+    return np.asarray((form @ terms).T)
 
 
 def _terms(colours: Floats) -> Floats:

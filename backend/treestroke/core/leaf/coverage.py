@@ -70,8 +70,8 @@ def newly_hidden(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: Foli
     Wood that a card lies behind is neither.
     """
     cells = _Shown.of(leaves, outlines.fold, grid).cells(outlines.probes[leaves.tiles], grid)
-    free = np.isinf(nearest[cells])
-    foliage = grid.inside.ravel()[cells]
+    free = np.isinf(nearest.take(cells))
+    foliage = grid.inside.take(cells)
     behind = grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None])
     return (free & foliage).mean(axis=1), (free & ~behind).mean(axis=1)
 
@@ -122,14 +122,15 @@ class _Shown:
     def cells(self, dots: _Dots, grid: FoliageGrid) -> Indices:
         """Flat cells (m, p) of dots (m or 1, p, 2) on the cards."""
         rows, columns = grid.inside.shape
-        before = 1 - np.abs(dots[..., 0] - dots[..., 1])
-        x, y = (
-            dots[..., 0] * self.rights[:, None, axis]
-            + dots[..., 1] * self.ups[:, None, axis]
-            + before * self.ridges[:, None, axis]
-            + self.middles[:, None, axis]
-            for axis in (0, 1)
-        )
+        right, up = np.ascontiguousarray(np.moveaxis(dots, -1, 0))
+        before, places = 1 - np.abs(right - up), []
+        for axis in (0, 1):
+            place = right * self.rights[:, None, axis]
+            place += up * self.ups[:, None, axis]
+            place += before * self.ridges[:, None, axis]
+            place += self.middles[:, None, axis]
+            places.append(place)
+        x, y = places
         return np.asarray(_within(y, rows) * columns + _within(x, columns))
 
 

@@ -146,12 +146,12 @@ def _cover_view(
     nearest: Depths, patches: Sequence[Leaves], gaps: _Gaps, params: GapParams, rng: np.random.Generator
 ) -> list[Leaves]:
     """Set cards over what all ``patches`` leave open in one view, and bring its ``nearest`` cards up to date."""
-    inside, added = gaps.grid.inside.ravel(), list[Leaves]()
-    seat_of = _seats_of_cells(gaps)
+    added, seat_of = list[Leaves](), _seats_of_cells(gaps)
+    foliage_cells = open_cells = np.flatnonzero(gaps.grid.inside)
     for number, scale in enumerate(SIZES):
-        open_cells = np.flatnonzero(inside & np.isinf(nearest))
+        open_cells = open_cells[np.isinf(nearest[open_cells])]
         left = _left([*patches, *added], params)
-        surplus = len(open_cells) - (1 - TARGET * params.share) * inside.sum()
+        surplus = len(open_cells) - (1 - TARGET * params.share) * len(foliage_cells)
         if surplus <= 0 or left <= 0:
             break
         size = _Size(scale, gaps.imagined or number < STRICT_ROUNDS)

@@ -85,7 +85,7 @@ class FoliageGrid:
 
     def deeper(self, cells: Indices, depth_m: Floats) -> Mask:
         """Tell whether leaves may lie at depths (n, p), metres, in cells of flat index (n, p): flags (n, p)."""
-        return np.asarray(self.leaves_from.ravel()[cells] < depth_m)
+        return np.asarray(self.leaves_from.take(cells) < depth_m)
 
 
 def breadth(foliage: Mask) -> float:
@@ -118,7 +118,8 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
     share = _padded(cv2.resize(part * view.opacity[box], size, interpolation=shrink))
     inside = np.asarray(share > 0.5) if (share > 0.5).any() else np.asarray(share > 0)
     weight = view.own_colour[box]
-    colour = cv2.resize(np.dstack([view.picture[box] * weight[..., None], weight]), size, interpolation=shrink)
+    weighted = cv2.multiply(view.picture[box].astype(np.float32), cv2.merge([weight] * 3))
+    colour = cv2.resize(cv2.merge([weighted, weight]), size, interpolation=shrink)
     return FoliageGrid(
         camera=view.camera,
         step_px=step,
@@ -126,7 +127,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         cell_m=step * float(view.camera.pixel_size(crown_middle[None])[0]),
         inside=inside,
         leaves_from=_depths(view.leaves_from[box], inside, size),
-        labs=_spray_labs(_padded(colour), inside)[_nearest_inside(inside)],
+        labs=_spray_labs(_padded(colour), inside).take(_nearest_inside(inside), axis=0),
     )
 
 
@@ -167,8 +168,10 @@ def _spray_labs(colour: NDArray[np.float32], inside: Mask) -> Floats:
     """Colour of the sprays at the cells inside (n, 3), CIE Lab, by each cell's colour times weight, and weight (4)."""
     sides = (round(SPRAY * CELLS_ACROSS), round(AROUND * SPRAY * CELLS_ACROSS))
     near, around = (cv2.blur(colour, (side, side)) for side in sides)
+    cells = np.flatnonzero(inside)
+    near, around = (np.asarray(part).reshape(-1, 4).take(cells, axis=0) for part in (near, around))
     total = near + np.float32(AROUND_WEIGHT) * around + np.float32(1e-9) * colour.mean(axis=(0, 1))
-    mean = total[inside][:, :3] / np.maximum(total[inside][:, 3:], np.float32(1e-20))
+    mean = total[:, :3] / np.maximum(total[:, 3:], np.float32(1e-20))
     return unshaded(lab_from_rgb(np.clip(np.rint(mean), 0, 255).astype(np.uint8)))
 
 

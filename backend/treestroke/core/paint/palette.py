@@ -110,7 +110,8 @@ def foliage_palette(photo: Picture, cover: Opacity | Mask, clusters: int, rng: n
     share = np.asarray(cover, dtype=np.float32)
     inner = cv2.erode(share, np.ones((3, 3), np.uint8))
     index = _drawn(np.asarray(inner if inner.sum() > INNER_SHARE * share.sum() else share, dtype=np.float32), rng)
-    samples, sprays = (unshaded(lab_from_rgb(p.reshape(-1, 3)[index])) for p in (photo, _spray_colours(photo, share)))
+    pixels = photo.reshape(-1, 3)[index], _spray_colours(photo, share, index)
+    samples, sprays = (unshaded(lab_from_rgb(colours)) for colours in pixels)
     labels = _k_means(sprays, clusters, ROUNDS, rng)
     counts = np.bincount(labels)
     order = [int(k) for k in np.argsort(-counts, kind="stable") if counts[k] > 0]
@@ -128,11 +129,12 @@ def _drawn(weight: Opacity, rng: np.random.Generator) -> Indices:
     return np.sort(index[np.argpartition(keys, -SAMPLES)[-SAMPLES:]])
 
 
-def _spray_colours(photo: Picture, cover: Opacity) -> Picture:
-    """Mean colour (h, w, 3) about each place of the pixels, by their cover (h, w)."""
+def _spray_colours(photo: Picture, cover: Opacity, index: Indices) -> Picture:
+    """Mean colours (n, 3) about some places (n,), flat, of the pixels of a photo, by their cover (h, w)."""
     side = max(1, round(SPRAY * np.count_nonzero(cover.any(axis=0))))
-    total, share = (cv2.blur(part, (side, side)) for part in (photo * cover[..., None], cover))
-    mean = total / np.maximum(share, np.float32(1e-4))[..., None]
+    weighted = cv2.multiply(photo.astype(np.float32), cv2.merge([cover] * 3))
+    total, share = (np.asarray(cv2.blur(part, (side, side))) for part in (weighted, cover))
+    mean = total.reshape(-1, 3)[index] / np.maximum(share.ravel()[index], np.float32(1e-4))[:, None]
     return np.clip(np.rint(mean), 0, 255).astype(np.uint8)
 
 

@@ -88,7 +88,7 @@ def wood_matte(photo: Picture, crown: Mask, trunk_px: Floats) -> Opacity:
         others = join_mixtures([_fitted(left, OTHER_COMPONENTS), ground], [1 - BEHIND, BEHIND])
         table = _odds(_fitted(found, WOOD_COMPONENTS), others)
     likely = (1 / (1 + np.exp(-table))).astype(np.float32)
-    share[box] = matte(pixels, likely[index] * inside) * inside
+    share[box] = matte(pixels, likely[index], inside)
     return share
 
 

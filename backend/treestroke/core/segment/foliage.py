@@ -148,7 +148,7 @@ def segment_foliage(
         found = cut_grid(pixels, odds + log_odds_by_place(inside), region, params.smoothness, params.cut_pixels)
         report("foliage", 0.8)
         likely = leaf_likelihood(pixels, found if found.any() else inside, params.components, params.samples)
-        alpha = matte(pixels, likely * region) * region
+        alpha = matte(pixels, likely, region)
     else:
         found, alpha = known * region > HALF, known * region
     if not found.any() or not (alpha > HALF).any():
@@ -210,11 +210,11 @@ def _without_pores(found: Mask, width_px: float) -> Mask:
 
 def _pieces(mask: Mask, over_px: float, up_to_px: float) -> Mask:
     """Keep the connected pieces of a mask with areas between those of squares as wide."""
-    _, labels = cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)
+    labels = np.asarray(cv2.connectedComponents(mask.astype(np.uint8), connectivity=4)[1], dtype=np.int32)
     area = np.bincount(labels.reshape(-1))
     kept = (over_px**2 < area) & (area <= up_to_px**2)
     kept[0] = False
-    return np.asarray(kept[labels])
+    return np.asarray(kept.take(labels))
 
 
 def _surroundings(crown: Mask) -> tuple[slice, slice]:

@@ -76,9 +76,9 @@ def find_lines(picture: Bytes, inside: Mask, height_px: float) -> Lines:
         found = _level_and_upright(np.asarray(turned, dtype=np.uint8), length_px)
         darker, lighter = cv2.split(_turned_back(found[:2], turn, (width, height), cv2.INTER_LINEAR))
         thickness, is_upright = cv2.split(_turned_back(found[2:], turn, (width, height), cv2.INTER_NEAREST))
-        better = darker > dark
-        np.copyto(direction, number + DIRECTIONS // 2 * is_upright, where=better)
-        np.copyto(which, thickness, where=better)
+        better = cv2.compare(darker, dark, cv2.CMP_GT)
+        cv2.copyTo(number + np.uint8(DIRECTIONS // 2) * is_upright, better, direction)
+        cv2.copyTo(thickness, better, which)
         np.maximum(dark, darker, out=dark)
         np.maximum(light, lighter, out=light)
     return Lines(_rarity(dark, light, inside), direction, which, inside)
@@ -119,11 +119,11 @@ def _turned_back(planes: Sequence[Bytes], turn: Floats, size: tuple[int, int], h
 def _level_and_upright(picture: Bytes, length_px: int) -> tuple[Bytes, Bytes, Bytes, Bytes]:
     """Return what `_level_lines` returns, of level or upright lines, and which dark ones are upright (h, w)."""
     level = _level_lines(picture, length_px)
-    upright = _level_lines(np.ascontiguousarray(picture.T), length_px)
-    dark, light, which = (np.ascontiguousarray(plane.T) for plane in upright)
-    is_upright = dark > level[0]
-    half_width = np.where(is_upright, which, level[2])
-    return np.maximum(level[0], dark), np.maximum(level[1], light), half_width, is_upright.astype(np.uint8)
+    upright = _level_lines(np.asarray(cv2.transpose(picture), dtype=np.uint8), length_px)
+    dark, light, which = (np.asarray(cv2.transpose(plane), dtype=np.uint8) for plane in upright)
+    is_upright = np.asarray(cv2.compare(dark, level[0], cv2.CMP_GT), dtype=np.uint8)
+    cv2.copyTo(which, is_upright, level[2])
+    return np.maximum(level[0], dark), np.maximum(level[1], light), level[2], is_upright & np.uint8(1)
 
 
 def _level_lines(picture: Bytes, length_px: int) -> tuple[Bytes, Bytes, Bytes]:
@@ -140,7 +140,7 @@ def _level_lines(picture: Bytes, length_px: int) -> tuple[Bytes, Bytes, Bytes]:
         above, below = padded[: -2 * away], padded[2 * away :]
         darker = _mean(_difference(np.minimum(above, below), line), (length_px, 1))
         lighter = _mean(_difference(line, np.maximum(above, below)), (length_px, 1))
-        np.copyto(which, number, where=darker > dark)
+        cv2.copyTo(np.full_like(which, number), cv2.compare(darker, dark, cv2.CMP_GT), which)
         np.maximum(dark, darker, out=dark)
         np.maximum(light, lighter, out=light)
     return dark, light, which
