@@ -170,6 +170,30 @@ def test_cards_stay_within_the_budget(scene, size, density):
     assert 0 < len(leaves) <= 3000 + (child_counts(scene[0]) == 0).sum()
 
 
+def seen_first(leaves: Leaves, across: np.ndarray, up: np.ndarray) -> np.ndarray:
+    """Indices of the cards whose middles are nearest to someone who sees ``across`` to the right."""
+    toward = np.cross(across, up)
+    cells = np.floor(np.stack([leaves.centres @ across, leaves.centres @ up], axis=1) / 0.25).astype(int)
+    order = np.argsort(-(leaves.centres @ toward), kind="stable")
+    _, first = np.unique(cells[order], axis=0, return_index=True)
+    return order[first]
+
+
+def test_unseen_leaves_are_light_where_the_sky_is_whatever_row_of_the_photo_is_dark(tree, mask, volume, atlas, photo):
+    rows = np.flatnonzero(mask.any(axis=1))
+    lower = photo.copy()
+    lower[int(rows.mean()) :] = (40, 60, 20)
+    lower[: int(rows.mean())] = (150, 190, 110)
+    two = np.where(np.arange(16)[:, None] % 2, (190.0, 230.0, 150.0), (70.0, 100.0, 40.0))
+    leaves = place((tree, mask, volume, lower, type(atlas)(atlas.image, atlas.boxes, two)))
+    light = leaves.tiles % 2 == 1
+    x, y, z = np.eye(3)
+    front, back, above = (light[seen_first(leaves, *axes)].mean() for axes in ((x, y), (-x, y), (x, -z)))
+    assert 0.4 < front < 0.7
+    assert back == pytest.approx(front, abs=0.12)
+    assert above > 0.75
+
+
 @pytest.mark.parametrize(
     "params", [LeafParams(), LeafParams(kind="needles"), LeafParams(density=0.3), LeafParams(density=0.01)]
 )

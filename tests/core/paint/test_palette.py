@@ -42,7 +42,8 @@ def test_two_colours_give_two_clusters_by_their_areas(mask):
     upper = np.indices(mask.shape)[0] < 120
     photo = np.where(upper[..., None], np.uint8((60, 120, 30)), np.uint8((150, 60, 40)))
     palette = foliage_palette(photo, mask, 2, np.random.default_rng(0))
-    assert [np.ptp(colours, axis=0).max() for colours in palette.members] == [0, 0]
+    spread = [np.ptp(colours, axis=0).max() for colours in palette.members]
+    assert spread == pytest.approx([0, 0], abs=0.2)  # a spray's colour is rounded
     assert palette.shares[1] == pytest.approx(upper[mask].mean(), abs=0.02)
 
 

@@ -92,12 +92,11 @@ def bare_tips(skeleton: Skeleton, leaves: Leaves) -> Seats:
 
 @dataclass(frozen=True, eq=False)
 class Poses:
-    """Cards without colour: centres, half-extent vectors rights and ups (n, 3), metres, and lift (n,), -1 to 1."""
+    """Cards without colour: centres, half-extent vectors rights and ups (n, 3), metres."""
 
     centres: Floats
     rights: Floats
     ups: Floats
-    lift: Floats
 
 
 def pose_on_branches(
@@ -115,7 +114,7 @@ def pose_on_branches(
     axis[:, 1] -= DROOP
     axis = unit(axis, UP)
     centres = seats.points + offset * around + 0.8 * half_sizes[:, None] * axis
-    return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng), around[:, 1])
+    return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng))
 
 
 def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np.random.Generator) -> Poses:
@@ -127,14 +126,14 @@ def pose_at_tips(seats: Seats, half_sizes: Floats, crown_middle: Floats, rng: np
     axis[:, 1] -= 0.5 * DROOP
     axis = unit(axis, UP)
     centres = seats.points + rng.uniform(*ON_END, (len(seats), 1)) * half_sizes[:, None] * axis
-    return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng), axis[:, 1])
+    return Poses(centres, *_frames(axis, unit(centres - crown_middle, UP), half_sizes, rng))
 
 
 def pose_over(seats: Seats, centres: Floats, half_sizes: Floats, outward: Floats, rng: np.random.Generator) -> Poses:
     """Set a spray of half size (n,) at each centre (n, 3), metres, hung from its seat and facing ``outward`` (n, 3)."""
     offsets = centres - seats.points
     axis = unit(0.6 * seats.directions + unit(offsets) + rng.normal(0, 0.5, offsets.shape), UP)
-    return Poses(centres, *_frames(axis, outward, half_sizes, rng), unit(offsets, UP)[:, 1])
+    return Poses(centres, *_frames(axis, outward, half_sizes, rng))
 
 
 def _frames(axis: Floats, outward: Floats, half_sizes: Floats, rng: np.random.Generator) -> tuple[Floats, Floats]:

@@ -57,4 +57,4 @@ def pose_conifer_sprays(
     centres = foot + 0.8 * half_sizes[:, None] * axis
     facing = unit(centres - crown_middle, UP) + posture.level * UP + rng.normal(0, posture.scatter, (n, 3))
     right = unit(np.cross(axis, facing), UP)
-    return Poses(centres, right * half_sizes[:, None], axis * half_sizes[:, None], around[:, 1])
+    return Poses(centres, right * half_sizes[:, None], axis * half_sizes[:, None])

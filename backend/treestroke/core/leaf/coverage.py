@@ -76,6 +76,13 @@ def newly_hidden(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: Foli
     return (free & foliage).mean(axis=1), (free & ~behind).mean(axis=1)
 
 
+def share_hidden(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:
+    """Share (m,) of each card's probes in cells whose ``nearest`` card (cells,) lies before it."""
+    cells = _Shown.of(leaves, outlines.fold, grid).cells(outlines.probes[leaves.tiles], grid)
+    depth = grid.camera.depth(leaves.centres).astype(np.float32)
+    return np.asarray((nearest[cells] < depth[:, None]).mean(axis=1))
+
+
 def cover(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> None:
     """Lower the depth of the ``nearest`` card (cells,), metres, flat as the grid, to that of cards that lie before it.
 

@@ -56,7 +56,7 @@ def set_fronds(skeleton: Skeleton, crown: LeafCrown, density: float, rng: np.ran
         kept = (inside >= FITTING) | (scale == SHRINKING[-1])
         found.append(leaves.select(kept))
         order = order[~kept]
-    leaves = join_leaves(found)
+    leaves = crown.recoloured(join_leaves(found), rng)
     return replace(leaves, tiles=_of_one_colour(leaves))
 
 
@@ -99,4 +99,4 @@ def _pose(seats: Seats, sides: Floats, roll: Floats, half: Floats, rng: np.rando
     out = sides[:, None] * level + weights[:, :1] * above + weights[:, 1:] * UP
     out = unit(out - (out * ahead).sum(axis=1, keepdims=True) * ahead, UP)
     right = -sides[:, None] * ahead
-    return Poses(seats.points + half[:, 1:] * out, right * half[:, :1], out * half[:, 1:], out[:, 1])
+    return Poses(seats.points + half[:, 1:] * out, right * half[:, :1], out * half[:, 1:])

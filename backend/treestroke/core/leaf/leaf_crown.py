@@ -1,6 +1,6 @@
 """The crown that cards are placed in."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,8 +8,8 @@ from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
-from treestroke.core.leaf.colouring import Colouring, colouring_of, shades
-from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_inside
+from treestroke.core.leaf.colouring import Colouring, colouring_of
+from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_hidden, share_inside
 from treestroke.core.leaf.grid import FoliageGrid, foliage_grid, side_grid
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
@@ -32,6 +32,8 @@ FITTING_SIDES = 0.8
 """The same for the imagined sides, which are less sure."""
 LEAST_SIZE, MOST_SIZE = 0.3, 3.0
 """Bounds of the factor on a card's side, which is 1.5 to 3 % of the foliage's breadth."""
+HIDDEN = 0.9
+"""Share of a card's opaque dots behind nearer cards from which on it is not seen."""
 MIDDLE = 0.6
 """How far down from the foliage's top, as a share of its height, the point is that cards face away from."""
 
@@ -94,11 +96,24 @@ class LeafCrown:
         return self.side * rng.uniform(*SIDES, count) / 2
 
     def coloured(self, poses: Poses, seats: Seats, rng: np.random.Generator) -> Leaves:
-        """Return cards with their tiles and their light."""
-        (tiles, brightness), flips = self.colouring.tiles(poses.centres, rng), rng.random(len(seats)) < 0.5
-        light = shades(poses.centres, poses.lift, self.volume) + rng.normal(0, FLICKER, len(seats))
-        light = np.clip(FULL_LIGHT * brightness * light, LEAST_LIGHT, 1.0)
+        """Return cards with their tiles and their light as the pictures show their places."""
+        (tiles, brightness), flips = self.colouring.seen(poses.centres, rng), rng.random(len(seats)) < 0.5
+        light = _light(brightness, rng)
         return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
+
+    def recoloured(self, leaves: Leaves, rng: np.random.Generator) -> Leaves:
+        """Give cards that no view shows the colours of unseen places."""
+        unseen, sides = np.ones(len(leaves), dtype=np.bool_), []
+        for grid in self.grids:
+            nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
+            self.hide(nearest, leaves, grid)
+            hidden = share_hidden(nearest, leaves, self.outlines, grid) >= HIDDEN
+            sides.append(self.colouring.side(grid, nearest, leaves.centres[~hidden]))
+            unseen &= hidden
+        tiles, shades = leaves.tiles.copy(), leaves.shades.copy()
+        tiles[unseen], brightness = self.colouring.unseen(leaves.centres[unseen], sides, rng)
+        shades[unseen] = _light(brightness, rng)
+        return replace(leaves, tiles=tiles, shades=shades)
 
     def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator, fit: Fit = Fit()) -> tuple[Leaves, Mask]:
         """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,)."""
@@ -125,6 +140,11 @@ class LeafCrown:
             excluded |= ~shown & in_picture(grid.camera, leaves.centres)
         in_volume = self.volume.admits(leaves.centres) | (not self.volume.depth_seen)
         return np.asarray(fits & ~excluded & in_volume)
+
+
+def _light(brightness: Floats, rng: np.random.Generator) -> Floats:
+    """Brightness (n,) of cards that are to be so bright (n,) over their tiles' own."""
+    return np.clip(FULL_LIGHT * (brightness + rng.normal(0, FLICKER, len(brightness))), LEAST_LIGHT, 1.0)
 
 
 def leaf_crown(

@@ -92,8 +92,9 @@ def place_leaves(
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
     patches = cover_gaps(leaves, skeleton, crown, gaps, rng)
+    leaves = crown.recoloured(join_leaves([leaves, *patches]), rng)
     report("leaf", 1.0)
-    return join_leaves([leaves, *patches])
+    return leaves
 
 
 def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
