@@ -18,15 +18,15 @@ from treestroke.core.leaf.arrangement import (
     pose_on_branches,
     seats_along,
 )
-from treestroke.core.leaf.conifer_sprays import POSTURES, pose_conifer_sprays
 from treestroke.core.leaf.fronds import set_fronds
 from treestroke.core.leaf.gaps import GapParams, cover_gaps
 from treestroke.core.leaf.leaf_crown import LeafCrown
 from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.leaf.postures import Posture, pose_by_posture, posture_of
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices
+from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices, TreeForm
 
 LAYERS = 10.0
 """Cards' opaque area over the foliage's area in the picture, at density 1 (a leaf area index)."""
@@ -50,11 +50,14 @@ class LeafParams:
         Most cards besides those at twigs' ends.
     kind
         What the twigs bear; ``bare`` bears nothing.
+    form
+        How its limbs grow, and its sprays hang.
     """
 
     density: float = 1.0
     max_cards: int = 25_000
     kind: FoliageKind = "leaves"
+    form: TreeForm = "round"
 
     def __post_init__(self) -> None:
         if not 0 <= self.density <= 3:
@@ -86,7 +89,7 @@ def place_leaves(
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind in CONIFEROUS)
-    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params.kind, rng)
+    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, posture_of(params.kind, params.form), rng)
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
@@ -109,12 +112,12 @@ def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Gene
     return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
 
 
-def _on_branches(seats: Seats, crown: LeafCrown, kind: FoliageKind, rng: np.random.Generator) -> Leaves:
+def _on_branches(seats: Seats, crown: LeafCrown, posture: Posture | None, rng: np.random.Generator) -> Leaves:
     """Hang a card on each seat where it fits the foliage."""
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
-        if kind in POSTURES:
-            return pose_conifer_sprays(seats, half_sizes, crown.middle, POSTURES[kind], rng)
+        if posture is not None:
+            return pose_by_posture(seats, half_sizes, crown.middle, posture, rng)
         return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
 
     return _fitted(seats, pose, crown, rng)[0]
