@@ -6,6 +6,7 @@ import numpy as np
 
 from treestroke.core.geometry.vectors import UP, unit
 from treestroke.core.leaf.arrangement import Poses, Seats
+from treestroke.core.leaf.leaf_crown import FITTING
 from treestroke.core.types import Floats, FoliageKind, TreeForm
 
 
@@ -26,6 +27,8 @@ class Posture:
         How far a spray's foot stands off its branch, in halves of the spray's side: side twigs that are not drawn.
     slimness
         Length of its card over its width; the area stays.
+    inside
+        Share of its card's opaque dots that must lie in the foliage.
     """
 
     aside: float
@@ -34,16 +37,17 @@ class Posture:
     scatter: float
     stand_off: float
     slimness: float = 1.0
+    inside: float = FITTING
 
 
-BOUGH = Posture(aside=0.7, rise=-0.1, level=0.5, scatter=0.45, stand_off=0.6)
+BOUGH = Posture(aside=0.6, rise=-0.1, level=0.5, scatter=0.45, stand_off=0.3)
 """Short needles in flat layers, those of a bough above each other."""
 BRUSH = Posture(aside=0.8, rise=0.3, level=0.2, scatter=0.6, stand_off=0.5)
 """Long needles, which stand off to all sides."""
 PLUME = Posture(aside=0.8, rise=0.9, level=0.15, scatter=0.45, stand_off=0.8)
 """Scales."""
-HANGING = Posture(aside=0.3, rise=-2.5, level=0.0, scatter=0.3, stand_off=0.8, slimness=5.0)
-"""Leaves on long shoots that hang."""
+HANGING = Posture(aside=0.5, rise=-2.2, level=0.0, scatter=0.3, stand_off=0.8, slimness=7.0, inside=0.5)
+"""Leaves on long shoots that hang, many of them out of the crown below: its lower edge is no line."""
 # All were judged on renders of four conifers and a willow from six sides.
 
 
