@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from treestroke.core.leaf.arrangement import Poses, seats_along
-from treestroke.core.leaf.postures import BOUGH, BRUSH, HANGING, PLUME, Posture, pose_by_posture, posture_of
+from treestroke.core.leaf.postures import BOUGH, BRUSH, HANGING, PAD, PLUME, Posture, pose_by_posture, posture_of
 from treestroke.core.skeleton.skeleton import Skeleton
 
 LIMB = Skeleton(np.array([[0.0, 5, 0], [4, 5, 0]]), np.array([0.1, 0.05]), np.array([-1, 0]))
@@ -37,10 +37,16 @@ def test_hanging_sprays_are_long_and_point_down() -> None:
     assert (lengths > 4 * widths).all()
 
 
+def test_a_pad_is_broader_than_high() -> None:
+    offsets = np.std(posed(PAD).centres, axis=0)
+    assert offsets[2] > 1.5 * offsets[1]
+
+
 def test_a_form_has_its_own_posture_and_broad_leaves_have_none() -> None:
     assert posture_of("needles", "spire") == BOUGH
     assert posture_of("needles", "umbrella") == BRUSH
     assert posture_of("scales", "spire") == PLUME
+    assert posture_of("scales", "round") == PAD
     assert posture_of("leaves", "weeping") == HANGING
     assert posture_of("leaves", "round") is None
 

@@ -1,4 +1,7 @@
-"""How sprays stand on trees of their own look: flat boughs, round brushes, upright plumes, hanging shoots."""
+"""How sprays stand on trees of their own look: flat boughs, round brushes, upright plumes, pads, hanging shoots.
+
+All were judged on renders of six conifers and a willow from six sides.
+"""
 
 from dataclasses import dataclass
 
@@ -45,10 +48,11 @@ BOUGH = Posture(aside=0.6, rise=-0.1, level=0.5, scatter=0.45, stand_off=0.3)
 BRUSH = Posture(aside=0.8, rise=0.3, level=0.2, scatter=0.6, stand_off=0.5)
 """Long needles, which stand off to all sides."""
 PLUME = Posture(aside=0.8, rise=0.9, level=0.15, scatter=0.45, stand_off=0.8)
-"""Scales."""
-HANGING = Posture(aside=0.5, rise=-2.2, level=0.0, scatter=0.3, stand_off=0.8, slimness=7.0, inside=0.5)
+"""Scales on a tree that rises."""
+PAD = Posture(aside=1.2, rise=0.4, level=0.8, scatter=0.5, stand_off=2.0)
+"""Scales in flat pads about the limbs."""
+HANGING = Posture(aside=0.35, rise=-2.2, level=0.0, scatter=0.3, stand_off=1.2, slimness=10.0, inside=0.6)
 """Leaves on long shoots that hang, many of them out of the crown below: its lower edge is no line."""
-# All were judged on renders of four conifers and a willow from six sides.
 
 
 def posture_of(kind: FoliageKind, form: TreeForm) -> Posture | None:
@@ -57,7 +61,7 @@ def posture_of(kind: FoliageKind, form: TreeForm) -> Posture | None:
         case "needles":
             return BOUGH if form == "spire" else BRUSH
         case "scales":
-            return PLUME
+            return PLUME if form in ("spire", "columnar") else PAD
         case "leaves" if form == "weeping":
             return HANGING
     return None
