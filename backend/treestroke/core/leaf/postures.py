@@ -22,6 +22,8 @@ class Posture:
     aside, rise
         Weights, beside 1 for the branch's direction, of a direction across the branch and of the vertical in the
         spray's own direction.
+    tilt
+        Standard deviation of the vertical's weight.
     level
         Weight of the vertical, beside 1 for the way out of the crown, in the direction that the spray faces.
     scatter
@@ -39,11 +41,12 @@ class Posture:
     level: float
     scatter: float
     stand_off: float
+    tilt: float = 0.2
     slimness: float = 1.0
     inside: float = FITTING
 
 
-BOUGH = Posture(aside=0.6, rise=-0.1, level=0.5, scatter=0.45, stand_off=0.3)
+BOUGH = Posture(aside=0.6, rise=-0.3, level=0.4, scatter=0.45, stand_off=0.3, tilt=0.5)
 """Short needles in flat layers, those of a bough above each other."""
 BRUSH = Posture(aside=0.8, rise=0.3, level=0.2, scatter=0.6, stand_off=0.5)
 """Long needles, which stand off to all sides."""
@@ -79,7 +82,9 @@ def pose_by_posture(
     turn = rng.uniform(-1.0, 1.0, (n, 1))
     depth = rng.normal(0, 0.35, (n, 1)) * np.cross(side, seats.directions)
     around = turn * side + depth
-    axis = unit(seats.directions + posture.aside * around + (posture.rise + rng.normal(0, 0.2, (n, 1))) * UP, UP)
+    axis = unit(
+        seats.directions + posture.aside * around + (posture.rise + rng.normal(0, posture.tilt, (n, 1))) * UP, UP
+    )
     long, wide = np.sqrt(posture.slimness), 1 / np.sqrt(posture.slimness)
     foot = seats.points + posture.stand_off * rng.random((n, 1)) * half_sizes[:, None] * around
     centres = foot + 0.8 * long * half_sizes[:, None] * axis
