@@ -56,6 +56,6 @@ def test_a_form_has_its_own_posture_and_broad_leaves_have_none() -> None:
 def test_sprays_point_outward_along_their_limb_near_it(posture: Posture) -> None:
     poses = posed(posture)
     assert (poses.ups[:, 0] > 0).mean() > 0.95
-    np.testing.assert_allclose(np.linalg.norm(poses.ups, axis=1), 0.2)
+    np.testing.assert_allclose(np.linalg.norm(poses.ups, axis=1), 0.2 * np.sqrt(posture.slimness))
     np.testing.assert_allclose((poses.ups * poses.rights).sum(axis=1), 0, atol=1e-12)
-    assert np.hypot(poses.centres[:, 1] - 5, poses.centres[:, 2]).max() < 0.35
+    assert np.hypot(poses.centres[:, 1] - 5, poses.centres[:, 2]).max() < 0.35 * np.sqrt(posture.slimness)

@@ -50,9 +50,9 @@ BOUGH = Posture(aside=0.6, rise=-0.3, level=0.4, scatter=0.45, stand_off=0.3, ti
 """Short needles in flat layers, those of a bough above each other."""
 BRUSH = Posture(aside=0.8, rise=0.3, level=0.2, scatter=0.6, stand_off=0.5)
 """Long needles, which stand off to all sides."""
-PLUME = Posture(aside=0.8, rise=0.9, level=0.15, scatter=0.45, stand_off=0.8)
+PLUME = Posture(aside=0.8, rise=0.9, level=0.15, scatter=0.45, stand_off=0.8, slimness=2.5)
 """Scales on a tree that rises."""
-PAD = Posture(aside=1.2, rise=0.4, level=0.8, scatter=0.5, stand_off=2.0)
+PAD = Posture(aside=1.2, rise=0.4, level=0.8, scatter=0.5, stand_off=2.0, slimness=2.0)
 """Scales in flat pads about the limbs."""
 HANGING = Posture(aside=0.35, rise=-2.2, level=0.0, scatter=0.3, stand_off=1.2, slimness=10.0, inside=0.6)
 """Leaves on long shoots that hang, many of them out of the crown below: its lower edge is no line."""
