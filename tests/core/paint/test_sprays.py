@@ -37,12 +37,13 @@ def test_fine_sprays_keep_their_gaps_where_they_are_small(shape):
 @pytest.mark.parametrize("shape", ["needles", "scales"])
 def test_conifers_sprays_are_narrow_and_do_not_fall_apart_where_they_are_small(shape):
     # Seen 16 px wide and cut, as in a view of the whole tree, a broad or torn spray reads as a lobed leaf.
+    # Half as broad as long: narrower ones leave most of their card empty.
     alphas = [draw_spray(shape, 256, MEMBERS, np.random.default_rng(seed))[..., 3] for seed in range(8)]
     small = [alpha.reshape(16, 16, 16, 16).mean(axis=(1, 3)) >= 127 for alpha in alphas]
     assert np.mean([cut.mean() / (alpha >= 127).mean() for cut, alpha in zip(small, alphas, strict=True)]) > 0.9
     for cut in small:
         rows, columns = np.nonzero(cut)
-        assert np.std(columns) < 0.48 * np.std(rows)
+        assert np.std(columns) < 0.6 * np.std(rows)
 
 
 @pytest.mark.parametrize("shape", ["broad", "needles", "scales", "frond", "strap", "blossom"])
@@ -77,8 +78,18 @@ def of(name: str, seed: int = 0) -> np.ndarray:
 @pytest.mark.parametrize("name", SPECIES)
 def test_a_species_fills_a_quarter_to_three_quarters_of_its_tile(name):
     covered = [(of(name, seed)[..., 3] > 127).mean() for seed in range(4)]
-    assert min(covered) >= 0.25
+    assert min(covered) >= (0.15 if SPECIES[name].needles == "short" else 0.25)  # short needles leave gaps
     assert max(covered) <= 0.75
+
+
+def test_a_pine_s_brush_is_as_broad_as_long_and_has_a_frayed_rim():
+    alphas = [draw_spray("needles", 256, MEMBERS, np.random.default_rng(k), SPECIES["pine"])[..., 3] for k in range(4)]
+    for alpha in alphas:
+        rows, columns = np.nonzero(alpha > 127)
+        distance = np.hypot(rows - rows.mean(), columns - columns.mean())
+        assert 0.8 < np.std(columns) / np.std(rows) < 1.7
+        near, far = (np.count_nonzero((distance >= a) & (distance < a + 20)) / (a + 10) for a in (20, 80))
+        assert far < 0.6 * near
 
 
 @pytest.mark.parametrize("name", SPECIES)

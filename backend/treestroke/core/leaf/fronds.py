@@ -57,16 +57,20 @@ def set_fronds(skeleton: Skeleton, crown: LeafCrown, density: float, rng: np.ran
         found.append(leaves.select(kept))
         order = order[~kept]
     leaves = crown.recoloured(join_leaves(found), rng)
-    return replace(leaves, tiles=_of_one_colour(leaves))
+    tiles = _of_one_colour(leaves.tiles, frond[leaves.joints], crown.colouring.tile_labs)
+    return replace(leaves, tiles=tiles)
 
 
-def _of_one_colour(leaves: Leaves) -> Indices:
-    """Return the tiles (m,) with which the cards on one edge of a midrib all show that of the middle one."""
-    order = np.argsort(leaves.joints, kind="stable")
-    _, first, count = np.unique(leaves.joints[order], return_index=True, return_counts=True)
-    found = np.empty_like(leaves.tiles)
-    found[order] = np.repeat(leaves.tiles[order[first + count // 2]], count)
-    return found
+def _of_one_colour(tiles: Indices, fronds: Indices, labs: Floats) -> Indices:
+    """Return the tiles (m,) with which all cards of a frond (m,) show the one nearest to their mean colour.
+
+    ``labs`` (k, 3) are the tiles' colours, CIE Lab.
+    """
+    found, member = np.unique(fronds, return_inverse=True)
+    total = np.zeros((len(found), 3))
+    np.add.at(total, member, labs[tiles])
+    mean = total / np.bincount(member)[:, None]
+    return np.asarray(((mean[:, None] - labs) ** 2).sum(axis=2).argmin(axis=1)[member])
 
 
 def _places(skeleton: Skeleton, midribs: Mask) -> tuple[Floats, Floats, Indices]:

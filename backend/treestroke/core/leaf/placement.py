@@ -18,15 +18,15 @@ from treestroke.core.leaf.arrangement import (
     pose_on_branches,
     seats_along,
 )
-from treestroke.core.leaf.conifer_sprays import POSTURES, pose_conifer_sprays
 from treestroke.core.leaf.fronds import set_fronds
 from treestroke.core.leaf.gaps import GapParams, cover_gaps
-from treestroke.core.leaf.leaf_crown import LeafCrown
+from treestroke.core.leaf.leaf_crown import FITTING, LeafCrown
 from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.leaf.postures import pose_by_posture, posture_of
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
-from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices
+from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices, TreeForm
 
 LAYERS = 10.0
 """Cards' opaque area over the foliage's area in the picture, at density 1 (a leaf area index)."""
@@ -50,11 +50,14 @@ class LeafParams:
         Most cards besides those at twigs' ends.
     kind
         What the twigs bear; ``bare`` bears nothing.
+    form
+        How its limbs grow, and its sprays hang.
     """
 
     density: float = 1.0
     max_cards: int = 25_000
     kind: FoliageKind = "leaves"
+    form: TreeForm = "round"
 
     def __post_init__(self) -> None:
         if not 0 <= self.density <= 3:
@@ -87,7 +90,7 @@ def place_leaves(
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     grids, even = (*crown.grids, *crown.sides), params.kind in CONIFEROUS
     weights = leaf_weights(skeleton, grids, crown.volume, crown.height, even)
-    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params.kind, rng)
+    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params, rng)
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
@@ -111,27 +114,35 @@ def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Gene
     return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
 
 
-def _on_branches(seats: Seats, crown: LeafCrown, kind: FoliageKind, rng: np.random.Generator) -> Leaves:
+def _on_branches(seats: Seats, crown: LeafCrown, params: LeafParams, rng: np.random.Generator) -> Leaves:
     """Hang a card on each seat where it fits the foliage."""
+    posture = posture_of(params.kind, params.form)
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
-        if kind in POSTURES:
-            return pose_conifer_sprays(seats, half_sizes, crown.middle, POSTURES[kind], rng)
+        if posture is not None:
+            return pose_by_posture(seats, half_sizes, crown.middle, posture, rng)
         return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
 
-    return _fitted(seats, pose, crown, rng)[0]
+    return _fitted(seats, pose, crown, rng, FITTING if posture is None else posture.inside)[0]
 
 
 def _fitted(
-    seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: LeafCrown, rng: np.random.Generator
+    seats: Seats,
+    pose: Callable[[Seats, Floats], Poses],
+    crown: LeafCrown,
+    rng: np.random.Generator,
+    inside: float = FITTING,
 ) -> tuple[Leaves, Indices]:
-    """Set a card on each seat; those that do not fit are posed again, smaller each time, a few times, then left out."""
+    """Set a card on each seat; those that do not fit are posed again, smaller each time, a few times, then left out.
+
+    ``inside`` is the share of their opaque dots that must lie in the foliage.
+    """
     found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
     for scale in SHRINKING:
         if len(order) == 0:
             break
         tried = seats.at(order)
-        leaves, kept = crown.dressed(pose(tried, scale * full[order]), tried, rng)
+        leaves, kept = crown.dressed(pose(tried, scale * full[order]), tried, rng, inside)
         found.append(leaves)
         order = order[~kept]
     return join_leaves(found), order

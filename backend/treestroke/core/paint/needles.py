@@ -1,4 +1,4 @@
-"""Sprays of needles: those of a pine, spruce or larch, or a flat spray where the species is unknown."""
+"""Sprays of needles: those of a pine, of a fir or spruce, of a larch."""
 
 import numpy as np
 
@@ -7,12 +7,12 @@ from treestroke.core.paint.shoots import along, angle_of, draw_shoots, heading
 from treestroke.core.paint.species import NeedleArrangement
 from treestroke.core.types import Floats, Picture
 
-FEATHER_SHOOTS = 18
-"""Side shoots of a spray where the species is unknown."""
+SHOOTS = 13
+"""Side shoots of a spray with short needles."""
 NEEDLES_PER_SIDE = 300.0
-"""Needles on a shoot as long as the spray's side."""
-PINE_NEEDLES, SPRUCE_NEEDLES = 42, 90
-"""Needles of a shoot."""
+"""Short needles on a shoot as long as the spray's side."""
+BRUSHES, BUNDLES = 5, 56
+"""Brushes of a pine's spray, and pairs of needles in each."""
 LARCH_TUFTS, TUFT_NEEDLES = 6, 18
 """Tufts of a larch's shoot, and needles of a tuft."""
 
@@ -20,7 +20,7 @@ LARCH_TUFTS, TUFT_NEEDLES = 6, 18
 def draw_species_needles(
     arrangement: NeedleArrangement, side: int, colours: Floats, rng: np.random.Generator
 ) -> Picture:
-    """Draw long needles in brushes at the shoots' ends, short ones all around the shoots, or tufts along thin twigs.
+    """Draw long needles in brushes at the shoots' ends, a flat spray of short ones, or tufts along thin twigs.
 
     Returns
     -------
@@ -28,16 +28,16 @@ def draw_species_needles(
     """
     match arrangement:
         case "long":
-            shoots = draw_shoots(rng, 9, 0.75, 0.26)
-            needles, width = _pine_needles(shoots, rng), 0.0105
+            shoots = _pine_shoots(rng)
+            needles, width = _pine_needles(shoots, rng), 0.007
         case "short":
-            shoots = _spruce_shoots(rng)
-            needles, width = _spruce_needles(shoots, rng), 0.0105
+            shoots = _flat_shoots(rng)
+            needles, width = _short_needles(shoots, rng), 0.0075
         case "tufts":
             shoots = draw_shoots(rng, 9, 0.9, 0.39)
             needles, width = _larch_needles(shoots, rng), 0.006
     canvas = Canvas(side, colours, len(needles), rng)
-    canvas.lines(shoots, canvas.wood, 0.008 if arrangement == "tufts" else 0.014)
+    canvas.lines(shoots, canvas.wood, 0.008)
     _draw_by_lightness(canvas, needles[fits_canvas(needles)], width, rng)
     return canvas.tile()
 
@@ -57,38 +57,26 @@ def _bowed(foot: Floats, angle: Floats, length: Floats, bow: Floats) -> Floats:
     return np.stack([foot, middle, middle + 0.5 * length[:, None] * heading(angle + bow)], axis=1)
 
 
+def _pine_shoots(rng: np.random.Generator) -> Floats:
+    """Draw a short twig and the shoots about its end that bear a brush each: (m, 9, 2)."""
+    t = np.linspace(0, 1, 9)
+    twig = np.stack([0.5 + rng.uniform(-0.06, 0.06) * t, 0.96 - 0.56 * t], axis=1)
+    angle = np.linspace(-1.5, 1.5, BRUSHES - 1) + rng.uniform(-0.25, 0.25, BRUSHES - 1)
+    share, length = rng.uniform(0.3, 0.7, BRUSHES - 1), rng.uniform(0.14, 0.22, BRUSHES - 1)
+    side = along(twig, share)[:, None] + (length[:, None] * t)[..., None] * heading(angle)[:, None]
+    return np.concatenate([twig[None], side])
+
+
 def _pine_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
-    """Place long needles (p, 3, 2) on the outer part of each shoot (m, 9, 2), standing off on all sides."""
-    shoot = np.repeat(np.arange(len(shoots)), PINE_NEEDLES)
-    share = 1.0 - 0.3 * rng.random(len(shoot))
+    """Place long needles (p, 3, 2), in pairs, around the end of each shoot (m, 9, 2): a round, frayed brush."""
+    shoot = np.repeat(np.arange(len(shoots)), BUNDLES)
+    share = 1.0 - 0.45 * rng.random(len(shoot)) ** 2
     foot = along(shoots[shoot], share)
     ahead = angle_of(foot - along(shoots[shoot], share - 0.1))
-    spread = rng.uniform(-1.25, 1.25, len(shoot)) * (1.4 - 0.6 * share)
-    length = rng.uniform(0.17, 0.26, len(shoot)) * (1.0 - 0.2 * np.abs(spread))
-    return _bowed(foot, ahead + spread, length, -0.25 * spread + rng.normal(0, 0.08, len(shoot)))
-
-
-def _spruce_shoots(rng: np.random.Generator) -> Floats:
-    """Draw a straight twig and shoots to both sides, nearly in pairs and shorter toward its tip: (m, 9, 2)."""
-    t, count = np.linspace(0, 1, 9), 11
-    twig = np.stack([0.5 + rng.uniform(-0.05, 0.05) * t, 0.97 - 0.86 * t], axis=1)
-    share = np.linspace(0.06, 0.86, count) + rng.uniform(-0.02, 0.02, count)
-    turn = np.where(np.arange(count) % 2, 1.0, -1.0)
-    angle = turn * rng.uniform(0.75, 1.05, count)
-    length = 0.62 * (1.05 - share) ** 0.55 * rng.uniform(0.75, 1.05, count)
-    bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.35, (count, 1)) * t
-    return np.concatenate([twig[None], along(twig, share)[:, None] + (length[:, None] * t)[..., None] * heading(bent)])
-
-
-def _spruce_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
-    """Place short, stiff needles (p, 3, 2) along every shoot (m, 9, 2), pointing forward."""
-    shoot = np.repeat(np.arange(len(shoots)), SPRUCE_NEEDLES)
-    share = rng.random(len(shoot))
-    foot = along(shoots[shoot], share)
-    ahead = angle_of(along(shoots[shoot], share + 0.06) - along(shoots[shoot], share - 0.06))
-    spread = rng.choice([-1.0, 1.0], len(shoot)) * rng.uniform(0.15, 1.0, len(shoot))
-    length = rng.uniform(0.05, 0.075, len(shoot))
-    return _bowed(foot, ahead + spread, length, -0.3 * spread)
+    spread = rng.uniform(-1.0, 1.0, len(shoot))
+    angle = np.repeat(ahead + 2.3 * spread, 2) + np.tile([-0.05, 0.05], len(shoot))
+    length = np.repeat(rng.uniform(0.16, 0.31, len(shoot)) * (1.0 - 0.25 * np.abs(spread)), 2)
+    return _bowed(np.repeat(foot, 2, axis=0), angle, length, rng.normal(0, 0.12, 2 * len(shoot)))
 
 
 def _larch_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
@@ -104,40 +92,21 @@ def _larch_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
     return _bowed(foot, ahead + spread, length, rng.normal(0, 0.2, len(shoot)))
 
 
-def draw_flat_spray(side: int, colours: Floats, rng: np.random.Generator) -> Picture:
-    """Draw a flat spray as firs and spruces have it: a feather of shoots with short needles, narrow toward its tip.
-
-    Its outline is frayed, pointed and three times as long as broad, so that it does not read as a lobed leaf where it
-    is a few pixels wide.
-
-    Returns
-    -------
-    (side, side, 4) uint8, sRGB with straight alpha, in colours drawn from (m, 3), CIE Lab.
-    """
-    shoots = _feather_shoots(rng)
-    needles = _feather_needles(shoots, rng)
-    canvas = Canvas(side, colours, len(needles), rng)
-    canvas.lines(shoots[:1], canvas.wood, 0.012)
-    canvas.lines(shoots[1:], canvas.wood, 0.007)
-    _draw_by_lightness(canvas, needles[fits_canvas(needles)], 0.0075, rng)
-    return canvas.tile()
-
-
-def _feather_shoots(rng: np.random.Generator) -> Floats:
+def _flat_shoots(rng: np.random.Generator) -> Floats:
     """Draw a bowed twig and shoots to both sides, the longest at a third of it: (m, 9, 2)."""
     t, bow = np.linspace(0, 1, 9), rng.uniform(-0.07, 0.07)
     twig = np.stack([0.5 + bow * np.sin(np.pi * t), 0.97 - 0.9 * t], axis=1)
-    share = np.linspace(0.04, 0.9, FEATHER_SHOOTS) + rng.uniform(-0.015, 0.015, FEATHER_SHOOTS)
-    turn = np.where((np.arange(FEATHER_SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
-    angle = turn * rng.uniform(0.5, 0.8, FEATHER_SHOOTS) * (1.1 - 0.35 * share)
-    outline = np.interp(share, [0.0, 0.25, 1.0], [0.2, 0.36, 0.1])
-    length = outline * rng.uniform(0.6, 1.05, FEATHER_SHOOTS)
-    bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.4, (FEATHER_SHOOTS, 1)) * t
+    share = np.linspace(0.04, 0.9, SHOOTS) + rng.uniform(-0.015, 0.015, SHOOTS)
+    turn = np.where((np.arange(SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
+    angle = turn * rng.uniform(0.75, 1.05, SHOOTS) * (1.1 - 0.35 * share)
+    outline = np.interp(share, [0.0, 0.25, 1.0], [0.34, 0.46, 0.16])
+    length = outline * rng.uniform(0.6, 1.05, SHOOTS)
+    bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.4, (SHOOTS, 1)) * t
     foot = along(twig, share)
     return np.concatenate([twig[None], foot[:, None] + (length[:, None] * t)[..., None] * heading(bent)])
 
 
-def _feather_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
+def _short_needles(shoots: Floats, rng: np.random.Generator) -> Floats:
     """Place short needles (p, 3, 2) to both sides of each shoot (m, 9, 2), pointing forward, in proportion to length.
 
     They become shorter toward the shoot's tip, which ends in a point.

@@ -6,9 +6,9 @@ from treestroke.core.paint.canvas import DARK, LIGHT, PLAIN, Canvas, fits_canvas
 from treestroke.core.paint.shoots import along, angle_of, heading
 from treestroke.core.types import Floats, Picture
 
-SHOOTS = 11
+SHOOTS = 12
 """Side shoots of a spray."""
-TWIGS = 16
+TWIGS = 22
 """Twigs of a shoot."""
 
 
@@ -26,7 +26,7 @@ def draw_scale_spray(side: int, colours: Floats, rng: np.random.Generator) -> Pi
     fitting = np.flatnonzero(fits_canvas(twigs))
     for number, group in enumerate(np.array_split(rng.permutation(fitting), 36)):
         paint = canvas.paints[group[0] if len(group) else 0]
-        canvas.lines(twigs[group], paint[(DARK, PLAIN, LIGHT)[number // 12]], 0.019)
+        canvas.lines(twigs[group], paint[(DARK, PLAIN, LIGHT)[number // 12]], 0.015)
     return canvas.tile()
 
 
@@ -36,8 +36,8 @@ def _plume(rng: np.random.Generator) -> Floats:
     twig = np.stack([0.5 + rng.uniform(-0.08, 0.08) * t**2, 0.97 - 0.88 * t], axis=1)
     share = np.linspace(0.03, 0.92, SHOOTS) + rng.uniform(-0.02, 0.02, SHOOTS)
     turn = np.where((np.arange(SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
-    length = np.interp(share, [0.0, 0.25, 1.0], [0.3, 0.46, 0.14]) * rng.uniform(0.65, 1.1, SHOOTS)
-    bent = turn[:, None] * (rng.uniform(0.45, 0.8, (SHOOTS, 1)) - rng.uniform(0.15, 0.5, (SHOOTS, 1)) * t)
+    length = np.interp(share, [0.0, 0.25, 1.0], [0.4, 0.5, 0.16]) * rng.uniform(0.65, 1.1, SHOOTS)
+    bent = turn[:, None] * (rng.uniform(0.7, 1.05, (SHOOTS, 1)) - rng.uniform(0.15, 0.5, (SHOOTS, 1)) * t)
     way = (length[:, None] * t)[..., None] * heading(bent)
     return np.concatenate([twig[None], along(twig, share)[:, None] + way])
 
@@ -50,7 +50,7 @@ def _twigs(shoots: Floats, rng: np.random.Generator) -> Floats:
     foot = along(shoots[shoot], share)
     ahead = angle_of(along(shoots[shoot], share + 0.06) - along(shoots[shoot], share - 0.06))
     spread = np.where(order % 2, 1.0, -1.0) * rng.uniform(0.3, 0.75, len(shoot))
-    reach = rng.uniform(0.04, 0.075, len(shoot)) * (1.15 - 0.55 * share)
+    reach = rng.uniform(0.035, 0.06, len(shoot)) * (1.15 - 0.55 * share)
     middle = foot + 0.5 * reach[:, None] * heading(ahead + spread)
     side_twigs = np.stack([foot, middle, middle + 0.5 * reach[:, None] * heading(ahead + 0.55 * spread)], axis=1)
     cords = np.concatenate([shoots[1:, a : a + 3] for a in (0, 2, 4, 6)])

@@ -1,16 +1,17 @@
 """What a photo cannot show of a tree: the shape and arrangement of its leaves, its seasons' colours and its bark."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Literal
 
 from treestroke.core.paint.leaf_shapes import LeafShapeName
+from treestroke.core.types import FoliageKind, TreeForm
 
 LeafArrangement = Literal["alternate", "opposite", "tufted"]
 """How leaves sit on a shoot: alternating, in opposite pairs, or together at its end."""
 NeedleArrangement = Literal["long", "short", "tufts"]
-"""How needles sit: long ones in brushes at the shoots' ends, short ones all around, or in tufts."""
+"""How needles sit: long ones in brushes at the shoots' ends, short ones in flat sprays, or in tufts."""
 Lab = tuple[float, float, float]
 Ramp = tuple[Lab, ...]
 """Colours, CIE Lab, between which a tree's leaves lie in one season."""
@@ -221,3 +222,17 @@ SPECIES: Mapping[str, Species] = MappingProxyType(
     }
 )
 """Known kinds of trees, by the values of the setting `species`; its value `auto` means AUTO."""
+
+
+def species_for(name: str, kind: FoliageKind, form: TreeForm) -> Species:
+    """Return the species of a name; for `auto`, one whose sprays are those of most trees of a kind and a form.
+
+    A conifer that is no spire is drawn as a pine, another one as a fir; a weeping tree as a willow.
+    """
+    if name in SPECIES:
+        return SPECIES[name]
+    if kind == "needles":
+        return replace(AUTO, needles="short" if form == "spire" else "long")
+    if kind == "leaves" and form == "weeping":
+        return replace(AUTO, leaf_shape="willow", length=0.3, shoots=3)
+    return AUTO

@@ -7,7 +7,7 @@ import numpy as np
 from treestroke.core.paint.broad_leaves import draw_ovate_leaves, draw_species_leaves
 from treestroke.core.paint.canvas import DARK, HEART, LIGHT, PLAIN, Canvas, fits_canvas
 from treestroke.core.paint.fronds import draw_frond_piece, draw_strap_piece
-from treestroke.core.paint.needles import draw_flat_spray, draw_species_needles
+from treestroke.core.paint.needles import draw_species_needles
 from treestroke.core.paint.scales import draw_scale_spray
 from treestroke.core.paint.shoots import along, draw_twig, heading
 from treestroke.core.paint.species import AUTO, Species
@@ -15,7 +15,7 @@ from treestroke.core.types import Floats, FoliageKind, Picture
 
 SprayKind = Literal["broad", "needles", "scales", "frond", "strap", "blossom"]
 
-CARD_SIZE: dict[FoliageKind, float] = {"leaves": 1.0, "needles": 2.0, "scales": 1.4, "palm": 1.0, "bare": 1.0}
+CARD_SIZE: dict[FoliageKind, float] = {"leaves": 1.0, "needles": 1.3, "scales": 1.4, "palm": 1.0, "bare": 1.0}
 """Size of the card that shows a spray, relative to one of broad leaves: a conifer's spray has many more parts."""
 FLOWERS = 220
 """Flowers tried for a spray; those that would hide others or leave the square are left out."""
@@ -35,10 +35,8 @@ def draw_spray(
             return draw_species_leaves(species, side, colours, rng)
         case "broad":
             return draw_ovate_leaves(species.length, side, colours, rng)
-        case "needles" if species.needles is not None:
-            return draw_species_needles(species.needles, side, colours, rng)
         case "needles":
-            return draw_flat_spray(side, colours, rng)
+            return draw_species_needles(species.needles or "short", side, colours, rng)
         case "scales":
             return draw_scale_spray(side, colours, rng)
         case "frond":

@@ -24,7 +24,7 @@ from treestroke.core.paint.atlas import Atlas, LeafStyle, leaf_atlas
 from treestroke.core.paint.cut_outs import opaque_part, reduced
 from treestroke.core.paint.leaf_scale import bounded_length, leaf_length_px
 from treestroke.core.paint.seasons import size_and_density
-from treestroke.core.paint.species import AUTO, SPECIES, Species
+from treestroke.core.paint.species import AUTO, SPECIES, Species, species_for
 from treestroke.core.paint.sprays import CARD_SIZE
 from treestroke.core.pipeline.crowns import CLOSED_SHARE, closed
 from treestroke.core.pipeline.grown_tree import GrownTree
@@ -90,7 +90,7 @@ def _leaves(
     leafy = tuple(view for view in tree.appearance.views if view.foliage.any())
     if tree.kind == "bare" or settings.leaf_density == 0 or not leafy:
         return no_leaves(), None
-    species = SPECIES.get(settings.species, AUTO)
+    species = species_for(settings.species, tree.kind, tree.taken.form)
     straps = tree.kind == "palm" and is_forked(tree.grown)
     length = _seen_length(leafy[0], species) if tree.kind == "leaves" and tree.appearance.shows_leaves else None
     style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps, length)
@@ -104,7 +104,7 @@ def _leaves(
         float(np.clip(size * CARD_SIZE[tree.kind] * settings.leaf_size, LEAST_SIZE, MOST_SIZE)),
         rng,
     )
-    params = LeafParams(density * settings.leaf_density, kind=tree.kind)
+    params = LeafParams(density * settings.leaf_density, kind=tree.kind, form=tree.taken.form)
     return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas
 
 
