@@ -21,6 +21,7 @@ from treestroke.core.trace.crown_picture import CrownPicture
 from treestroke.core.trace.foot import flared, leaves_photo
 from treestroke.core.trace.found_limbs import drawn_ribbons, find_limbs
 from treestroke.core.trace.giant import fork_of, is_giant, upright
+from treestroke.core.trace.shaded import shade_under
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
 from treestroke.core.trace.stem_sides import FEWEST_BARE, bare_stem, joined
@@ -149,6 +150,8 @@ def trace_branches(
     _follow_strokes(builder, strokes.branches, evidence, params)
     # The crown's own odds may miss a limb's shady side.
     wood |= sure_wood & drawn_ribbons(*builder.arrays(), wood.shape)
+    if bare_wood is None and not surroundings.broad:
+        wood &= ~shade_under(builder.strokes(), smooth, crown)
     if bare_wood is None:
         thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
         wood |= find_limbs(builder, picture, odds.by_crown, smooth, thinnest_px)
