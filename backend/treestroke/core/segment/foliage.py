@@ -29,6 +29,7 @@ from treestroke.core.segment.leaf_odds import (
     refitted_models,
 )
 from treestroke.core.segment.matte import matte
+from treestroke.core.segment.shaded_leaves import log_odds_by_roughness, roughness
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 REFERENCE_SIDE = 1500
@@ -166,19 +167,21 @@ def segment_foliage(
 def _told_apart(
     pixels: Picture, inside: Mask, known: Opacity | None, params: FoliageParams, report: Report
 ) -> tuple[Mixture, Mixture, NDArray[np.float32]]:
-    """Fit colour models of leaves and ground; return them and the log odds (h, w) that each pixel is a leaf by them.
+    """Fit colour models of leaves and ground; return them and the log odds (h, w) that each pixel is a leaf.
 
-    ``inside`` (h, w) is the stroke's, ``known`` (h, w) the foliage's opacity where that is known.
+    These go by colour, and in the shade by roughness, too. ``inside`` (h, w) is the stroke's, ``known`` (h, w) the
+    foliage's opacity where that is known.
     """
     leaf, ground = initial_models(pixels, inside, params.components, params.samples)
     report("foliage", 0.2)
     place, odds = log_odds_by_place(inside), log_odds_by_colour(leaf, ground, pixels)
+    rough = roughness(pixels, inside)
     for refit in range(params.refits):
         leaves = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0 if known is None else known > HALF)
         if not leaves.any() or leaves.all():
             break
         leaf, ground = refitted_models(pixels, leaves, params.components, params.samples)
-        odds = log_odds_by_height(leaf, ground, pixels, leaves)
+        odds = log_odds_by_height(leaf, ground, pixels, leaves) + log_odds_by_roughness(rough, leaves, inside)
         report("foliage", 0.2 + 0.5 * (refit + 1) / params.refits)
     return leaf, ground, odds
 

@@ -39,6 +39,12 @@ class SkeletonBuilder:
             self._arrays = np.array(self.points), np.array(self.radii)
         return self._arrays
 
+    def strokes(self) -> list[tuple[Floats, Floats]]:
+        """List the lines (n, 2) and radii (n,), px, that follow each stroke."""
+        points, radii = self.arrays()
+        stroke = np.array(self.stroke)
+        return [(points[stroke == index], radii[stroke == index]) for index in np.unique(stroke[stroke >= 0])]
+
     def set_radii(self, radii_px: Floats) -> None:
         """Replace the radii (n,), px, of all joints so far."""
         self.radii, self._arrays = radii_px.tolist(), None

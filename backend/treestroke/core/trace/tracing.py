@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import arc_lengths, normals, resample
+from treestroke.core.geometry.polyline import normals, resample
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -21,8 +21,10 @@ from treestroke.core.trace.crown_picture import CrownPicture
 from treestroke.core.trace.foot import flared, leaves_photo
 from treestroke.core.trace.found_limbs import drawn_ribbons, find_limbs
 from treestroke.core.trace.giant import fork_of, is_giant, upright
+from treestroke.core.trace.shaded import shade_under
 from treestroke.core.trace.skeleton_builder import SkeletonBuilder, drop_subtrees, simplify
 from treestroke.core.trace.snapping import blur, snap
+from treestroke.core.trace.stem_sides import FEWEST_BARE, bare_stem, joined
 from treestroke.core.trace.stroke_radii import drawn_radii, limb_radii, stem_radii
 from treestroke.core.trace.thickness import half_widths, to_edges
 from treestroke.core.types import Floats, Indices, Mask, Picture
@@ -39,9 +41,6 @@ GRAIN = 1.5
 """Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
 BLURRED = 4.5
 """How far a Gaussian blur reaches, in standard deviations."""
-BESIDE = 0.5
-"""A stem begins where its stroke does, up to this share of its radius beside the middle of the wood, or of the greatest
-usual radius if it is a giant."""
 
 
 @dataclass(frozen=True)
@@ -151,6 +150,8 @@ def trace_branches(
     _follow_strokes(builder, strokes.branches, evidence, params)
     # The crown's own odds may miss a limb's shady side.
     wood |= sure_wood & drawn_ribbons(*builder.arrays(), wood.shape)
+    if bare_wood is None and not surroundings.broad:
+        wood &= ~shade_under(builder.strokes(), smooth, crown)
     if bare_wood is None:
         thinnest_px = params.thinnest_px * height_px / REFERENCE_SIDE
         wood |= find_limbs(builder, picture, odds.by_crown, smooth, thinnest_px)
@@ -200,8 +201,7 @@ def _snapped(line: Floats, odds: Odds, reach: float, step: float) -> Floats:
 def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
     """Return the line (n, 2) and the radii (n,), px, of a stem whose stroke is a line (n, 2) from a root (2,).
 
-    It begins at the root, to which it leads over the height of its radius, or as low where the root is far beside the
-    middle of the wood.
+    It begins in the middle of the wood, as low as the root.
     """
     height_px, widest = evidence.height_px, params.thickest_share * evidence.height_px
     centred = _centre(line, evidence, widest)
@@ -209,27 +209,21 @@ def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) 
     bare = np.logical_and.accumulate(~sample_nearest(evidence.crown, centred, False))
     sides = half_widths(centred, evidence.wood, widest)
     seen = ~np.isnan(half_widths(centred[bare], evidence.wood, BULKY * widest)[0]) if bare.sum() > 1 else bare[:0]
-    halves, _ = to_edges(centred, _assumed(sides, bare, params.trunk_share * height_px), evidence.photo, widest)
     if is_giant(centred[bare], evidence.wood, widest, height_px):
         centred, level = upright(centred, bare, evidence.wood, height_px)
         halves = np.where(bare, level, half_widths(centred, evidence.wood, widest)[0])
+    else:
+        halves, _ = to_edges(centred, sides, evidence.photo, widest)
+        if bare.sum() >= FEWEST_BARE:
+            known = sides[0][bare & ~np.isnan(sides[0])]
+            usual = float(np.median(known)) if len(known) else params.trunk_share * height_px
+            reach = usual + params.snap_share * height_px
+            below, halves[bare] = bare_stem(line[bare], evidence.photo, usual, reach)
+            centred = joined(below, centred)
+            centred[0, 1] = root[1]
     radii = stem_radii(centred, halves, bare, height_px, params.trunk_share * height_px)
-    aside = root[0] - centred[0, 0]
-    if abs(aside) < BESIDE * min(radii[0], widest):
-        centred[:, 0] += aside * np.clip(1 - arc_lengths(centred) / radii[0], 0.0, 1.0)
     cut = leaves_photo(centred, radii, evidence.photo) and not evidence.cut_out
     return centred, radii if cut or seen.sum() <= CLEAR * len(seen) else flared(centred, radii, evidence.photo)
-
-
-def _assumed(sides: tuple[Floats, Floats], bare: Mask, usual_px: float) -> tuple[Floats, Floats]:
-    """Return half-widths and middles (n,), px, with typical ones where the colours of wood do not tell a bare stem.
-
-    Below the crown no leaves hide a stem, so its edges are there even if its surroundings have its colours. Where its
-    width is nowhere seen, a ``usual_px`` one is taken.
-    """
-    unseen = bare & np.isnan(sides[0])
-    typical = usual_px if unseen.sum() == bare.sum() else float(np.nanmedian(sides[0][bare]))
-    return np.where(unseen, typical, sides[0]), np.where(unseen, 0.0, sides[1])
 
 
 def _limb(
