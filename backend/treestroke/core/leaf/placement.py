@@ -24,6 +24,7 @@ from treestroke.core.leaf.gaps import GapParams, cover_gaps
 from treestroke.core.leaf.leaf_crown import LeafCrown
 from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
+from treestroke.core.leaf.shown_limbs import ShownLimbs, shown_limbs
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices
@@ -63,6 +64,14 @@ class LeafParams:
             raise ValueError(f"max_cards must not be negative and kind one of FoliageKind, got {self}")
 
 
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """Where cards may hang: in the crown, but not before the limbs that show at its sides."""
+
+    crown: LeafCrown
+    limbs: ShownLimbs
+
+
 def place_leaves(
     skeleton: Skeleton,
     crown: LeafCrown,
@@ -86,8 +95,9 @@ def place_leaves(
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     weights = leaf_weights(skeleton, crown.grids, crown.volume, crown.height, even=params.kind in CONIFEROUS)
-    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params.kind, rng)
-    leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
+    place = _Place(crown, shown_limbs(skeleton, crown))
+    along = _on_branches(seats_along(skeleton, weights, count, rng), place, params.kind, rng)
+    leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, place, rng)])
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
     patches = cover_gaps(leaves, skeleton, crown, gaps, rng)
@@ -95,41 +105,45 @@ def place_leaves(
     return join_leaves([leaves, *patches])
 
 
-def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
+def _at_tips(seats: Seats, density: float, place: _Place, rng: np.random.Generator) -> Leaves:
     """Set a card at each twig's end, or at a share of them by the density; a bud where the card does not fit."""
+    crown = place.crown
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
         return pose_at_tips(seats, half_sizes, crown.middle, rng)
 
     leafy = rng.random(len(seats)) < density
-    sprays, left = _fitted(seats.at(leafy), pose, crown, rng)
+    sprays, left = _fitted(seats.at(leafy), pose, place, rng)
     bare = ~leafy
     bare[np.flatnonzero(leafy)[left]] = True
     buds = seats.at(bare)
     return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
 
 
-def _on_branches(seats: Seats, crown: LeafCrown, kind: FoliageKind, rng: np.random.Generator) -> Leaves:
+def _on_branches(seats: Seats, place: _Place, kind: FoliageKind, rng: np.random.Generator) -> Leaves:
     """Hang a card on each seat where it fits the foliage."""
+    crown = place.crown
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
         if kind in POSTURES:
             return pose_conifer_sprays(seats, half_sizes, crown.middle, POSTURES[kind], rng)
         return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
 
-    return _fitted(seats, pose, crown, rng)[0]
+    return _fitted(seats, pose, place, rng)[0]
 
 
 def _fitted(
-    seats: Seats, pose: Callable[[Seats, Floats], Poses], crown: LeafCrown, rng: np.random.Generator
+    seats: Seats, pose: Callable[[Seats, Floats], Poses], place: _Place, rng: np.random.Generator
 ) -> tuple[Leaves, Indices]:
     """Set a card on each seat; those that do not fit are posed again, smaller each time, a few times, then left out."""
-    found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
+    found, full, order = [], place.crown.half_sizes(len(seats), rng), np.arange(len(seats))
     for scale in SHRINKING:
         if len(order) == 0:
             break
         tried = seats.at(order)
-        leaves, kept = crown.dressed(pose(tried, scale * full[order]), tried, rng)
-        found.append(leaves)
+        leaves, kept = place.crown.dressed(pose(tried, scale * full[order]), tried, rng)
+        hides = place.limbs.behind(leaves.centres)
+        found.append(leaves.select(~hides))
+        kept[np.flatnonzero(kept)[hides]] = False
         order = order[~kept]
     return join_leaves(found), order
