@@ -149,3 +149,8 @@ def test_fruit_hangs_on_the_same_tree_with_or_without_leaves(settings: dict[str,
     assert np.array_equal(borne.bark.texture, plain.bark.texture)
     assert np.array_equal(borne.cards.centres[~fruit], np.zeros((0, 3)) if plain.cards is None else plain.cards.centres)
     assert borne.measures.figures["crown_width"] == plain.measures.figures["crown_width"]
+
+
+def test_wood_is_lit_as_in_the_photo_only_where_the_photo_shows_it_bare() -> None:
+    assert modelled(BARE).tree.bark.mesh.shades is not None
+    assert modelled(MAPLE, season="bare").tree.bark.mesh.shades is None  # the light there is that of leaves

@@ -13,6 +13,7 @@ from treestroke.core.leaf.coverage import Depths, newly_hidden
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.leaf.leaf_crown import SIDES, Fit, LeafCrown
 from treestroke.core.leaf.leaves import Leaves
+from treestroke.core.leaf.shown_limbs import LeafPlace
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices
 
@@ -69,8 +70,8 @@ class _Gaps:
 
     Attributes
     ----------
-    grid, crown
-        The view's foliage, and the crown.
+    grid, place
+        The view's foliage, and where cards may hang.
     seats, radii
         Places on all branches, and the branches' radii there (n,), metres.
     far
@@ -80,11 +81,16 @@ class _Gaps:
     """
 
     grid: FoliageGrid
-    crown: LeafCrown
+    place: LeafPlace
     seats: Seats
     radii: Floats
     far: int
     imagined: bool
+
+    @property
+    def crown(self) -> LeafCrown:
+        """The crown."""
+        return self.place.crown
 
 
 @dataclass(frozen=True)
@@ -96,19 +102,19 @@ class _Size:
 
 
 def cover_gaps(
-    leaves: Leaves, skeleton: Skeleton, crown: LeafCrown, params: GapParams, rng: np.random.Generator
+    leaves: Leaves, skeleton: Skeleton, place: LeafPlace, params: GapParams, rng: np.random.Generator
 ) -> list[Leaves]:
     """Set cards before the wood that each view would show, and over what is open then, in smaller and smaller sizes.
 
     Places too far from any branch stay open.
     """
-    seats = seats_along(skeleton, np.ones(len(skeleton), dtype=np.bool_), SEATS, rng)
+    crown, seats = place.crown, seats_along(skeleton, np.ones(len(skeleton), dtype=np.bool_), SEATS, rng)
     if len(seats) == 0:
         return []
     far, patches = int(FAR_SHARE * len(leaves) / len(SIZES)), [leaves]
     in_front = replace(params, most=int(params.most * (1 - FOR_SIDES * (len(crown.sides) > 0))))
     for grid in (*crown.grids, *crown.sides):
-        gaps = _Gaps(grid, crown, seats, skeleton.radii[seats.joints], far, grid in crown.sides)
+        gaps = _Gaps(grid, place, seats, skeleton.radii[seats.joints], far, grid in crown.sides)
         bounds, nearest = params if gaps.imagined else in_front, _nearest_cards(patches, gaps)
         if not gaps.imagined:
             patches += _cover_wood(nearest, patches, gaps, bounds, rng)
@@ -205,7 +211,7 @@ def _patch(seats: Seats, cells: Indices, size: _Size, gaps: _Gaps, rng: np.rando
     seats, half_sizes = seats.at(kept), size.scale * crown.half_sizes(len(centres), rng)
     outward = _seen_from(gaps.grid, centres, unit(centres - crown.middle, UP))
     poses = pose_over(seats, centres, half_sizes, outward, rng)
-    return crown.dressed(poses, seats, rng, Fit(FITTING, size.in_sides))[0]
+    return gaps.place.dressed(poses, seats, rng, Fit(FITTING, size.in_sides))[0]
 
 
 def _centres(cells: Indices, seats: Seats, gaps: _Gaps, rng: np.random.Generator) -> tuple[Floats, Indices]:

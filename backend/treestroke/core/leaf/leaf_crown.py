@@ -54,6 +54,9 @@ class Fit:
     in_sides: bool = True
 
 
+USUAL_FIT = Fit()
+
+
 @dataclass(frozen=True, eq=False)
 class LeafCrown:
     """The views' foliage, the crown's volume, the colours and the atlas's tiles, with sizes in metres.
@@ -115,7 +118,9 @@ class LeafCrown:
         shades[unseen] = _light(brightness, rng)
         return replace(leaves, tiles=tiles, shades=shades)
 
-    def dressed(self, poses: Poses, seats: Seats, rng: np.random.Generator, fit: Fit = Fit()) -> tuple[Leaves, Mask]:
+    def dressed(
+        self, poses: Poses, seats: Seats, rng: np.random.Generator, fit: Fit = USUAL_FIT
+    ) -> tuple[Leaves, Mask]:
         """Colour the cards that stay inside the foliage and the crown, and tell which of the poses do: flags (n,)."""
         leaves = self.coloured(poses, seats, rng)
         kept = self._fitting(leaves, fit)

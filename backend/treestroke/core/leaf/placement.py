@@ -20,10 +20,11 @@ from treestroke.core.leaf.arrangement import (
 )
 from treestroke.core.leaf.fronds import set_fronds
 from treestroke.core.leaf.gaps import GapParams, cover_gaps
-from treestroke.core.leaf.leaf_crown import FITTING, LeafCrown
+from treestroke.core.leaf.leaf_crown import USUAL_FIT, Fit, LeafCrown
 from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
 from treestroke.core.leaf.postures import pose_by_posture, posture_of
+from treestroke.core.leaf.shown_limbs import LeafPlace, shown_limbs
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices, TreeForm
@@ -90,59 +91,58 @@ def place_leaves(
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
     grids, even = (*crown.grids, *crown.sides), params.kind in CONIFEROUS
     weights = leaf_weights(skeleton, grids, crown.volume, crown.height, even)
-    along = _on_branches(seats_along(skeleton, weights, count, rng), crown, params, rng)
-    leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, crown, rng)])
+    place = LeafPlace(crown, shown_limbs(skeleton, crown))
+    along = _on_branches(seats_along(skeleton, weights, count, rng), place, params, rng)
+    leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, place, rng)])
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
-    patches = cover_gaps(leaves, skeleton, crown, gaps, rng)
+    patches = cover_gaps(leaves, skeleton, place, gaps, rng)
     leaves = crown.recoloured(join_leaves([leaves, *patches]), rng)
     report("leaf", 1.0)
     return leaves
 
 
-def _at_tips(seats: Seats, density: float, crown: LeafCrown, rng: np.random.Generator) -> Leaves:
+def _at_tips(seats: Seats, density: float, place: LeafPlace, rng: np.random.Generator) -> Leaves:
     """Set a card at each twig's end, or at a share of them by the density; a bud where the card does not fit."""
+    crown = place.crown
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
         return pose_at_tips(seats, half_sizes, crown.middle, rng)
 
     leafy = rng.random(len(seats)) < density
-    sprays, left = _fitted(seats.at(leafy), pose, crown, rng)
+    sprays, left = _fitted(seats.at(leafy), pose, place, rng)
     bare = ~leafy
     bare[np.flatnonzero(leafy)[left]] = True
     buds = seats.at(bare)
     return join_leaves([sprays, crown.coloured(pose(buds, BUD * crown.half_sizes(len(buds), rng)), buds, rng)])
 
 
-def _on_branches(seats: Seats, crown: LeafCrown, params: LeafParams, rng: np.random.Generator) -> Leaves:
+def _on_branches(seats: Seats, place: LeafPlace, params: LeafParams, rng: np.random.Generator) -> Leaves:
     """Hang a card on each seat where it fits the foliage."""
-    posture = posture_of(params.kind, params.form)
+    crown, posture = place.crown, posture_of(params.kind, params.form)
 
     def pose(seats: Seats, half_sizes: Floats) -> Poses:
         if posture is not None:
             return pose_by_posture(seats, half_sizes, crown.middle, posture, rng)
         return pose_on_branches(seats, half_sizes, crown.height, crown.middle, rng)
 
-    return _fitted(seats, pose, crown, rng, FITTING if posture is None else posture.inside)[0]
+    return _fitted(seats, pose, place, rng, USUAL_FIT if posture is None else Fit(posture.inside))[0]
 
 
 def _fitted(
     seats: Seats,
     pose: Callable[[Seats, Floats], Poses],
-    crown: LeafCrown,
+    place: LeafPlace,
     rng: np.random.Generator,
-    inside: float = FITTING,
+    fit: Fit = USUAL_FIT,
 ) -> tuple[Leaves, Indices]:
-    """Set a card on each seat; those that do not fit are posed again, smaller each time, a few times, then left out.
-
-    ``inside`` is the share of their opaque dots that must lie in the foliage.
-    """
-    found, full, order = [], crown.half_sizes(len(seats), rng), np.arange(len(seats))
+    """Set a card on each seat; those that do not fit are posed again, smaller each time, a few times, then left out."""
+    found, full, order = [], place.crown.half_sizes(len(seats), rng), np.arange(len(seats))
     for scale in SHRINKING:
         if len(order) == 0:
             break
         tried = seats.at(order)
-        leaves, kept = crown.dressed(pose(tried, scale * full[order]), tried, rng, inside)
+        leaves, kept = place.dressed(pose(tried, scale * full[order]), tried, rng, fit)
         found.append(leaves)
         order = order[~kept]
     return join_leaves(found), order

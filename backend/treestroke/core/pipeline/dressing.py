@@ -152,4 +152,5 @@ def bark_surface(
     params = BarkParams(hidden_colour=bark.colour, form=bark.form if known else None)
     texture = bark_texture(view.picture, view.stem, params, rng, grain)
     wrapped = Surface(surface, texture, bark_normal_map(texture, grain, NormalMapParams(bark.depth)))
-    return lit_as_seen(wrapped, view) if is_bare and not known else wrapped
+    as_in_photo = is_bare and not known and settings.season == "photo"
+    return lit_as_seen(wrapped, view) if as_in_photo else wrapped
