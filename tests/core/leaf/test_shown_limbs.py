@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from tests.core.leaf.conftest import view_of
 
+from treestroke.core.appearance import Appearance
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.leaf.leaf_crown import leaf_crown
 from treestroke.core.leaf.placement import LeafParams, place_leaves
@@ -29,7 +30,7 @@ def crown_with_wood(mask, volume, photo, atlas, columns: slice):
     leaves_from = np.where(mask, -np.inf, np.inf)
     leaves_from[:, columns][mask[:, columns]] = 0.0
     view = view_of(photo, mask & np.isinf(leaves_from), volume.camera, leaves_from)
-    return leaf_crown([view], volume, atlas, 1.0, np.random.default_rng(0))
+    return leaf_crown(Appearance((view,), True), volume, atlas, 1.0, np.random.default_rng(0))
 
 
 def before(limbs, skeleton: Skeleton, joints: np.ndarray) -> np.ndarray:
