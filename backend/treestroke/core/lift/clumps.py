@@ -5,6 +5,8 @@ picture has room for it; those on one limb stand together. Balls like those of t
 crown as much as it is closed in front.
 """
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 
@@ -64,17 +66,18 @@ def _seen_clumps(crown: ImaginedCrown, limbs: Floats, rng: np.random.Generator) 
     outline, they stand on a limb where one is seen.
     """
     discs = _discs(crown.front)
-    clumps, rows = np.insert(discs, 2, 0.0, axis=1), crown.rows(discs[:, 1])
+    clumps = np.insert(discs, 2, 0.0, axis=1)
     relief = min(2.0, RELIEF + SEEN_THROUGH * _openness(crown.front))
     share, outer = _by_limbs(discs, rng), _reach(crown, clumps) >= AT_OUTLINE
     share = np.where(outer, share, 1 - relief / 2 * share)
-    clumps[:, 2] = _Room(crown.side, rows, discs[:, 2]).at_share(share) - crown.furthest
+    room = _depths_for(crown, discs)
+    clumps[:, 2] = room.at_share(share) - crown.furthest
     if len(limbs) == 0 or len(discs) == 0:
         return clumps
     away = np.hypot(*(discs[:, None, :2] - limbs[:, :2]).transpose(2, 0, 1))
     nearest = away.argmin(axis=1)
     hangs = (away.min(axis=1) <= discs[:, 2] + ON_LIMB) & (outer | (rng.random(len(discs)) < relief / 2))
-    on_limb = _Room(crown.side, rows, discs[:, 2]).nearest(limbs[nearest, 2] + crown.furthest) - crown.furthest
+    on_limb = room.nearest(limbs[nearest, 2] + crown.furthest) - crown.furthest
     clumps[hangs, 2] = on_limb[hangs]
     return clumps
 
@@ -82,7 +85,10 @@ def _seen_clumps(crown: ImaginedCrown, limbs: Floats, rng: np.random.Generator) 
 def _side_clumps(crown: ImaginedCrown, rng: np.random.Generator) -> Floats:
     """Return the clumps (n, 4) that the side shows, anywhere from left to right."""
     discs = _discs(crown.side)
-    x = _Room(crown.front, crown.rows(discs[:, 1]), discs[:, 2]).at_share(_by_limbs(discs, rng))
+    row = crown.rows(discs[:, 1])
+    out = (discs[:, 0] - crown.furthest - crown.near[row]) / crown.deep[row]
+    room = _Room(crown.front, row, discs[:, 2], _Span(crown.middle[row], _half_chord(crown.radius[row], out)))
+    x = room.at_share(_by_limbs(discs, rng))
     return np.column_stack([x, discs[:, 1], discs[:, 0] - crown.furthest, discs[:, 2]])
 
 
@@ -108,11 +114,34 @@ def _by_limbs(discs: Floats, rng: np.random.Generator) -> Floats:
     return np.clip(share[limb] + rng.normal(0, JITTER, len(discs)), 0, 1)
 
 
-class _Room:
-    """Where a silhouette has room for clumps, along a row each."""
+@dataclass(frozen=True, eq=False)
+class _Span:
+    """Middles and half lengths (n,) of parts of rows, cells."""
 
-    def __init__(self, silhouette: Mask, rows: Indices, radii: Floats) -> None:
+    middle: Floats
+    half: Floats
+
+
+def _half_chord(half_axis: Floats, out: Floats) -> Floats:
+    """Half the chord (n,) of an ellipse at a place so far out (n,), as a share of the way, on its other axis."""
+    return half_axis * np.sqrt(np.maximum(1 - out**2, 0.0))
+
+
+def _depths_for(crown: ImaginedCrown, discs: Floats) -> "_Room":
+    """Find where the side has room for the front's discs (n, 3), within the crown's sections."""
+    row = crown.rows(discs[:, 1])
+    out = (discs[:, 0] - crown.middle[row]) / crown.radius[row]
+    span = _Span(crown.near[row] + crown.furthest, _half_chord(crown.deep[row], out))
+    return _Room(crown.side, row, discs[:, 2], span)
+
+
+class _Room:
+    """Where a silhouette has room for clumps, along a span of a row each."""
+
+    def __init__(self, silhouette: Mask, rows: Indices, radii: Floats, span: _Span) -> None:
         away = cv2.distanceTransform(np.pad(silhouette.astype(np.uint8), 1), cv2.DIST_L2, 5)[1:-1, 1:-1][rows]
+        beyond = np.abs(np.arange(silhouette.shape[1]) + 0.5 - span.middle[:, None]) - span.half[:, None]
+        away = np.where(silhouette[rows], away - np.maximum(beyond, 0.0), -np.inf)
         self._fits = away >= np.minimum(SUNK * radii, away.max(axis=1))[:, None]
 
     def at_share(self, share: Floats) -> Floats:
@@ -138,7 +167,7 @@ def _further_clumps(crown: ImaginedCrown, seen: Floats, shown: Floats, rng: np.r
     With them the back bears as much as the front, and the crown is as closed from the sides.
     """
     places = np.tile(seen, (COPIES, 1))
-    room = _Room(crown.side, crown.rows(places[:, 1]), places[:, 3])
+    room = _depths_for(crown, places[:, [0, 1, 3]])
     places[:, 2] = room.at_share(0.5 * rng.random(len(places))) - crown.furthest
     views = [_View(crown, shown, azimuth) for azimuth in VIEWS_RAD]
     wanted = OPENER * _openness(crown.front)
