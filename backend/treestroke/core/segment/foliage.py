@@ -175,14 +175,15 @@ def _told_apart(
     leaf, ground = initial_models(pixels, inside, params.components, params.samples)
     report("foliage", 0.2)
     place, odds = log_odds_by_place(inside), log_odds_by_colour(leaf, ground, pixels)
-    rough = roughness(pixels, inside)
     for refit in range(params.refits):
         leaves = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0 if known is None else known > HALF)
         if not leaves.any() or leaves.all():
             break
         leaf, ground = refitted_models(pixels, leaves, params.components, params.samples)
-        odds = log_odds_by_height(leaf, ground, pixels, leaves) + log_odds_by_roughness(rough, leaves, inside)
+        odds = log_odds_by_height(leaf, ground, pixels, leaves)
         report("foliage", 0.2 + 0.5 * (refit + 1) / params.refits)
+    if known is None:
+        odds += log_odds_by_roughness(roughness(pixels, inside), inside & (odds + place > 0), inside)
     return leaf, ground, odds
 
 

@@ -19,7 +19,7 @@ DARK = 0.2
 """Share of leaves, the darkest ones, that may have the ground's colours."""
 MOST_ODDS = 1.5
 """Limit of the log odds by roughness, in both directions. Tuned with `DARK` and `AROUND` on 24 crowns with known masks,
-whose IoU changes by -0.001 in the mean, and on a tree over its own shadow, whose lower limbs were lost."""
+whose IoU stays, and on a tree over its own shadow, whose lower limbs were lost."""
 STRIDE, FEWEST = 2, 100
 """Distance between the pixels that are looked at, and the least number of dark ones, among leaves and beside the crown,
 by which roughness is judged."""
