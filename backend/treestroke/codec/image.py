@@ -369,7 +369,7 @@ def _in_srgb(image: Image.Image, profile: bytes | None) -> Image.Image:
             return image.convert("RGB")
         if converted is not None:
             return converted
-    return image.convert("RGB")
+    return image if image.mode == "RGB" else image.convert("RGB")
 
 
 def _shortened(error: BaseException) -> str:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -208,5 +209,8 @@ def table_colours() -> Floats:
 
 def table_index(colours: NDArray[np.uint8]) -> NDArray[np.uint16]:
     """Return the index (...,) in the look-up table of each colour (..., 3), sRGB."""
-    red, green, blue = (colours[..., channel].astype(np.uint16) >> (8 - TABLE_BITS) for channel in range(3))
-    return np.asarray((red << (2 * TABLE_BITS)) | (green << TABLE_BITS) | blue, dtype=np.uint16)
+    index = np.zeros(colours.shape[:-1], dtype=np.uint16)
+    for plane in cv2.split(colours.reshape(-1, 1, 3)):
+        index <<= TABLE_BITS
+        index |= np.asarray(plane, dtype=np.uint8).reshape(index.shape) >> (8 - TABLE_BITS)
+    return index

@@ -33,8 +33,12 @@ def winding_numbers(points: Floats, height: int, width: int) -> NDArray[np.int16
     turn = np.where(end[edge, 1] > start[edge, 1], -1, 1).astype(np.int16)
     inside = (row >= 0) & (row < height)
     steps = np.zeros((height, width + 1), dtype=np.int16)
-    np.add.at(steps, (row[inside], column[inside]), turn[inside])
-    return np.cumsum(steps, axis=1, dtype=np.int16, out=steps)[:, :width]
+    row, column = row[inside], column[inside]
+    np.add.at(steps, (row, column), turn[inside])
+    if len(row):
+        around = steps[row.min() : row.max() + 1, column.min() : column.max() + 1]
+        np.cumsum(around, axis=1, dtype=np.int16, out=around)
+    return steps[:, :width]
 
 
 def fill_outline(points: Floats, height: int, width: int) -> NDArray[np.bool_]:

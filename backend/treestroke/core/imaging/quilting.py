@@ -17,9 +17,6 @@ _FEATHER_PX = 4.0
 """Standard deviation of the blur of a cut, px."""
 _UNCUTTABLE = 1e9
 """Capacity of a link that must not be cut."""
-_RIGHT = np.array([[0, 0, 0], [0, 0, 1], [0, 0, 0]])
-_DOWN = np.array([[0, 0, 0], [0, 0, 0], [0, 1, 0]])
-"""Links of a pixel to its neighbours, as PyMaxflow takes them."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +42,15 @@ class QuiltParams:
             raise ValueError(f"a patch must exceed two overlaps and fit into the texture, got {self}")
 
 
+@dataclass(frozen=True, eq=False)
+class _Sample:
+    """What patches are cut from: its channels (c, h, w), where it is clean (h, w), and the sum of their variances."""
+
+    planes: Floats
+    clean: NDArray[np.bool_]
+    spread: float
+
+
 def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np.random.Generator) -> Floats:
     """Fill a texture (*size, c), px, that repeats in both directions, with patches of a sample (h, w, c).
 
@@ -62,21 +68,21 @@ def quilt(sample: Floats, clean: NDArray[np.bool_], params: QuiltParams, rng: np
     """
     if sample.shape[0] < params.patch[0] or sample.shape[1] < params.patch[1]:
         raise ValueError(f"a sample {sample.shape[:2]} holds no patch {params.patch}")
-    texture = np.zeros((*params.size, sample.shape[2]))
-    filled = np.zeros(params.size, dtype=bool)
+    spread = float(sample[::_STEP, ::_STEP].var(axis=(0, 1)).sum())
+    source = _Sample(np.ascontiguousarray(np.moveaxis(sample, 2, 0)), clean, spread)
+    texture, filled = np.zeros((sample.shape[2], *params.size)), np.zeros(params.size, dtype=bool)
     rows, columns = (_starts(s, p, o) for s, p, o in zip(params.size, params.patch, params.overlap, strict=True))
     for row in rows:
         for column in columns:
-            place = np.ix_(
-                _around(row, params.patch[0], params.size[0]), _around(column, params.patch[1], params.size[1])
-            )
-            old, known = texture[place], filled[place]
-            patch = _best_patch(sample, clean, old, known, rng)
+            down = _around(row, params.patch[0], params.size[0])[:, None]
+            across = _around(column, params.patch[1], params.size[1])
+            old, known = texture[:, down, across], filled[down, across]
+            patch = _best_patch(source, old, known, rng)
             new = _newer_side(_squared_distances(patch, old), known, params.overlap)
-            share = _feathered(new, known)[..., None]
-            texture[place] = share * patch + (1.0 - share) * old
-            filled[place] = True
-    return texture
+            share = _feathered(new, known)
+            texture[:, down, across] = share * patch + (1.0 - share) * old
+            filled[down, across] = True
+    return np.ascontiguousarray(np.moveaxis(texture, 0, 2))
 
 
 def _around(start: int, count: int, size: int) -> NDArray[np.int64]:
@@ -90,29 +96,27 @@ def _starts(size: int, patch: int, overlap: int) -> list[int]:
     return [size * i // count for i in range(count)]
 
 
-def _best_patch(
-    sample: Floats, clean: NDArray[np.bool_], old: Floats, filled: NDArray[np.bool_], rng: np.random.Generator
-) -> Floats:
-    """Choose among random patches (h, w, c) the one that differs least from the old texture, where that is filled."""
+def _best_patch(sample: _Sample, old: Floats, filled: NDArray[np.bool_], rng: np.random.Generator) -> Floats:
+    """Choose among random patches (c, h, w) the one that differs least from the old texture, where that is filled."""
     h, w = filled.shape
-    row = rng.integers(0, sample.shape[0] - h + 1, _CANDIDATES)
-    column = rng.integers(0, sample.shape[1] - w + 1, _CANDIDATES)
-    spread = float(sample[::_STEP, ::_STEP].var(axis=(0, 1)).sum())
-    compared = (slice(None, None, _STEP), slice(None, None, _STEP))
-    old, known = old[compared], filled[compared]
+    row = rng.integers(0, sample.clean.shape[0] - h + 1, _CANDIDATES)
+    column = rng.integers(0, sample.clean.shape[1] - w + 1, _CANDIDATES)
+    old, known = np.ascontiguousarray(old[:, ::_STEP, ::_STEP]), filled[::_STEP, ::_STEP]
     costs = []
     for y, x in zip(row.tolist(), column.tolist(), strict=True):
-        difference = _squared_distances(sample[y : y + h, x : x + w][compared], old)
-        misfit = float(difference[known].mean()) if known.any() else 0.0
-        costs.append(misfit + 4.0 * spread * float(1.0 - clean[y : y + h, x : x + w][compared].mean()))
+        compared = slice(y, y + h, _STEP), slice(x, x + w, _STEP)
+        misfit = 0.0
+        if known.any():
+            misfit = float(_squared_distances(sample.planes[:, *compared], old)[known].mean())
+        costs.append(misfit + 4.0 * sample.spread * float(1.0 - sample.clean[compared].mean()))
     best = int(np.argmin(costs))
     y, x = int(row[best]), int(column[best])
-    return sample[y : y + h, x : x + w]
+    return sample.planes[:, y : y + h, x : x + w]
 
 
 def _squared_distances(first: Floats, second: Floats) -> Floats:
-    """Return the squared distance (h, w) of values (h, w, c), channel by channel: numpy sums short axes slowly."""
-    return np.asarray(sum(np.moveaxis(first - second, 2, 0) ** 2))
+    """Return the squared distance (h, w) of values (c, h, w)."""
+    return np.asarray(sum((first - second) ** 2))
 
 
 def _feathered(new: NDArray[np.bool_], filled: NDArray[np.bool_]) -> Floats:
@@ -129,17 +133,30 @@ def _ramp_from_rim(shape: tuple[int, ...]) -> Floats:
 
 
 def _newer_side(difference: Floats, filled: NDArray[np.bool_], overlap: tuple[int, int]) -> NDArray[np.bool_]:
-    """Cut between an old and a new patch: mask (h, w) of where the new one shows."""
+    """Cut between an old and a new patch: mask (h, w) of where the new one shows.
+
+    Only where both may show, in the filled overlap, is there something to cut.
+    """
     rim = np.ones_like(filled)
     rim[1:-1, 1:-1] = False
-    core = np.zeros_like(filled)
-    core[overlap[0] : -overlap[0], overlap[1] : -overlap[1]] = True
-    graph = maxflow.Graph[float](filled.size, 2 * filled.size)
-    nodes = graph.add_grid_nodes(filled.shape)
-    for structure, shift in ((_RIGHT, (0, -1)), (_DOWN, (-1, 0))):
-        weight = difference + np.roll(difference, shift, axis=(0, 1)) + 1e-9
-        graph.add_grid_edges(nodes, weight, structure, symmetric=True)
-    graph.add_grid_tedges(nodes, np.where(rim & filled, _UNCUTTABLE, 0.0), np.where(core | ~filled, _UNCUTTABLE, 0.0))
+    free = filled.copy()
+    free[overlap[0] : -overlap[0], overlap[1] : -overlap[1]] = False
+    if not free.any():
+        return ~free
+    node, count = np.cumsum(free).reshape(free.shape) - 1, np.count_nonzero(free)
+    to_old, to_new = np.where(rim[free], _UNCUTTABLE, 0.0), np.zeros(count)
+    graph = maxflow.Graph[float](count, 2 * count)
+    nodes = graph.add_nodes(count)
+    every, ahead, behind = slice(None), slice(1, None), slice(None, -1)
+    for this, following in (((every, behind), (every, ahead)), ((behind, every), (ahead, every))):
+        weight = difference[this] + difference[following] + 1e-9
+        inner = free[this] & free[following]
+        graph.add_edges(node[this][inner], node[following][inner], weight[inner], weight[inner])
+        for near, far in ((this, following), (following, this)):
+            edge = free[near] & ~free[far]
+            to_new[node[near][edge]] += weight[edge]
+    graph.add_grid_tedges(nodes, to_old, to_new)
     graph.maxflow()
-    newer: NDArray[np.bool_] = graph.get_grid_segments(nodes)
+    newer = ~free
+    newer[free] = graph.get_grid_segments(nodes)
     return newer

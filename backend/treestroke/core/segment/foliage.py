@@ -21,6 +21,7 @@ from treestroke.core.segment.contrast import stands_out
 from treestroke.core.segment.cues import Cues, crown_cues
 from treestroke.core.segment.cut_foliage import cut_foliage
 from treestroke.core.segment.leaf_odds import (
+    depth_inside,
     initial_models,
     leaf_likelihood,
     log_odds_by_colour,
@@ -146,7 +147,8 @@ def segment_foliage(
     dilation_px = params.dilation_px * max(height, width) / REFERENCE_SIDE
     region = cv2.distanceTransform((~inside).astype(np.uint8), cv2.DIST_L2, 5) <= dilation_px
     if known is None:
-        found = cut_grid(pixels, odds + log_odds_by_place(inside), region, params.smoothness, params.cut_pixels)
+        odds_there = odds + log_odds_by_place(inside, depth_inside(inside))
+        found = cut_grid(pixels, odds_there, region, params.smoothness, params.cut_pixels)
         report("foliage", 0.8)
         likely = leaf_likelihood(pixels, found if found.any() else inside, params.components, params.samples)
         alpha = matte(pixels, likely, region)
@@ -172,9 +174,10 @@ def _told_apart(
     These go by colour, and in the shade by roughness, too. ``inside`` (h, w) is the stroke's, ``known`` (h, w) the
     foliage's opacity where that is known.
     """
-    leaf, ground = initial_models(pixels, inside, params.components, params.samples)
+    depth = depth_inside(inside)
+    leaf, ground = initial_models(pixels, inside, depth, params.components, params.samples)
     report("foliage", 0.2)
-    place, odds = log_odds_by_place(inside), log_odds_by_colour(leaf, ground, pixels)
+    place, odds = log_odds_by_place(inside, depth), log_odds_by_colour(leaf, ground, pixels)
     for refit in range(params.refits):
         leaves = inside & (cv2.GaussianBlur(odds + place, (0, 0), BLUR_PX) > 0 if known is None else known > HALF)
         if not leaves.any() or leaves.all():

@@ -45,7 +45,9 @@ LIMIT = 8.0
 """Greatest log odds that a colour alone gives."""
 
 
-def initial_models(pixels: Picture, inside: Mask, components: int, samples: int) -> tuple[Mixture, Mixture]:
+def initial_models(
+    pixels: Picture, inside: Mask, depth: Floats, components: int, samples: int
+) -> tuple[Mixture, Mixture]:
     """Fit colour models of leaves and of the ground, given only the inside of the crown stroke.
 
     The components of the crown's colours are divided between leaves and ground by a belief in each; the ring around the
@@ -55,6 +57,8 @@ def initial_models(pixels: Picture, inside: Mask, components: int, samples: int)
     ----------
     pixels, inside
         Colours (h, w, 3), sRGB, 0 to 255, and the pixels (h, w) inside the stroke.
+    depth
+        How deep (h, w) they lie inside, as `depth_inside` measures it.
     components, samples
         Gaussians of the crown's mixture, and pixels that a mixture is fitted to.
 
@@ -64,7 +68,7 @@ def initial_models(pixels: Picture, inside: Mask, components: int, samples: int)
     pixels lie, with colour as a prior (docs/decisions/0002).
     """
     crown, ring = _sample(pixels, inside, samples), _sample(pixels, ~inside, samples)
-    core = _sample(pixels, _depth(inside) > 0.45, samples)
+    core = _sample(pixels, depth > 0.45, samples)
     mixture = _fitted(crown, components)
     belief = _leaf_belief(mixture, crown, core, ring)
     ground_share = float((mixture.weights * (1 - belief)).sum())
@@ -107,13 +111,13 @@ def log_odds_by_height(leaf: Mixture, ground: Mixture, pixels: Picture, leaves: 
     return _interpolated(np.clip(density, -LIMIT, LIMIT), table_index(pixels))
 
 
-def log_odds_by_place(inside: Mask) -> NDArray[np.float32]:
-    """Log odds (h, w) that a pixel is a leaf by its place relative to the crown's inside (h, w).
+def log_odds_by_place(inside: Mask, depth: Floats) -> NDArray[np.float32]:
+    """Log odds (h, w) that a pixel is a leaf by its place relative to the crown's inside (h, w), and its depth there.
 
     Strokes are loose: pixels at their rim and beyond it are more likely ground.
     """
     odds = np.full(inside.shape, -2.0, dtype=np.float32)
-    odds[inside] = 0.7 - 1.8 * np.exp(-_depth(inside)[inside] / 0.06)
+    odds[inside] = 0.7 - 1.8 * np.exp(-depth[inside] / 0.06)
     return odds
 
 
@@ -223,7 +227,7 @@ def _sample(pixels: Picture, where: Mask, count: int) -> Picture:
     return pixels.reshape(-1, 3)[index[step // 2 :: step]]
 
 
-def _depth(inside: Mask) -> Floats:
+def depth_inside(inside: Mask) -> Floats:
     """Depth (h, w) inside the crown, 0 to 1: 0 at its border and outside, 1 at its innermost pixel."""
     padded = cv2.copyMakeBorder(inside.astype(np.uint8), 1, 1, 1, 1, cv2.BORDER_CONSTANT, value=0)
     distance = cv2.distanceTransform(padded, cv2.DIST_L2, 5)[1:-1, 1:-1]
