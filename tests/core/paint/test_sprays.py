@@ -37,13 +37,13 @@ def test_fine_sprays_keep_their_gaps_where_they_are_small(shape):
 @pytest.mark.parametrize("shape", ["needles", "scales"])
 def test_conifers_sprays_are_narrow_and_do_not_fall_apart_where_they_are_small(shape):
     # Seen 16 px wide and cut, as in a view of the whole tree, a broad or torn spray reads as a lobed leaf.
-    # Half as broad as long: narrower ones leave most of their card empty.
+    # Their cards are slim too, so that a spray may be broader in its tile.
     alphas = [draw_spray(shape, 256, MEMBERS, np.random.default_rng(seed))[..., 3] for seed in range(8)]
     small = [alpha.reshape(16, 16, 16, 16).mean(axis=(1, 3)) >= 127 for alpha in alphas]
     assert np.mean([cut.mean() / (alpha >= 127).mean() for cut, alpha in zip(small, alphas, strict=True)]) > 0.9
     for cut in small:
         rows, columns = np.nonzero(cut)
-        assert np.std(columns) < 0.6 * np.std(rows)
+        assert np.std(columns) < 0.75 * np.std(rows)
 
 
 @pytest.mark.parametrize("shape", ["broad", "needles", "scales", "frond", "strap", "blossom"])

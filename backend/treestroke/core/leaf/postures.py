@@ -46,7 +46,7 @@ class Posture:
     inside: float = FITTING
 
 
-BOUGH = Posture(aside=0.6, rise=-0.3, level=0.4, scatter=0.45, stand_off=0.3, tilt=0.5)
+BOUGH = Posture(aside=0.6, rise=-0.3, level=0.4, scatter=0.45, stand_off=0.3, tilt=0.5, slimness=2.0)
 """Short needles in flat layers, those of a bough above each other."""
 BRUSH = Posture(aside=0.8, rise=0.3, level=0.2, scatter=0.6, stand_off=0.5)
 """Long needles, which stand off to all sides."""

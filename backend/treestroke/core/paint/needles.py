@@ -99,7 +99,7 @@ def _flat_shoots(rng: np.random.Generator) -> Floats:
     share = np.linspace(0.04, 0.9, SHOOTS) + rng.uniform(-0.015, 0.015, SHOOTS)
     turn = np.where((np.arange(SHOOTS) + rng.integers(2)) % 2, 1.0, -1.0)
     angle = turn * rng.uniform(0.75, 1.05, SHOOTS) * (1.1 - 0.35 * share)
-    outline = np.interp(share, [0.0, 0.25, 1.0], [0.34, 0.46, 0.16])
+    outline = np.interp(share, [0.0, 0.25, 1.0], [0.42, 0.56, 0.2])
     length = outline * rng.uniform(0.6, 1.05, SHOOTS)
     bent = angle[:, None] - turn[:, None] * rng.uniform(0.1, 0.4, (SHOOTS, 1)) * t
     foot = along(twig, share)
