@@ -3,10 +3,11 @@ from tests.builders import fork
 
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
-from treestroke.core.geometry.outline_volume import turned_outline
+from treestroke.core.geometry.outline_volume import TurnedOutline, turned_outline
 from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.reaching import reaching
-from treestroke.core.types import Mask
+from treestroke.core.skeleton.traverse import child_counts
+from treestroke.core.types import Floats, Mask
 
 CAMERA = OrthographicCamera(500, 400, 0.01, (250.0, 390.0))
 
@@ -53,3 +54,23 @@ def test_no_twig_grows_into_the_ground() -> None:
     tree = reached(foliage).skeleton
     assert len(tree) > 7
     assert tree.points[:, 1].min() == 0
+
+
+class BeforeAndBehind(TurnedOutline):
+    """A crown whose foliage stands right of the tree far before the picture's plane, left of it as far behind it."""
+
+    def admits(self, points_world: Floats) -> Mask:
+        return np.asarray(np.sign(points_world[:, 0]) * points_world[:, 2] > 0.2)
+
+
+def test_twigs_end_amid_the_foliage_in_depth_too() -> None:
+    foliage = np.zeros((400, 500), dtype=bool)
+    foliage[50:150, 80:440] = True
+    front = Silhouette(foliage, CAMERA)
+    volume = BeforeAndBehind(**vars(turned_outline(front)))
+    tree = Grown(fork(), np.array([0, 0, 0, 1, 1, 2, 2]), np.zeros((0, 3), np.int64))
+    skeleton = reaching(tree, front, volume).skeleton
+    tips = np.setdiff1d(np.flatnonzero(child_counts(skeleton) == 0), np.arange(7))
+    assert len(tips) > 5
+    assert set(np.sign(skeleton.points[tips, 0])) == {-1.0, 1.0}
+    assert volume.admits(skeleton.points[tips]).all()

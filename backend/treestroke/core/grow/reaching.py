@@ -31,17 +31,15 @@ LONGEST = 0.1
 """Longest link, as a share of the tree's height, across foliage or a gap: what stands further off is another tree's."""
 WITHIN, DEPTHS = 0.9, 33
 """Share of the crown's depth that new joints may use, and at how many depths foliage is looked for."""
-STEEPEST = 1.2
-"""Greatest slope of a link's depth against its length in the picture."""
 
 
 def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> Grown:
     """Add twigs to the foliage that lies out of reach of all branches in the picture: ends of boughs, mostly.
 
-    Joints stand amid such foliage, and links join them to the tree and to each other, those first that are short and
-    lead to the tree on a short way: so twigs run along the foliage, and across a gap where it is narrow. They stand
-    above the ground, as deep as the branch that they leave, as far as the crown's ``volume`` is. What was there keeps
-    its place and radius. The foliage does not include wood.
+    Joints stand amid such foliage, in the picture and in depth, and links join them to the tree and to each other,
+    those first that are short and lead to the tree on a short way: so twigs run along the foliage, and across a gap
+    where it is narrow. They stand above the ground; none ends where the crown's ``volume`` has no foliage. What was
+    there keeps its place and radius. The foliage does not include wood.
 
     Source: the minimum spanning tree, Prim 1957, balanced with the length of the way to its root, Cuntz et al. 2010,
     "One rule to grow them all".
@@ -52,12 +50,15 @@ def reaching(grown: Grown, foliage: Silhouette[Camera], volume: CrownVolume) -> 
     amid = np.where(volume.admits(tree.points), tree.parents, -1)
     places_px = _out_of_reach(joints_px, amid, foliage.mask, height_px)
     places_px = places_px[camera.world_from_pixels(places_px)[:, 1] > tree.points[:, 1].min()]
-    places_px, parents = _linked(joints_px, places_px, LONGEST * height_px)
+    if len(places_px) == 0:
+        return grown
+    places = _amid_foliage(tree, np.flatnonzero(amid >= 0), places_px, camera, volume)
+    places, parents = _linked(tree.points, places, LONGEST * float(np.ptp(tree.points[:, 1])))
+    places, parents = _bearing(places, parents, len(tree), volume)
     if len(parents) == 0:
         return grown
-    parents = np.concatenate([tree.parents, parents])
-    points = np.vstack([tree.points, _lifted(tree, places_px, parents, camera, volume)])
-    born = np.concatenate([grown.born, np.full(len(places_px), grown.born.max() + 1)])
+    points, parents = np.vstack([tree.points, places]), np.concatenate([tree.parents, parents])
+    born = np.concatenate([grown.born, np.full(len(places), grown.born.max() + 1)])
     return replace(grown, skeleton=Skeleton(points, _radii(tree, points, parents), parents), born=born)
 
 
@@ -83,47 +84,66 @@ def _out_of_reach(joints_px: Floats, parents: Indices, foliage: Mask, height_px:
     return np.asarray((np.stack([columns, rows], axis=1)[chosen] + 0.5) / scale)
 
 
-def _linked(joints_px: Floats, places_px: Floats, longest_px: float) -> tuple[Floats, Indices]:
-    """Link places (m, 2), px, to a tree's joints (n, 2) one by one: those reached (k, 2), and their parents (k,).
+def _amid_foliage(tree: Skeleton, amid: Indices, places_px: Floats, camera: Camera, volume: CrownVolume) -> Floats:
+    """Place joints (m, 2), px, in the world (m, 3), metres, amid the volume's foliage.
+
+    Where it stands at several depths, the one nearest to that of the nearest of the tree's joints ``amid`` it (k,) is
+    taken.
+    """
+    amid = amid if len(amid) else np.arange(len(tree))
+    joints_px, flat = camera.pixels_from_world(tree.points[amid]), camera.world_from_pixels(places_px)
+    nearest = _nearest(joints_px, places_px)
+    middle, half = camera.depth(volume.axis(flat[:, 1])), WITHIN * volume.half_depth(flat)
+    depths = middle[:, None] + half[:, None] * np.linspace(-1, 1, DEPTHS)
+    leafy = volume.admits(camera.world_from_pixels(np.repeat(places_px, DEPTHS, axis=0), depths.ravel()))
+    away = np.abs(depths - camera.depth(tree.points[amid[nearest]])[:, None])
+    best = np.where(leafy.reshape(depths.shape), away, away + away.max()).argmin(axis=1)
+    return camera.world_from_pixels(places_px, depths[np.arange(len(depths)), best])
+
+
+def _linked(joints: Floats, places: Floats, longest: float) -> tuple[Floats, Indices]:
+    """Link places (m, 3), metres, to a tree's joints (n, 3) one by one: those reached (k, 3), and their parents (k,).
 
     Parents count from the tree's first joint on through the places, each after its parent.
     """
-    x, y = np.ascontiguousarray(joints_px.T)
-    nearest = np.array([((x - to_x) ** 2 + (y - to_y) ** 2).argmin() for to_x, to_y in places_px], dtype=np.int64)
-    away, before = np.hypot(*(places_px - joints_px[nearest]).T), np.zeros(len(places_px))
-    waiting, order = np.ones(len(places_px), dtype=np.bool_), list[int]()
-    for number in range(len(joints_px), len(joints_px) + len(places_px)):
-        cost = np.where(waiting & (away <= longest_px), away + BALANCE * before, np.inf)
+    nearest, columns = _nearest(joints, places), np.ascontiguousarray(places.T)
+    away, before = np.sqrt(((places - joints[nearest]) ** 2).sum(axis=1)), np.zeros(len(places))
+    waiting, order = np.ones(len(places), dtype=np.bool_), list[int]()
+    for number in range(len(joints), len(joints) + len(places)):
+        cost = np.where(waiting & (away <= longest), away + BALANCE * before, np.inf)
         place = int(cost.argmin())
         if np.isinf(cost[place]):
             break
         order.append(place)
         waiting[place], way = False, before[place] + away[place]
-        distance = np.hypot(*(places_px - places_px[place]).T)
+        distance = np.sqrt(_squares(columns, places[place]))
         closer = waiting & (distance + BALANCE * way < away + BALANCE * before)
         away[closer], before[closer], nearest[closer] = distance[closer], way, number
-    return places_px[order], nearest[order]
+    return places[order], nearest[order]
 
 
-def _lifted(tree: Skeleton, places_px: Floats, parents: Indices, camera: Camera, volume: CrownVolume) -> Floats:
-    """Place new joints (k, 2), px, in the world (k, 3), metres: near their parents' depth, amid the volume's foliage.
+def _nearest(points: Floats, places: Floats) -> Indices:
+    """Find the nearest of points (n, d) to each place (m, d): (m,)."""
+    columns = np.ascontiguousarray(points.T)
+    return np.array([_squares(columns, place).argmin() for place in places], dtype=np.int64)
 
-    A twig goes for the nearest depth with foliage, but no steeper than `STEEPEST`.
+
+def _squares(columns: Floats, place: Floats) -> Floats:
+    """Squared distances (n,) of points, given as columns (d, n), from a place (d,)."""
+    away = columns - place[:, None]
+    return np.asarray(np.multiply(away, away, out=away).sum(axis=0))
+
+
+def _bearing(places: Floats, parents: Indices, first: int, volume: CrownVolume) -> tuple[Floats, Indices]:
+    """Leave out new joints (k, 3), metres, that neither stand amid foliage nor lead to one that does.
+
+    Their parents (k,) count from the tree's first joint on; ``first`` is the number of the first new one.
     """
-    flat = camera.world_from_pixels(np.vstack([camera.pixels_from_world(tree.points), places_px]))
-    new = flat[len(tree) :]
-    length = np.sqrt(((new - flat[parents[len(tree) :]]) ** 2).sum(axis=1))
-    middle, half = camera.depth(volume.axis(new[:, 1])), WITHIN * volume.half_depth(new)
-    depths = middle[:, None] + half[:, None] * np.linspace(-1, 1, DEPTHS)
-    leafy = volume.admits(camera.world_from_pixels(np.repeat(places_px, DEPTHS, axis=0), depths.ravel()))
-    leafy = leafy.reshape(depths.shape)
-    depth = np.concatenate([camera.depth(tree.points), np.zeros(len(places_px))])
-    for joint, parent in enumerate(parents[len(tree) :].tolist()):
-        there = depths[joint, leafy[joint]] if leafy[joint].any() else depths[joint]
-        wanted = float(there[np.abs(there - depth[parent]).argmin()])
-        most = STEEPEST * float(length[joint])
-        depth[len(tree) + joint] = depth[parent] + np.clip(wanted - depth[parent], -most, most)
-    return camera.world_from_pixels(places_px, depth[len(tree) :])
+    kept = np.concatenate([np.ones(first, dtype=np.bool_), volume.admits(places)])
+    for joint in range(len(kept) - 1, first - 1, -1):
+        kept[parents[joint - first]] |= kept[joint]
+    number = np.cumsum(kept) - 1
+    return places[kept[first:]], number[parents[kept[first:]]]
 
 
 def _radii(tree: Skeleton, points: Floats, parents: Indices) -> Floats:
