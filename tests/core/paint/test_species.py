@@ -5,7 +5,7 @@ import pytest
 
 from treestroke.core.paint.leaf_shapes import LeafShapeName
 from treestroke.core.paint.palette import lab_from_rgb, rgb_from_lab
-from treestroke.core.paint.species import AUTO, SPECIES
+from treestroke.core.paint.species import AUTO, SPECIES, species_for
 
 
 def test_every_leaf_that_is_drawn_belongs_to_a_species():
@@ -27,3 +27,11 @@ def test_all_colours_can_be_shown(name):
     for ramp in (species.spring, species.summer, species.autumn):
         labs = np.array(ramp)
         assert abs(lab_from_rgb(rgb_from_lab(labs)) - labs).max() < 3
+
+
+def test_an_unknown_tree_bears_the_sprays_of_most_trees_of_its_form() -> None:
+    assert species_for("auto", "needles", "spire").needles == "short"
+    assert species_for("auto", "needles", "umbrella").needles == "long"
+    assert species_for("auto", "leaves", "weeping").leaf_shape == "willow"
+    assert species_for("auto", "leaves", "round") == AUTO
+    assert species_for("spruce", "needles", "round") == SPECIES["spruce"]
