@@ -36,6 +36,16 @@ def test_a_trunk_stroke_far_beside_its_trunk_is_doubted_and_stays() -> None:
     assert abs(traced.skeleton.points[0, 0] - (trunk.points[0, 0] - 56)) < 15
 
 
+def test_a_trunk_stroke_where_no_trunk_is_is_doubted() -> None:
+    photo, strokes = load_photo(OAK.with_suffix(".jpg")), load_strokes(OAK.with_suffix(".strokes.json"))
+    trunk = strokes.branches[0]
+    nowhere = replace(trunk, points=trunk.points + np.array([0.3 * np.ptp(strokes.crown.points[:, 0]), 0.0]))
+    traced, drawn = (trace_photo(photo, replace(strokes, branches=(stroke,))) for stroke in (nowhere, trunk))
+    details = [warning.detail for warning in traced.warnings if warning.code == "trunk_unclear"]
+    assert details == ["no trunk is seen under it; draw it on the trunk, from where that stands"]
+    assert "trunk_unclear" not in [warning.code for warning in drawn.warnings]
+
+
 def test_a_trunk_stroke_from_the_grass_before_the_trunk_begins_at_its_foot() -> None:
     photo, strokes = load_photo(OAK.with_suffix(".jpg")), load_strokes(OAK.with_suffix(".strokes.json"))
     trunk, *others = strokes.branches

@@ -21,7 +21,7 @@ def _beside_no_more(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
     """Move the trunk's stroke onto the trunk; where it is not sure which that is, warn only."""
     trunk, *others = working.strokes.branches
     way, is_sure = way_to_trunk(working.photo, trunk.points, foliage.region, working.height_px(foliage.mask))
-    if not way.any():
+    if is_sure and not way.any():
         return working
     if not is_sure:
         return replace(working, warnings=(*working.warnings, _doubt(way / working.frame.scale)))
@@ -34,9 +34,10 @@ def _beside_no_more(working: WorkingCopy, foliage: Foliage) -> WorkingCopy:
 
 
 def _doubt(way: Floats) -> StrokeWarning:
-    """Say that nothing is seen under the trunk's stroke, but something at the end of a way (2,), px, from it."""
+    """Say that no trunk is seen under its stroke, but perhaps one at the end of a way (2,), px, from it."""
     side = "right" if way[0] > 0 else "left"
-    detail = f"no trunk is seen under it, but something like one {np.hypot(*way):.0f} px to its {side}"
+    beside = f", but something like one {np.hypot(*way):.0f} px to its {side}" if way.any() else ""
+    detail = f"no trunk is seen under it{beside}"
     return StrokeWarning("trunk_unclear", "branches/0", f"{detail}; draw it on the trunk, from where that stands")
 
 

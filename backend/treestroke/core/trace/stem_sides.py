@@ -29,6 +29,9 @@ STRONG, FAINT = 0.8, 2.0
 strength, Lab units a step, up to which an edge is none, but noise."""
 USUAL, UNUSUAL = 0.35, 0.1
 """Standard deviation of the logarithm of a half-width about the usual one, and what one that far off costs twice."""
+ROW, HIDDEN = 2.0, 0.25
+"""Standard deviation, places along a stem, over which the clearness of its sides is averaged, and the least, of 1, at
+which they are seen: a hedge may stand before it."""
 ASIDE = 0.1
 """What a middle as far beside the line as is looked for costs, in edges of full strength."""
 SWAY, WIDEN = 0.15, 0.3
@@ -39,13 +42,19 @@ def bare_stem(line_px: Floats, photo: Picture, usual_px: float, reach_px: float)
     """Return the line (n, 2) in the middle of a bare stem beside a stroke's (n, 2), and its half-widths (n,), px.
 
     The photo is (h, w, 3), sRGB; the stem's middle lies up to ``reach_px`` from the line, its half-widths around
-    ``usual_px``.
+    ``usual_px``. They are NaN where a side is not seen.
     """
     axis, widest = blur(line_px, SMOOTH), 2 * usual_px
-    widths, offsets = _sides(axis, photo, usual_px, reach_px)
+    widths, offsets, clear = _sides(axis, photo, usual_px, reach_px)
     _, middles = to_edges(axis, (widths, offsets), photo, widest + reach_px)
     line = axis + blur(middles, STEADY)[:, None] * normals(axis)
-    return line, to_edges(line, (widths, np.zeros(len(line))), photo, widest)[0]
+    halves, _ = to_edges(line, (widths, np.zeros(len(line))), photo, widest)
+    return line, np.where(blur(clear, ROW) < HIDDEN, np.nan, halves)
+
+
+def sides_seen(line_px: Floats, photo: Picture, usual_px: float, reach_px: float) -> float:
+    """Return how clear, 0 to 1, both sides of a stem beside a stroke's line (n, 2), px, are in a photo (h, w, 3)."""
+    return float(_sides(blur(line_px, SMOOTH), photo, usual_px, reach_px)[2].mean())
 
 
 def joined(below_px: Floats, line_px: Floats) -> Floats:
@@ -55,10 +64,11 @@ def joined(below_px: Floats, line_px: Floats) -> Floats:
     return np.concatenate([share * below_px + (1 - share) * line_px[:count], line_px[count:]])
 
 
-def _sides(line_px: Floats, photo: Picture, usual_px: float, reach_px: float) -> tuple[Floats, Floats]:
+def _sides(line_px: Floats, photo: Picture, usual_px: float, reach_px: float) -> tuple[Floats, Floats, Floats]:
     """Return half-widths and middles (n,), px, of the stripe beside a line (n, 2) with the strongest edges.
 
-    It is found exactly, by dynamic programming over its middle and its half-width.
+    The third is the strength (n,), 0 to 1, of the weaker edge. The stripe is found exactly, by dynamic programming over
+    its middle and its half-width.
     """
     step = usual_px / STEPS
     most = int(np.ceil(reach_px / step))
@@ -67,7 +77,9 @@ def _sides(line_px: Floats, photo: Picture, usual_px: float, reach_px: float) ->
     left, right = (edges.shape[1] // 2 + middles[:, None] + side * widths for side in (-1, 1))
     price = ASIDE * (middles[:, None] / most) ** 2 + UNUSUAL * (np.log(widths / STEPS) / USUAL) ** 2
     middle, width = _cheapest(price - edges[:, left] - edges[:, right]).T
-    return step * widths[width], step * middles[middle]
+    place = np.arange(len(edges))
+    weaker = np.minimum(edges[place, left[middle, width]], edges[place, right[middle, width]])
+    return step * widths[width], step * middles[middle], weaker
 
 
 def _edges(line_px: Floats, photo: Picture, step: float, most: int) -> Floats:

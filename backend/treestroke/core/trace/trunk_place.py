@@ -10,6 +10,7 @@ import numpy as np
 
 from treestroke.core.geometry.polyline import resample
 from treestroke.core.imaging.sampling import sample_nearest
+from treestroke.core.trace.stem_sides import sides_seen
 from treestroke.core.types import Floats, Mask, Picture
 
 FURTHEST, WIDEST = 0.13, 0.05
@@ -32,6 +33,12 @@ DOUBTED, DOUBTED_BY = 1.5, 2.5
 """Least contrast of a stripe beside the stroke, and how many times that of any under it, that make the stroke doubtful:
 of 63 strokes on their trunks none is doubted; of 255 beside them by 1.5 to 2.5 times their width and not moved 88 are,
 86 of them toward the trunk."""
+UNSEEN, UNCLEAR_SIDES = 0.9, 0.4
+"""Least contrast of a stripe under the stroke, and least clearness of a stem's two sides there, of which one is reached
+where there is a trunk: of 43 strokes on their trunks one reaches neither (a cane in a dark room), of 169 that lie 0.2
+or 0.3 tree heights beside theirs 101 do."""
+USUAL, NEAR = 0.017, 0.015
+"""Half width of a usual trunk, and how far beside its stroke its sides are looked for, as shares of the height."""
 NOISE = 4.0
 """Added to deviations, steps of 255: no stripe is smoother than a camera's noise."""
 
@@ -56,6 +63,8 @@ class _Strip:
     ----------
     colours
         (rows, columns, 3) sRGB: a row for each place along the stroke, root first, a column for each offset.
+    line
+        (rows, 2) the stroke there, px.
     offsets, across
         (columns,) distances from the stroke, px, along the direction (2,).
     along, step
@@ -63,6 +72,7 @@ class _Strip:
     """
 
     colours: Floats
+    line: Floats
     offsets: Floats
     across: Floats
     along: float
@@ -80,14 +90,14 @@ def _strip(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> 
     across = np.array([-chord[1], chord[0]]) / max(float(np.hypot(*chord)), 1e-9)
     offsets = step * np.arange(-int(FURTHEST * height_px / step), int(FURTHEST * height_px / step) + 1.0)
     colours = sample_nearest(photo, below[:, None] + offsets[:, None] * across, 0).astype(np.float64)
-    return _Strip(colours, offsets, across, along, step)
+    return _Strip(colours, below, offsets, across, along, step)
 
 
 def way_to_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> tuple[Floats, bool]:
     """Return the way (2,), px, from a trunk's stroke (n, 2), root first, to the trunk, and whether that is sure.
 
-    It is zero where the stroke is on the trunk, and where nothing beside it looks more like one. ``photo`` is
-    (h, w, 3), sRGB; ``crown`` (h, w) is where leaves may be.
+    It is zero where the stroke is on the trunk, and where nothing beside it looks more like one; not sure then where
+    nothing under it looks like one, either. ``photo`` is (h, w, 3), sRGB; ``crown`` (h, w) is where leaves may be.
     """
     strip = _strip(photo, stroke_px, crown, height_px)
     if strip is None:
@@ -104,7 +114,11 @@ def way_to_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: floa
     if near[best] > least and not under[best]:
         return strip.across * middle[best], True
     least = max(DOUBTED, DOUBTED_BY * float(contrast[under].max(initial=0.0)))
-    return (strip.across * middle[clearest], False) if contrast[clearest] > least else (np.zeros(2), True)
+    if contrast[clearest] > least:
+        return strip.across * middle[clearest], False
+    unseen = float(contrast[under].max(initial=0.0)) < UNSEEN
+    reach = (USUAL + NEAR) * height_px
+    return np.zeros(2), not (unseen and sides_seen(strip.line, photo, USUAL * height_px, reach) < UNCLEAR_SIDES)
 
 
 def ground_before_trunk(photo: Picture, stroke_px: Floats, crown: Mask, height_px: float) -> float:
