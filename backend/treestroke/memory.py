@@ -3,8 +3,8 @@
 import ctypes
 import gc
 
-_NEW_OBJECTS = 100_000
-"""Objects made since the last search for garbage that start the next one."""
+_NEW_OBJECTS = 300_000
+"""Objects made since the last search for garbage that start the next one: a command with its imports makes 100,000."""
 _LARGEST_KEPT, _MOST_KEPT = 32 * 2**20, 256 * 2**20
 """Bytes: the largest block of memory, and the most free memory, that the C library keeps; 32 MiB is its own limit."""
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3

@@ -38,6 +38,7 @@ class Growing:
         self.params, self.space, self.library = params, space, library
         self.foot, self.top = float(space.foot[1]), float(np.flatnonzero(space.mask.any(axis=1))[0])
         self.evaluator = evaluator
+        self.on_limbs = np.array([[float(tree.replaces != "stem") for tree in library]])
         self.chains = _chains(visible, space, params)
         self.count = len(self.chains)
         room = self.count + params.iterations * max(len(subtree.parents) for subtree in library)
@@ -121,11 +122,12 @@ class Growing:
         """Walk the branches from thick to thin, taking each with a probability inverse to its generation."""
         left = np.flatnonzero(self.open[: self.count])
         left = left[np.argsort(-self.radius[left], kind="stable")]
+        rank = self.generation[left] + self.passed_over[left] / PATIENCE
         chosen = np.zeros(0, dtype=np.int64)
         while len(left) and len(chosen) < self.params.candidates:
-            takes = rng.random(len(left)) * (self.generation[left] + self.passed_over[left] / PATIENCE) < 1
+            takes = rng.random(len(left)) * rank < 1
             chosen = np.concatenate([chosen, left[takes]])
-            left = left[~takes]
+            left, rank = left[~takes], rank[~takes]
         chosen = np.sort(chosen[: self.params.candidates])
         self.passed_over[chosen] += 1
         return chosen
@@ -152,7 +154,7 @@ class Growing:
     def _tell_evaluator(self, first: int) -> None:
         """Pass the branches from ``first`` on to the evaluator."""
         new = slice(first, self.count)
-        scales = np.tile([float(tree.replaces != "stem") for tree in self.library], (self.count - first, 1))
+        scales = np.repeat(self.on_limbs, self.count - first, axis=0)
         for stem in np.flatnonzero(self.generation[new] == 1).tolist():
             scales[stem] = self._stem_scales(first + stem)
         steering = self.params.habit.steering(self.generation[new], self._heights(new))

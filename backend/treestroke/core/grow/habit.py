@@ -62,7 +62,8 @@ class Habit:
         """Return the steering (k, 2) of `placements.Evaluator` for branches: generations, 1 on a stem, and heights."""
         which = np.where(generations > STEERED, 2, np.where(generations == 1, 0, 1))
         kept, low, high = np.array([self.limbs, self.outer, AS_GROWN])[which].T
-        return np.column_stack([kept, low + (high - low) * np.clip(heights, 0.0, 1.0)])
+        added = low + (high - low) * np.minimum(np.maximum(heights, 0.0), 1.0)
+        return np.stack([kept, added], axis=1)
 
 
 UNSTEERED = Habit()
