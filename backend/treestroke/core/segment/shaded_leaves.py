@@ -15,7 +15,7 @@ from treestroke.core.types import Mask, Picture
 
 AROUND = 0.05
 """Side of the square in which roughness is measured, as a share of the crown's size (the root of its area)."""
-DARK = 0.2
+DARK = 0.15
 """Share of leaves, the darkest ones, that may have the ground's colours."""
 MOST_ODDS = 1.5
 """Limit of the log odds by roughness, in both directions. Tuned with `DARK` and `AROUND` on 24 crowns with known masks,
