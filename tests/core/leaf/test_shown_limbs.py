@@ -66,10 +66,10 @@ def test_a_crown_whose_depth_is_seen_keeps_all_its_leaves(spokes, mask, volume, 
     assert not np.isfinite(shown_limbs(spokes, crown).distances).any()
 
 
-def test_leaves_on_branches_keep_clear_of_them(tree, mask, volume, photo, atlas):
+def test_leaves_on_branches_keep_clear_of_them(spokes, mask, volume, photo, atlas):
     crown = crown_with_wood(mask, volume, photo, atlas, slice(145, 155))
-    limbs = shown_limbs(tree, crown)
-    leaves = place_leaves(tree, crown, LeafParams(max_cards=4000), np.random.default_rng(1))
+    limbs = shown_limbs(spokes, crown)
+    leaves = place_leaves(spokes, crown, LeafParams(max_cards=4000), np.random.default_rng(1))
     usual = np.linalg.norm(leaves.ups, axis=1) > 0.9 * 0.5 * 0.015 * crown.side
     free = np.isfinite(limbs.distances).mean()
     assert free > 0.01
