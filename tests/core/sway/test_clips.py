@@ -71,7 +71,8 @@ def test_thick_wood_swings_more_slowly(blown: Wind) -> None:
     bones = branches(rig)
     by_radius = counts[bones[np.argsort(rig.radii[bones], kind="stable")] - 1]
     assert (np.diff(by_radius) <= 0).all()
-    assert by_radius[0] > 2 * by_radius[-1]
+    swings = by_radius - 1  # a clip begins and ends with the same pose
+    assert swings[0] >= 2 * swings[-1]
 
 
 def test_a_breeze_moves_twigs_by_centimetres_and_the_trunk_by_millimetres(blown: Wind) -> None:
