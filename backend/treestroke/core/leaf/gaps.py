@@ -33,7 +33,7 @@ WOOD_SIZES = (1.0, 0.6)
 leaves; the overlap of leaves alone rises by 0.025; 3 crowns)."""
 BEFORE = 0.3
 """How far such a card's middle stands before the bark, in halves of its side."""
-FOR_SIDES = 0.35
+FOR_SIDES = 0.3
 """Share of such cards that are kept for the imagined sides."""
 STRICT_ROUNDS = 2
 """Rounds in which cards over a photo's gaps keep out of the imagined sides' gaps; later the photo is worth more (at 6,

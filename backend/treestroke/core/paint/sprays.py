@@ -15,7 +15,7 @@ from treestroke.core.types import Floats, FoliageKind, Picture
 
 SprayKind = Literal["broad", "needles", "scales", "frond", "strap", "blossom"]
 
-CARD_SIZE: dict[FoliageKind, float] = {"leaves": 1.0, "needles": 1.3, "scales": 1.4, "palm": 1.0, "bare": 1.0}
+CARD_SIZE: dict[FoliageKind, float] = {"leaves": 1.0, "needles": 1.6, "scales": 1.4, "palm": 1.0, "bare": 1.0}
 """Size of the card that shows a spray, relative to one of broad leaves: a conifer's spray has many more parts."""
 FLOWERS = 220
 """Flowers tried for a spray; those that would hide others or leave the square are left out."""
