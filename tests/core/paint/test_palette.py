@@ -33,6 +33,20 @@ def test_pixels_count_by_their_cover(mask):
     assert palette.centres[0, 1] > 20
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_each_hue_has_clusters_of_its_own_amid_light_and_shade(mask, seed):
+    """A crown that is yellow on the left and red on the right, with light and dark sprays all over."""
+    rows, columns = np.indices(mask.shape)
+    light = 0.35 + 0.65 * ((rows // 12 + columns // 12) % 5 / 4)
+    colour = np.where((columns < 150)[..., None], np.float64((235, 170, 40)), np.float64((225, 70, 40)))
+    palette = foliage_palette((colour * light[..., None]).astype(np.uint8), mask, 10, np.random.default_rng(seed))
+    hue = np.degrees(np.arctan2(palette.centres[:, 2], palette.centres[:, 1]))
+    wanted = np.array([lab_from_rgb(np.uint8([[rgb]]))[0, 0] for rgb in ((235, 170, 40), (225, 70, 40))])
+    yellow, red = np.degrees(np.arctan2(wanted[:, 2], wanted[:, 1]))
+    for own in (yellow, red):
+        assert palette.shares[np.abs(hue - own) < 8].sum() > 0.35
+
+
 def test_one_colour_gives_one_cluster(mask):
     photo = np.full((*mask.shape, 3), 90, np.uint8)
     assert len(foliage_palette(photo, mask, 12, np.random.default_rng(0)).shares) == 1

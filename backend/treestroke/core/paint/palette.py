@@ -23,6 +23,9 @@ CONTRAST = 1.5
 """Factor on small differences of lightness, part of which overlapping cards and their soft shading blur away; black and
 white stay. Higher ones make clumps of light and dark truer, but stronger than leaves, and shade turns black (4 photos:
 at 1.4 details of 0.35 to 5.6 % of a tree's height were off by 5 to 11 %, at 1.7 by 4 to 16 %)."""
+OF_LIGHTNESS = 0.4
+"""Weight of lightness in clusters, against that of hue: cards are dimmed as they need it, while a hue needs a tile of
+its own (at 1.0 a maple of yellow and red leaves came out orange with other random numbers)."""
 DETAIL = 1.5
 """Factor on how much lighter or darker leaves are than their spray, up to the lightest and darkest: cards blur them. At
 1.0 details of a leaf's size were a fifth weaker than in 4 photos, at 2.0 some were stronger."""
@@ -95,7 +98,7 @@ def unshaded(lab: Floats) -> Floats:
 
 
 def foliage_palette(photo: Picture, cover: Opacity | Mask, clusters: int, rng: np.random.Generator) -> Palette:
-    """Cluster the sprays of a foliage on a photo (h, w, 3), sRGB, by k-means of their mean colours in CIE Lab.
+    """Cluster the sprays of a foliage on a photo (h, w, 3), sRGB, by k-means of their colours, hue before lightness.
 
     ``cover`` (h, w) is the share of each pixel that shows a leaf in its own colour. A cluster's members are single
     pixels: leaves lie beside lighter and darker ones, as in the photo, though differing more by `DETAIL`. Pixels count
@@ -115,13 +118,19 @@ def foliage_palette(photo: Picture, cover: Opacity | Mask, clusters: int, rng: n
     index = _drawn(np.asarray(inner if inner.sum() > INNER_SHARE * share.sum() else share, dtype=np.float32), rng)
     pixels = photo.reshape(-1, 3)[index], _spray_colours(photo, share, index)
     samples, sprays = (unshaded(lab_from_rgb(colours)) for colours in pixels)
-    lightness, of_spray = samples[:, 0].copy(), sprays[:, 0]
-    samples[:, 0] = np.clip(of_spray + DETAIL * (lightness - of_spray), lightness.min(), lightness.max())
-    labels = _k_means(sprays, clusters, ROUNDS, rng)
+    labels = _k_means(sprays * (OF_LIGHTNESS, 1.0, 1.0), clusters, ROUNDS, rng)
     counts = np.bincount(labels)
     order = [int(k) for k in np.argsort(-counts, kind="stable") if counts[k] > 0]
-    members = tuple(samples[labels == k] for k in order)
+    leaves = _differing_more(samples, sprays)
+    members = tuple(leaves[labels == k] for k in order)
     return Palette(np.stack([m.mean(axis=0) for m in members]), counts[order] / counts.sum(), members)
+
+
+def _differing_more(leaves: Floats, sprays: Floats) -> Floats:
+    """Make leaves (n, 3) differ by `DETAIL` from their sprays (n, 3), CIE Lab, in lightness, at the same saturation."""
+    lightness, of_spray = leaves[:, 0], sprays[:, 0]
+    wanted = np.clip(of_spray + DETAIL * (lightness - of_spray), lightness.min(), lightness.max())
+    return leaves * (wanted / np.maximum(lightness, 1.0))[:, None]
 
 
 def _drawn(weight: Opacity, rng: np.random.Generator) -> Indices:
