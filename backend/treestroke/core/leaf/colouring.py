@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 
 from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
+from treestroke.core.imaging.blur import broadly_blurred
 from treestroke.core.imaging.light import luminance_of_lightness
 from treestroke.core.leaf.coverage import Depths
 from treestroke.core.leaf.daylight import Daylight, daylight
@@ -138,7 +138,7 @@ class Colouring:
     def side(self, grid: FoliageGrid, nearest: Depths, seen: Floats) -> SeenSide:
         """Describe what a view sees: depths (cells,), metres, as `SeenSide` has them, and cards at ``seen`` (n, 3)."""
         rows, columns = grid.inside.shape
-        broad = _broad(grid.labs[:, 0].reshape(rows, columns), BOUGH * rows)
+        broad = broadly_blurred(grid.labs[:, 0].reshape(rows, columns), BOUGH * rows).ravel()
         cells = grid.cells_of(seen)
         lights, lightnesses = (np.quantile(values, QUANTILES) for values in (self.sky.at(seen), broad[cells]))
         return SeenSide(nearest, broad, lights, lightnesses, _slope(broad[cells], grid.labs[cells]))
@@ -217,16 +217,6 @@ def _slope(lightness: Floats, labs: Floats) -> Floats:
     away = lightness - lightness.mean()
     slope = away @ (labs - labs.mean(axis=0)) / max(float(away @ away), 1e-9)
     return np.array([1.0, slope[1], slope[2]])
-
-
-def _broad(lightness: Floats, sigma: float) -> Floats:
-    """Blur a lightness (rows, columns), on fewer cells: flat (cells,)."""
-    rows, columns = lightness.shape
-    step = max(1.0, sigma / 3)
-    size = (max(1, round(columns / step)), max(1, round(rows / step)))
-    small = cv2.resize(lightness, size, interpolation=cv2.INTER_AREA)
-    soft = cv2.GaussianBlur(small, (0, 0), sigma / step, borderType=cv2.BORDER_REPLICATE)
-    return np.asarray(cv2.resize(soft, (columns, rows), interpolation=cv2.INTER_LINEAR).ravel(), dtype=np.float64)
 
 
 def _shares(values: Floats) -> Floats:

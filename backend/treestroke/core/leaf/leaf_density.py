@@ -7,6 +7,7 @@ import numpy as np
 
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.geometry.outline_volume import half_widths_px
+from treestroke.core.imaging.blur import broadly_blurred
 from treestroke.core.leaf.arrangement import thin_edges
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.skeleton.measure import edge_lengths
@@ -70,10 +71,5 @@ def _half_widths(grid: FoliageGrid, volume: CrownVolume) -> Floats:
 
 
 def _blurred(image: Floats, sigma: float) -> Floats:
-    """Average over a Gaussian, computed on fewer cells; cells beyond the border count as empty."""
-    rows, columns = image.shape
-    step = max(1.0, sigma / 3)
-    size = (max(1, round(columns / step)), max(1, round(rows / step)))
-    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
-    soft = cv2.GaussianBlur(small, (0, 0), sigma / step, borderType=cv2.BORDER_CONSTANT)
-    return np.asarray(cv2.resize(soft, (columns, rows), interpolation=cv2.INTER_LINEAR))
+    """Average over a Gaussian; cells beyond the border count as empty."""
+    return broadly_blurred(image, sigma, cv2.BORDER_CONSTANT)

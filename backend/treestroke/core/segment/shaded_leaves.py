@@ -16,9 +16,10 @@ from treestroke.core.types import Mask, Picture
 AROUND = 0.05
 """Side of the square in which roughness is measured, as a share of the crown's size (the root of its area)."""
 DARK = 0.15
-"""Share of leaves, the darkest ones, that may have the ground's colours."""
+"""Share of leaves, the darkest ones, that may have the ground's colours (at 0.2 the trace of a bare tree changes as the
+hand shakes)."""
 MOST_ODDS = 1.5
-"""Limit of the log odds by roughness, in both directions. Tuned with `DARK` and `AROUND` on 24 crowns with known masks,
+"""Limit of the log odds by roughness, in both directions. Tuned with `AROUND` on 24 crowns with known masks,
 whose IoU stays, and on a tree over its own shadow, whose lower limbs were lost."""
 STRIDE, FEWEST = 2, 100
 """Distance between the pixels that are looked at, and the least number of dark ones, among leaves and beside the crown,
