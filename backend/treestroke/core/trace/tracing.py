@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import cv2
 import numpy as np
 
-from treestroke.core.geometry.polyline import normals, resample
+from treestroke.core.geometry.polyline import arc_lengths, normals, resample
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -41,6 +41,10 @@ GRAIN = 1.5
 """Standard deviation, px of a long side of 1500, over which branch odds are averaged: the grain of bark."""
 BLURRED = 4.5
 """How far a Gaussian blur reaches, in standard deviations."""
+
+BESIDE = 0.45
+"""A stem begins where its stroke does, up to this share of its radius beside the middle of the wood, or of the greatest
+usual radius if it is a giant."""
 
 
 @dataclass(frozen=True)
@@ -201,7 +205,8 @@ def _snapped(line: Floats, odds: Odds, reach: float, step: float) -> Floats:
 def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) -> tuple[Floats, Floats]:
     """Return the line (n, 2) and the radii (n,), px, of a stem whose stroke is a line (n, 2) from a root (2,).
 
-    It begins in the middle of the wood, as low as the root.
+    It begins at the root, to which it leads over the height of its radius, or as low where the root is far beside the
+    middle of the wood.
     """
     height_px, widest = evidence.height_px, params.thickest_share * evidence.height_px
     centred = _centre(line, evidence, widest)
@@ -222,6 +227,9 @@ def _stem(line: Floats, root: Floats, evidence: _Evidence, params: TraceParams) 
             centred = joined(below, centred)
             centred[0, 1] = root[1]
     radii = stem_radii(centred, halves, bare, height_px, params.trunk_share * height_px)
+    aside = root[0] - centred[0, 0]
+    if abs(aside) < BESIDE * min(radii[0], widest):
+        centred[:, 0] += aside * np.clip(1 - arc_lengths(centred) / radii[0], 0.0, 1.0)
     cut = leaves_photo(centred, radii, evidence.photo) and not evidence.cut_out
     return centred, radii if cut or seen.sum() <= CLEAR * len(seen) else flared(centred, radii, evidence.photo)
 
