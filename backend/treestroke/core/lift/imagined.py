@@ -87,19 +87,20 @@ class ImaginedCrown:
 
     def side_of(self, front: Mask) -> Silhouette[OrthographicCamera]:
         """Imagine from the left what the front camera's picture (h, w) shows of the crown."""
-        camera, patches = self.outline.camera, self.patches
-        left = camera.to_the_left(self.furthest * self.cell_px)
-        row, down = np.divmod((np.arange(left.height) + 0.5 - self.corner_px[1]) / self.cell_px, 1)
-        column, aside = np.divmod((np.arange(left.width) + 0.5) / self.cell_px, 1)
-        here = np.ix_(self.rows(row), np.minimum(column.astype(np.int64), self.side.shape[1] - 1))
-        y = self.corner_px[1] + self.cell_px * (patches.row[here] + down[:, None])
+        patches, (first_x, first_y) = self.patches, self.corner_px.tolist()
+        left = self.outline.camera.to_the_left(self.furthest * self.cell_px)
+        row, down = np.divmod((np.arange(left.height) + 0.5 - first_y) / self.cell_px, 1)
+        column, aside = np.divmod((np.arange(left.width, dtype=np.float32) + np.float32(0.5)) / self.cell_px, 1)
+        filled = np.flatnonzero((row >= 0) & (row < len(self.side)))
+        here = np.ix_(row[filled].astype(np.int64), np.minimum(column.astype(np.int64), self.side.shape[1] - 1))
+        source_row, source_column = (of.astype(np.float32)[here] for of in (patches.row, patches.column))
         aside = np.where(patches.mirrored[here], 1 - aside, aside)
-        x = self.corner_px[0] + self.cell_px * (patches.column[here] - BORDER + aside)
-        shown = (patches.row[here] >= 0) & ((row >= 0) & (row < len(self.side)))[:, None]
-        mask = cv2.remap(
-            front.astype(np.uint8), (x - 0.5).astype(np.float32), (y - 0.5).astype(np.float32), cv2.INTER_NEAREST
-        )
-        return Silhouette(shown & (mask > 0), left)
+        y = first_y - 0.5 + self.cell_px * (source_row + down[filled, None].astype(np.float32))
+        x = first_x - 0.5 + self.cell_px * (source_column - BORDER + aside)
+        copied = cv2.remap(front.astype(np.uint8), x, y, cv2.INTER_NEAREST)
+        mask = np.zeros((left.height, left.width), dtype=np.bool_)
+        mask[filled] = (source_row >= 0) & (copied > 0)
+        return Silhouette(mask, left)
 
 
 def imagined_crown(
