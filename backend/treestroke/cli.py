@@ -19,6 +19,7 @@ from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
+from treestroke.memory import search_for_garbage_often
 from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
@@ -259,6 +260,7 @@ def _serve(options: argparse.Namespace) -> None:
 def _worker(options: argparse.Namespace) -> None:
     from treestroke.worker import main as work
 
+    search_for_garbage_often()
     os.environ.update(_service_settings(options).environment())
     if work():
         raise MachineFault("the worker did not start; its log says why")

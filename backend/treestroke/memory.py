@@ -3,8 +3,9 @@
 import ctypes
 import gc
 
-_NEW_OBJECTS = 300_000
-"""Objects made since the last search for garbage that start the next one: a command with its imports makes 100,000."""
+_SELDOM, _OFTEN = 300_000, 10_000
+"""Objects made since the last search for garbage that start the next one, in a command and in a process that goes on: a
+command with its imports makes 100,000."""
 _LARGEST_KEPT, _MOST_KEPT = 32 * 2**20, 256 * 2**20
 """Bytes: the largest block of memory, and the most free memory, that the C library keeps; 32 MiB is its own limit."""
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3
@@ -18,8 +19,14 @@ def keep_freed_memory() -> None:
     all page faults of a model. Elsewhere nothing changes. Modules stay until the end and a tree leaves hardly any
     cycles, so garbage is searched for far less often than usual.
     """
-    gc.set_threshold(_NEW_OBJECTS)
+    gc.set_threshold(_SELDOM)
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
     if mallopt is not None:
         mallopt(_MMAP_THRESHOLD, _LARGEST_KEPT)
         mallopt(_TRIM_THRESHOLD, _MOST_KEPT)
+
+
+def search_for_garbage_often() -> None:
+    """Let a process that goes on for days free what cycles hold; what its imports made stays."""
+    gc.freeze()
+    gc.set_threshold(_OFTEN)

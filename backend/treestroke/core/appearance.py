@@ -93,13 +93,13 @@ class Appearance:
         One or more; the first sets the sizes of leaves.
     shows_leaves
         Whether they show leaves in their colours.
-    sides
+    imagined_sides
         Where foliage is imagined to be from sides that no view shows.
     """
 
     views: tuple[View, ...]
     shows_leaves: bool
-    sides: tuple[Silhouette[Camera], ...] = ()
+    imagined_sides: tuple[Silhouette[Camera], ...] = ()
 
     def __post_init__(self) -> None:
         if not self.views:

@@ -31,7 +31,7 @@ def with_side(tree, mask, volume, photo, atlas, side) -> tuple[LeafCrown, Leaves
 
 
 def covered(crown: LeafCrown, leaves: Leaves) -> np.ndarray:
-    grid = crown.sides[0]
+    grid = crown.imagined_sides[0]
     nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
     crown.hide(nearest, leaves, grid)
     return np.isfinite(nearest).reshape(grid.inside.shape)
@@ -39,13 +39,13 @@ def covered(crown: LeafCrown, leaves: Leaves) -> np.ndarray:
 
 def test_what_the_side_shows_is_covered(with_side) -> None:
     crown, leaves = with_side
-    inside = crown.sides[0].inside
+    inside = crown.imagined_sides[0].inside
     assert covered(crown, leaves)[inside].mean() > 0.85
 
 
 def test_leaves_keep_out_of_its_gaps(tree, mask, volume, photo, atlas, with_side) -> None:
     crown, leaves = with_side
-    grid = crown.sides[0]
+    grid = crown.imagined_sides[0]
     middles_px = grid.pixels_of(np.arange(grid.inside.size), np.full((grid.inside.size, 2), 0.5))
     gap = (np.hypot(*(middles_px - GAP_PX).T) < 25).reshape(grid.inside.shape)
     view, rng = view_of(photo, mask, volume.camera), np.random.default_rng(0)

@@ -14,7 +14,9 @@ CANDIDATES = 400
 LEVEL = 0.1
 """How far above or below its own height a patch may come from, as a share of the picture's height."""
 SIDE = PATCH + 2 * MARGIN
+"""Side of a patch with its surroundings, px; depths beyond it count as so deep."""
 WITHIN = slice(MARGIN, MARGIN + PATCH)
+"""Where the patch lies in its surroundings, along both sides."""
 
 
 @dataclass(frozen=True, eq=False)

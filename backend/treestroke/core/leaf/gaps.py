@@ -33,7 +33,7 @@ WOOD_SIZES = (1.0, 0.6)
 leaves; the overlap of leaves alone rises by 0.025; 3 crowns)."""
 BEFORE = 0.3
 """How far such a card's middle stands before the bark, in halves of its side."""
-FOR_SIDES = 0.3
+FOR_IMAGINED = 0.3
 """Share of such cards that are kept for the imagined sides."""
 STRICT_ROUNDS = 2
 """Rounds in which cards over a photo's gaps keep out of the imagined sides' gaps; later the photo is worth more (at 6,
@@ -98,7 +98,7 @@ class _Size:
     """Size of the cards of a round, and whether they keep out of the gaps of the imagined sides."""
 
     scale: float
-    in_sides: bool
+    in_imagined: bool
 
 
 def cover_gaps(
@@ -112,9 +112,9 @@ def cover_gaps(
     if len(seats) == 0:
         return []
     far, patches = int(FAR_SHARE * len(leaves) / len(SIZES)), [leaves]
-    in_front = replace(params, most=int(params.most * (1 - FOR_SIDES * (len(crown.sides) > 0))))
-    for grid in (*crown.grids, *crown.sides):
-        gaps = _Gaps(grid, place, seats, skeleton.radii[seats.joints], far, grid in crown.sides)
+    in_front = replace(params, most=int(params.most * (1 - FOR_IMAGINED * (len(crown.imagined_sides) > 0))))
+    for grid in (*crown.grids, *crown.imagined_sides):
+        gaps = _Gaps(grid, place, seats, skeleton.radii[seats.joints], far, grid in crown.imagined_sides)
         bounds, nearest = params if gaps.imagined else in_front, _nearest_cards(patches, gaps)
         if not gaps.imagined:
             patches += _cover_wood(nearest, patches, gaps, bounds, rng)
@@ -211,7 +211,7 @@ def _patch(seats: Seats, cells: Indices, size: _Size, gaps: _Gaps, rng: np.rando
     seats, half_sizes = seats.at(kept), size.scale * crown.half_sizes(len(centres), rng)
     outward = _seen_from(gaps.grid, centres, unit(centres - crown.middle, UP))
     poses = pose_over(seats, centres, half_sizes, outward, rng)
-    return gaps.place.dressed(poses, seats, rng, Fit(FITTING, size.in_sides))[0]
+    return gaps.place.dressed(poses, seats, rng, Fit(FITTING, size.in_imagined))[0]
 
 
 def _centres(cells: Indices, seats: Seats, gaps: _Gaps, rng: np.random.Generator) -> tuple[Floats, Indices]:

@@ -28,7 +28,7 @@ LEAST_LIGHT = 0.55
 FITTING = 0.92
 """Share of a card's opaque dots that must lie in the foliage. Higher loses more of the foliage at its outline than it
 gains beside it (5 photos: 0.96 costs 1 to 3 % of silhouette IoU)."""
-FITTING_SIDES = 0.8
+FITTING_IMAGINED = 0.8
 """The same for the imagined sides, which are less sure."""
 LEAST_SIZE, MOST_SIZE = 0.3, 3.0
 """Bounds of the factor on a card's side, which is 1.5 to 3 % of the foliage's breadth."""
@@ -46,12 +46,12 @@ class Fit:
     ----------
     share
         Share of their opaque dots that must lie in the foliage.
-    in_sides
+    in_imagined
         Whether they must fit the imagined sides too.
     """
 
     share: float = FITTING
-    in_sides: bool = True
+    in_imagined: bool = True
 
 
 USUAL_FIT = Fit()
@@ -65,7 +65,7 @@ class LeafCrown:
     ----------
     grids
         The foliage of each view, one at least.
-    sides
+    imagined_sides
         The foliage as it is imagined from sides that no view shows.
     volume, colouring, outlines
         Where the crown is, which tile goes where, and the tiles' opaque dots.
@@ -80,7 +80,7 @@ class LeafCrown:
     """
 
     grids: tuple[FoliageGrid, ...]
-    sides: tuple[FoliageGrid, ...]
+    imagined_sides: tuple[FoliageGrid, ...]
     volume: CrownVolume
     colouring: Colouring
     outlines: Outlines
@@ -106,15 +106,15 @@ class LeafCrown:
 
     def recoloured(self, leaves: Leaves, rng: np.random.Generator) -> Leaves:
         """Give cards that no view shows the colours of unseen places."""
-        unseen, sides = np.ones(len(leaves), dtype=np.bool_), []
+        unseen, seen = np.ones(len(leaves), dtype=np.bool_), []
         for grid in self.grids:
             nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
             self.hide(nearest, leaves, grid)
             hidden = share_hidden(nearest, leaves, self.outlines, grid) >= HIDDEN
-            sides.append(self.colouring.side(grid, nearest, leaves.centres[~hidden]))
+            seen.append(self.colouring.side(grid, nearest, leaves.centres[~hidden]))
             unseen &= hidden
         tiles, shades = leaves.tiles.copy(), leaves.shades.copy()
-        tiles[unseen], brightness = self.colouring.unseen(leaves.centres[unseen], sides, rng)
+        tiles[unseen], brightness = self.colouring.unseen(leaves.centres[unseen], seen, rng)
         shades[unseen] = _light(brightness, rng)
         return replace(leaves, tiles=tiles, shades=shades)
 
@@ -137,7 +137,7 @@ class LeafCrown:
         """
         fits, excluded = np.zeros((2, len(leaves)), dtype=np.bool_)
         shares = [(grid, fit.share) for grid in self.grids]
-        shares += [(side, min(fit.share, FITTING_SIDES)) for side in self.sides if fit.in_sides]
+        shares += [(side, min(fit.share, FITTING_IMAGINED)) for side in self.imagined_sides if fit.in_imagined]
         for grid, share in shares:
             behind = grid.deeper(grid.cells_of(leaves.centres), grid.camera.depth(leaves.centres))
             shown = behind & (share_inside(leaves, self.outlines, grid) >= share)
@@ -168,14 +168,14 @@ def leaf_crown(
         raise ValueError(f"size must be {LEAST_SIZE} to {MOST_SIZE}, got {size}")
     alphas, inner = tile_alphas(atlas), volume.bounds.mean(axis=0)
     grids = tuple(foliage_grid(view, inner) for view in appearance.views)
-    sides = tuple(side_grid(side, grids[0]) for side in appearance.sides if side.mask.any())
+    imagined = tuple(side_grid(side, grids[0]) for side in appearance.imagined_sides if side.mask.any())
     top, centre, bottom = _heights(grids[0], inner)
     side = size * grids[0].breadth_m
     middle = volume.axis(np.array([centre]))[0]
     middle[1] = centre
     return LeafCrown(
         grids=grids,
-        sides=sides,
+        imagined_sides=imagined,
         volume=volume,
         colouring=colouring_of(grids, volume, tile_labs(atlas), atlas.recolour, rng),
         outlines=outlines_of(alphas, atlas.fold),

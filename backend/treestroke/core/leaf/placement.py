@@ -89,7 +89,7 @@ def place_leaves(
         return set_fronds(skeleton, crown, params.density, rng)
     wanted = params.density * LAYERS * crown.foliage_area / crown.card_area
     count = round(min((1 - RESERVE) * params.max_cards, wanted))
-    grids, even = (*crown.grids, *crown.sides), params.kind in CONIFEROUS
+    grids, even = (*crown.grids, *crown.imagined_sides), params.kind in CONIFEROUS
     weights = leaf_weights(skeleton, grids, crown.volume, crown.height, even)
     place = LeafPlace(crown, shown_limbs(skeleton, crown))
     along = _on_branches(seats_along(skeleton, weights, count, rng), place, params, rng)

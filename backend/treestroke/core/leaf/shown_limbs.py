@@ -70,7 +70,7 @@ class LeafPlace:
     ) -> tuple[Leaves, Mask]:
         """Colour the cards that fit, and tell which of the poses do: flags (n,); as `LeafCrown.dressed`."""
         leaves, kept = self.crown.dressed(poses, seats, rng, fit)
-        if not fit.in_sides:
+        if not fit.in_imagined:
             return leaves, kept
         free = ~self.limbs.behind(leaves.centres)
         kept[np.flatnonzero(kept)] = free
