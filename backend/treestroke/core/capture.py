@@ -1,0 +1,88 @@
+"""Photos of one tree from several places, with their cameras, and what they show together."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.geometry.camera import PerspectiveCamera
+from treestroke.core.types import Floats, Mask, Opacity, Picture
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """One photo of a capture and the camera that took it.
+
+    Attributes
+    ----------
+    name
+        The photo's file name.
+    picture
+        (h, w, 3) sRGB, upright, free of lens distortion.
+    camera
+        Its camera, of the picture's size, in the frame that all shots share.
+    """
+
+    name: str
+    picture: Picture
+    camera: PerspectiveCamera
+
+    def __post_init__(self) -> None:
+        if self.picture.shape != (self.camera.height, self.camera.width, 3):
+            raise ValueError(f"{self.name}: the picture {self.picture.shape} does not fit its camera {self.camera}")
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud:
+    """Points that several shots see, in the shots' frame.
+
+    Attributes
+    ----------
+    points
+        (n, 3) where they are.
+    colours
+        (n, 3) sRGB.
+    seen
+        (n, shots) which shots see each, in the order of the shots.
+    """
+
+    points: Floats
+    colours: NDArray[np.uint8]
+    seen: Mask
+
+    def __post_init__(self) -> None:
+        count = len(self.points)
+        if self.points.shape != (count, 3) or self.colours.shape != (count, 3) or len(self.seen) != count:
+            shapes = self.points.shape, self.colours.shape, self.seen.shape
+            raise ValueError(f"a point cloud needs (n, 3), (n, 3) and (n, shots), got {shapes}")
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def select(self, chosen: Mask) -> "PointCloud":
+        """Return the points of which ``chosen`` (n,) is true."""
+        return PointCloud(self.points[chosen], self.colours[chosen], self.seen[chosen])
+
+
+@dataclass(frozen=True, eq=False)
+class TreeMatte:
+    """Where a shot (h, w) shows the tree.
+
+    Attributes
+    ----------
+    opacity
+        (h, w) share of each pixel that leaves and wood of the tree cover.
+    wood
+        (h, w) how likely what is seen of the tree there is wood, 0 to 1; 0 beside the tree.
+    hidden
+        (h, w) where something stands before the tree, so that the shot does not tell.
+    """
+
+    opacity: Opacity
+    wood: Opacity
+    hidden: Mask
+
+    @property
+    def tree(self) -> Mask:
+        """(h, w) pixels that the tree covers by half or more."""
+        return np.asarray(self.opacity >= 0.5)

@@ -1,0 +1,1 @@
+"""Programs and libraries of others that work on files, each behind one function."""
