@@ -65,6 +65,56 @@ class PointCloud:
 
 
 @dataclass(frozen=True, eq=False)
+class SolvedPhoto:
+    """A photo whose camera was found.
+
+    Attributes
+    ----------
+    name
+        Its file name.
+    camera
+        Its camera, of the upright photo's own size, in the structure's frame.
+    radial
+        Radial distortion k of its lens: a ray at (x, y), both over the depth, is seen at (x, y) (1 + k (x^2 + y^2))
+        times the focal length from the principal point.
+    """
+
+    name: str
+    camera: PerspectiveCamera
+    radial: float
+
+
+@dataclass(frozen=True)
+class UnusedPhoto:
+    """A photo whose camera was not found: its file name, a code for programs, and the reason for people."""
+
+    name: str
+    code: str
+    detail: str
+
+
+@dataclass(frozen=True, eq=False)
+class Structure:
+    """Where a capture's photos were taken and points that several of them see: structure from motion.
+
+    The frame is right-handed with Y up; its origin, its turn about Y and its scale are chosen freely.
+
+    Attributes
+    ----------
+    photos
+        Those used, in the order in which they were given.
+    cloud
+        Points; ``seen`` is in the order of ``photos``.
+    unused
+        Those left out, in the order in which they were given.
+    """
+
+    photos: tuple[SolvedPhoto, ...]
+    cloud: PointCloud
+    unused: tuple[UnusedPhoto, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class TreeMatte:
     """Where a shot (h, w) shows the tree.
 
