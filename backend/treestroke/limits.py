@@ -8,8 +8,12 @@ MIN_CANVAS, MAX_CANVAS = 16, 16_384
 """Least and greatest side of a sketch's canvas, px."""
 MAX_PHOTO_BYTES = 25_000_000
 """Most bytes of an uploaded photo."""
+MIN_PHOTOS, MAX_PHOTOS = 5, 60
+"""Fewest and most photos of a capture."""
 MAX_TEXT_BYTES = 64_000_000
 """Most bytes of JSON: more than the longest allowed strokes need."""
+MAX_STRUCTURE_BYTES = 32_000_000
+"""Most bytes of the file that holds a capture's cameras and points."""
 MAX_SKETCH_BYTES = 25_000_000
 """Most bytes of a sketch's picture."""
 MAX_LEAF_BYTES = 4_000_000

@@ -23,7 +23,15 @@ from pydantic import (
 from pydantic.json_schema import SkipJsonSchema
 from pydantic_core import PydanticCustomError
 
-from treestroke.limits import MAX_CANVAS, MAX_POINTS, MAX_SKETCH_BYTES, MAX_STROKES, MIN_CANVAS
+from treestroke.limits import (
+    MAX_CANVAS,
+    MAX_NAME,
+    MAX_PHOTOS,
+    MAX_POINTS,
+    MAX_SKETCH_BYTES,
+    MAX_STROKES,
+    MIN_CANVAS,
+)
 
 _CROWN: list[JsonValue] = [[210, 300], [390, 120], [610, 140], [760, 330], [700, 560], [480, 640], [270, 560]]
 STROKES_EXAMPLE: dict[str, JsonValue] = {
@@ -126,6 +134,54 @@ class Strokes(RequestPart):
     branches: Branches = Field(default_factory=list)
     erase: Annotated[list[EraseStroke], Field(max_length=MAX_STROKES - 1), FailFast()] = Field(default_factory=list)
     scale: KnownLength | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+
+
+PhotoName = Annotated[str, Strict(), Field(min_length=1, max_length=MAX_NAME)]
+
+
+class ViewStrokes(RequestPart):
+    """What was drawn over one of several photos."""
+
+    photo: PhotoName = Field(description="the photo's file name")
+    crown: CrownStroke
+    branches: Branches = Field(default_factory=list)
+    erase: Annotated[list[EraseStroke], Field(max_length=MAX_STROKES - 1), FailFast()] = Field(default_factory=list)
+
+
+class LengthInPhoto(KnownLength):
+    """A straight line over something of known length that stands beside the tree, in one of the photos."""
+
+    photo: PhotoName = Field(description="the photo's file name")
+
+
+class CameraDistance(RequestPart):
+    """How far apart two photos were taken."""
+
+    photos: Annotated[list[PhotoName], Field(min_length=2, max_length=2), FailFast()] = Field(
+        description="the photos' file names"
+    )
+    metres: Positive
+
+
+def _kind_of_scale(value: object) -> str:
+    """Tell the distance between two cameras, which has a key ``photos``, from a drawn length."""
+    cameras = isinstance(value, CameraDistance) or (isinstance(value, Mapping) and "photos" in value)
+    return "cameras" if cameras else "length"
+
+
+Scale = Annotated[
+    Annotated[LengthInPhoto, Tag("length")] | Annotated[CameraDistance, Tag("cameras")],
+    Discriminator(_kind_of_scale),
+]
+
+
+class CaptureStrokes(RequestPart):
+    """What was drawn over the photos of a tree."""
+
+    views: Annotated[list[ViewStrokes], Field(min_length=1, max_length=MAX_PHOTOS), FailFast()]
+    scale: Scale | SkipJsonSchema[None] = Field(
+        default=None, description="sets the tree's scale in place of its height", json_schema_extra=no_default
+    )
 
 
 _Side = Annotated[int, Strict(), Field(ge=MIN_CANVAS, le=MAX_CANVAS)]

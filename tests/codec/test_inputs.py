@@ -2,7 +2,7 @@ import itertools
 
 import pytest
 
-from treestroke.codec.inputs import PARTS, SOURCES, VIEWS, Inputs, check_parts, file_name, part_of
+from treestroke.codec.inputs import PARTS, SIDES, SOURCES, Inputs, check_parts, file_name, part_of
 from treestroke.core.errors import TreestrokeError
 
 SOURCE_OF = {
@@ -27,7 +27,7 @@ def test_parts_decide_their_source(names: tuple[str, ...], source: str, pictures
 
 @pytest.mark.parametrize("count", range(5))
 def test_all_other_parts_together_are_refused(count: int) -> None:
-    for names in itertools.combinations(("photo", "strokes", *VIEWS), count):
+    for names in itertools.combinations(("photo", "strokes", *SIDES), count):
         if names not in SOURCE_OF:
             with pytest.raises(TreestrokeError, match="missing|leave one of them out"):
                 inputs_of(*names)

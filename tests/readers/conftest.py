@@ -11,7 +11,7 @@ import pytest
 import treestroke
 from treestroke.codec.gltf.instances import encode_instanced
 from treestroke.codec.gltf.loose import encode_gltf
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.codec.obj import encode_obj
 from treestroke.codec.ply import encode_ply
 from treestroke.codec.usd import encode_usdz
@@ -83,12 +83,12 @@ def _files(tree: TreeModel) -> dict[str, bytes]:
     bark, leaf = skin(wind.rig, tree.bark.mesh, leaves=False), skin(wind.rig, tree.leaf.mesh, leaves=True)
     moving = [Part("bark", tree.bark, bark), Part("leaf", tree.leaf, leaf)]
     return {
-        "plain.glb": encode_glb(still, tree.camera, generator="test"),
-        "wind.glb": encode_glb(moving, tree.camera, generator="test", wind=wind),
-        "compressed.glb": encode_glb(still, tree.camera, generator="test", compress=True),
-        "compressed_wind.glb": encode_glb(moving, tree.camera, generator="test", wind=wind, compress=True),
-        "instanced.glb": encode_instanced(still[0], tree.cards, tree.atlas, tree.camera, generator="test"),
-        **encode_gltf(still, tree.camera, generator="test", stem="loose"),
+        "plain.glb": encode_glb(still, tree.camera, provenance=Provenance("test")),
+        "wind.glb": encode_glb(moving, tree.camera, provenance=Provenance("test"), wind=wind),
+        "compressed.glb": encode_glb(still, tree.camera, provenance=Provenance("test"), compress=True),
+        "compressed_wind.glb": encode_glb(moving, tree.camera, provenance=Provenance("test"), wind=wind, compress=True),
+        "instanced.glb": encode_instanced(still[0], tree.cards, tree.atlas, tree.camera, provenance=Provenance("test")),
+        **encode_gltf(still, tree.camera, provenance=Provenance("test"), stem="loose"),
         **encode_obj(tree.bark, tree.leaf, "tree"),
         "tree.ply": encode_ply(tree.bark, tree.cards, tree.atlas),
         **_written(tree, "one", ModelSettings(lod="one", wind="all")),

@@ -8,12 +8,18 @@ from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, extension_of
-from treestroke.core.errors import FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
-from treestroke.limits import MAX_LEAF_BYTES, MAX_PHOTO_BYTES, MAX_SKETCH_BYTES, MAX_TEXT_BYTES
+from treestroke.core.errors import CaptureError, FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
+from treestroke.limits import (
+    MAX_LEAF_BYTES,
+    MAX_PHOTO_BYTES,
+    MAX_SKETCH_BYTES,
+    MAX_STRUCTURE_BYTES,
+    MAX_TEXT_BYTES,
+)
 
 Content = TypeVar("Content", covariant=True)
-PartKind = Literal["photo", "strokes", "sketch", "cutout"]
-SourceName = Literal["photo", "sketches"]
+PartKind = Literal["photo", "strokes", "views", "structure", "sketch", "cutout"]
+SourceName = Literal["photo", "views", "sketches"]
 
 BEGINNING = 128
 """Bytes of a file that are enough to tell its format."""
@@ -30,6 +36,7 @@ class Format:
 
 
 TEXT = Format("json", "application/json", MAX_TEXT_BYTES)
+STRUCTURE = Format("json", "application/json", MAX_STRUCTURE_BYTES)
 SKETCH_PNG = Format("png", "image/png", MAX_SKETCH_BYTES)
 CUTOUT_PNG = Format("png", "image/png", MAX_LEAF_BYTES)
 _PHOTOS = tuple(
@@ -83,7 +90,7 @@ class Part:
     @property
     def drawn(self) -> bool:
         """Whether the person drew it."""
-        return self.kind in ("strokes", "sketch")
+        return self.kind in ("strokes", "views", "sketch")
 
     def format_of(self, beginning: bytes) -> Format:
         """Return the format of a file by its first `BEGINNING` bytes."""
@@ -106,6 +113,16 @@ PARTS: Mapping[str, Part] = {
             f"{ACCEPTED_FORMATS}; with a front sketch, what it was drawn over",
         ),
         Part("strokes", "strokes", "strokes", (TEXT,), StrokesError, "stroke JSON; needed with a photo"),
+        Part("photos", "photos", "photo", _PHOTOS, PhotoError, f"two photos or more, {ACCEPTED_FORMATS}", many=True),
+        Part("views", "strokes over photos", "views", (TEXT,), StrokesError, "stroke JSON for some of the photos"),
+        Part(
+            "structure",
+            "the photos' cameras",
+            "structure",
+            (STRUCTURE,),
+            CaptureError,
+            "the photos' cameras, as they were found before",
+        ),
         Part(
             "front",
             "a front sketch",
@@ -141,7 +158,7 @@ PARTS: Mapping[str, Part] = {
     )
 }
 """All parts, in the order in which they are stored and read."""
-VIEWS = tuple(name for name, part in PARTS.items() if part.kind == "sketch")
+SIDES = tuple(name for name, part in PARTS.items() if part.kind == "sketch")
 CUTOUTS = tuple(name for name, part in PARTS.items() if part.kind == "cutout")
 
 
@@ -175,6 +192,14 @@ SOURCES: Mapping[SourceName, Source] = {
     source.name: source
     for source in (
         Source("photo", "photo and strokes", "strokes", ("photo", "strokes"), ("side", *CUTOUTS), "photo"),
+        Source(
+            "views",
+            "several photos and strokes over some of them",
+            "views",
+            ("photos", "views"),
+            ("structure", *CUTOUTS),
+            "photos",
+        ),
         Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *CUTOUTS), "side"),
     )
 }
@@ -259,4 +284,4 @@ def file_name(name: str, media_type: str) -> str:
 
 
 def _place(name: str, within: tuple[str | int, ...]) -> tuple[str | int, ...]:
-    return (*within, name) if name in VIEWS else (name,)
+    return (*within, name) if name in SIDES else (name,)

@@ -10,6 +10,33 @@ from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 
 @dataclass(frozen=True, eq=False)
+class CapturedPhoto:
+    """One photo of a capture, as it is read.
+
+    Attributes
+    ----------
+    name
+        Its file name.
+    picture
+        (h, w, 3) sRGB, upright, perhaps smaller than the photo.
+    size_px
+        (width, height) of the upright photo.
+    focal_px
+        Its lens's focal length, px of the picture, where the file tells.
+    """
+
+    name: str
+    picture: Picture
+    size_px: tuple[int, int]
+    focal_px: float | None = None
+
+    @property
+    def reduction(self) -> float:
+        """Pixels of the picture for one of the photo, at most 1."""
+        return float(self.picture.shape[1] / self.size_px[0])
+
+
+@dataclass(frozen=True, eq=False)
 class Shot:
     """One photo of a capture and the camera that took it.
 
@@ -73,7 +100,7 @@ class SolvedPhoto:
     name
         Its file name.
     camera
-        Its camera, of the upright photo's own size, in the structure's frame.
+        Its camera, of the size of the captured picture, in the structure's frame.
     radial
         Radial distortion k of its lens: a ray at (x, y), both over the depth, is seen at (x, y) (1 + k (x^2 + y^2))
         times the focal length from the principal point.

@@ -1,5 +1,6 @@
 """Strokes that a person draws over a photo or on white, as values."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,6 +45,43 @@ class Strokes:
     branches: tuple[Stroke, ...] = ()
     erase: tuple[Stroke, ...] = ()
     scale: Length | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class LengthInPhoto:
+    """A line of known length that was drawn over one photo of a capture, by the photo's file name."""
+
+    photo: str
+    length: Length
+
+
+@dataclass(frozen=True)
+class CameraDistance:
+    """How far apart the cameras of two photos stood: the photos' file names; metres."""
+
+    photos: tuple[str, str]
+    metres: float
+
+
+@dataclass(frozen=True, eq=False)
+class CaptureStrokes:
+    """What was drawn over the photos of a capture.
+
+    Attributes
+    ----------
+    by_photo
+        Strokes by the photo's file name, in the order in which they were drawn; those of one photo at least.
+    scale
+        What sets the tree's scale in place of its height.
+    """
+
+    by_photo: Mapping[str, Strokes]
+    scale: LengthInPhoto | CameraDistance | None = None
+
+    @property
+    def first(self) -> str:
+        """The name of the first photo with a branch stroke, else of the first one: the tree's front."""
+        return next((name for name, strokes in self.by_photo.items() if strokes.branches), next(iter(self.by_photo)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 
 from treestroke.codec.gltf.instances import encode_instanced
 from treestroke.codec.gltf.loose import encode_gltf
-from treestroke.codec.gltf.tree import MaterialName, Part, encode_glb
+from treestroke.codec.gltf.tree import MaterialName, Part, Provenance, encode_glb
 from treestroke.codec.obj import encode_obj
 from treestroke.codec.ply import encode_ply
 from treestroke.codec.skeleton_files import encode_csv, encode_skeleton_json, encode_swc
@@ -97,7 +97,8 @@ class _Writer:
 
     def __init__(self, tree: TreeModel, settings: ModelSettings, name: str, generator: str, wind: Wind | None) -> None:
         self._tree, self._settings, self._name = tree, settings, name
-        self._generator, self._wind = generator, wind
+        self._wind = wind
+        self._provenance = Provenance(generator, tree.captured)
 
     def glbs(self, coarse: Levels | None) -> dict[str, Callable[[], Bundle]]:
         """Return functions that write the GLB and its levels of detail, as files of their own or in the one file."""
@@ -118,7 +119,7 @@ class _Writer:
         match kind:
             case "gltf":
                 parts = self._parts(Level(tree.bark, tree.leaf))
-                return encode_gltf(parts, tree.camera, generator=self._generator, stem=name, wind=self._wind)
+                return encode_gltf(parts, tree.camera, provenance=self._provenance, stem=name, wind=self._wind)
             case "obj":
                 return encode_obj(tree.bark, tree.leaf, name)
             case "usdz":
@@ -129,7 +130,7 @@ class _Writer:
                 return {file: self._instanced()}
             case "collision":
                 solid = Part("collision", Surface(collision_hulls(tree.grown.skeleton), PLAIN))
-                return {file: encode_glb([solid], tree.camera, generator=self._generator)}
+                return {file: encode_glb([solid], tree.camera, provenance=self._provenance)}
             case "json":
                 return {file: encode_skeleton_json(tree.grown.skeleton, tree.grown.born, tree.camera)}
             case "swc":
@@ -141,8 +142,8 @@ class _Writer:
         """Return a GLB with leaves as instances; without leaves, of the bark alone."""
         tree, bark = self._tree, Part("bark", self._tree.bark)
         if tree.cards is None or tree.atlas is None:
-            return encode_glb([bark], tree.camera, generator=self._generator)
-        return encode_instanced(bark, tree.cards, tree.atlas, tree.camera, generator=self._generator)
+            return encode_glb([bark], tree.camera, provenance=self._provenance)
+        return encode_instanced(bark, tree.cards, tree.atlas, tree.camera, provenance=self._provenance)
 
     def _glb(self, infix: str, parts: list[Part]) -> dict[str, Callable[[], Bundle]]:
         file = f"{self._name}{infix}.glb"
@@ -151,7 +152,7 @@ class _Writer:
     def _encoded(self, parts: list[Part]) -> bytes:
         wind = self._wind if any(part.skin is not None for part in parts) else None
         compress = self._settings.compress
-        return encode_glb(parts, self._tree.camera, generator=self._generator, wind=wind, compress=compress)
+        return encode_glb(parts, self._tree.camera, provenance=self._provenance, wind=wind, compress=compress)
 
     def _parts(self, level: Level, suffix: str = "") -> list[Part]:
         surfaces: list[tuple[MaterialName, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from treestroke.codec.image import decode_cutout
-from treestroke.codec.inputs import VIEWS, check_parts, part_of
+from treestroke.codec.inputs import SIDES, check_parts, part_of
 from treestroke.codec.json_text import read_json
 from treestroke.codec.refusals import checked, inside
 from treestroke.codec.sketch import encode_sketch, picture_of, sketch_of
@@ -115,7 +115,7 @@ def read_body(body: bytes) -> Any:
 
 def _field(key: str, content: bytes) -> Any:
     """Return a form's field as the value that its description checks."""
-    if key in _JSON_FIELDS or (key in VIEWS and not content.startswith(PNG)):
+    if key in _JSON_FIELDS or (key in SIDES and not content.startswith(PNG)):
         return read_json(content, StrokesError, f"{key}: it is", "send valid JSON")
     return content
 

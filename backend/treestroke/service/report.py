@@ -7,9 +7,13 @@ from typing import Any
 import cv2
 import numpy as np
 
+from treestroke.codec.skeleton import plain_cameras
+from treestroke.core.geometry.camera import Camera
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.silhouette import overlap, silhouette
 from treestroke.core.leaf.leaves import fruit_among
 from treestroke.core.pipeline.finishing import TreeModel
+from treestroke.core.pipeline.grown_tree import CapturedViews
 from treestroke.core.pipeline.settings import MAX_SEED, ModelSettings, plain_settings
 from treestroke.core.pipeline.taken import Taken
 from treestroke.core.survey.measures import Measures
@@ -32,7 +36,10 @@ def tree_report(
 ) -> dict[str, Any]:
     """Return the report of a model's variants, of which ``seed`` is the first one's, and of all their files."""
     tree, files = trees[0], {name: len(content) for bundle in bundles.values() for name, content in bundle.items()}
-    scores = [{"silhouette_iou": _silhouette_iou(variant), **variant.score} for variant in trees]
+    ious = [_silhouette_ious(variant) for variant in trees]
+    scores = [
+        {"silhouette_iou": float(np.mean(found)), **variant.score} for found, variant in zip(ious, trees, strict=True)
+    ]
     counts = [_counts(variant) for variant in trees]
     return {
         "engine": engine_version(),
@@ -49,6 +56,7 @@ def tree_report(
             for variant_seed, count, score in zip(variant_seeds(seed, len(trees)), counts, scores, strict=True)
         ],
         "files": files,
+        **({} if tree.captured is None else _plain_views(tree.captured, ious[0])),
         "warnings": [asdict(warning) for warning in tree.warnings],
     }
 
@@ -105,9 +113,24 @@ def _plain_measures(measures: Measures) -> dict[str, Any]:
     }
 
 
-def _silhouette_iou(tree: TreeModel) -> float:
-    """Return the overlap of the front view with the foliage and branches that were found, at a reduced size."""
-    shown = silhouette(tree.bark, tree.leaf, tree.camera, min(SCORED_HEIGHT, len(tree.expected_cover)))
+def _silhouette_ious(tree: TreeModel) -> list[float]:
+    """Return the overlap of each view with the foliage and branches that were found in it, at a reduced size."""
+    return [_silhouette_iou(tree, expected) for expected in tree.expected]
+
+
+def _silhouette_iou(tree: TreeModel, expected: Silhouette[Camera]) -> float:
+    shown = silhouette(tree.bark, tree.leaf, expected.camera, min(SCORED_HEIGHT, len(expected.mask)))
     size = (shown.shape[1], shown.shape[0])
-    expected = cv2.resize(tree.expected_cover.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5
-    return overlap(shown, expected)
+    return overlap(shown, cv2.resize(expected.mask.astype(np.float32), size, interpolation=cv2.INTER_AREA) >= 0.5)
+
+
+def _plain_views(captured: CapturedViews, ious: Sequence[float]) -> dict[str, Any]:
+    """Return where a capture's photos were taken, how the tree fits each, and which were left out."""
+    return {
+        "registered": {"used": len(captured.names), "of": len(captured.names) + len(captured.unused)},
+        "cameras": plain_cameras(captured),
+        "photos": [
+            *({"photo": name, "silhouette_iou": iou} for name, iou in zip(captured.names, ious, strict=True)),
+            *({"photo": photo.name, "unused": photo.code, "detail": photo.detail} for photo in captured.unused),
+        ],
+    }

@@ -9,7 +9,7 @@ from tests.codec.gltf.unfolding import unfold
 
 from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import Document, Material
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.mesh.tubes import tubes
@@ -76,7 +76,7 @@ def meshes(glb: bytes) -> list[Mesh]:
 
 
 def test_every_triangle_keeps_its_place_within_a_step() -> None:
-    glb = encode_glb(parts(), CAMERA, generator="x", compress=True)
+    glb = encode_glb(parts(), CAMERA, provenance=Provenance("x"), compress=True)
     for part, read in zip(parts(), meshes(glb), strict=True):
         given = part.surface.mesh
         # Triangles keep their order; which corner comes first is the codec's choice, so corners are compared as sets.
@@ -87,14 +87,14 @@ def test_every_triangle_keeps_its_place_within_a_step() -> None:
 
 
 def test_shades_stay_as_they_are() -> None:
-    glb = encode_glb(parts(), CAMERA, generator="x", compress=True)
+    glb = encode_glb(parts(), CAMERA, provenance=Provenance("x"), compress=True)
     document, _ = opened(glb)
     shades = accessors(glb)[document["meshes"][1]["primitives"][0]["attributes"]["COLOR_0"]]
     assert np.array_equal(shades[:, 0], np.rint(leaves().mesh.shades.astype(float) * 255))
 
 
 def test_the_document_says_what_a_reader_needs() -> None:
-    document, content = opened(encode_glb(parts(), CAMERA, generator="x", compress=True))
+    document, content = opened(encode_glb(parts(), CAMERA, provenance=Provenance("x"), compress=True))
     assert document["extensionsRequired"] == [MESHOPT, "EXT_texture_webp", "KHR_mesh_quantization"]
     assert set(document["extensionsRequired"]) < set(document["extensionsUsed"])
     stand_in = document["buffers"][1]
@@ -109,7 +109,7 @@ def test_the_document_says_what_a_reader_needs() -> None:
 
 
 def test_pictures_are_webp_of_the_same_alpha() -> None:
-    document, content = opened(encode_glb(parts(), CAMERA, generator="x", compress=True))
+    document, content = opened(encode_glb(parts(), CAMERA, provenance=Provenance("x"), compress=True))
     assert [image["mimeType"] for image in document["images"]] == ["image/webp"] * 2
     assert [texture["extensions"] for texture in document["textures"]] == [
         {"EXT_texture_webp": {"source": k}} for k in (0, 1)
@@ -186,6 +186,6 @@ def test_a_mesh_with_a_transform_is_refused() -> None:
 
 
 def test_equal_trees_give_equal_bytes() -> None:
-    first, second = (encode_glb(parts(), CAMERA, generator="x", compress=True) for _ in range(2))
+    first, second = (encode_glb(parts(), CAMERA, provenance=Provenance("x"), compress=True) for _ in range(2))
     assert first == second
-    assert len(first) < len(encode_glb(parts(), CAMERA, generator="x")) / 2
+    assert len(first) < len(encode_glb(parts(), CAMERA, provenance=Provenance("x"))) / 2

@@ -4,7 +4,7 @@ import numpy as np
 from tests.builders import stick
 
 from treestroke.codec.gltf.instances import encode_instanced, quaternions
-from treestroke.codec.gltf.tree import Part
+from treestroke.codec.gltf.tree import Part, Provenance
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.leaf.cards import cards
@@ -47,7 +47,7 @@ def turned(quaternion: np.ndarray, vectors: np.ndarray) -> np.ndarray:
 
 
 def test_instances_are_where_the_cards_are() -> None:
-    document, content = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
+    document, content = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, provenance=Provenance("x")))
     placed = []
     for node in document["nodes"][1:-1]:
         shape = document["meshes"][node["mesh"]]["primitives"][0]["attributes"]
@@ -66,14 +66,14 @@ def test_instances_are_where_the_cards_are() -> None:
 
 
 def test_the_extension_is_used_not_required() -> None:
-    document, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
+    document, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, provenance=Provenance("x")))
     assert "EXT_mesh_gpu_instancing" in document["extensionsUsed"]
     assert "extensionsRequired" not in document
     assert [material["name"] for material in document["materials"]] == ["bark", "leaf"]
 
 
 def test_each_picture_and_its_mirror_image_have_a_node_under_the_leaf() -> None:
-    document, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, generator="x"))
+    document, _ = opened(encode_instanced(BARK, leaves(), ATLAS, CAMERA, provenance=Provenance("x")))
     names = [node["name"] for node in document["nodes"]]
     assert names == ["bark", "leaf_00", "leaf_00_mirrored", "leaf_01", "leaf_01_mirrored", "leaf"]
     assert document["nodes"][-1]["children"] == [1, 2, 3, 4]
@@ -81,7 +81,7 @@ def test_each_picture_and_its_mirror_image_have_a_node_under_the_leaf() -> None:
 
 
 def test_a_bare_tree_is_its_bark() -> None:
-    document, _ = opened(encode_instanced(BARK, no_leaves(), ATLAS, CAMERA, generator="x"))
+    document, _ = opened(encode_instanced(BARK, no_leaves(), ATLAS, CAMERA, provenance=Provenance("x")))
     assert [node["name"] for node in document["nodes"]] == ["bark"]
     assert "EXT_mesh_gpu_instancing" not in document.get("extensionsUsed", [])
 

@@ -3,7 +3,7 @@ import pygltflib
 import pytest
 from tests.codec.gltf.test_tree import CAMERA, bark, leaves
 
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.core.geometry.mesh import Surface
 
 FLAT = np.full((4, 4, 3), 128, np.uint8)
@@ -21,7 +21,7 @@ def gltf() -> pygltflib.GLTF2:
         Part("bark", wood, coarser=coarser("bark", wood)),
         Part("leaf", foliage, coarser=(*coarser("leaf", foliage), impostor)),
     ]
-    return pygltflib.GLTF2.load_from_bytes(encode_glb(parts, CAMERA, generator="treestroke 1"))
+    return pygltflib.GLTF2.load_from_bytes(encode_glb(parts, CAMERA, provenance=Provenance("treestroke 1")))
 
 
 def names(gltf: pygltflib.GLTF2, ids: list[int]) -> list[str]:
@@ -65,14 +65,16 @@ def test_an_impostor_is_cut_and_seen_from_its_front_alone(gltf: pygltflib.GLTF2)
 def test_a_bare_tree_s_bark_ends_in_the_impostor() -> None:
     wood, far = bark(), leaves(1)
     levels = (*coarser("bark", wood), Part("impostor", Surface(far.mesh, far.texture, FLAT)))
-    file = encode_glb([Part("bark", wood, coarser=levels)], CAMERA, generator="treestroke 1")
+    file = encode_glb([Part("bark", wood, coarser=levels)], CAMERA, provenance=Provenance("treestroke 1"))
     gltf = pygltflib.GLTF2.load_from_bytes(file)
     assert names(gltf, gltf.nodes[0].extensions["MSFT_lod"]["ids"]) == ["bark_lod1", "bark_lod2", "impostor"]
     assert gltf.nodes[0].extras["MSFT_screencoverage"][-1] == 0.0
 
 
 def test_no_level_means_no_extension() -> None:
-    gltf = pygltflib.GLTF2.load_from_bytes(encode_glb([Part("bark", bark())], CAMERA, generator="treestroke 1"))
+    gltf = pygltflib.GLTF2.load_from_bytes(
+        encode_glb([Part("bark", bark())], CAMERA, provenance=Provenance("treestroke 1"))
+    )
     assert "MSFT_lod" not in (gltf.extensionsUsed or [])
 
 
@@ -80,10 +82,10 @@ def test_more_levels_than_sizes_are_refused() -> None:
     wood = bark()
     many = coarser("bark", wood, ("_a", "_b", "_c", "_d"))
     with pytest.raises(ValueError, match="at most 3"):
-        encode_glb([Part("bark", wood, coarser=many)], CAMERA, generator="treestroke 1")
+        encode_glb([Part("bark", wood, coarser=many)], CAMERA, provenance=Provenance("treestroke 1"))
 
 
 def test_a_collision_mesh_has_its_name() -> None:
-    file = encode_glb([Part("collision", bark())], CAMERA, generator="treestroke 1")
+    file = encode_glb([Part("collision", bark())], CAMERA, provenance=Provenance("treestroke 1"))
     gltf = pygltflib.GLTF2.load_from_bytes(file)
     assert (gltf.nodes[0].name, gltf.materials[0].name) == ("collision", "collision")

@@ -6,7 +6,7 @@ import pygltflib
 import pytest
 from tests.builders import oak
 
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.tubes import tubes
@@ -31,7 +31,7 @@ def part(wind: Wind) -> Part:
 
 @pytest.fixture(scope="module")
 def gltf(wind: Wind, part: Part) -> pygltflib.GLTF2:
-    return pygltflib.GLTF2.load_from_bytes(encode_glb([part], CAMERA, generator="treestroke 1", wind=wind))
+    return pygltflib.GLTF2.load_from_bytes(encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), wind=wind))
 
 
 def values(gltf: pygltflib.GLTF2, index: int) -> np.ndarray:
@@ -104,12 +104,12 @@ def test_times_are_bounded_and_shared(gltf: pygltflib.GLTF2) -> None:
 
 
 def test_without_wind_the_file_is_that_of_a_mesh_without_attachment(part: Part) -> None:
-    still = encode_glb([part], CAMERA, generator="treestroke 1")
+    still = encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"))
     bare = replace(part, surface=replace(part.surface, mesh=replace(part.surface.mesh, attachment=None)), skin=None)
-    assert still == encode_glb([bare], CAMERA, generator="treestroke 1")
+    assert still == encode_glb([bare], CAMERA, provenance=Provenance("treestroke 1"))
     assert "skins" not in json.loads(still[20 : 20 + int.from_bytes(still[12:16], "little")])
 
 
 def test_equal_wind_gives_equal_bytes(wind: Wind, part: Part) -> None:
-    first, second = (encode_glb([part], CAMERA, generator="treestroke 1", wind=wind) for _ in range(2))
+    first, second = (encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), wind=wind) for _ in range(2))
     assert first == second

@@ -8,7 +8,7 @@ import trimesh
 from PIL import Image
 from tests.builders import fork, oak, stick
 
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.mesh.tubes import TubeParams, tubes
@@ -49,7 +49,7 @@ def values(glb: bytes, index: int) -> np.ndarray:
 
 
 def test_the_header_tells_the_length() -> None:
-    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
     assert glb[:4] == b"glTF"
     assert int.from_bytes(glb[8:12], "little") == len(glb)
     assert len(glb) % 4 == 0
@@ -57,7 +57,7 @@ def test_the_header_tells_the_length() -> None:
 
 def test_geometry_returns_unchanged() -> None:
     surface = Surface(tubes(oak(), TubeParams()), np.zeros((4, 4, 3), np.uint8))
-    glb = encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", surface)], CAMERA, provenance=Provenance("treestroke 1"))
     primitive = document(glb)["meshes"][0]["primitives"][0]
     assert np.array_equal(values(glb, primitive["attributes"]["POSITION"]), surface.mesh.positions)
     assert np.array_equal(values(glb, primitive["attributes"]["NORMAL"]), surface.mesh.normals)
@@ -66,7 +66,7 @@ def test_geometry_returns_unchanged() -> None:
 
 
 def test_trimesh_reads_both_parts_by_name() -> None:
-    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
     scene = trimesh.load(BytesIO(glb), file_type="glb", process=False)
     assert set(scene.geometry) == {"bark", "leaf"}
     assert len(scene.geometry["leaf"].faces) == 4
@@ -75,29 +75,29 @@ def test_trimesh_reads_both_parts_by_name() -> None:
 
 
 def test_the_scene_holds_the_photo_s_camera() -> None:
-    scene = document(encode_glb([Part("bark", bark())], CAMERA, generator="treestroke 1"))["scenes"][0]
+    scene = document(encode_glb([Part("bark", bark())], CAMERA, provenance=Provenance("treestroke 1")))["scenes"][0]
     photo = {"width": 640, "height": 480, "metres_per_pixel": 0.01, "root": [320.5, 450.25]}
     assert scene == {"nodes": [0], "extras": {"photo": photo}}
 
 
 def test_materials_are_named_and_leaves_are_cut_out() -> None:
-    wood, leaf = document(encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))[
-        "materials"
-    ]
+    wood, leaf = document(
+        encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
+    )["materials"]
     assert (wood["name"], leaf["name"]) == ("bark", "leaf")
     assert "alphaMode" not in wood
     assert (leaf["alphaMode"], leaf["alphaCutoff"], leaf["doubleSided"]) == ("MASK", 0.3, True)
 
 
 def test_bark_repeats_and_leaves_clamp() -> None:
-    samplers = document(encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))[
-        "samplers"
-    ]
+    samplers = document(
+        encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
+    )["samplers"]
     assert [s["wrapS"] for s in samplers] == [10497, 33071]
 
 
 def test_leaf_coordinates_and_shades_are_normalised_integers() -> None:
-    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
     attributes = document(glb)["meshes"][1]["primitives"][0]["attributes"]
     rows = document(glb)["accessors"]
     assert [rows[attributes[a]]["normalized"] for a in ("TEXCOORD_0", "COLOR_0")] == [True, True]
@@ -106,12 +106,12 @@ def test_leaf_coordinates_and_shades_are_normalised_integers() -> None:
 
 
 def test_bark_without_shades_has_no_colours() -> None:
-    glb = encode_glb([Part("bark", bark())], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", bark())], CAMERA, provenance=Provenance("treestroke 1"))
     assert "COLOR_0" not in document(glb)["meshes"][0]["primitives"][0]["attributes"]
 
 
 def test_the_leaf_atlas_keeps_its_alpha_and_its_colours() -> None:
-    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
     gltf = pygltflib.GLTF2.load_from_bytes(glb)
     view = gltf.bufferViews[gltf.images[1].bufferView]
     content = gltf.binary_blob()[view.byteOffset : view.byteOffset + view.byteLength]
@@ -120,13 +120,15 @@ def test_the_leaf_atlas_keeps_its_alpha_and_its_colours() -> None:
 
 @pytest.mark.parametrize(("count", "width"), [(16_383, 5123), (16_384, 5125)])
 def test_indices_are_as_narrow_as_they_can_be(count: int, width: int) -> None:
-    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves(count))], CAMERA, generator="treestroke 1")
+    glb = encode_glb([Part("bark", bark()), Part("leaf", leaves(count))], CAMERA, provenance=Provenance("treestroke 1"))
     gltf = document(glb)
     assert gltf["accessors"][gltf["meshes"][1]["primitives"][0]["indices"]]["componentType"] == width
 
 
 def test_views_are_aligned_and_positions_bounded() -> None:
-    gltf = document(encode_glb([Part("bark", bark(2)), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
+    gltf = document(
+        encode_glb([Part("bark", bark(2)), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
+    )
     assert all(view["byteOffset"] % 4 == 0 for view in gltf["bufferViews"])
     positions = gltf["accessors"][gltf["meshes"][1]["primitives"][0]["attributes"]["POSITION"]]
     assert (positions["min"], positions["max"]) == ([0, 0, 0], [1, 1, 1])
@@ -134,13 +136,16 @@ def test_views_are_aligned_and_positions_bounded() -> None:
 
 def test_equal_surfaces_give_equal_bytes() -> None:
     first, second = (
-        encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1") for _ in range(2)
+        encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
+        for _ in range(2)
     )
     assert first == second
 
 
 def test_leaves_let_light_through_in_the_colours_of_their_picture() -> None:
-    gltf = document(encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, generator="treestroke 1"))
+    gltf = document(
+        encode_glb([Part("bark", bark()), Part("leaf", leaves())], CAMERA, provenance=Provenance("treestroke 1"))
+    )
     wood, leaf = gltf["materials"]
     through = leaf["extensions"]["KHR_materials_diffuse_transmission"]
     assert through["diffuseTransmissionColorTexture"] == leaf["pbrMetallicRoughness"]["baseColorTexture"]
@@ -153,7 +158,7 @@ def test_leaves_let_light_through_in_the_colours_of_their_picture() -> None:
 def test_a_normal_map_is_a_normal_texture() -> None:
     normal_map = np.full((8, 4, 3), (128, 128, 255), np.uint8)
     surface = Surface(bark().mesh, bark().texture, normal_map)
-    gltf = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
+    gltf = document(encode_glb([Part("bark", surface)], CAMERA, provenance=Provenance("treestroke 1")))
     texture = gltf["textures"][gltf["materials"][0]["normalTexture"]["index"]]
     assert gltf["images"][texture["source"]]["name"] == "bark_relief"
     assert gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"]["TANGENT"]]["type"] == "VEC4"
@@ -161,13 +166,13 @@ def test_a_normal_map_is_a_normal_texture() -> None:
 
 def test_a_texture_s_sides_must_be_powers_of_two() -> None:
     with pytest.raises(ValueError, match="powers of two"):
-        encode_glb([Part("bark", bark(7))], CAMERA, generator="treestroke 1")
+        encode_glb([Part("bark", bark(7))], CAMERA, provenance=Provenance("treestroke 1"))
 
 
 def test_twigs_have_the_same_picture_without_normal_map_and_tangents() -> None:
     normal_map = np.full((8, 4, 3), (128, 128, 255), np.uint8)
     surface = Surface(tubes(fork(child_radius=0.004), TubeParams()), bark().texture, normal_map)
-    gltf = document(encode_glb([Part("bark", surface)], CAMERA, generator="treestroke 1"))
+    gltf = document(encode_glb([Part("bark", surface)], CAMERA, provenance=Provenance("treestroke 1")))
     assert [one["name"] for one in gltf["materials"]] == ["bark", "bark_twigs"]
     wood, twigs = (gltf["materials"][one["material"]] for one in gltf["meshes"][0]["primitives"])
     assert wood["pbrMetallicRoughness"] == twigs["pbrMetallicRoughness"]

@@ -127,7 +127,7 @@ def test_a_cropped_cherry_is_completed_nearer_to_the_whole_one(
     assert cut.reading.completed == ()
     assert (complete.camera.width, complete.camera.height) == (photo.shape[1] - left, photo.shape[0])
     assert complete.camera.root_px == pytest.approx(cut.camera.root_px)
-    assert complete.expected_cover.shape == cut.expected_cover.shape
+    assert complete.expected[0].mask.shape == cut.expected[0].mask.shape
     fronts = [whole_front(model, left, mask.shape) for model in (complete, cut)]
     assert overlap(fronts[0], mask) > overlap(fronts[1], mask) + 0.02
     inside = [overlap(front[:, left:], mask[:, left:]) for front in fronts]

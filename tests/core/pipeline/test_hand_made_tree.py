@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from treestroke.codec.gltf.tree import Part, encode_glb
+from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.core.appearance import Appearance, StemPixels, View
 from treestroke.core.geometry.camera import OrthographicCamera, PerspectiveCamera
 from treestroke.core.geometry.crown_volume import Silhouette, shown_by_all
@@ -150,7 +150,7 @@ def dressed(grown: Grown) -> GrownTree:
         volume=VOLUME,
         appearance=Appearance(views, shows_leaves=True),
         camera=FRONT,
-        expected_cover=outline_of(FRONT),
+        expected=(Silhouette(outline_of(FRONT), FRONT),),
         stature=Stature(8.0, Scale(0.0125, False, 0.0), True, VOLUME),
         score={},
         reading=Reading("a volume made by hand", ()),
@@ -241,7 +241,7 @@ def test_its_measures_are_the_volumes(model: TreeModel) -> None:
 
 def test_one_glb_is_written_from_it(model: TreeModel) -> None:
     parts = [Part("bark", model.bark), Part("leaf", model.leaf)]
-    assert encode_glb(parts, model.camera, generator="treestroke")[:4] == b"glTF"
+    assert encode_glb(parts, model.camera, provenance=Provenance("treestroke"))[:4] == b"glTF"
 
 
 def test_the_same_seed_gives_the_same_leaves(grown: Grown, model: TreeModel) -> None:

@@ -86,8 +86,8 @@ def test_a_small_tree_in_a_large_photo_is_worked_on_at_its_own_scale(photo: np.n
     tree = grow_tree(traced.evidence, ModelSettings(iterations=5), np.random.default_rng(0))
     assert (tree.camera.width, tree.camera.height) == (2400, 1500)
     assert tree.camera.root_px == pytest.approx(tuple(drawn.branches[0].points[0]))
-    shown = cv2.resize(whole.astype(np.uint8), tree.expected_cover.shape[::-1], interpolation=cv2.INTER_AREA) > 0
-    assert overlap(tree.expected_cover, shown) > 0.85
+    shown = cv2.resize(whole.astype(np.uint8), tree.expected[0].mask.shape[::-1], interpolation=cv2.INTER_AREA) > 0
+    assert overlap(tree.expected[0].mask, shown) > 0.85
 
 
 def test_a_branch_that_leaves_the_part_that_was_seen_is_followed_all_the_same(photo: np.ndarray) -> None:

@@ -11,7 +11,7 @@ from fastapi.responses import FileResponse
 from treestroke.api.deps import ModelId, ProjectsOf, ResourcesOf
 from treestroke.api.errors import documented
 from treestroke.api.sending import file_responses, send_blob, send_file
-from treestroke.codec.inputs import VIEWS
+from treestroke.codec.inputs import SIDES
 from treestroke.service import stored_models
 from treestroke.service.jobs import GLB, PREVIEW
 from treestroke.service.photos import NotFound, Resources
@@ -48,7 +48,7 @@ _SKETCH: dict[int | str, dict[str, Any]] = {
     else answer
     for status, answer in file_responses(_JSON, "StrokeSketch").items()
 }
-View = Annotated[str, Path(json_schema_extra={"pattern": f"^({'|'.join(VIEWS)})$"})]
+View = Annotated[str, Path(json_schema_extra={"pattern": f"^({'|'.join(SIDES)})$"})]
 SketchEnding = Annotated[str, Path(json_schema_extra={"pattern": "^(json|png)$"})]
 Ending = Annotated[str, Path(json_schema_extra={"pattern": _ENDING, "example": "glb"})]
 
@@ -96,7 +96,7 @@ def get_tree_file(request: Request, resources: ResourcesOf, id: ModelId, ending:
 @router.get("/{view}.{ending}", response_class=FileResponse, responses=_SKETCH)
 def get_sketch(request: Request, resources: ResourcesOf, id: ModelId, view: View, ending: SketchEnding) -> Response:
     """Download a sketch that the tree was made of: front.json or front.png, side.json or side.png."""
-    if view not in VIEWS:
+    if view not in SIDES:
         raise NotFound("file")
     return _drawing(request, resources, id, f"{view}.{ending}")
 

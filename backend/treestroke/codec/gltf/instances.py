@@ -3,7 +3,7 @@
 import numpy as np
 
 from treestroke.codec.gltf.document import Document
-from treestroke.codec.gltf.tree import MATERIALS, Part, head_of
+from treestroke.codec.gltf.tree import MATERIALS, Part, Provenance, head_of
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Mesh, Surface
 from treestroke.core.geometry.vectors import UP, unit
@@ -17,7 +17,14 @@ _BULGE = 0.5
 """Slope of the normals at a card's corners, outward: a single card does not know its place in the crown."""
 
 
-def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: OrthographicCamera, *, generator: str) -> bytes:
+def encode_instanced(
+    bark: Part,
+    cards: Leaves,
+    atlas: Atlas,
+    camera: OrthographicCamera,
+    *,
+    provenance: Provenance,
+) -> bytes:
     """Encode a tree as a GLB with an instanced node for each tile of the atlas and for each mirrored one.
 
     Each instance has its translation, rotation, scale and, as ``_COLOR_0``, its shade. The extension is used, not
@@ -27,7 +34,7 @@ def encode_instanced(bark: Part, cards: Leaves, atlas: Atlas, camera: Orthograph
     document.add(f"bark{bark.suffix}", bark.surface, MATERIALS["bark"])
     children = _leaf_nodes(document, cards, atlas) if len(cards) else []
     groups = [document.row("nodes", {"name": "leaf", "children": children})] if children else []
-    return document.glb(head_of([0, *groups], camera, generator))
+    return document.glb(head_of([0, *groups], camera, provenance))
 
 
 def _leaf_nodes(document: Document, cards: Leaves, atlas: Atlas) -> list[int]:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from urllib.parse import quote
 
 from treestroke.codec.gltf.document import Document
-from treestroke.codec.gltf.tree import Part, build_document
+from treestroke.codec.gltf.tree import Part, Provenance, build_document
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.sway.wind import Wind
 
@@ -13,13 +13,18 @@ _ENDINGS = {"image/jpeg": "jpg", "image/png": "png"}
 
 
 def encode_gltf(
-    parts: Sequence[Part], camera: OrthographicCamera, *, generator: str, stem: str, wind: Wind | None = None
+    parts: Sequence[Part],
+    camera: OrthographicCamera,
+    *,
+    provenance: Provenance,
+    stem: str,
+    wind: Wind | None = None,
 ) -> dict[str, bytes]:
     """Encode a tree as ``stem.gltf``, ``stem.bin``, ``stem_bark.jpg``, ``stem_leaf.png`` ...: bytes by name.
 
     The content is that of `encode_glb`. Equal input gives equal bytes.
     """
-    document, head = build_document(parts, camera, generator, wind)
+    document, head = build_document(parts, camera, provenance, wind)
     pictures = _take_pictures(document, stem)
     content = document.as_dict(head)
     content["buffers"][0]["uri"] = quote(f"{stem}.bin")

@@ -8,9 +8,10 @@ from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
 from treestroke.codec.gltf.rig import add_wind
-from treestroke.codec.skeleton import plain_camera
+from treestroke.codec.skeleton import plain_camera, plain_cameras
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
+from treestroke.core.pipeline.grown_tree import CapturedViews
 from treestroke.core.sway.wind import Skin, Wind
 
 _CLAMP, _REPEAT = 33071, 10497  # a sampler's wrapS and wrapT
@@ -44,6 +45,14 @@ MATERIALS: Mapping[MaterialName, Material] = {
 
 
 @dataclass(frozen=True, eq=False)
+class Provenance:
+    """Where a tree's file comes from: the program that wrote it, and the photos that the tree was measured from."""
+
+    generator: str
+    captured: CapturedViews | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Part:
     """One node of the scene.
 
@@ -72,23 +81,24 @@ def encode_glb(
     parts: Sequence[Part],
     camera: OrthographicCamera,
     *,
-    generator: str,
+    provenance: Provenance,
     wind: Wind | None = None,
     compress: bool = False,
 ) -> bytes:
     """Encode a tree as a self-contained GLB.
 
-    Nodes, meshes and materials are named by their material; the scene's ``extras.photo`` holds the camera. The bark's
+    Nodes, meshes and materials are named by their material; the scene's ``extras.photo`` holds the camera,
+    ``extras.cameras`` those of a capture's photos. The bark's
     texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at `ALPHA_CUT`. Texture coordinates within
     0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Compressed, the file is about a third as large and requires
     three extensions of its readers (`compression`). Equal input gives equal bytes.
     """
-    document, head = build_document(parts, camera, generator, wind)
+    document, head = build_document(parts, camera, provenance, wind)
     return (compressed(document) if compress else document).glb(head)
 
 
 def build_document(
-    parts: Sequence[Part], camera: OrthographicCamera, generator: str, wind: Wind | None
+    parts: Sequence[Part], camera: OrthographicCamera, provenance: Provenance, wind: Wind | None
 ) -> tuple[Document, dict[str, Any]]:
     """Build the document of a tree, and the entries of its JSON that come before the tables."""
     document = Document()
@@ -100,7 +110,7 @@ def build_document(
     if wind is not None:
         # a skinned mesh stands beside its bones, for no other node may move it
         roots.append(add_wind(document, wind))
-    return document, head_of(roots, camera, generator)
+    return document, head_of(roots, camera, provenance)
 
 
 def _add(document: Document, part: Part, wind: Wind | None) -> int:
@@ -111,7 +121,8 @@ def _add(document: Document, part: Part, wind: Wind | None) -> int:
     return document.add(name, part.surface, MATERIALS[part.material], part.skin if wind else None, material_name)
 
 
-def head_of(roots: list[int], camera: OrthographicCamera, generator: str) -> dict[str, Any]:
-    """Return the entries before the tables: the asset, and one scene with the photo's camera."""
-    scene = {"nodes": roots, "extras": {"photo": plain_camera(camera)}}
-    return {"asset": {"version": "2.0", "generator": generator}, "scene": 0, "scenes": [scene]}
+def head_of(roots: list[int], camera: OrthographicCamera, provenance: Provenance) -> dict[str, Any]:
+    """Return the entries before the tables: the asset, and one scene with the cameras."""
+    cameras = {} if provenance.captured is None else {"cameras": plain_cameras(provenance.captured)}
+    scene = {"nodes": roots, "extras": {"photo": plain_camera(camera), **cameras}}
+    return {"asset": {"version": "2.0", "generator": provenance.generator}, "scene": 0, "scenes": [scene]}

@@ -232,6 +232,12 @@ class PerspectiveCamera:
         principal_px = self.principal_px[0] - corner_px[0], self.principal_px[1] - corner_px[1]
         return replace(self, width=size[0], height=size[1], principal_px=principal_px)
 
+    def resized(self, width: int, height: int) -> "PerspectiveCamera":
+        """Return the camera of the same picture at another size, px; its sides keep their ratio but for rounding."""
+        scale = width / self.width
+        principal_px = self.principal_px[0] * scale, self.principal_px[1] * height / self.height
+        return replace(self, width=width, height=height, focal_px=self.focal_px * scale, principal_px=principal_px)
+
     def _in_camera(self, points_world: Floats) -> Floats:
         """Convert to points (n, 3), metres, in the camera's frame, of world points (n, 3), metres."""
         return np.asarray(points_world @ self.camera_from_world[:, :3].T + self.camera_from_world[:, 3])

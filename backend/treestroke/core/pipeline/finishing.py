@@ -5,21 +5,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.geometry.camera import OrthographicCamera
+from treestroke.core.geometry.camera import Camera, OrthographicCamera
+from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.grow.grown import Grown
 from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area
 from treestroke.core.paint.atlas import Atlas
 from treestroke.core.pipeline.clear_views import clear_views
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
-from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
+from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.taken import Taken
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Measures, measure_tree
-from treestroke.core.types import Floats, Mask
+from treestroke.core.types import Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +37,12 @@ class TreeModel:
         Its visible surfaces; ``leaf`` is None where it bears none.
     cards, atlas
         What the leaf surface was made from; both None where there is none.
-    expected_cover
-        (h, w), at the working size, what the front view should cover: visible foliage and branches.
+    expected
+        What its views should cover, each mask (h, w) at any size of its camera's picture: visible foliage and branches.
     taken
         What the tree is taken for.
+    captured
+        Where its photos were taken, of a tree that was measured from several.
     """
 
     camera: OrthographicCamera
@@ -48,7 +51,7 @@ class TreeModel:
     leaf: Surface | None
     cards: Leaves | None
     atlas: Atlas | None
-    expected_cover: Mask
+    expected: tuple[Silhouette[Camera], ...]
     taken: Taken
     iterations: int
     branches: int
@@ -56,6 +59,7 @@ class TreeModel:
     score: dict[str, float]
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
+    captured: CapturedViews | None
 
 
 OnGrown = Callable[[LiveTree], None]
@@ -95,7 +99,7 @@ def finish(
         leaf=leaf,
         cards=leaf_cards,
         atlas=atlas,
-        expected_cover=tree.expected_cover,
+        expected=tree.expected,
         taken=tree.taken,
         iterations=settings.iterations,
         branches=_branch_count(tree.grown.skeleton),
@@ -103,6 +107,7 @@ def finish(
         score={**tree.score, "depth_over_width": _depth_over_width(bark, leaf)},
         reading=tree.reading,
         warnings=tree.warnings,
+        captured=tree.captured,
     )
 
 

@@ -176,7 +176,7 @@ def grow_tree(
         volume=crown.volume,
         appearance=_appearance(filled),
         camera=filled.camera,
-        expected_cover=evidence.working.in_photo(filled.tree),
+        expected=(Silhouette(evidence.working.in_photo(filled.tree), filled.camera),),
         stature=_stature(evidence, filled.traced, crown),
         score={"attractors_reached": filled.grown.attractors_reached, **filled.lifted.score},
         reading=_reading(evidence, filled.taken),

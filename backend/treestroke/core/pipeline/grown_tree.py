@@ -3,14 +3,15 @@
 from dataclasses import dataclass
 
 from treestroke.core.appearance import Appearance
-from treestroke.core.geometry.camera import OrthographicCamera
-from treestroke.core.geometry.crown_volume import CrownVolume
+from treestroke.core.capture import UnusedPhoto
+from treestroke.core.geometry.camera import Camera, OrthographicCamera, PerspectiveCamera
+from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.pipeline.taken import Taken
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Stature
-from treestroke.core.types import FoliageKind, Indices, Mask
+from treestroke.core.types import FoliageKind, Indices
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,25 @@ class Reading:
 
 
 @dataclass(frozen=True, eq=False)
+class CapturedViews:
+    """Where the photos of a capture were taken.
+
+    Attributes
+    ----------
+    names
+        File names of those that were used.
+    cameras
+        Their cameras, of the upright photos' own sizes, in the same order.
+    unused
+        Those that were left out.
+    """
+
+    names: tuple[str, ...]
+    cameras: tuple[PerspectiveCamera, ...]
+    unused: tuple[UnusedPhoto, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class GrownTree:
     """A grown tree, whatever its source.
 
@@ -67,8 +87,8 @@ class GrownTree:
         What its leaves, fruit and bark are made to look like.
     camera
         Camera of the front picture at its own size, which files name and previews use.
-    expected_cover
-        (h, w) what the front view should cover, at any size: visible foliage and branches.
+    expected
+        What its views should cover, each mask (h, w) at any size of its camera's picture: visible foliage and branches.
     stature
         Its size, and how that is known.
     score
@@ -77,6 +97,8 @@ class GrownTree:
         What the score is measured against.
     warnings
         What was mended or assumed.
+    captured
+        Where its photos were taken, of a tree that was measured from several.
     """
 
     taken: Taken
@@ -84,11 +106,12 @@ class GrownTree:
     volume: CrownVolume
     appearance: Appearance
     camera: OrthographicCamera
-    expected_cover: Mask
+    expected: tuple[Silhouette[Camera], ...]
     stature: Stature
     score: dict[str, float]
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
+    captured: CapturedViews | None = None
 
     @property
     def kind(self) -> FoliageKind:

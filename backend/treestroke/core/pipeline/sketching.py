@@ -204,13 +204,14 @@ def _grown_tree(
     leafy = _leafy(frame, grown, rng)
     taken, view, shows_leaves = _view(frame, settings, leafy, StemPixels(wood.points[stem], wood.radii[stem]))
     tree = (leafy & (taken.foliage != "bare")) | drawn(wood, leafy.shape)
+    whole = camera.enlarged(frame.scale, frame.evidence.front.size)
     return GrownTree(
         taken=taken,
         grown=grown,
         volume=lifted.volume,
         appearance=Appearance((replace(view, tree=tree),), shows_leaves),
-        camera=camera.enlarged(frame.scale, frame.evidence.front.size),
-        expected_cover=tree,
+        camera=whole,
+        expected=(Silhouette(tree, whole),),
         stature=_stature(frame, lifted.volume),
         score=lifted.score,
         reading=AS_DRAWN,
