@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, PARTS, SOURCES, Inputs, Source
-from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
+from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, PHOTO_ENDINGS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
 from treestroke.core.progress import silent
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear", "trunk_unclear")
+_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear", "trunk_unclear", *UNUSED_CODES)
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
 
@@ -100,11 +100,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="treestroke", description="One photo of a tree and a few strokes, or two sketches of it, become a 3D tree."
+        prog="treestroke", description="Photos of a tree and a few strokes, or two sketches of it, become a 3D tree."
     )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for add in (_add_model, _add_sketch, _add_trace, _add_service):
+    for add in (_add_model, _add_views, _add_sketch, _add_trace, _add_service):
         add(commands)
     return parser
 
@@ -112,6 +112,18 @@ def _parser() -> Parser:
 def _add_model(commands: "Commands") -> None:
     command = _add_command(commands, "model", _make, "make a GLB of a photo")
     _add_inputs(command, SOURCES["photo"], ("photo",))
+    _add_outputs(command)
+    _add_settings(command)
+
+
+def _add_views(commands: "Commands") -> None:
+    command = _add_command(commands, "views", _make, "make a GLB of many photos of one tree")
+    command.set_defaults(first="photos")
+    about = f"photos of the tree from all sides, {ACCEPTED_FORMATS}, or their folder; or a NAME.treestroke project"
+    command.add_argument("photos", metavar="PHOTO", nargs="+", help=about)
+    command.add_argument("--strokes", metavar="VIEWS.json", dest="views", help=PARTS["views"].help)
+    for name in CUTOUTS:
+        _add_part(command, name)
     _add_outputs(command)
     _add_settings(command)
 
@@ -125,6 +137,7 @@ def _add_sketch(commands: "Commands") -> None:
 
 def _add_trace(commands: "Commands") -> None:
     command = _add_command(commands, "trace", _trace, "find foliage and branches")
+    command.set_defaults(first="photo")
     command.add_argument("photo", metavar="PHOTO", help=ACCEPTED_FORMATS)
     command.add_argument("--strokes", metavar="STROKES.json", required=True, help="the strokes drawn over it")
     command.add_argument("--out", metavar="TRACE.json", type=Path, help="standard output where absent")
@@ -156,14 +169,22 @@ def _add_inputs(command: argparse.ArgumentParser, source: Source, by_position: S
     """Add the parts of a source as flags, some ``by_position``; a project may take the place of the first."""
     command.set_defaults(first=by_position[0])
     for name in (*source.needs, *source.options):
-        part = PARTS[name]
-        metavar = f"{name.upper()}.{part.formats[0].ending}" if len(part.formats) == 1 else name.upper()
         if name == by_position[0]:
-            command.add_argument(name, metavar=metavar, help=f"{part.help}; or a NAME.treestroke project")
+            about = f"{PARTS[name].help}; or a NAME.treestroke project"
+            command.add_argument(name, metavar=_metavar(name), help=about)
         elif name in by_position:
-            command.add_argument(name, metavar=metavar, help=part.help, nargs="?")
+            command.add_argument(name, metavar=_metavar(name), help=PARTS[name].help, nargs="?")
         else:
-            command.add_argument(f"--{name}", metavar=metavar, help=part.help)
+            _add_part(command, name)
+
+
+def _add_part(command: argparse.ArgumentParser, name: str) -> None:
+    command.add_argument(f"--{name}", metavar=_metavar(name), help=PARTS[name].help)
+
+
+def _metavar(name: str) -> str:
+    formats = PARTS[name].formats
+    return f"{name.upper()}.{formats[0].ending}" if len(formats) == 1 else name.upper()
 
 
 def _add_outputs(command: argparse.ArgumentParser) -> None:
@@ -289,30 +310,62 @@ def _service_settings(options: argparse.Namespace) -> Any:
 
 def _inputs(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str, Any]]:
     """Return what the tree is made of, and a project's settings, the seed among them."""
-    parts = _parts(options)
-    if not parts[options.first].endswith(".treestroke"):
-        if options.first == "photo" and "strokes" not in parts:
+    parts, project_path = _parts(options), _project_path(options)
+    if project_path is None:
+        if options.first in ("photo", "photos") and not {"strokes", "views"} & parts.keys():
             raise UsageError("--strokes is missing; name the strokes' JSON file")
         return Inputs.of(parts), {}
     from treestroke.service.loading import load_project
 
-    path = parts.pop(options.first)
     for name in parts:
         if name not in CUTOUTS:
             raise UsageError(f"--{name}: a project has its own {name}; leave the flag out")
-    project = load_project(path)
+    project = load_project(project_path)
     return Inputs.of({**project.inputs.parts, **parts}), project.settings
 
 
+def _project_path(options: argparse.Namespace) -> str | None:
+    """Return the project that the command reads, where it reads one."""
+    first = getattr(options, options.first)
+    named = first if isinstance(first, list) else [first]
+    return named[0] if len(named) == 1 and named[0].endswith(".treestroke") else None
+
+
 def _parts(options: argparse.Namespace) -> dict[str, str]:
-    """Return the paths of the files that the tree is made of, by part."""
+    """Return the paths of the files that the tree is made of, a project apart, by part."""
     paths = {name: getattr(options, name, None) for name in PARTS}
-    return {name: path for name, path in paths.items() if path is not None}
+    if _project_path(options) is not None:
+        paths[options.first] = None
+    photos = paths.pop("photos")
+    several = {} if photos is None else {f"photos/{path.name}": str(path) for path in _photos(photos)}
+    return {name: path for name, path in paths.items() if path is not None} | several
+
+
+def _photos(named: Sequence[str]) -> list[Path]:
+    """Return the photos that paths name, those of folders in the order of their names.
+
+    Raises
+    ------
+    UsageError
+        A folder has no photo, or two photos have one name.
+    """
+    found: list[Path] = []
+    for path in map(Path, named):
+        inside = sorted(file for file in path.iterdir() if file.suffix.lower() in PHOTO_ENDINGS) if path.is_dir() else [path]
+        if not inside:
+            raise UsageError(f"{path}: there is no photo in this folder; name one that has {ACCEPTED_FORMATS}")
+        found += inside
+    names = [path.name for path in found]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise UsageError(f"{twice}: two photos have this name; rename one, for strokes name photos by it")
+    return found
 
 
 def _read(options: argparse.Namespace) -> set[str]:
     """Return the resolved paths of all files that the command reads."""
-    return {os.path.realpath(path) for path in _parts(options).values()}
+    project = _project_path(options)
+    return {os.path.realpath(path) for path in (*_parts(options).values(), *([project] if project else []))}
 
 
 def _chosen(options: argparse.Namespace) -> dict[str, Any]:

@@ -20,6 +20,8 @@ NAMES: Mapping[str, str] = {
 }
 """Usual names of the accepted formats, by Pillow's names."""
 _EXTENSIONS = {"JPEG": "jpg", "PNG": "png", "WEBP": "webp", "HEIF": "heic", "AVIF": "avif", "TIFF": "tif"}
+PHOTO_ENDINGS = (".jpg", ".jpeg", ".png", ".webp", ".heic", ".heif", ".avif", ".tif", ".tiff")
+"""Endings by which photos are found in a folder."""
 """File name extensions, by Pillow's names."""
 _SIGNATURES = {
     "JPEG": rb"\xff\xd8\xff",

@@ -19,16 +19,21 @@ class CapturedPhoto:
         Its file name.
     picture
         (h, w, 3) sRGB, upright, perhaps smaller than the photo.
-    size_px
-        (width, height) of the upright photo.
     focal_px
         Its lens's focal length, px of the picture, where the file tells.
+    photo_px
+        (width, height) of the upright photo, where the picture is smaller.
     """
 
     name: str
     picture: Picture
-    size_px: tuple[int, int]
     focal_px: float | None = None
+    photo_px: tuple[int, int] | None = None
+
+    @property
+    def size_px(self) -> tuple[int, int]:
+        """(width, height) of the upright photo."""
+        return self.photo_px or (self.picture.shape[1], self.picture.shape[0])
 
     @property
     def reduction(self) -> float:

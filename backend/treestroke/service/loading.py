@@ -8,6 +8,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
 from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, ignore_warning
 from treestroke.codec.inputs import Inputs, part_of
 from treestroke.codec.project import Project, read_project
@@ -16,7 +17,7 @@ from treestroke.codec.strokes import parse_strokes, strokes_from
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
-from treestroke.core.strokes import Sketch, Strokes
+from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
 from treestroke.core.types import Picture
 
 FileLike = str | os.PathLike[str] | bytes
@@ -24,7 +25,8 @@ FileLike = str | os.PathLike[str] | bytes
 PhotoLike = FileLike | Picture
 StrokesLike = FileLike | Mapping[str, Any] | Strokes
 SketchLike = FileLike | Mapping[str, Any] | Sketch
-PartLike = FileLike | Mapping[str, Any] | Picture | Strokes | Sketch
+ViewsLike = FileLike | Mapping[str, Any] | CaptureStrokes
+PartLike = FileLike | Mapping[str, Any] | Picture | Strokes | CaptureStrokes | Sketch
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
@@ -100,6 +102,38 @@ def load_strokes(strokes: StrokesLike) -> Strokes:
     return parse_strokes(*read_part("strokes", strokes))
 
 
+def load_views(views: ViewsLike) -> CaptureStrokes:
+    """Read strokes over several photos (path, JSON bytes, plain mapping or values).
+
+    Raises
+    ------
+    StrokesError
+        As `parse_capture_strokes`; or the file cannot be read.
+    """
+    if isinstance(views, CaptureStrokes):
+        return views
+    if isinstance(views, Mapping):
+        return capture_strokes_from(views)
+    return parse_capture_strokes(*read_part("views", views))
+
+
+def load_captured(name: str, photo: PhotoLike, report: Report = silent, warn: Warn = ignore_warning) -> CapturedPhoto:
+    """Decode one photo of a capture, named by its file, at no more than `CAPTURED_SIDE` px.
+
+    Raises
+    ------
+    PhotoError
+        As `load_photo`; the message names the file.
+    """
+    try:
+        if isinstance(photo, np.ndarray):
+            return captured_photo(name, over_white(load_photo(photo, report, warn)), None)
+        content, _ = read_part("photo", photo)
+        return captured_photo(name, over_white(decode_photo(content, name, report, warn)), focal_share(content))
+    except PhotoError as error:
+        raise error if str(error).startswith(name) else error.within(name) from error
+
+
 def load_sketch(sketch: SketchLike, name: str) -> Sketch:
     """Read a sketch (path, JSON or PNG bytes, plain mapping or values); ``name`` is its part: front or side.
 
@@ -144,8 +178,14 @@ def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore
 
     def load(name: str) -> Any:
         match part_of(name).kind:
+            case "photo" if part_of(name).many:
+                return load_captured(name.partition("/")[2], inputs.parts[name], report, warn)
             case "photo":
                 return load_photo(inputs.parts[name], report, warn)
+            case "views":
+                return load_views(inputs.parts[name])
+            case "structure":
+                return decode_structure(*read_part(name, inputs.parts[name]))
             case "strokes":
                 return load_strokes(inputs.parts[name])
             case "sketch":

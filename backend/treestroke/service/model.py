@@ -1,6 +1,7 @@
 """Make trees: a photo and strokes, or sketches, in; a model and its report out."""
 
-from collections.abc import Callable, Iterable, Mapping
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -16,6 +17,7 @@ from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.pipeline.sketching import grow_sketches, read_sketches
+from treestroke.core.pipeline.viewing import grow_views, read_views
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
@@ -29,6 +31,7 @@ from treestroke.service.loading import (
     SettingsLike,
     SketchLike,
     StrokesLike,
+    ViewsLike,
     load_parts,
     load_settings,
 )
@@ -145,6 +148,40 @@ def model(
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
+def model_views(
+    photos: Sequence[str | os.PathLike[str]] | Mapping[str, PhotoLike],
+    views: ViewsLike,
+    settings: SettingsLike = None,
+    seed: int = 0,
+    report: Report = silent,
+    on_grown: OnGrown = ignore_grown,
+    *,
+    leaf: FileLike | None = None,
+    fruit: FileLike | None = None,
+    name: str = "tree",
+) -> Model:
+    """Turn photos of a tree from all sides, and strokes over some of them, into a 3D tree.
+
+    Parameters not listed here are those of `model`.
+
+    Parameters
+    ----------
+    photos
+        Paths, or photos by the names that strokes call them, each as `model` takes it.
+    views
+        A path, JSON bytes, a plain mapping or values.
+
+    Raises
+    ------
+    PhotoError, CaptureError, StrokesError, LeafError, FruitError, SettingsError
+        An input cannot be used; the message says what, where and how to mend it.
+    """
+    named = photos if isinstance(photos, Mapping) else {os.path.basename(photo): photo for photo in photos}
+    several = {f"photos/{photo}": content for photo, content in named.items()}
+    parts = {**several, "views": views, "leaf": leaf, "fruit": fruit}
+    return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
+
+
 def sketch(
     front: SketchLike,
     side: SketchLike | None = None,
@@ -197,6 +234,8 @@ def make_tree(
         match inputs.source:
             case "photo":
                 grow = _photo_recipe(parts, options.settings, watch)
+            case "views":
+                grow = _views_recipe(parts, options.settings, watch)
             case "sketches":
                 grow = _sketch_recipe(parts, options.settings, watch)
         pictures = OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
@@ -208,6 +247,13 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
     require_trunk(parts["strokes"])
     evidence = read_photo(parts["photo"], parts["strokes"], None, report, parts.get("side"))
     return lambda rng: grow_tree(evidence, settings, rng, report)
+
+
+def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
+    photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
+    structure = parts["structure"] if "structure" in parts else solve_apart(photos, report)
+    evidence = read_views(photos, structure, parts["views"], settings.height, report)
+    return lambda rng: grow_views(evidence, settings, rng, report)
 
 
 def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:

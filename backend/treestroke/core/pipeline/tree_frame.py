@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from treestroke.core.capture import PointCloud, SolvedPhoto, Structure
+from treestroke.core.capture import PointCloud, Shot
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.similarity import Similarity
@@ -23,10 +23,12 @@ FEWEST = 8
 """Points near the root below which the nearest ones in the picture tell its depth."""
 
 
-def tree_frame(structure: Structure, drawn: CaptureStrokes, height_m: float) -> Similarity:
+def tree_frame(
+    cameras: Mapping[str, PerspectiveCamera], cloud: PointCloud, drawn: CaptureStrokes, height_m: float
+) -> Similarity:
     """Return the change from a structure's frame to the tree's, in metres.
 
-    Strokes are in px of the solved pictures, free of distortion. The root is where the ray through the first trunk
+    Strokes are in px of the cameras' pictures, by the photos' names. The root is where the ray through the first trunk
     point meets the ground; the crown stroke's top, as far away as the root, is ``height_m`` above it, unless the
     strokes hold a scale.
 
@@ -35,22 +37,24 @@ def tree_frame(structure: Structure, drawn: CaptureStrokes, height_m: float) -> 
     StrokesError
         The strokes lie on a photo that is not used, or there is no trunk stroke.
     """
-    cameras = {photo.name: photo.camera for photo in structure.photos}
     strokes, camera = drawn.by_photo[drawn.first], _camera(cameras, drawn.first, ("views",))
-    root = _on_ground(camera, strokes.branches[0].points[0], structure.cloud)
+    root = _on_ground(camera, strokes.branches[0].points[0], cloud)
     turn = _facing(camera.centre - root)
     metres = _metres_per_unit(cameras, drawn, root)
     if metres is None:
         top = strokes.crown.points[strokes.crown.points[:, 1].argmin()]
-        metres = height_m / max(_height_above(camera, root, top), 1e-9)
+        metres = height_m / max(height_above(camera, root, top), 1e-9)
     return Similarity(root, turn, metres)
 
 
-def in_frame(structure: Structure, frame: Similarity) -> Structure:
-    """Return the structure carried into another frame."""
-    photos = tuple(replace(photo, camera=frame.camera(photo.camera)) for photo in structure.photos)
-    cloud = PointCloud(frame.points(structure.cloud.points), structure.cloud.colours, structure.cloud.seen)
-    return Structure(photos, cloud, structure.unused)
+def in_frame(shot: Shot, frame: Similarity) -> Shot:
+    """Return the shot with its camera carried into another frame."""
+    return replace(shot, camera=frame.camera(shot.camera))
+
+
+def cloud_in_frame(cloud: PointCloud, frame: Similarity) -> PointCloud:
+    """Return the points carried into another frame."""
+    return replace(cloud, points=frame.points(cloud.points))
 
 
 def _camera(cameras: Mapping[str, PerspectiveCamera], name: str, place: tuple[str | int, ...]) -> PerspectiveCamera:
@@ -91,7 +95,7 @@ def _on_ground(camera: PerspectiveCamera, root_px: Floats, cloud: PointCloud) ->
     return np.asarray(found)
 
 
-def _height_above(camera: PerspectiveCamera, root: Floats, top_px: Floats) -> float:
+def height_above(camera: PerspectiveCamera, root: Floats, top_px: Floats) -> float:
     """Height of a picture point above the root, in the upright plane through the root that faces the camera."""
     ray = camera.world_from_pixels(top_px[None], 1.0)[0] - camera.centre
     ahead = unit((root - camera.centre) * [1.0, 0.0, 1.0])
@@ -116,8 +120,3 @@ def _metres_by_line(camera: PerspectiveCamera, line: Length, root: Floats) -> fl
     """Metres of a unit by a drawn line as far away as the root."""
     ends = camera.world_from_pixels(line.points, float(camera.depth(root[None])[0]))
     return line.metres / max(float(np.linalg.norm(ends[1] - ends[0])), 1e-9)
-
-
-def solved_by_name(structure: Structure) -> dict[str, SolvedPhoto]:
-    """Return a structure's photos by their file names."""
-    return {photo.name: photo for photo in structure.photos}

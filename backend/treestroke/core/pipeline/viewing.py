@@ -1,0 +1,262 @@
+"""The first half of the recipe for many photos: from photos whose cameras are known to a grown tree (Tan et al. 2007)."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, Structure, TreeMatte
+from treestroke.core.carve.measured import dense_cloud, measured_crown
+from treestroke.core.errors import StrokesError
+from treestroke.core.geometry.camera import Camera, OrthographicCamera, PerspectiveCamera
+from treestroke.core.geometry.crown_volume import Silhouette
+from treestroke.core.geometry.measured_crown import MeasuredCrown
+from treestroke.core.geometry.similarity import Similarity
+from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
+from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, Reading
+from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.tree_frame import in_frame, shown_height, tree_frame
+from treestroke.core.pipeline.view_appearance import view_appearance
+from treestroke.core.progress import Report, silent
+from treestroke.core.segment.view_mattes import view_mattes
+from treestroke.core.stroke_rules import mend_strokes
+from treestroke.core.strokes import CaptureStrokes, Stroke, Strokes, StrokeWarning
+from treestroke.core.survey.measures import Scale, Stature
+
+SHOT_SIDE = 1280
+"""Longest side, px, of the pictures that a tree is measured in."""
+FRAME_SIDE = 1200
+"""Side, px, of the picture in which the front is drawn."""
+FRAME_FILLED = 0.85
+"""Share of that picture's height that the tree takes."""
+READ = "the tree as it was read in each photo that is used"
+
+
+@dataclass(frozen=True, eq=False)
+class ViewsEvidence:
+    """What the photos of a capture show of its tree, in the tree's frame, metres.
+
+    Attributes
+    ----------
+    photos
+        The captured photos that are used, in the order of the shots.
+    structure
+        Their cameras, and which photos are not used.
+    shots, mattes
+        The photos free of distortion, and where each shows the tree.
+    cloud
+        Points on the tree.
+    crown
+        The measured crown.
+    seen
+        The branches that are seen.
+    front
+        The shot that the tree's front is, and what it shows by itself.
+    known
+        Whether a length that was drawn, or a distance, sets the scale.
+    """
+
+    photos: tuple[CapturedPhoto, ...]
+    structure: Structure
+    shots: tuple[Shot, ...]
+    mattes: tuple[TreeMatte, ...]
+    cloud: PointCloud
+    crown: MeasuredCrown
+    seen: SeenBranches
+    front: PhotoEvidence
+    known: bool
+
+    @property
+    def warnings(self) -> tuple[StrokeWarning, ...]:
+        """What was mended, and which photos are not used."""
+        unused = (StrokeWarning(photo.code, f"photos/{photo.name}", photo.detail) for photo in self.structure.unused)
+        return (*self.front.warnings, *unused)
+
+
+def read_views(
+    photos: Sequence[CapturedPhoto],
+    structure: Structure,
+    drawn: CaptureStrokes,
+    height_m: float,
+    report: Report = silent,
+) -> ViewsEvidence:
+    """Find the tree in all photos of a capture, its crown and the branches that are seen.
+
+    ``structure`` holds the photos' cameras, ``drawn`` strokes in px of the upright photos; a tree without a scale is
+    ``height_m`` high.
+
+    Raises
+    ------
+    StrokesError
+        The strokes do not describe a tree, or lie on a photo that is not there or not used.
+    """
+    report("mattes", 0.0)
+    drawn, by_name = _mended(photos, drawn), {photo.name: photo for photo in photos}
+    used = tuple(by_name[solved.name] for solved in structure.photos)
+    shots = tuple(
+        undistorted(photo.picture, solved, SHOT_SIDE) for photo, solved in zip(used, structure.photos, strict=True)
+    )
+    drawn = _on_shots(drawn, used, structure, shots)
+    cameras = {shot.name: shot.camera for shot in shots}
+    frame = tree_frame(cameras, structure.cloud, drawn, height_m)
+    shots, cloud = tuple(in_frame(shot, frame) for shot in shots), cloud_in_frame(structure.cloud, frame)
+    names = [shot.name for shot in shots]
+    mattes = view_mattes(shots, {names.index(name): strokes for name, strokes in drawn.by_photo.items()}, cloud, report)
+    if drawn.scale is None:
+        larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
+        shots, cloud = tuple(in_frame(shot, larger) for shot in shots), cloud_in_frame(cloud, larger)
+    front = names.index(drawn.first)
+    report("carve", 0.0)
+    ...
+
+
+def _mended(photos: Sequence[CapturedPhoto], drawn: CaptureStrokes) -> CaptureStrokes:
+    """Check the strokes of each photo against its size, and mend them where possible.
+
+    Raises
+    ------
+    StrokesError
+        As `mend_strokes`; or there is no such photo, or no trunk.
+    """
+    sizes = {photo.name: photo.size_px for photo in photos}
+    mended = {}
+    for index, (name, strokes) in enumerate(drawn.by_photo.items()):
+        if name not in sizes:
+            fault = f"there is no photo {name}; the photos are {', '.join(sorted(sizes)[:5])}"
+            raise StrokesError.at(("views", index, "photo"), fault, "photo_unknown")
+        try:
+            mended[name] = mend_strokes(strokes, *sizes[name]).strokes
+        except StrokesError as error:
+            raise type(error)(f"{name}: {error}", code=error.code, pointer=f"/views/{index}{error.pointer}") from error
+    found = replace(drawn, by_photo=mended)
+    if not mended[found.first].branches:
+        raise StrokesError.at(("views", 0, "branches"), NO_TRUNK, "trunk_missing")
+    return found
+
+
+def _on_shots(
+    drawn: CaptureStrokes, photos: Sequence[CapturedPhoto], structure: Structure, shots: Sequence[Shot]
+) -> CaptureStrokes:
+    """Return the strokes over photos that are used, in px of their shots.
+
+    Raises
+    ------
+    StrokesError
+        The photo with the trunk stroke, or one that the scale names, is not used.
+    """
+    carriers = {
+        photo.name: partial(_carried, reduction=photo.reduction, solved=solved, shot=shot)
+        for photo, solved, shot in zip(photos, structure.photos, shots, strict=True)
+    }
+    named = {drawn.first: ("views",), **_named_by(drawn.scale)}
+    for name, place in named.items():
+        if name not in carriers:
+            fault = f"no camera was found for {name}; draw on a photo that is used, such as {shots[0].name}"
+            raise StrokesError.at(place, fault, "photo_not_used")
+    by_photo = {
+        name: _moved(strokes, carriers[name]) for name, strokes in drawn.by_photo.items() if name in carriers
+    }
+    scale = drawn.scale
+    if isinstance(scale, LengthInPhoto):
+        points = carriers[scale.photo](scale.length.points)
+        scale = replace(scale, length=replace(scale.length, points=points))
+    return CaptureStrokes(by_photo, scale)
+
+
+def _named_by(scale: LengthInPhoto | CameraDistance | None) -> dict[str, tuple[str, ...]]:
+    """Return the photos that a scale names, with the place where it does."""
+    if scale is None:
+        return {}
+    if isinstance(scale, LengthInPhoto):
+        return {scale.photo: ("scale", "photo")}
+    return dict.fromkeys(scale.photos, ("scale", "photos"))
+
+
+def _carried(points_px: Floats, *, reduction: float, solved: SolvedPhoto, shot: Shot) -> Floats:
+    """Carry points (n, 2), px of the upright photo, to px of its shot."""
+    return undistorted_points(points_px * reduction, solved, shot)
+
+
+def _moved(strokes: Strokes, carry: Callable[[Floats], Floats]) -> Strokes:
+    """Return strokes with their points carried to another picture; widths follow the scale at their first point."""
+
+    def moved(stroke: Stroke) -> Stroke:
+        points = carry(stroke.points)
+        if stroke.width is None:
+            return Stroke(points)
+        beside = carry(stroke.points[:1] + [stroke.width, 0.0])
+        return Stroke(points, float(np.linalg.norm(beside - points[:1])))
+
+    return Strokes(
+        crown=moved(strokes.crown),
+        branches=tuple(moved(stroke) for stroke in strokes.branches),
+        erase=tuple(moved(stroke) for stroke in strokes.erase),
+    )
+
+
+def _seen_height(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> float:
+    """Return the height of the tree's top above its root, metres: the median of what the shots show."""
+    heights = []
+    for shot, matte in zip(shots, mattes, strict=True):
+        rows, columns = np.nonzero(matte.tree)
+        if len(rows):
+            top_px = np.array([float(np.median(columns[rows == rows.min()])) + 0.5, float(rows.min())])
+            heights.append(height_above(shot.camera, np.zeros(3), top_px))
+    if not heights:
+        raise StrokesError.at(("views",), "no tree was found inside the crown; draw it around the tree", "no_tree")
+    return float(np.median(heights))
+
+
+def grow_views(
+    evidence: ViewsEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
+) -> GrownTree:
+    """Let the branches that no photo shows fill the measured crown, and gather what the tree looks like."""
+    report("grow", 0.0)
+    taken, shots, mattes = evidence.front.taken(settings), evidence.shots, evidence.mattes
+    silhouettes = tuple(
+        Silhouette[Camera](matte.tree | matte.hidden, shot.camera) for shot, matte in zip(shots, mattes, strict=True)
+    )
+    grown = grow_hidden(evidence.seen, evidence.crown, silhouettes, settings.iterations, rng, report)
+    appearance = view_appearance(shots, mattes, grown.skeleton, taken.foliage != "bare")
+    camera = _front_camera(evidence.crown)
+    scale = Scale(float(camera.metres_from_pixels(1.0)), evidence.known, 0.0)
+    top = float(evidence.crown.bounds[1, 1])
+    return GrownTree(
+        taken=taken,
+        grown=grown,
+        volume=evidence.crown,
+        appearance=appearance,
+        camera=camera,
+        expected=tuple(
+            Silhouette[Camera](matte.tree, shot.camera) for shot, matte in zip(shots, mattes, strict=True)
+        ),
+        stature=Stature(top, scale, True, evidence.crown),
+        score={},
+        reading=_reading(evidence, taken),
+        warnings=evidence.warnings,
+        captured=_captured(evidence),
+    )
+
+
+def _front_camera(crown: MeasuredCrown) -> OrthographicCamera:
+    """Return a level camera of the front whose picture holds the tree."""
+    (left, _, _), (right, top, _) = crown.bounds.tolist()
+    across = max(2 * max(abs(left), abs(right)), top)
+    metres_per_pixel = across / (FRAME_FILLED * FRAME_SIDE)
+    root_y = 0.5 * (FRAME_SIDE + top / metres_per_pixel)
+    return OrthographicCamera(FRAME_SIDE, FRAME_SIDE, metres_per_pixel, (FRAME_SIDE / 2, root_y))
+
+
+def _captured(evidence: ViewsEvidence) -> CapturedViews:
+    """Return the cameras of the photos at their own sizes."""
+    names = tuple(photo.name for photo in evidence.photos)
+    cameras = tuple(
+        shot.camera.resized(*photo.size_px) for photo, shot in zip(evidence.photos, evidence.shots, strict=True)
+    )
+    return CapturedViews(names, cameras, evidence.structure.unused)
+
+
+def _reading(evidence: ViewsEvidence, taken: Taken) -> Reading:
+    """Return what the score is measured against, and what makes that doubtful."""
+    codes = [warning.code for warning in evidence.front.warnings]
+    return Reading(READ, tuple(code for code in codes if code in DOUBTFUL) + ("kind_unsure",) * taken.ask)
