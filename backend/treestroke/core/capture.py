@@ -10,6 +10,25 @@ from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 
 @dataclass(frozen=True, eq=False)
+class CapturedPhoto:
+    """A photo of a capture as it was taken.
+
+    Attributes
+    ----------
+    name
+        Its file name.
+    picture
+        (h, w, 3) sRGB, upright.
+    focal_px
+        Focal length, px, by what the camera wrote into the file; None if it did not.
+    """
+
+    name: str
+    picture: Picture
+    focal_px: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Shot:
     """One photo of a capture and the camera that took it.
 

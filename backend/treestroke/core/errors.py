@@ -4,6 +4,7 @@ TreestrokeError              the input cannot be used; the message says what is 
 ├── PhotoError               the picture itself
 ├── LeafError                the picture of a leaf
 ├── FruitError               the picture of a fruit
+├── CaptureError             the photos of one tree, taken together
 ├── StrokesError             a stroke, a sketch, or their file
 └── SettingsError            a setting's name or value
 
@@ -72,6 +73,13 @@ class FruitError(TreestrokeError):
 
     usual_code = "fruit_unreadable"
     whole = "fruit"
+
+
+class CaptureError(TreestrokeError):
+    """The photos of a capture do not show together where they were taken."""
+
+    usual_code = "capture_unusable"
+    whole = "photos"
 
 
 class StrokesError(TreestrokeError):
