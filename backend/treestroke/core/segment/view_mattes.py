@@ -1,0 +1,248 @@
+"""Mattes of a tree in every shot, from strokes in one or a few.
+
+Source: silhouettes and the solid that they bound, found together from colours, as by Campbell, Vogiatzis, Hernandez and
+Cipolla 2007, "Automatic 3D object segmentation in multiple views using volumetric graph-cuts". We differ: strokes give
+the object instead of the cameras' fixation; the shots' evidence is put together voxel by voxel without a cut, since a
+crown has no surface; and what matches the neighbouring shots far behind the tree is none of it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from treestroke.core.capture import PointCloud, Shot, TreeMatte
+from treestroke.core.geometry.camera import PerspectiveCamera
+from treestroke.core.imaging.mixture import Mixture
+from treestroke.core.progress import Report, silent
+from treestroke.core.segment.leaf_odds import log_odds_by_height
+from treestroke.core.segment.matte import matte
+from treestroke.core.segment.view_mattes_colours import TreeColours, ground_colours, tree_colours
+from treestroke.core.segment.view_mattes_drawn import DrawnTree, drawn_tree
+from treestroke.core.segment.view_mattes_parallax import far_odds, horizon
+from treestroke.core.segment.view_mattes_solid import Solid, projected, solid_around, weighed
+from treestroke.core.segment.view_mattes_trunk import standing_trunk, trunk_seen
+from treestroke.core.strokes import Strokes
+from treestroke.core.types import Floats, Mask, Opacity, Picture
+
+WORKING_SIDE = 640
+"""Long side of the reduced shots in which the tree is looked for, px."""
+STEEP, LEVEL = 1.5, 1.0
+"""Log odds that a pixel gains for each step of evidence of the voxels behind it, and the evidence that gains nothing.
+Tuned, as the other numbers here, on four rendered trees, one of them bare."""
+NEVER, MOST_BY_PLACE = -8.0, 1.0
+"""Log odds of a pixel where the tree cannot be, and the greatest that voxels give: there are gaps in a crown."""
+HOPELESS = -2.5
+"""Evidence up to which voxels are left out after the first round."""
+ON_TRUNK = 2.0
+"""Least log odds of a pixel on the trunk."""
+ABOVE_HORIZON = 0.25
+"""How far above the horizon what stands behind a tree may reach, as a share of the picture's height."""
+ASIDE = 1.3
+"""Distance from the root's vertical, over the tree's reach, from which on a point of the cloud is none of the tree."""
+POINT_PX = 2
+"""Half the size of the patch about such a point that shows no tree, px of a reduced shot."""
+SOFT_PX = 0.6
+"""Standard deviation, px, over which log odds are averaged before they are judged."""
+
+_Odds = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """A shot reduced: its picture (h, w, 3) and camera; where (h, w) the tree may be; what strokes say, if any do."""
+
+    picture: Picture
+    camera: PerspectiveCamera
+    possible: Mask
+    said: _Odds | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """What is known of a reduced shot: pixels (h, w) of the tree, the trunk's, and log odds apart from its colours."""
+
+    tree: Mask
+    trunk: Mask
+    odds: _Odds
+
+
+def view_mattes(
+    shots: Sequence[Shot], strokes: Mapping[int, Strokes], cloud: PointCloud, report: Report = silent
+) -> tuple[TreeMatte, ...]:
+    """Find the tree in every shot by the strokes in some of them.
+
+    Parameters
+    ----------
+    shots
+        All in the tree's frame: metres, Y up, the root on the ground at the origin.
+    strokes
+        Those of one shot at least, by its number, px of its picture: the crown's outline; the trunk's stroke in one of
+        them; what an erasing stroke covers is none of the tree.
+    cloud
+        Points that the shots see, in their order; may be empty.
+    report
+        Told of the stage "mattes".
+
+    Raises
+    ------
+    ValueError
+        No shot is stroked, or one that is not there.
+    """
+    if not strokes or not all(0 <= index < len(shots) for index in strokes):
+        raise ValueError(f"strokes need one of {len(shots)} shots, got {sorted(strokes)}")
+    report("mattes", 0.0)
+    trees = {index: drawn_tree(shots[index].picture, strokes[index]) for index in sorted(strokes)}
+    report("mattes", 0.1)
+    solid = solid_around([_outline(strokes[index]) for index in trees], [shots[index].camera for index in trees])
+    views = [_view(shot, solid, trees.get(index)) for index, shot in enumerate(shots)]
+    colours = tree_colours([shots[index].picture for index in trees], list(trees.values()))
+    found, ground = _found(views, (solid, colours), trees, cloud, report)
+    mattes = []
+    for index, (shot, known) in enumerate(zip(shots, found, strict=True)):
+        mattes.append(_tree_matte(shot, known, (colours, ground), trees.get(index)))
+        report("mattes", 0.6 + 0.4 * (index + 1) / len(shots))
+    return tuple(mattes)
+
+
+def _found(
+    views: Sequence[_View],
+    known: tuple[Solid, TreeColours],
+    trees: Mapping[int, DrawnTree],
+    cloud: PointCloud,
+    report: Report,
+) -> tuple[list[_Found], Mixture]:
+    """Find the tree in all reduced shots, first by colours and the solid, then by what stands far behind it, too."""
+    solid, colours = known
+    drawn, reach = list(trees), solid.reach
+    ground = ground_colours([view.picture for view in views], [~view.possible for view in views])
+    odds = _odds(views, [view.possible for view in views], colours, ground)
+    trunks = _trunks(views, trees, odds)
+    solid, found = _judged(views, solid, odds, trunks, drawn)
+    solid = solid.select(solid.odds > HOPELESS)
+    report("mattes", 0.3)
+    asked = [_before_something(view, tree) for view, tree in zip(views, found, strict=True)]
+    far = far_odds([view.picture for view in views], [view.camera for view in views], asked, reach)
+    far = [map_ + there for map_, there in zip(far, _beside(views, cloud, reach), strict=True)]
+    report("mattes", 0.5)
+    elsewhere = [~tree | (away < -1) for tree, away in zip(found, far, strict=True)]
+    ground = ground_colours([view.picture for view in views], elsewhere)
+    odds = _odds(views, [~away for away in elsewhere], colours, ground)
+    odds = [by_colour + away for by_colour, away in zip(odds, far, strict=True)]
+    solid, found = _judged(views, solid, odds, trunks, drawn)
+    places = [_by_place(solid, view) for view in views]
+    parts = zip(found, trunks, far, places, strict=True)
+    return [_Found(tree, trunk, away + place) for tree, trunk, away, place in parts], ground
+
+
+def _odds(views: Sequence[_View], trees: Sequence[Mask], colours: TreeColours, ground: Mixture) -> list[_Odds]:
+    """Log odds (h, w) of tree in each reduced shot, by colours, given about where (h, w) it is."""
+    tree = colours.tree
+    return [log_odds_by_height(tree, ground, view.picture, near) for view, near in zip(views, trees, strict=True)]
+
+
+def _judged(
+    views: Sequence[_View], solid: Solid, odds: Sequence[_Odds], trunks: Sequence[Mask], drawn: Sequence[int]
+) -> tuple[Solid, list[Mask]]:
+    """Return the solid by all shots' log odds, and each shot's pixels (h, w) of the tree by both."""
+    evidence = []
+    for view, by_colour, trunk in zip(views, odds, trunks, strict=True):
+        whole = np.where(trunk, np.maximum(by_colour, ON_TRUNK), by_colour) if view.said is None else view.said
+        evidence.append(np.where(view.possible, whole, NEVER).astype(np.float32))
+    solid = weighed(solid, [view.camera for view in views], evidence, drawn)
+    found = []
+    for view, whole in zip(views, evidence, strict=True):
+        found.append(cv2.GaussianBlur(whole + _by_place(solid, view), (0, 0), SOFT_PX) > 0)
+    return solid, found
+
+
+def _by_place(solid: Solid, view: _View) -> _Odds:
+    """Log odds (h, w) of tree in a reduced shot by the voxels behind each pixel."""
+    evidence = projected(solid, view.camera, view.possible.shape)
+    return np.where(view.possible, np.clip(STEEP * (evidence - LEVEL), NEVER, MOST_BY_PLACE), NEVER).astype(np.float32)
+
+
+def _trunks(views: Sequence[_View], trees: Mapping[int, DrawnTree], odds: Sequence[_Odds]) -> list[Mask]:
+    """Pixels (h, w) of the trunk below the crown in each reduced shot; none where no trunk was drawn."""
+    others = [index for index in range(len(views)) if index not in trees]
+    for index, tree in trees.items():
+        view = views[index]
+        stem = cv2.resize(tree.stem.astype(np.uint8), view.possible.shape[::-1], interpolation=cv2.INTER_AREA) > 0
+        cameras, evidence = [views[other].camera for other in others], [odds[other] for other in others]
+        standing = standing_trunk(stem, view.camera, cameras, evidence)
+        if standing is not None:
+            return [trunk_seen(standing, view.camera) & view.possible for view in views]
+    return [np.zeros_like(view.possible) for view in views]
+
+
+def _before_something(view: _View, tree: Mask) -> Mask:
+    """Where (h, w) a tree found in a reduced shot may be something behind it: low in the picture, if nobody drew it."""
+    rows = np.arange(len(tree))[:, None]
+    low = rows > horizon(view.camera) - ABOVE_HORIZON * len(tree)
+    return np.asarray(tree & low & (view.said is None))
+
+
+def _beside(views: Sequence[_View], cloud: PointCloud, reach: float) -> list[_Odds]:
+    """Log odds (h, w) of tree in each reduced shot by the points of the cloud that are beside the tree."""
+    away = np.hypot(cloud.points[:, 0], cloud.points[:, 2]) > ASIDE * reach
+    maps = []
+    for index, view in enumerate(views):
+        odds = np.zeros(view.possible.shape, dtype=np.float32)
+        x, y = np.floor(view.camera.pixels_from_world(cloud.points[away & cloud.seen[:, index]])).astype(np.int64).T
+        inside = (x >= 0) & (x < view.camera.width) & (y >= 0) & (y < view.camera.height)
+        odds[y[inside], x[inside]] = 0.5 * NEVER
+        maps.append(np.asarray(cv2.erode(odds, np.ones((2 * POINT_PX + 1,) * 2, np.uint8)), dtype=np.float32))
+    return maps
+
+
+def _tree_matte(shot: Shot, found: _Found, models: tuple[TreeColours, Mixture], drawn: DrawnTree | None) -> TreeMatte:
+    """Return the matte of a shot at its full size."""
+    colours, ground = models
+    size = shot.camera.width, shot.camera.height
+    odds = cv2.resize(found.odds, size, interpolation=cv2.INTER_LINEAR)
+    trunk = cv2.resize(found.trunk.astype(np.float32), size, interpolation=cv2.INTER_LINEAR) > 0.5
+    if drawn is None:
+        near = cv2.resize(found.tree.astype(np.float32), size, interpolation=cv2.INTER_LINEAR) > 0.5
+        region = odds > 0.5 * NEVER
+        whole = odds + log_odds_by_height(colours.tree, ground, shot.picture, near)
+        whole = np.where(trunk, np.maximum(whole, ON_TRUNK), whole)
+        opacity = matte(shot.picture, _likely(whole), region)
+    else:
+        opacity = drawn.alpha
+    wood = np.where(trunk, 1.0, colours.wood_share(shot.picture)) * (opacity > 0)
+    return TreeMatte(opacity, wood.astype(np.float32), np.zeros(opacity.shape, dtype=np.bool_))
+
+
+def _likely(odds: NDArray[np.floating]) -> Opacity:
+    """Turn log odds (h, w) into probabilities."""
+    return np.asarray(1 / (1 + np.exp(-odds)), dtype=np.float32)
+
+
+def _view(shot: Shot, solid: Solid, tree: DrawnTree | None) -> _View:
+    """Reduce a shot and what is drawn on it."""
+    height, width = shot.picture.shape[:2]
+    factor = min(1.0, WORKING_SIDE / max(height, width))
+    size = max(1, round(width * factor)), max(1, round(height * factor))
+    picture = np.asarray(cv2.resize(shot.picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+    x, y = shot.camera.principal_px
+    across, down = size[0] / width, size[1] / height
+    camera = replace(
+        shot.camera,
+        width=size[0],
+        height=size[1],
+        focal_px=shot.camera.focal_px * across,
+        principal_px=(x * across, y * down),
+    )
+    possible = projected(solid, camera, size[::-1]) > -1
+    if tree is None:
+        return _View(picture, camera, possible, None)
+    possible &= cv2.resize(tree.region.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.5
+    alpha = cv2.resize(tree.alpha, size, interpolation=cv2.INTER_AREA)
+    return _View(picture, camera, possible, (-NEVER * (alpha - 0.4)).astype(np.float32))
+
+
+def _outline(strokes: Strokes) -> Floats:
+    """Return points (n, 2), px, that hold the tree: the crown's outline, and the trunk's stroke."""
+    return np.concatenate([strokes.crown.points, *(branch.points for branch in strokes.branches[:1])])
