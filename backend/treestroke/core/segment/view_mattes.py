@@ -19,11 +19,11 @@ from treestroke.core.imaging.mixture import Mixture
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.leaf_odds import log_odds_by_height
 from treestroke.core.segment.matte import matte
-from treestroke.core.segment.view_mattes_colours import TreeColours, ground_colours, tree_colours
+from treestroke.core.segment.view_mattes_colours import TreeColours, ground_colours, inner, tree_colours
 from treestroke.core.segment.view_mattes_drawn import DrawnTree, drawn_tree
 from treestroke.core.segment.view_mattes_parallax import far_odds, horizon
-from treestroke.core.segment.view_mattes_solid import Solid, projected, solid_around, weighed
-from treestroke.core.segment.view_mattes_trunk import standing_trunk, trunk_seen
+from treestroke.core.segment.view_mattes_solid import Solid, lowest_height, projected, solid_around, weighed
+from treestroke.core.segment.view_mattes_trunk import StandingTrunk, around_trunk, standing_trunk, trunk_seen
 from treestroke.core.strokes import Strokes
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
@@ -47,6 +47,15 @@ POINT_PX = 2
 SOFT_PX = 0.6
 """Standard deviation, px, over which log odds are averaged before they are judged."""
 
+SURE_EVIDENCE = 2.0
+"""Evidence of voxels from which on the tree's pixels before them teach its colours."""
+LEAST_PIECE = 1e-3
+"""Least area of a piece of the tree in a shot, as a share of all."""
+UNDER = 0.03
+"""How far below its outline's lowest point a crown may hang, as a share of the tree's height."""
+FRINGE_PX = 4
+"""How far beside what was found in the reduced shot the tree may reach, px of the shot."""
+
 _Odds = NDArray[np.float32]
 
 
@@ -58,6 +67,15 @@ class _View:
     camera: PerspectiveCamera
     possible: Mask
     said: _Odds | None
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """What is drawn: the tree in shots, by number, their pictures, and the height of the crown's bottom, metres."""
+
+    trees: Mapping[int, DrawnTree]
+    pictures: tuple[Picture, ...]
+    bottom: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,10 +114,12 @@ def view_mattes(
     report("mattes", 0.0)
     trees = {index: drawn_tree(shots[index].picture, strokes[index]) for index in sorted(strokes)}
     report("mattes", 0.1)
-    solid = solid_around([_outline(strokes[index]) for index in trees], [shots[index].camera for index in trees])
+    outlines, cameras = [_outline(strokes[index]) for index in trees], [shots[index].camera for index in trees]
+    solid = solid_around(outlines, cameras)
+    bottom = lowest_height([strokes[index].crown.points for index in trees], cameras) - UNDER * solid.points[-1, 1]
     views = [_view(shot, solid, trees.get(index)) for index, shot in enumerate(shots)]
-    colours = tree_colours([shots[index].picture for index in trees], list(trees.values()))
-    found, ground = _found(views, (solid, colours), trees, cloud, report)
+    drawn = _Drawn(trees, tuple(shots[index].picture for index in trees), bottom)
+    found, colours, ground = _found(views, solid, drawn, cloud, report)
     mattes = []
     for index, (shot, known) in enumerate(zip(shots, found, strict=True)):
         mattes.append(_tree_matte(shot, known, (colours, ground), trees.get(index)))
@@ -108,33 +128,56 @@ def view_mattes(
 
 
 def _found(
-    views: Sequence[_View],
-    known: tuple[Solid, TreeColours],
-    trees: Mapping[int, DrawnTree],
-    cloud: PointCloud,
-    report: Report,
-) -> tuple[list[_Found], Mixture]:
+    views: Sequence[_View], solid: Solid, drawn: _Drawn, cloud: PointCloud, report: Report
+) -> tuple[list[_Found], TreeColours, Mixture]:
     """Find the tree in all reduced shots, first by colours and the solid, then by what stands far behind it, too."""
-    solid, colours = known
-    drawn, reach = list(trees), solid.reach
+    reach, indices = solid.reach, list(drawn.trees)
+    colours = tree_colours(drawn.pictures, list(drawn.trees.values()), [tree.region for tree in drawn.trees.values()])
     ground = ground_colours([view.picture for view in views], [~view.possible for view in views])
     odds = _odds(views, [view.possible for view in views], colours, ground)
-    trunks = _trunks(views, trees, odds)
-    solid, found = _judged(views, solid, odds, trunks, drawn)
+    trunk = _standing(views, drawn.trees, odds)
+    if trunk is not None:
+        crown = solid.points[:, 1] >= drawn.bottom
+        solid = solid.select(crown | around_trunk(trunk, solid.points, solid.side))
+    trunks = [np.zeros_like(v.possible) if trunk is None else trunk_seen(trunk, v.camera) & v.possible for v in views]
+    solid, found = _judged(views, solid, odds, trunks, indices)
     solid = solid.select(solid.odds > HOPELESS)
     report("mattes", 0.3)
-    asked = [_before_something(view, tree) for view, tree in zip(views, found, strict=True)]
+    asked = [_low(view, tree) for view, tree in zip(views, found, strict=True)]
     far = far_odds([view.picture for view in views], [view.camera for view in views], asked, reach)
     far = [map_ + there for map_, there in zip(far, _beside(views, cloud, reach), strict=True)]
     report("mattes", 0.5)
-    elsewhere = [~tree | (away < -1) for tree, away in zip(found, far, strict=True)]
-    ground = ground_colours([view.picture for view in views], elsewhere)
-    odds = _odds(views, [~away for away in elsewhere], colours, ground)
+    kept = [tree & (away > -1) for tree, away in zip(found, far, strict=True)]
+    colours = _carried(views, solid, drawn, kept)
+    ground = ground_colours([view.picture for view in views], [~tree for tree in kept])
+    odds = _odds(views, kept, colours, ground)
+    views = [replace(v, said=None if v.said is None else v.said + away) for v, away in zip(views, far, strict=True)]
     odds = [by_colour + away for by_colour, away in zip(odds, far, strict=True)]
-    solid, found = _judged(views, solid, odds, trunks, drawn)
+    solid, found = _judged(views, solid, odds, trunks, indices)
     places = [_by_place(solid, view) for view in views]
     parts = zip(found, trunks, far, places, strict=True)
-    return [_Found(tree, trunk, away + place) for tree, trunk, away, place in parts], ground
+    return [_Found(_attached(tree), stem, away + place) for tree, stem, away, place in parts], colours, ground
+
+
+def _carried(views: Sequence[_View], solid: Solid, drawn: _Drawn, kept: Sequence[Mask]) -> TreeColours:
+    """Fit the tree's colours anew, to what the other reduced shots show of its crown (h, w), too."""
+    believed, further = [], []
+    for index, (view, tree) in enumerate(zip(views, kept, strict=True)):
+        if index in drawn.trees:
+            size = drawn.trees[index].alpha.shape[::-1]
+            believed.append(cv2.resize(tree.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST) > 0)
+        else:
+            sure = inner(tree) & (projected(solid, view.camera, tree.shape) > SURE_EVIDENCE)
+            further.append(view.picture[sure])
+    return tree_colours(drawn.pictures, list(drawn.trees.values()), believed, further)
+
+
+def _attached(tree: Mask) -> Mask:
+    """Return a mask (h, w) without pieces that are far too small for a part of the tree."""
+    _, labels, figures, _ = cv2.connectedComponentsWithStats(tree.astype(np.uint8), connectivity=8)
+    large = figures[:, cv2.CC_STAT_AREA] >= LEAST_PIECE * tree.sum()
+    large[0] = False
+    return np.asarray(large[labels])
 
 
 def _odds(views: Sequence[_View], trees: Sequence[Mask], colours: TreeColours, ground: Mixture) -> list[_Odds]:
@@ -164,8 +207,8 @@ def _by_place(solid: Solid, view: _View) -> _Odds:
     return np.where(view.possible, np.clip(STEEP * (evidence - LEVEL), NEVER, MOST_BY_PLACE), NEVER).astype(np.float32)
 
 
-def _trunks(views: Sequence[_View], trees: Mapping[int, DrawnTree], odds: Sequence[_Odds]) -> list[Mask]:
-    """Pixels (h, w) of the trunk below the crown in each reduced shot; none where no trunk was drawn."""
+def _standing(views: Sequence[_View], trees: Mapping[int, DrawnTree], odds: Sequence[_Odds]) -> StandingTrunk | None:
+    """Place the trunk below the crown by its stroke and the other reduced shots; None where none was drawn."""
     others = [index for index in range(len(views)) if index not in trees]
     for index, tree in trees.items():
         view = views[index]
@@ -173,15 +216,14 @@ def _trunks(views: Sequence[_View], trees: Mapping[int, DrawnTree], odds: Sequen
         cameras, evidence = [views[other].camera for other in others], [odds[other] for other in others]
         standing = standing_trunk(stem, view.camera, cameras, evidence)
         if standing is not None:
-            return [trunk_seen(standing, view.camera) & view.possible for view in views]
-    return [np.zeros_like(view.possible) for view in views]
+            return standing
+    return None
 
 
-def _before_something(view: _View, tree: Mask) -> Mask:
-    """Where (h, w) a tree found in a reduced shot may be something behind it: low in the picture, if nobody drew it."""
+def _low(view: _View, tree: Mask) -> Mask:
+    """Where (h, w) a tree found in a reduced shot may be something behind it: low in the picture."""
     rows = np.arange(len(tree))[:, None]
-    low = rows > horizon(view.camera) - ABOVE_HORIZON * len(tree)
-    return np.asarray(tree & low & (view.said is None))
+    return np.asarray(tree & (rows > horizon(view.camera) - ABOVE_HORIZON * len(tree)))
 
 
 def _beside(views: Sequence[_View], cloud: PointCloud, reach: float) -> list[_Odds]:
@@ -203,14 +245,14 @@ def _tree_matte(shot: Shot, found: _Found, models: tuple[TreeColours, Mixture], 
     size = shot.camera.width, shot.camera.height
     odds = cv2.resize(found.odds, size, interpolation=cv2.INTER_LINEAR)
     trunk = cv2.resize(found.trunk.astype(np.float32), size, interpolation=cv2.INTER_LINEAR) > 0.5
+    near = cv2.resize(found.tree.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+    region = (cv2.dilate(near, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)) > 0.5) & (odds > 0.5 * NEVER)
     if drawn is None:
-        near = cv2.resize(found.tree.astype(np.float32), size, interpolation=cv2.INTER_LINEAR) > 0.5
-        region = odds > 0.5 * NEVER
-        whole = odds + log_odds_by_height(colours.tree, ground, shot.picture, near)
+        whole = odds + log_odds_by_height(colours.tree, ground, shot.picture, near > 0.5)
         whole = np.where(trunk, np.maximum(whole, ON_TRUNK), whole)
         opacity = matte(shot.picture, _likely(whole), region)
     else:
-        opacity = drawn.alpha
+        opacity = drawn.alpha * region
     wood = np.where(trunk, 1.0, colours.wood_share(shot.picture)) * (opacity > 0)
     return TreeMatte(opacity, wood.astype(np.float32), np.zeros(opacity.shape, dtype=np.bool_))
 

@@ -56,19 +56,28 @@ class TreeColours:
         return (1 / (1 + np.exp(-odds))).astype(np.float32)[table_index(pixels)]
 
 
-def tree_colours(pictures: Sequence[Picture], trees: Sequence[DrawnTree]) -> TreeColours:
-    """Fit the colour models to what stroked shots (h, w, 3), sRGB, show of the tree for sure."""
+def tree_colours(
+    pictures: Sequence[Picture], trees: Sequence[DrawnTree], kept: Sequence[Mask], further: Sequence[Picture] = ()
+) -> TreeColours:
+    """Fit the colour models to what stroked shots (h, w, 3), sRGB, show of the tree for sure.
+
+    ``kept`` (h, w) is where that is believed. ``further`` are pixels (n, 3) of a crown in other shots: the sun shines
+    on another side of it there.
+    """
     crowns, stems = [], []
-    for picture, tree in zip(pictures, trees, strict=True):
-        stem = _inner(tree.stem)
-        sure = tree.alpha > SURE
-        crown = (sure if tree.bare else _inner(sure)) & ~stem
+    for picture, tree, believed in zip(pictures, trees, kept, strict=True):
+        stem = inner(tree.stem)
+        sure = (tree.alpha > SURE) & believed
+        crown = (sure if tree.bare else inner(sure)) & ~stem
         crowns.append(picture[crown])
         stems.append(picture[stem])
     crown_colours, stem_colours = np.concatenate(crowns), np.concatenate(stems)
     if any(tree.bare for tree in trees) or not len(crown_colours):
         return TreeColours(None, fitted([crown_colours, stem_colours], LEAF_COMPONENTS + WOOD_COMPONENTS))
-    leaf = fitted([crown_colours], LEAF_COMPONENTS)
+    parts = [_sample(crown_colours)]
+    if further:
+        parts.append(_sample(np.concatenate(further)))
+    leaf = fit_mixture(np.concatenate(parts), LEAF_COMPONENTS)
     wood = fitted([stem_colours], WOOD_COMPONENTS) if len(stem_colours) >= FEWEST else None
     return TreeColours(leaf, wood)
 
@@ -80,10 +89,14 @@ def ground_colours(pictures: Sequence[Picture], elsewhere: Sequence[Mask]) -> Mi
 
 def fitted(parts: Sequence[Picture], components: int) -> Mixture:
     """Fit a mixture to about `SAMPLES` of some pixels, each part (n, 3), sRGB."""
-    pixels = np.concatenate(parts)
-    return fit_mixture(pixels[:: max(1, len(pixels) // SAMPLES)], components)
+    return fit_mixture(_sample(np.concatenate(parts)), components)
 
 
-def _inner(mask: Mask) -> Mask:
+def _sample(pixels: Picture) -> Picture:
+    """Take about `SAMPLES` of some pixels (n, 3), evenly spaced."""
+    return pixels[:: max(1, len(pixels) // SAMPLES)]
+
+
+def inner(mask: Mask) -> Mask:
     """Return the pixels of a mask (h, w) whose eight neighbours belong to it."""
     return np.asarray(cv2.erode(mask.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0)

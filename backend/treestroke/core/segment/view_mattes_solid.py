@@ -16,8 +16,10 @@ Odds = NDArray[np.float32]
 LAYERS = 110
 """Voxels along the tree's height."""
 SLACK, MARGIN = 1.35, 0.06
-"""How much wider than in the stroked shot a crown may be from other sides; and how much further up, down and aside the
-tree may reach, as a share of its height."""
+"""How much wider than in the stroked shot a crown may be from other sides; and how much further up and aside the tree
+may reach, as a share of its height."""
+BELOW = 0.015
+"""How far below the root's level it may, likewise."""
 DISSENT = 0.12
 """Share of the shots, those that speak most against a voxel, whose mean evidence counts: one bad shot cuts nothing."""
 MOST = 4.0
@@ -28,10 +30,11 @@ OUTSIDE = -8.0
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Voxels in which the tree may be: their middles (n, 3), metres, and their evidence (n,), log odds."""
+    """Voxels in which the tree may be: their middles (n, 3) and side, metres, and their evidence (n,), log odds."""
 
     points: Floats
     odds: Odds
+    side: float
 
     @property
     def reach(self) -> float:
@@ -40,7 +43,7 @@ class Solid:
 
     def select(self, chosen: Mask) -> "Solid":
         """Return the voxels of which ``chosen`` (n,) is true; all where it is true of none."""
-        return Solid(self.points[chosen], self.odds[chosen]) if chosen.any() else self
+        return Solid(self.points[chosen], self.odds[chosen], self.side) if chosen.any() else self
 
 
 def solid_around(outlines: Sequence[Floats], cameras: Sequence[PerspectiveCamera]) -> Solid:
@@ -50,8 +53,8 @@ def solid_around(outlines: Sequence[Floats], cameras: Sequence[PerspectiveCamera
     """
     drawn = [_on_plane(outline, camera) for outline, camera in zip(outlines, cameras, strict=True)]
     top = max(float(up.max()) for _, up in drawn)
-    side = top * (1 + 2 * MARGIN) / LAYERS
-    heights = (np.arange(LAYERS) + 0.5) * side - MARGIN * top
+    side = top * (1 + MARGIN + BELOW) / LAYERS
+    heights = (np.arange(LAYERS) + 0.5) * side - BELOW * top
     radius = np.max([_half_widths(across, up, heights, MARGIN * top) for across, up in drawn], axis=0)
     reach = int(np.ceil(radius.max() / side))
     steps = np.arange(-reach, reach + 1) * side
@@ -62,11 +65,16 @@ def solid_around(outlines: Sequence[Floats], cameras: Sequence[PerspectiveCamera
         near = away <= limit
         parts.append(np.column_stack([x[near], np.full(near.sum(), height), z[near]]))
     points = np.concatenate(parts)
-    return Solid(points, np.zeros(len(points), np.float32))
+    return Solid(points, np.zeros(len(points), np.float32), side)
+
+
+def lowest_height(outlines: Sequence[Floats], cameras: Sequence[PerspectiveCamera]) -> float:
+    """Return the height, metres, of the lowest point of some outlines (n, 2), px, above the root's plane."""
+    return min(float(_on_plane(*drawn)[1].min()) for drawn in zip(outlines, cameras, strict=True))
 
 
 def _on_plane(outline_px: Floats, camera: PerspectiveCamera) -> tuple[Floats, Floats]:
-    """Lay picture points (n, 2), px, on the upright plane through the origin that faces a camera: across and up (n,)."""
+    """Lay picture points (n, 2), px, on the upright plane through the origin that faces a camera: across and up."""
     centre = camera.centre
     facing = np.array([centre[0], 0.0, centre[2]]) / np.hypot(centre[0], centre[2])
     rays = camera.world_from_pixels(outline_px, 1.0) - centre

@@ -25,6 +25,8 @@ INSIDE, FLANKS = (-0.8, -0.4, 0.0, 0.4, 0.8), (-3.0, -2.2, -1.6, 1.6, 2.2, 3.0)
 """Where across the trunk evidence is read, in its half widths: on it, and beside it."""
 FULL = 0.9
 """Share of the half width that surely is trunk."""
+FLARED = 1.3
+"""How much wider than its edges were found a trunk may be."""
 MOST = 4.0
 """Greatest evidence of a pixel, log odds."""
 
@@ -102,6 +104,13 @@ def _stiff_path(score: Floats) -> NDArray[np.int64]:
     for layer in range(len(score) - 1, 0, -1):
         path.append(int(before[layer, path[-1]]))
     return np.array(path[::-1])
+
+
+def around_trunk(trunk: StandingTrunk, points: Floats, clearance: float) -> Mask:
+    """Tell which points (n, 3), metres, are no further from the axis than the trunk is wide and a clearance, metres."""
+    up = trunk.axis[:, 1]
+    x, z, half = (np.interp(points[:, 1], up, line) for line in (trunk.axis[:, 0], trunk.axis[:, 2], trunk.half_widths))
+    return np.asarray(np.hypot(points[:, 0] - x, points[:, 2] - z) <= FLARED * half + clearance)
 
 
 def trunk_seen(trunk: StandingTrunk, camera: PerspectiveCamera) -> Mask:
