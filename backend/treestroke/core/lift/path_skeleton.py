@@ -1,0 +1,100 @@
+"""The skeleton along centre lines: smooth, with radii that taper."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.optimize import isotonic_regression
+from scipy.spatial import cKDTree
+
+from treestroke.core.lift.centre_lines import CentreLines
+from treestroke.core.lift.limb_radii import limb_radii
+from treestroke.core.lift.point_graph import PointGraph
+from treestroke.core.lift.thin_hull import ShownArea
+from treestroke.core.skeleton.edit import subskeleton
+from treestroke.core.skeleton.measure import edge_lengths
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices, Mask
+
+SMOOTHING = 2.5
+"""Standard deviation of the smoothing along a path, in units of the graph: cells are steps, limbs are not."""
+JOINT_STEP = 2.5
+"""Distance between joints, in units of the graph."""
+GUESS = 0.5
+"""What a length that is not seen costs, relative to what one that is seen is worth."""
+THINNEST = 0.15
+"""Least radius, in units of the graph."""
+
+
+def path_skeleton(
+    graph: PointGraph, lines: CentreLines, kept: Mask, wood: Sequence[ShownArea]
+) -> tuple[Skeleton, Mask]:
+    """Lay a skeleton (3D, metres) along the paths (k,) that are ``kept``, and tell which joints (n,) are seen.
+
+    Radii are those that the shots show of the ``wood``.
+
+    The first joint is the root of the graph. A path that leads over more that is not seen than it shows is left out.
+    """
+    points, seen, parents, owner = [np.zeros((1, 3))], [np.ones(1, dtype=np.bool_)], [-1], [0]
+    for number in np.flatnonzero(kept).tolist():
+        line, shown = _joints(graph, lines.paths[number])
+        join = _join(np.concatenate(points), np.array(owner), int(lines.parents[number]), line[0])
+        parents += [join, *range(len(owner), len(owner) + len(line) - 2)]
+        owner += [number] * (len(line) - 1)
+        points.append(line[1:])
+        seen.append(shown[1:])
+    places = np.concatenate(points)
+    measured = np.where(np.concatenate(seen), limb_radii(places, wood), 0.0)
+    radii = _tapering(measured, np.array(parents), np.array(owner), THINNEST * graph.unit)
+    return _without_guesses(Skeleton(places, radii, np.array(parents)), np.concatenate(seen))
+
+
+def _joints(graph: PointGraph, path: Indices) -> tuple[Floats, Mask]:
+    """Lay joints (m, 3) along a path, and tell whether each is seen (m,)."""
+    line, at = graph.points[path], np.zeros(len(path))
+    at[1:] = np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))
+    fine = np.linspace(0, at[-1], max(int(np.ceil(at[-1] / graph.unit)), 1) + 1)
+    place = np.stack([np.interp(fine, at, column) for column in line.T], axis=1)
+    smooth = gaussian_filter1d(place, SMOOTHING, axis=0, mode="nearest")
+    near_end = np.minimum(np.arange(len(fine)), np.arange(len(fine))[::-1])[:, None] / (2 * SMOOTHING)
+    place = np.where(near_end < 1, near_end * smooth + (1 - near_end) * place, smooth)
+    shown = graph.seen[path][np.searchsorted(at, fine - 1e-9)]
+    chosen = np.unique(np.rint(np.linspace(0, len(fine) - 1, max(round(len(fine) / JOINT_STEP), 1) + 1)).astype(int))
+    return place[chosen], shown[chosen]
+
+
+def _join(points: Floats, owner: Indices, parent: int, place: Floats) -> int:
+    """Return the joint of the parent path that is nearest to a place (3,), metres; the root without one."""
+    own = np.flatnonzero(owner == parent)
+    return int(own[cKDTree(points[own]).query(place)[1]]) if parent >= 0 else 0
+
+
+def _tapering(measured: Floats, parents: Indices, owner: Indices, least: float) -> Floats:
+    """Fit radii (n,) that fall along each path to those measured, 0 where unknown; no joint is thicker than its parent.
+
+    Along a path of unknown radius it is that of the joint it leaves, or ``least``, metres.
+    """
+    radii = np.full(len(measured), least)
+    for path in np.unique(owner).tolist():
+        joints = np.flatnonzero(owner == path)
+        known = np.flatnonzero(measured[joints] > 0)
+        if len(known):
+            fitted = isotonic_regression(measured[joints[known]], increasing=False).x
+            radii[joints] = np.maximum(np.interp(np.arange(len(joints)), known, fitted), least)
+    for joint, parent in enumerate(parents.tolist()):
+        if parent >= 0:
+            radii[joint] = min(radii[joint], radii[parent])
+    return radii
+
+
+def _without_guesses(tree: Skeleton, seen: Mask) -> tuple[Skeleton, Mask]:
+    """Leave out what leads to less seen wood than it guesses."""
+    worth, parents = np.where(seen, 1.0, -GUESS) * edge_lengths(tree), tree.parents.tolist()
+    total = worth.tolist()
+    for joint in range(len(tree) - 1, 0, -1):
+        total[parents[joint]] += max(total[joint], 0.0)
+    kept = [True] + [value > 0 for value in total[1:]]
+    for joint in range(1, len(tree)):
+        kept[joint] &= kept[parents[joint]]
+    part, joints = subskeleton(tree, np.array(kept))
+    return part, seen[joints]

@@ -1,0 +1,71 @@
+"""The branches that the shots of a capture show: points, graph, centre lines, skeleton."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from treestroke.core.capture import PointCloud, Shot, TreeMatte
+from treestroke.core.errors import TreestrokeError
+from treestroke.core.lift.branch_points import is_branch
+from treestroke.core.lift.centre_lines import centre_lines
+from treestroke.core.lift.explained import explained
+from treestroke.core.lift.path_skeleton import path_skeleton
+from treestroke.core.lift.point_graph import FINE, FINE_BARE, point_graph
+from treestroke.core.lift.thin_hull import shown_area
+from treestroke.core.progress import Report, silent
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Mask
+
+BARE = 0.9
+"""Share of the tree's pixels that are wood from which it is bare."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeenBranches:
+    """The visible branches.
+
+    Attributes
+    ----------
+    skeleton
+        The trunk and all that leaves it, one piece, 3D, metres, measured radii; joint 0 is the root, the origin.
+    seen
+        (n,) whether wood is seen at each joint; the others join clusters.
+    leaf_points
+        (m, 3) points of the cloud on leaves, metres.
+    """
+
+    skeleton: Skeleton
+    seen: Mask
+    leaf_points: Floats
+
+
+def seen_branches(
+    shots: Sequence[Shot], mattes: Sequence[TreeMatte], cloud: PointCloud, report: Report = silent
+) -> SeenBranches:
+    """Find the branches that are seen, in the tree's frame: metres, Y up, the root at the origin.
+
+    ``report("branches", fraction)`` is called with each step. Deterministic.
+
+    Source: Tan et al. 2007, section 5.1. The graph's places are not only the cloud's points, which lie on few limbs,
+    but all small cells that more shots show as wood than would by chance; paths keep to the middle of the wood, so a
+    path is a centre line without bins, and the radius is measured by the mattes; of the branches where silhouettes
+    cross by chance, those go that explain no pixel of their own.
+
+    Raises
+    ------
+    TreestrokeError
+        No wood is seen in enough shots.
+    """
+    bare = sum(float(matte.wood.sum()) for matte in mattes) > BARE * sum(float(matte.tree.sum()) for matte in mattes)
+    pairs = list(zip(shots, mattes, strict=True))
+    tree = [shown_area(shot, matte.tree, matte.tree, matte.hidden) for shot, matte in pairs]
+    wood = [shown_area(shot, matte.tree, matte.tree & (matte.wood >= 0.5), matte.hidden) for shot, matte in pairs]
+    report("branches", 0.1)
+    graph = point_graph(wood, tree, FINE_BARE if bare else FINE)
+    report("branches", 0.5)
+    lines = centre_lines(graph)
+    if not lines.paths:
+        raise TreestrokeError("no trunk is seen in enough photos: mark it with a branch stroke in two or three of them")
+    report("branches", 0.7)
+    skeleton, seen = path_skeleton(graph, lines, explained(lines, graph, wood), wood)
+    report("branches", 1.0)
+    return SeenBranches(skeleton, seen, cloud.points[~is_branch(cloud, shots, mattes)])
