@@ -26,5 +26,16 @@ def planned() -> Iterator[list[str]]:
 
 def scans(steps: list[str]) -> list[str]:
     """Give the steps that read a whole table."""
-    tables = ("models", "model_parts", "photos", "files", "replays", "strays", "workers")
+    tables = (
+        "models",
+        "model_parts",
+        "photos",
+        "files",
+        "replays",
+        "strays",
+        "workers",
+        "captures",
+        "capture_photos",
+        "solves",
+    )
     return [step for step in steps if any(step == f"SCAN {table}" for table in tables)]

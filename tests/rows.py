@@ -1,13 +1,13 @@
 """Rows written by hand, without a service."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from treestroke.codec.inputs import part_of
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
-from treestroke.store.tables import ModelPart, ModelRow
+from treestroke.store.tables import CapturePhoto, CaptureRow, ModelPart, ModelRow, SolveRow
 
 PARTS = {"photo": "a" * 64, "strokes": "b" * 64}
 
@@ -37,6 +37,41 @@ def add_model(database: Database, parts: Mapping[str, str] = PARTS, **values: An
         session.flush()
         for name, blob in parts.items():
             session.add(ModelPart(model=row.id, name=name, blob=blob, media_type=part_of(name).formats[0].media_type))
+    return row
+
+
+def add_capture(database: Database, blobs: Sequence[str] = (), **values: Any) -> CaptureRow:
+    """Write the row of a capture, and those of photos of it that are these blobs; return the capture's."""
+    usual: dict[str, Any] = {"id": new_id("cap"), "name": "", "seq": 1, "created": time.time()}
+    row = CaptureRow(**{**usual, **values})
+    with database.writing() as session:
+        session.add(row)
+        session.flush()
+        for number, blob in enumerate(blobs):
+            names = {"name": f"{number}.jpg", "sent_name": f"{number}.jpg"}
+            size: dict[str, Any] = {"width": 64, "height": 64, "bytes": 10, "created": 0.0}
+            session.add(CapturePhoto(id=new_id("cph"), capture=row.id, sha256=blob, blob=blob, **names, **size))
+    return row
+
+
+def add_solve(database: Database, capture: str, **values: Any) -> SolveRow:
+    """Write the row of a queued solve of a capture, and return it."""
+    usual: dict[str, Any] = {
+        "id": new_id("slv"),
+        "engine": "treestroke",
+        "fingerprint": "f" * 64,
+        "status": "queued",
+        "phase_fraction": 0.0,
+        "progress": 0.0,
+        "seq": 1,
+        "attempt": 0,
+        "beat": 0,
+        "cancel": False,
+        "created": time.time(),
+    }
+    row = SolveRow(capture=capture, **{**usual, **values})
+    with database.writing() as session:
+        session.add(row)
     return row
 
 

@@ -24,3 +24,7 @@ MAX_ID = 40
 """Most characters of a photo's id in a request."""
 MAX_REV = 2**53 - 1
 """Largest whole number that every JSON reader keeps exactly."""
+MIN_CAPTURE_PHOTOS, MAX_CAPTURE_PHOTOS = 5, 40
+"""Least number of a capture's photos whose cameras are looked for, and greatest number of a capture's photos."""
+MAX_CLOUD_POINTS = 5000
+"""Most points of a capture's cloud that a response holds."""

@@ -1,6 +1,7 @@
 """The queue: Celery messages with the ids of jobs. The jobs themselves are rows of the database."""
 
 import json
+import math
 import secrets
 import time
 from contextlib import suppress
@@ -13,7 +14,8 @@ from kombu.transport import filesystem
 
 from treestroke.settings import Settings
 
-TASK = "treestroke.grow"
+GROW, SOLVE = "treestroke.grow", "treestroke.solve"
+"""The tasks of workers: growing a model, finding the cameras of a capture."""
 _SOCKET_SECONDS = 2.0
 """A broker that does not respond within this time is down."""
 _POLL_SECONDS = 0.1
@@ -42,7 +44,6 @@ def make_queue(settings: Settings) -> Celery:
         task_default_queue="treestroke",
         task_ignore_result=True,
         task_acks_late=False,
-        task_time_limit=settings.model_seconds + _GRACE_SECONDS,
         worker_lost_wait=_LOST_SECONDS,
         worker_prefetch_multiplier=1,
         worker_concurrency=settings.workers or 1,
@@ -55,15 +56,20 @@ def make_queue(settings: Settings) -> Celery:
     return app
 
 
-def send_job_message(app: Celery, model: str) -> None:
-    """Send the workers a message that a job is queued.
+def hard_limit(seconds: float) -> int:
+    """Return the seconds after which a process is killed whose job has a limit of so many ``seconds``."""
+    return math.ceil(seconds + _GRACE_SECONDS)
+
+
+def send_job_message(app: Celery, task: str, job: str) -> None:
+    """Send the workers a message that a job waits for one of their tasks.
 
     Raises
     ------
     kombu.exceptions.OperationalError, OSError
         The broker does not accept it.
     """
-    app.send_task(TASK, args=[model], retry=False, ignore_result=True)
+    app.send_task(task, args=[job], retry=False, ignore_result=True)
 
 
 class _FolderChannel(filesystem.Channel):

@@ -8,7 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from treestroke.wire_strokes import Wire
 
 Point = tuple[float, float]
+Pose = tuple[float, float, float, float]
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
+CaptureStatus = Literal["unsolved", "queued", "running", "solved", "failed"]
 
 
 class StrokeWarning(Wire):
@@ -123,7 +125,7 @@ class PhotoPage(Wire):
 
 
 class Failure(Wire):
-    """Why a model failed."""
+    """Why a model, or the search for a capture's cameras, failed."""
 
     code: str
     detail: str
@@ -191,6 +193,109 @@ class ModelPage(Wire):
     next: str | None
 
 
+class Reason(Wire):
+    """Why something is not so: for programs and for people."""
+
+    code: str
+    detail: str
+
+
+class CapturePhotoInfo(Wire):
+    """A photo of a capture."""
+
+    id: str
+    name: str = Field(description="its file name; with a number where another photo of the capture had it")
+    width: int
+    height: int
+    sha256: str = Field(description="of the uploaded bytes")
+    focal_px: float | None = Field(description="focal length, where its camera wrote it into the file")
+    created: str
+    image: str = Field(description="the stored picture: PNG, upright, sRGB, without metadata")
+    warnings: list[StrokeWarning] = Field(default_factory=list, description="what was mended in reading it")
+    used: bool | None = Field(description="whether its camera was found; null before the capture is solved")
+    reason: Reason | None = Field(description="why its camera was not found")
+
+
+class CameraInfo(Wire):
+    """The camera that took a photo: x right, y down, z forward."""
+
+    photo: str = Field(description="the photo's name")
+    camera_from_world: tuple[Pose, Pose, Pose] = Field(description="3 x 4, by rows")
+    focal_px: float
+    principal_px: Point
+    size_px: tuple[int, int] = Field(description="width and height of the upright photo")
+
+
+class CloudInfo(Wire):
+    """Points that several photos show; evenly chosen ones where there are many."""
+
+    points: list[tuple[float, float, float]]
+    colours: list[tuple[int, int, int]] = Field(description="sRGB, 0 to 255")
+
+
+class CaptureState(Wire):
+    """How far a capture is."""
+
+    id: str
+    name: str
+    status: CaptureStatus
+    phase: str | None = Field(description="the step under way")
+    phase_fraction: float = Field(ge=0, le=1)
+    progress: float = Field(ge=0, le=1)
+    queue_position: int | None = Field(description="1 for the next one")
+    eta_s: float | None = Field(description="seconds until its cameras are found, as others took")
+    attempt: int
+    error: Failure | None = Field(description="why its cameras were not found")
+    photo_count: int
+    engine: str | None = Field(description="the version that looked for its cameras")
+    created: str
+    started: str | None
+    finished: str | None
+
+
+class CaptureInfo(CaptureState):
+    """Photos of one tree from several places, and what is known of where they were taken.
+
+    Cameras and points are in one frame: right-handed, Y up; its origin, its turn about Y and its scale mean nothing.
+    """
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {
+                "id": "cap_7b1d0c2e3f4a5968778695a4",
+                "name": "The old oak, all around",
+                "status": "unsolved",
+                "phase": None,
+                "phase_fraction": 0.0,
+                "progress": 0.0,
+                "queue_position": None,
+                "eta_s": None,
+                "attempt": 0,
+                "error": None,
+                "photo_count": 0,
+                "engine": None,
+                "created": "2026-05-04T09:30:00.000Z",
+                "started": None,
+                "finished": None,
+                "photos": [],
+                "cameras": [],
+                "cloud": None,
+            }
+        }
+    )
+
+    photos: list[CapturePhotoInfo] = Field(description="by name")
+    cameras: list[CameraInfo] = Field(description="of the photos that are used")
+    cloud: CloudInfo | None = Field(description="once it is solved")
+
+
+class CapturePage(Wire):
+    """Captures, newest first; ``next`` is the cursor of the next page."""
+
+    captures: list[CaptureState]
+    next: str | None
+
+
 class Fault(Wire):
     """One field that is at fault: a JSON pointer into the request, a code, and what is wrong."""
 
@@ -250,10 +355,13 @@ class Limits(Wire):
     sketch_bytes: int = Field(description="of the picture of a sketch")
     trace_seconds: float
     model_seconds: float
+    capture_photos_min: int = Field(description="photos of a capture whose cameras can be looked for")
+    capture_photos_max: int
+    solve_seconds: float
     wait_seconds: float
     settings: dict[str, dict[str, Any]] = Field(description="each setting's default and what is allowed")
     keep_days: float
-    followers: int = Field(description="requests that follow models at once, by events or by Prefer: wait")
+    followers: int = Field(description="requests that follow models or captures at once, by events or by Prefer: wait")
 
 
 class Version(Wire):

@@ -28,13 +28,16 @@ class Settings(BaseSettings):
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
     workers: Annotated[
         int,
-        _setting(1, "models that a worker grows at once; 0: `treestroke serve` starts no worker", ge=0, le=256),
+        _setting(1, "jobs that a worker does at once; 0: `treestroke serve` starts no worker", ge=0, le=256),
     ]
     tracers: Annotated[int, _setting(2, "processes that decode photos and trace", ge=1, le=64)]
     trace_seconds: Annotated[
         float, _setting(20, "a tracing or decoding that takes longer is stopped, in seconds", gt=0, le=600)
     ]
     model_seconds: Annotated[float, _setting(300, "a model that takes longer fails, in seconds", gt=0, le=86_400)]
+    solve_seconds: Annotated[
+        float, _setting(1200, "finding a capture's cameras fails if it takes longer, in seconds", gt=0, le=86_400)
+    ]
     memory_mb: Annotated[
         int, _setting(4096, "address space of one tracing or growing process, in MB", ge=1024, le=2**20)
     ]
@@ -49,7 +52,7 @@ class Settings(BaseSettings):
         ),
     ]
     keep_days: Annotated[
-        float, _setting(0, "models and photos older than this are deleted; 0 keeps them", ge=0, le=36_500)
+        float, _setting(0, "models, photos and captures older than this are deleted; 0 keeps them", ge=0, le=36_500)
     ]
 
     @property

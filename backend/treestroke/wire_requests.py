@@ -177,3 +177,11 @@ class Rename(RequestPart):
     """A model's new name."""
 
     name: Name = Field(json_schema_extra={"example": "The old oak"})
+
+
+class CaptureRequest(RequestPart):
+    """A capture to be made: photos of one tree from several places, which are added one by one."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {"name": "The old oak, all around"}})
+
+    name: Name = ""

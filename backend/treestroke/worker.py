@@ -1,4 +1,4 @@
-"""The worker: a Celery process whose children grow models; `treestroke serve` runs one, `treestroke worker` too."""
+"""The worker: a Celery process whose children do jobs; `treestroke serve` runs one, `treestroke worker` too."""
 
 import os
 import secrets
@@ -22,18 +22,20 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke.logs import start_logging
 from treestroke.parent_process import PREVIOUS_RUN_ID, RUN_ID, kill_with_parent, stop_with_parent
-from treestroke.queue import DRAIN_SECONDS, TASK, make_queue
+from treestroke.queue import DRAIN_SECONDS, GROW, SOLVE, hard_limit, make_queue
+from treestroke.service.attempts import Assignment
 from treestroke.service.dispatch import holds_jobs, record_heartbeat, remove_worker
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
-from treestroke.service.jobs import Assignment, grow_model
+from treestroke.service.jobs import grow_model
+from treestroke.service.solving import solve_capture
 from treestroke.service.tracing_pool import limit_memory
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
-from treestroke.store.leases import end, take_back
-from treestroke.store.tables import ModelRow
+from treestroke.store.leases import AnyJob, end, take_back
+from treestroke.store.tables import JOBS
 
 NICENESS = 10
 """Growing runs at low priority: tracing has a person waiting for it."""
@@ -145,7 +147,7 @@ def _keep_logging(**_: object) -> None:
 
 
 def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
-    """Return the Celery application with its one task."""
+    """Return the Celery application with its tasks."""
     app = make_queue(settings)
     stores: list[tuple[Database, Blobs]] = []  # of each child, filled after the fork
     parent = os.getpid()
@@ -174,15 +176,25 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
     class Grow(Task):  # type: ignore[type-arg]
         """Grow the model that a message names."""
 
-        name = TASK
+        name, time_limit = GROW, hard_limit(settings.model_seconds)
         Request = JobRequest  # type: ignore[assignment]
 
         def run(self, model: str) -> None:
-            child_database, blobs = stores[0]
             assignment = Assignment(model, str(self.request.id), worker, settings.model_seconds)
-            grow_model(child_database, blobs, assignment)
+            grow_model(*stores[0], assignment)
 
-    app.register_task(Grow())
+    class Solve(Task):  # type: ignore[type-arg]
+        """Find the cameras of a capture, by the job that a message names."""
+
+        name, time_limit = SOLVE, hard_limit(settings.solve_seconds)
+        Request = JobRequest  # type: ignore[assignment]
+
+        def run(self, solve: str) -> None:
+            assignment = Assignment(solve, str(self.request.id), worker, settings.solve_seconds)
+            solve_capture(*stores[0], assignment)
+
+    for task in (Grow(), Solve()):
+        app.register_task(task)
     return app
 
 
@@ -190,7 +202,11 @@ def _record_end(database: Database, token: str, code: str) -> None:
     """End the job of a child that was killed at its time limit, or take it back if the child was lost."""
     try:
         with _without_forks(database), database.writing() as session:
-            job = session.scalars(select(ModelRow).where(ModelRow.claim == token, ModelRow.status == "running")).first()
+            jobs: list[AnyJob] = []
+            for table in JOBS:
+                held: Any = select(table).where(table.claim == token, table.status == "running")
+                jobs += session.scalars(held)
+            job = next(iter(jobs), None)
             if job is not None and code == "time_limit":
                 end(session, job, "failed", problem_of(code))
             elif job is not None:

@@ -36,6 +36,7 @@ def test_the_limits_are_told(client: httpx.Client) -> None:
     assert (limits["photo_bytes"], limits["photo_pixels"]) == (25_000_000, 50_000_000)
     assert (limits["photo_stored_bytes"], limits["photos_stored_bytes"]) == (120_000_000, 20_000_000_000)
     assert (limits["photo_side_min"], limits["photo_side_max"]) == (64, 16_384)
+    assert (limits["capture_photos_min"], limits["capture_photos_max"]) == (5, 40)
     assert (limits["strokes"], limits["points"]) == (200, 10_000)
     assert (limits["leaf_bytes"], limits["sketch_bytes"]) == (4_000_000, 25_000_000)
     assert set(limits["settings"]) == set(ModelSettings.__dataclass_fields__)
@@ -56,7 +57,7 @@ def test_the_version_is_told(client: httpx.Client) -> None:
 
 def test_the_figures_of_the_queue_and_the_requests_are_told(client: httpx.Client, made: dict[str, Any]) -> None:
     told = client.get("/metrics").text
-    for name in ("models_queued", "models_running", "worker_slots", "tracers_replaced_total"):
+    for name in ("models_queued", "models_running", "solves_queued", "worker_slots", "tracers_replaced_total"):
         assert re.search(rf"^treestroke_{name}\b", told, re.M), name
     assert 'handler="/v1/models"' in told
     assert made["id"] not in told

@@ -8,6 +8,9 @@ MAY_READ = {
     "core/geometry/camera.py": "is where it stands",
     "codec/skeleton.py": "writes the photo's frame into files, as extras.photo has it",
     "codec/preview.py": "draws its front view at the photo's framing, in a picture of its own size",
+    "codec/structure.py": "writes a capture's cameras into files",
+    "core/undistortion.py": "takes the distortion of a camera's lens out of its picture",
+    "engines/mapping.py": "tells COLMAP, which has cameras of its own",
     "service/report.py": "reports the scale",
 }
 SECTIONS = {

@@ -15,7 +15,7 @@ from treestroke.api.errors import _STATUS
 from treestroke.cli import main
 from treestroke.client import Client
 from treestroke.core.pipeline.settings import Choice, ModelSettings, Several
-from treestroke.schemas import ModelInfo, PhotoInfo, Problem
+from treestroke.schemas import CaptureInfo, ModelInfo, PhotoInfo, Problem
 from treestroke.service.failures import _DETAILS, problem_of_input
 from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import ModelRequest
@@ -125,8 +125,10 @@ def test_the_calls_are_the_service_s_routes() -> None:
     assert set(calls) == routes()
 
 
-@pytest.mark.parametrize(("heading", "kind"), [("Photos", PhotoInfo), ("Models", ModelInfo)])
-def test_the_fields_of_an_answer_are_those_of_its_schema(heading: str, kind: type[PhotoInfo | ModelInfo]) -> None:
+@pytest.mark.parametrize(("heading", "kind"), [("Photos", PhotoInfo), ("Models", ModelInfo), ("Captures", CaptureInfo)])
+def test_the_fields_of_an_answer_are_those_of_its_schema(
+    heading: str, kind: type[PhotoInfo | ModelInfo | CaptureInfo]
+) -> None:
     (table,) = (t for t in tables(section("docs/http.md", heading)) if t[0].startswith("| field"))
     assert sorted(name for row in table[2:] for name in named(cells(row)[0])) == sorted(kind.model_fields)
 

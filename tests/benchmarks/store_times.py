@@ -28,6 +28,7 @@ from treestroke.service.tracing_pool import TracingPool
 from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.tables import ModelRow
 
 SIZES = (50_000, 100_000)
 ASKED, DELETED, REPEATS = 40, 1000, 20
@@ -110,7 +111,7 @@ def answer(database: Database, count: int) -> None:
         assert row is not None
         say("an equal model that there is", times(lambda: queries.finished_model(session, row.fingerprint, row.engine)))
         say("an equal model that there is not", times(lambda: queries.finished_model(session, "0" * 64, row.engine)))
-        say("the usual time of late", times(lambda: queries.usual_seconds(session)))
+        say("the usual time of late", times(lambda: queries.usual_seconds(session, ModelRow)))
     say("a page of 20 models", times(lambda: stored_models.list_models(database, None, 20)))
 
 

@@ -24,7 +24,7 @@ from tests.faults.held import released
 from treestroke import queue, worker
 from treestroke.codec.inputs import Inputs
 from treestroke.service import jobs
-from treestroke.service.jobs import Assignment, Heartbeat
+from treestroke.service.attempts import Assignment, Heartbeat
 from treestroke.settings import read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -123,7 +123,7 @@ def _name_of(folder: Path, model: str) -> str:
 
 
 def _grow_patiently(database: Database, blobs: Blobs, assignment: Assignment) -> None:
-    if _name_of(database.path.parent, assignment.model) not in LIMITED:
+    if _name_of(database.path.parent, assignment.job) not in LIMITED:
         assignment = replace(assignment, seconds=PATIENT_SECONDS)
     _grow(database, blobs, assignment)
 

@@ -11,7 +11,7 @@ from redis import Redis
 from tests.faults.harness import PATIENCE_SECONDS, Service
 from tests.faults.processes import wait_for
 
-from treestroke.queue import TASK, make_queue, send_job_message
+from treestroke.queue import GROW, make_queue, send_job_message
 from treestroke.settings import Settings
 
 
@@ -32,11 +32,11 @@ def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(servi
     queue = queue_of(service, broker_url)
     ids = service.ask_for(2, "instant")
     for id in (*ids, *ids, "mdl_nobody"):
-        send_job_message(queue, id)
+        send_job_message(queue, GROW, id)
     before = service.finish(ids)
     ignored = len(service.logged("job_message_ignored"))
     for id in ids:
-        send_job_message(queue, id)
+        send_job_message(queue, GROW, id)
     wait_for(
         lambda: len(service.logged("job_message_ignored")) >= ignored + 2,
         PATIENCE_SECONDS,
@@ -50,9 +50,9 @@ def test_a_worker_survives_messages_that_are_not_for_it(service: Service, broker
     workers = [one.pid for one in service.workers()]
     queue = queue_of(service, broker_url)
     queue.send_task("treestroke.of_another_version", args=["mdl_1"], retry=False)
-    queue.send_task(TASK, args=["mdl_1", {"more": "than we know"}], kwargs={"new": 1}, retry=False)
-    queue.send_task(TASK, args=[], retry=False)
-    queue.send_task(TASK, args=[["not", "an", "id"]], retry=False)
+    queue.send_task(GROW, args=["mdl_1", {"more": "than we know"}], kwargs={"new": 1}, retry=False)
+    queue.send_task(GROW, args=[], retry=False)
+    queue.send_task(GROW, args=[["not", "an", "id"]], retry=False)
     inject(service, broker_url, old_form("mdl_1"))
     (row,) = service.finish([service.ask("instant")])
     assert (row["status"], row["attempt"]) == ("succeeded", 1)
@@ -72,7 +72,7 @@ def test_a_worker_survives_files_that_are_no_messages(service: Service, broker_u
 
 def old_form(id: str) -> bytes:
     """Make a message as the first protocol of Celery had it, all in the body."""
-    body = json.dumps({"task": TASK, "id": "1", "args": [id], "kwargs": {}})
+    body = json.dumps({"task": GROW, "id": "1", "args": [id], "kwargs": {}})
     properties = {
         "delivery_tag": "1",
         "delivery_mode": 2,
@@ -94,15 +94,15 @@ def old_form(id: str) -> bytes:
 def test_a_queue_whose_folder_is_removed_takes_messages(sent: int, tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
     for _ in range(sent):
-        send_job_message(queue, "mdl_1")
+        send_job_message(queue, GROW, "mdl_1")
     shutil.rmtree(tmp_path / "queue")
-    send_job_message(queue, "mdl_2")
+    send_job_message(queue, GROW, "mdl_2")
     assert len(list((tmp_path / "queue" / "messages").glob("*.msg"))) == 1
 
 
 def test_a_message_that_is_being_written_is_not_seen(tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
-    send_job_message(queue, "mdl_1")
+    send_job_message(queue, GROW, "mdl_1")
     (message,) = (tmp_path / "queue" / "messages").iterdir()
     begun = message.with_suffix(".part")
     message.rename(begun)

@@ -1,18 +1,20 @@
 """Workers that are gone, as whoever started them says."""
 
 import threading
+import time
 from collections.abc import Iterator
 
 import pytest
 from sqlalchemy import text
 from tests.faults.processes import wait_for
-from tests.rows import add_model, find
+from tests.rows import add_capture, add_model, add_solve, find
 
-from treestroke.service.dispatch import Dispatcher, record_heartbeat, remove_worker
+from treestroke.queue import GROW, SOLVE
+from treestroke.service.dispatch import Dispatcher, holds_jobs, queue_figures, record_heartbeat, remove_worker
 from treestroke.service.failures import problem_of
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import Worker
+from treestroke.store.tables import SolveRow, Worker
 
 
 def held_by(database: Database, worker: str, attempt: int = 1) -> str:
@@ -42,7 +44,7 @@ def sent() -> list[str]:
 
 @pytest.fixture
 def dispatcher(database: Database, sent: list[str]) -> Iterator[Dispatcher]:
-    made = Dispatcher(database, Blobs(database.path.parent), sent.append, 0)
+    made = Dispatcher(database, Blobs(database.path.parent), lambda task, id: sent.append(id), 0)
     yield made
     made.stop()
 
@@ -58,6 +60,38 @@ def test_a_row_that_cannot_be_read_keeps_no_other_job_from_its_worker(
     wait_for(lambda: waiting in sent, 60, "a message for the job that waits")
     assert sent == [waiting]
     assert [thread.name for thread in threading.enumerate()].count("dispatcher") == 1
+
+
+def test_kinds_of_jobs_take_turns_and_each_is_sent_by_its_task(database: Database) -> None:
+    told: list[tuple[str, str]] = []
+    dispatcher = Dispatcher(database, Blobs(database.path.parent), lambda *message: told.append(message), 0)
+    models = [add_model(database).id for _ in range(5)]
+    solves = [add_solve(database, add_capture(database).id).id for _ in range(2)]
+    record_heartbeat(database, "worker", 3)
+    add_model(database, status="running")
+    dispatcher.dispatch()
+    turns = [models[0], solves[0], models[1], solves[1], models[2]]
+    assert told == [(SOLVE if id in solves else GROW, id) for id in turns]
+
+
+def test_solves_of_a_worker_that_is_gone_queue_again(database: Database) -> None:
+    record_heartbeat(database, "run-1", 1)
+    solve = add_solve(database, add_capture(database).id, status="running", attempt=1, worker="run-1", claim="token")
+    assert holds_jobs(database, "run-1")
+    remove_worker(database, "run-1", problem_of("worker_lost"))
+    assert not holds_jobs(database, "run-1")
+    with database.reading() as session:
+        assert session.get(SolveRow, solve.number).status == "queued"  # type: ignore[union-attr]
+
+
+def test_the_figures_tell_both_kinds_and_the_oldest_of_all(database: Database) -> None:
+    add_model(database)
+    capture = add_capture(database).id
+    add_solve(database, capture, created=time.time() - 50)
+    add_solve(database, capture, status="running")
+    figures = {name: value for name, (_, value) in queue_figures(database).items()}
+    assert (figures["models_queued"], figures["solves_queued"], figures["solves_running"]) == (1, 1, 1)
+    assert 50 <= figures["queue_age_seconds"] < 500
 
 
 def test_a_dispatcher_says_that_it_has_stopped(dispatcher: Dispatcher) -> None:

@@ -146,7 +146,7 @@ def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> N
 
 
 def test_nothing_is_ready_once_the_database_is_gone_from_its_place(resources: Resources) -> None:
-    dispatcher = Dispatcher(resources.database, resources.blobs, lambda id: None, 0)
+    dispatcher = Dispatcher(resources.database, resources.blobs, lambda task, id: None, 0)
     assert readiness(resources, dispatcher).checks["database"] == "ok"
     resources.database.path.rename(resources.database.path.with_name("away"))
     health = readiness(resources, dispatcher)

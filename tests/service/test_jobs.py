@@ -4,8 +4,9 @@ import pytest
 from tests.api import drawn
 
 from treestroke.service import model_request, photos, stored_models
+from treestroke.service.attempts import Assignment
 from treestroke.service.engine_version import engine_version
-from treestroke.service.jobs import Assignment, grow_model
+from treestroke.service.jobs import grow_model
 from treestroke.service.photos import Resources
 
 

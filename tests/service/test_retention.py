@@ -8,19 +8,19 @@ import pytest
 from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 from tests.plans import planned, scans
-from tests.rows import add_model
+from tests.rows import add_capture, add_model, add_solve
 
-from treestroke.service import retention, stored_models
+from treestroke.service import captures, retention, stored_models
 from treestroke.service.photos import NotFound
 from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.queries import referenced
-from treestroke.store.tables import File, ModelRow, PhotoRow, Replay, Stray
+from treestroke.store.tables import CapturePhoto, CaptureRow, File, ModelRow, PhotoRow, Replay, SolveRow, Stray, Table
 
 HOUR, DAY = 3600.0, 86_400.0
-NOTHING = Swept(0, 0, 0)
+NOTHING = Swept(0, 0, 0, 0)
 
 
 class Clocks:
@@ -56,7 +56,7 @@ class Kept:
         for _ in range(round(seconds / HOUR)):
             self.clocks.pass_(HOUR)
             went.append(self.sweep())
-        return Swept(*(sum(getattr(one, name) for one in went) for name in ("models", "photos", "blobs")))
+        return Swept(*(sum(getattr(one, name) for one in went) for name in ("models", "photos", "captures", "blobs")))
 
     def photo(self, id: str) -> PhotoRow:
         row = PhotoRow(id=id, sha256="", width=1, height=1, blob=self.blobs.put(id.encode()), created=self.clocks.wall)
@@ -75,7 +75,7 @@ class Kept:
     def delete(self, row: ModelRow) -> None:
         stored_models.delete(self.database, row.id)
 
-    def count(self, table: type[ModelRow] | type[PhotoRow] | type[File] | type[Replay] | type[Stray]) -> int:
+    def count(self, table: type[Table]) -> int:
         with self.database.reading() as session:
             return session.scalar(select(func.count()).select_from(table)) or 0
 
@@ -107,7 +107,7 @@ def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
     assert kept.sweep_for(23 * HOUR) == NOTHING
     assert stored_models.restore(kept.database, row.id).files["tree.glb"]
     kept.delete(row)
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 3)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 3)
     assert (kept.count(ModelRow), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
     with pytest.raises(NotFound):
         stored_models.restore(kept.database, row.id)
@@ -175,7 +175,7 @@ def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str)
     assert blob in kept.named()
     assert kept.sweep_for(2 * HOUR) == NOTHING
     kept.delete(row)
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 4)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 4)
     assert not kept.blobs.path(blob).exists()
 
 
@@ -194,7 +194,7 @@ def test_a_deleted_photo_goes_after_a_day_and_its_models_keep_their_copy(kept: K
     photo, model = kept.photo("pho_1"), kept.model()
     with kept.database.writing() as session:
         session.execute(update(PhotoRow).values(deleted=kept.clocks.wall))
-    assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 1)
+    assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 0, 1)
     assert not kept.blobs.path(photo.blob).exists()
     assert kept.blobs.path(stored_models.find_model(kept.database, model.id).parts["photo"].blob).exists()
 
@@ -215,7 +215,7 @@ def test_what_is_older_than_the_days_is_deleted_and_goes_a_day_later(kept: Kept)
         stored_models.find_model(kept.database, old.id)
     for row in (young, growing):
         assert stored_models.find_model(kept.database, row.id).row.id == row.id
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 2)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 0, 2)
     assert not kept.blobs.path(photo.blob).exists()
     assert kept.count(ModelRow) == 2
 
@@ -324,3 +324,33 @@ def test_a_sweep_that_is_told_to_stop_stops(kept: Kept, tmp_path: Path) -> None:
     over = threading.Event()
     over.set()
     assert Sweeper(kept.database, kept.blobs, 0, over).sweep() == NOTHING
+
+
+def test_a_deleted_capture_goes_with_its_photos_and_what_was_found_of_them(kept: Kept) -> None:
+    blobs = [kept.blobs.put(name) for name in (b"one", b"two")]
+    row = add_capture(kept.database, blobs)
+    add_solve(kept.database, row.id, status="succeeded", structure=kept.blobs.put(b"structure"))
+    assert kept.sweep_for(3 * HOUR) == NOTHING
+    captures.delete(kept.database, row.id)
+    assert kept.sweep_for(23 * HOUR) == NOTHING
+    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 1, 3)
+    assert (kept.count(CaptureRow), kept.count(CapturePhoto), kept.count(SolveRow), kept.files()) == (0, 0, 0, set())
+
+
+def test_a_photo_that_was_removed_from_a_capture_goes_and_the_others_stay(kept: Kept) -> None:
+    row = add_capture(kept.database, [kept.blobs.put(b"one"), kept.blobs.put(b"two")])
+    kept.sweep()
+    photo = captures.find_capture(kept.database, row.id).photos[0]
+    captures.remove_photo(kept.database, row.id, photo.id)
+    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 0, 1)
+    assert kept.files() == kept.named()
+
+
+def test_an_old_capture_is_deleted_once_nothing_is_under_way(kept: Kept) -> None:
+    kept.restart(keep_days=1)
+    busy, idle = (add_capture(kept.database).id for _ in range(2))
+    add_solve(kept.database, busy, status="running")
+    assert kept.sweep_for(50 * HOUR).captures == 1
+    assert captures.find_capture(kept.database, busy)
+    with pytest.raises(NotFound):
+        captures.find_capture(kept.database, idle)

@@ -16,7 +16,7 @@ from treestroke.service.photos import NotFound, Resources
 from treestroke.service.stored_models import KeyReused
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
-from treestroke.store.leases import claim, succeed
+from treestroke.store.leases import Holder, claim, succeed
 from treestroke.store.tables import ModelRow, PhotoRow
 
 
@@ -27,7 +27,7 @@ def order(resources: Resources, photo: str, **others: Any) -> ModelOrder:
 def finished(resources: Resources, id: str, glb: bytes, by: str = "") -> None:
     """Publish a model as its worker does."""
     with resources.database.writing() as session:
-        job = claim(session, id, "t", "w", by or engine_version())
+        job = claim(session, ModelRow, id, Holder("t", "w", by or engine_version()))
         assert job is not None
         assert succeed(session, job, {"score": {}}, {"tree.glb": (resources.blobs.put(glb), len(glb))})
 

@@ -12,8 +12,9 @@ import pytest
 from tests.conftest import DATA
 
 from treestroke.service import stored_models
+from treestroke.service.attempts import Assignment
 from treestroke.service.doctor import examine_deployment
-from treestroke.service.jobs import Assignment, grow_model
+from treestroke.service.jobs import grow_model
 from treestroke.service.projects import Projects
 from treestroke.service.retention import Sweeper
 from treestroke.settings import read_settings

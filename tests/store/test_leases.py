@@ -4,12 +4,12 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from tests.rows import add_model, find
+from tests.rows import add_capture, add_model, add_solve, find
 
 from treestroke.store import leases
 from treestroke.store.database import Database
 from treestroke.store.queries import files
-from treestroke.store.tables import ModelRow
+from treestroke.store.tables import ModelRow, SolveRow
 
 LOST = {"code": "worker_lost", "detail": "lost", "retryable": True}
 GONE = {"code": "engine_error", "detail": "broke", "retryable": False}
@@ -18,12 +18,17 @@ GLB = {"tree.glb": ("c" * 64, 7)}
 
 def claimed(database: Database, id: str, token: str = "t", worker: str = "w") -> ModelRow | None:
     with database.writing() as session:
-        return leases.claim(session, id, token, worker, "engine of w")
+        return leases.claim(session, ModelRow, id, leases.Holder(token, worker, "engine of w"))
 
 
 def changed(database: Database, change: Callable[..., Any], *arguments: Any, **values: Any) -> Any:
     with database.writing() as session:
         return change(session, *arguments, **values)
+
+
+def canceled(database: Database, id: str) -> None:
+    with database.writing() as session:
+        leases.cancel(session, ModelRow, ModelRow.id == id)
 
 
 def started(database: Database, **values: Any) -> ModelRow:
@@ -100,7 +105,7 @@ def test_a_beat_keeps_the_lease_and_tells_the_progress(database: Database) -> No
 
 def test_a_beat_hears_that_it_is_to_stop(database: Database) -> None:
     job = started(database)
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     assert changed(database, leases.heartbeat, job, "grow", 0.5, 0.3) is True
 
 
@@ -136,7 +141,7 @@ def test_a_job_that_is_over_stays_as_it_is(database: Database, name: str, status
         assert changed(database, leases.end, job, status, None)
     before = seen(database, job.id)
     assert changed(database, change, job, *arguments) is wanted
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     assert seen(database, job.id) == before
     assert before[0] == status
 
@@ -182,28 +187,28 @@ def test_a_job_that_has_beaten_since_is_not_lost(database: Database) -> None:
 
 def test_a_lost_job_that_was_to_be_stopped_is_canceled(database: Database) -> None:
     job = started(database)
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     assert changed(database, leases.take_back, find(database, job.id), LOST)
     assert find(database, job.id).status == "canceled"
 
 
 def test_a_cancel_just_before_a_job_is_taken_back_is_not_forgotten(database: Database) -> None:
     job = started(database)  # as the dispatcher read it
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     assert changed(database, leases.take_back, job, LOST)
     assert find(database, job.id).status == "canceled"
 
 
 def test_a_queued_job_is_canceled_at_once(database: Database) -> None:
     row = add_model(database)
-    changed(database, leases.cancel, row.id)
+    canceled(database, row.id)
     assert find(database, row.id).status == "canceled"
     assert claimed(database, row.id) is None
 
 
 def test_a_job_that_is_to_be_stopped_cannot_succeed(database: Database) -> None:
     job = started(database)
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     assert changed(database, leases.succeed, job, {}, GLB) is False
     assert changed(database, leases.end, job, "canceled", None) is True
     with database.reading() as session:
@@ -213,7 +218,7 @@ def test_a_job_that_is_to_be_stopped_cannot_succeed(database: Database) -> None:
 def test_a_cancel_after_the_success_comes_too_late(database: Database) -> None:
     job = started(database)
     assert changed(database, leases.succeed, job, {}, GLB)
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     assert find(database, job.id).status == "succeeded"
 
 
@@ -231,10 +236,43 @@ def test_cancel_and_success_at_once_end_in_one_of_both(database: Database, round
     thread = threading.Thread(target=publish)
     thread.start()
     barrier.wait()
-    changed(database, leases.cancel, job.id)
+    canceled(database, job.id)
     thread.join()
     other.close()
     row = find(database, job.id)
     with database.reading() as session:
         assert (row.status, set(files(session, [job.id])[job.id])) in (("succeeded", set(GLB)), ("canceled", set()))
     assert results == [True]
+
+
+def test_a_solve_is_held_by_the_same_lease(database: Database) -> None:
+    row = add_solve(database, add_capture(database).id)
+    holder = leases.Holder("t", "w", "engine of w")
+    with database.writing() as session:
+        lost = leases.claim(session, SolveRow, row.id, holder)
+    assert lost is not None
+    assert changed(database, leases.heartbeat, lost, "mapping", 0.5, 0.7) is False
+    assert changed(database, leases.take_back, lost, LOST) is False  # it has beaten since
+    with database.reading() as session:
+        beaten = session.get(SolveRow, row.number)
+    assert changed(database, leases.take_back, beaten, LOST)
+    with database.writing() as session:
+        now = leases.claim(session, SolveRow, row.id, holder)
+    assert now is not None
+    assert now.attempt == 2
+    assert changed(database, leases.complete, lost, structure="a" * 64) is False
+    assert changed(database, leases.complete, now, structure="b" * 64) is True
+    with database.reading() as session:
+        over = session.get(SolveRow, row.number)
+    assert over is not None
+    assert (over.status, over.structure, over.progress, over.claim) == ("succeeded", "b" * 64, 1.0, None)
+
+
+def test_only_the_chosen_jobs_of_one_table_are_canceled(database: Database) -> None:
+    model, captures = add_model(database), [add_capture(database).id for _ in range(2)]
+    solves = [add_solve(database, capture) for capture in captures]
+    with database.writing() as session:
+        leases.cancel(session, SolveRow, SolveRow.capture == captures[0])
+    with database.reading() as session:
+        assert [session.get(SolveRow, solve.number).status for solve in solves] == ["canceled", "queued"]  # type: ignore[union-attr]
+    assert find(database, model.id).status == "queued"

@@ -28,32 +28,32 @@ def test_places_in_the_queue_count_from_the_next_one(database: Database) -> None
     add_model(database, status="running")
     queued = [add_model(database) for _ in range(3)]
     with database.reading() as session:
-        assert queries.queue_positions(session, [queued[2].number, queued[1].number]) == {
+        assert queries.queue_positions(session, ModelRow, [queued[2].number, queued[1].number]) == {
             queued[1].number: 2,
             queued[2].number: 3,
         }
-        assert queries.queue_positions(session, []) == {}
+        assert queries.queue_positions(session, ModelRow, []) == {}
 
 
 def test_the_usual_time_is_the_median_of_late_and_a_guess_before(database: Database) -> None:
     with database.reading() as session:
-        assert queries.usual_seconds(session) > 0
+        assert queries.usual_seconds(session, ModelRow) > 0
     for seconds in (2.0, 3.0, 100.0):
         add_model(database, status="succeeded", started=50.0, finished=50.0 + seconds)
     add_model(database, status="succeeded", finished=5.0)  # answered from another one
     with database.reading() as session:
-        assert queries.usual_seconds(session) == 3.0
+        assert queries.usual_seconds(session, ModelRow) == 3.0
 
 
 def test_only_a_finished_model_answers_for_another(database: Database) -> None:
     for status in ("queued", "running", "failed", "canceled"):
         add_model(database, status=status, fingerprint="same")
     with database.reading() as session:
-        assert queries.finished_model(session, "same", "treestroke") is None
+        assert queries.finished(session, ModelRow, "same", "treestroke") is None
     made = add_model(database, status="succeeded", fingerprint="same")
     with database.reading() as session:
-        found = queries.finished_model(session, "same", "treestroke")
-        assert queries.finished_model(session, "same", "another engine") is None
+        found = queries.finished(session, ModelRow, "same", "treestroke")
+        assert queries.finished(session, ModelRow, "same", "another engine") is None
     assert found is not None
     assert found.id == made.id
 
@@ -74,9 +74,9 @@ def test_blobs_that_rows_refer_to_are_found_by_how_their_names_begin(database: D
 def test_no_question_reads_a_whole_table(database: Database) -> None:
     row = add_model(database)
     with planned() as steps, database.reading() as session:
-        queries.finished_model(session, row.fingerprint, row.engine)
-        queries.usual_seconds(session)
-        queries.queue_positions(session, [row.number])
+        queries.finished(session, ModelRow, row.fingerprint, row.engine)
+        queries.usual_seconds(session, ModelRow)
+        queries.queue_positions(session, ModelRow, [row.number])
         queries.page(session, ModelRow, "10", 20)
         queries.model(session, row.id)
         queries.photo(session, "pho_1")

@@ -1,5 +1,6 @@
 """The web application."""
 
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -16,7 +17,7 @@ from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
 from treestroke.api.metrics import add_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware
-from treestroke.api.routes import events, files, models, photos, sketches, status
+from treestroke.api.routes import captures, events, files, models, photos, sketches, status
 from treestroke.api.routes.page import add_page
 from treestroke.limits import MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_job_message
@@ -29,25 +30,28 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
-from treestroke.wire_requests import ModelRequest, Rename, SketchTraceRequest, TraceRequest
+from treestroke.wire_requests import CaptureRequest, ModelRequest, Rename, SketchTraceRequest, TraceRequest
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
 _FORM_BYTES = 100_000
 """Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
+_CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
+_BODIES = (TraceRequest, SketchTraceRequest, ModelRequest, Rename, CaptureRequest, Problem)
+"""What bodies hold that FastAPI does not read."""
 _REF = "#/components/schemas/{model}"
 
 
 def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     """Return the application; it opens database, queue and tracing processes when it starts.
 
-    At most ``places`` requests may follow models at once.
+    At most ``places`` requests may follow models and captures at once.
     """
     app = FastAPI(
         title="treestroke",
         version=__version__,
-        summary="One photo of a tree and a few strokes, or two sketches of it, become a 3D tree.",
+        summary="One photo of a tree and a few strokes, several photos of it, or two sketches, become a 3D tree.",
         lifespan=_lifespan,
         docs_url=None,
         redoc_url=None,
@@ -56,7 +60,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     )
     app.state.settings, app.state.places = settings, places
     add_handlers(app)
-    for routes in (photos, sketches, models, events, files, status):
+    for routes in (photos, sketches, captures, models, events, files, status):
         app.include_router(routes.router, responses=documented("foreign_host", "internal", "overloaded"))
     add_metrics(app)
     add_page(app)
@@ -95,7 +99,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
 def _limit_of(scope: Scope) -> int:
     """Return how many bytes a request's body may have."""
     path = scope["path"]
-    if path == "/v1/photos":
+    if path == "/v1/photos" or _CAPTURE_PHOTOS.fullmatch(path):
         return MAX_PHOTO_BYTES + _FORM_BYTES
     if path == "/v1/models":
         return MAX_PHOTO_BYTES + MAX_TEXT_BYTES
@@ -123,7 +127,7 @@ def _document(app: FastAPI) -> dict[str, Any]:
     if not known:
         schemas = document["components"]["schemas"]
         _, extra = models_json_schema(
-            [(model, "validation") for model in (TraceRequest, SketchTraceRequest, ModelRequest, Rename, Problem)],
+            [(model, "validation") for model in _BODIES],
             ref_template=_REF,
         )
         schemas.update(extra["$defs"])

@@ -36,6 +36,7 @@ _STATUS = {
     "not_found": 404,
     "photo_not_found": 404,
     "model_not_found": 404,
+    "capture_not_found": 404,
     "file_not_found": 404,
     "method_not_allowed": 405,
     "body_too_slow": 408,
@@ -151,7 +152,7 @@ def _busy(_: Request, error: Overloaded) -> JSONResponse:
 
 
 def _crowded(_: Request, __: TooManyFollowers) -> JSONResponse:
-    return problem("overloaded", "too many models are followed at the moment; try again")
+    return problem("overloaded", "too much is followed at the moment; try again")
 
 
 def _crashed(_: Request, error: Crashed) -> JSONResponse:
@@ -176,7 +177,7 @@ def _storage(request: Request, error: OSError | SQLAlchemyError) -> JSONResponse
 
 def _damaged(_: Request, error: Damaged) -> JSONResponse:
     log.error("file_damaged", file=str(error))
-    detail = "a file that the service kept is damaged or gone; upload the photo or ask for the model again"
+    detail = "a file that the service kept is damaged or gone; upload the photo or ask for its model or cameras again"
     return problem("file_damaged", f"{detail}, and have `treestroke doctor` say what else is")
 
 

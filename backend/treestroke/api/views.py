@@ -1,12 +1,16 @@
-"""Stored photos and models as the API shows them."""
+"""Stored photos, models and captures as the API shows them."""
 
 from datetime import UTC, datetime
 from typing import Any
 
 from treestroke import schemas
+from treestroke.codec.structure import plain_camera, plain_cloud
+from treestroke.core.capture import Structure
+from treestroke.limits import MAX_CLOUD_POINTS
+from treestroke.service.captures import StoredCapture
 from treestroke.service.jobs import GROWTH
 from treestroke.service.stored_models import StoredModel
-from treestroke.store.tables import PhotoRow
+from treestroke.store.tables import CapturePhoto, PhotoRow
 
 
 def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
@@ -49,6 +53,69 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
         started=None if row.started is None else _time(row.started),
         finished=None if row.finished is None else _time(row.finished),
     )
+
+
+def capture_state(capture: StoredCapture) -> schemas.CaptureState:
+    """Return how far a capture is, as the API shows it."""
+    return schemas.CaptureState(**_state(capture))
+
+
+def capture_view(capture: StoredCapture, structure: Structure | None) -> schemas.CaptureInfo:
+    """Return a capture as the API shows it, with what was found of its photos."""
+    shown = _state(capture)
+    shown["photos"] = [capture_photo_view(photo, structure) for photo in capture.photos]
+    if structure is None:
+        return schemas.CaptureInfo(**shown, cameras=[], cloud=None)
+    return schemas.CaptureInfo(
+        **shown,
+        cameras=[schemas.CameraInfo(**plain_camera(one.name, one.camera)) for one in structure.photos],
+        cloud=schemas.CloudInfo(**plain_cloud(structure.cloud, MAX_CLOUD_POINTS)),
+    )
+
+
+def capture_photo_view(row: CapturePhoto, structure: Structure | None = None) -> schemas.CapturePhotoInfo:
+    """Return a photo of a capture as the API shows it, with what was found of it."""
+    unused = {} if structure is None else {one.name: one for one in structure.unused}
+    why = unused.get(row.name)
+    return schemas.CapturePhotoInfo(
+        id=row.id,
+        name=row.name,
+        width=row.width,
+        height=row.height,
+        sha256=row.sha256,
+        focal_px=row.focal_length_px,
+        created=_time(row.created),
+        image=f"/v1/captures/{row.capture}/photos/{row.id}/image",
+        warnings=[schemas.StrokeWarning(**warning) for warning in row.warnings],
+        used=None if structure is None else any(one.name == row.name for one in structure.photos),
+        reason=None if why is None else schemas.Reason(code=why.code, detail=why.detail),
+    )
+
+
+def _state(capture: StoredCapture) -> dict[str, Any]:
+    row, solve = capture.row, capture.solve
+    known: dict[str, Any] = {"engine": None, "started": None, "finished": None, "error": None, "phase": None}
+    if solve is not None:
+        known = {
+            "engine": solve.engine,
+            "started": None if solve.started is None else _time(solve.started),
+            "finished": None if solve.finished is None else _time(solve.finished),
+            "error": schemas.Failure(**solve.error) if solve.error else None,
+            "phase": solve.phase,
+        }
+    return {
+        **known,
+        "id": row.id,
+        "name": row.name,
+        "status": capture.status,
+        "phase_fraction": 0.0 if solve is None else solve.phase_fraction,
+        "progress": 0.0 if solve is None else round(solve.progress, 4),
+        "queue_position": capture.queue_position,
+        "eta_s": None if capture.eta_s is None else round(capture.eta_s, 1),
+        "attempt": 0 if solve is None else solve.attempt,
+        "photo_count": len(capture.photos),
+        "created": _time(row.created),
+    }
 
 
 def _score(report: dict[str, Any] | None) -> dict[str, float] | None:

@@ -35,7 +35,7 @@ MIN_LEAF_SIDE, MAX_LEAF_SIDE = 16, 4096
 """Least and greatest side of a leaf's or a fruit's picture, px."""
 MAX_LOST = 0.002
 """Greatest share of pixels that a truncated photo may lack: under half a row of blocks in 3000 rows of pixels."""
-_DAMAGED = (
+UNREADABLE = (
     *(OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError),
     *(OverflowError, struct.error, zlib.error),
 )
@@ -156,7 +156,7 @@ def decode_cutout(data: bytes, name: str, refusal: type[TreestrokeError]) -> Pic
                 fault = f"{size}, each side must be {MIN_LEAF_SIDE} to {MAX_LEAF_SIDE} px; resize it"
                 raise refusal(f"{name}: {fault}", code=f"{subject}_size")
             picture = np.asarray(image.convert("RGBA"))
-    except _DAMAGED as error:
+    except UNREADABLE as error:
         fault = f"this is not a readable PNG ({_shortened(error)}); save the {subject} as PNG"
         raise refusal(f"{name}: {fault}") from error
     opaque = float((picture[..., 3] >= 255 * ALPHA_CUT).mean())
@@ -230,7 +230,7 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
     if kind is None:
         raise PhotoError(f"{name}: {refusal_of(data)}", code="format_not_allowed")
     ending = ending_of(data) if kind == "JPEG" else None
-    image = _opened(data if ending is None or ending.marked else ending.completed(), kind, name, report)
+    image = opened(data if ending is None or ending.marked else ending.completed(), kind, name, report)
     check_size(image.width, image.height, name)
     try:
         _check_one_frame(image, kind, data, name)
@@ -238,7 +238,7 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
         check_size(image.width, image.height, name)
         if ending is not None and (not ending.marked or ends_flat(image)):
             _check_complete(image, ending, name, warn)
-    except _DAMAGED as error:
+    except UNREADABLE as error:
         raise PhotoError(
             f"{name}: the photo is damaged or cut short ({_shortened(error)}); save or copy it again"
         ) from error
@@ -250,8 +250,14 @@ def _decoded(data: bytes, name: str, report: Report, warn: Warn) -> Picture:
     return _pixels(image, report)
 
 
-def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
-    """Open a photo and read its header."""
+def opened(data: bytes, kind: str, name: str, report: Report = silent) -> Image.Image:
+    """Open a photo of a known kind and read its header.
+
+    Raises
+    ------
+    PhotoError
+        It is damaged, or has too many pixels.
+    """
     try:
         file = io.BufferedReader(WatchedBytes(data, lambda share: report("decode", _READING_SHARE * share)))
         if kind == "HEIF":
@@ -265,7 +271,7 @@ def _opened(data: bytes, kind: str, name: str, report: Report) -> Image.Image:
             f"{name}: the photo has more than {MAX_PIXELS / 1e6:.0f} megapixels, which is not allowed; resize it",
             code="photo_too_many_pixels",
         ) from error
-    except _DAMAGED as error:
+    except UNREADABLE as error:
         fault = f"this {NAMES[kind]} is damaged, or of an unsupported variant; copy it again, or save it as JPEG"
         raise PhotoError(f"{name}: {fault}") from error
 
@@ -338,7 +344,7 @@ def _orientation(image: Image.Image) -> int:
         return 1
     try:
         return int(image.getexif().get(_ORIENTATION, 1))
-    except _DAMAGED:
+    except UNREADABLE:
         return 1
 
 

@@ -6,21 +6,24 @@ monotonic clock. So machines need not agree on the time, and no lease runs out b
 
 import threading
 import time
-from collections.abc import Callable, Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import asdict
+from itertools import islice, zip_longest
 from typing import Any, Generic, TypeVar
 
 import structlog
 from prometheus_client import Counter
 from sqlalchemy import delete, func, select, update
 from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
 
+from treestroke.queue import GROW, SOLVE
 from treestroke.service.failures import problem_of
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import take_back
-from treestroke.store.tables import ModelRow, Worker
+from treestroke.store.leases import AnyJob, take_back
+from treestroke.store.tables import JOBS, ModelRow, SolveRow, Worker
 
 LEASE_SECONDS = 10.0
 RESEND_SECONDS = 5.0
@@ -31,6 +34,8 @@ _OVERDUE_SECONDS = 30.0
 """The service is degraded when the dispatcher has not finished a round within this time."""
 _UNKNOWN_SLOTS = 2
 """Messages that are sent while no worker is known: one may be about to start."""
+TASKS: dict[type[AnyJob], str] = {ModelRow: GROW, SolveRow: SOLVE}
+"""The task by which workers do the jobs of each table."""
 LOST = Counter("treestroke_attempts_lost", "Attempts whose lease ran out.")
 SENT = Counter("treestroke_messages_sent", "Messages sent to the broker.")
 UNSENT = Counter("treestroke_messages_unsent", "Messages that the broker did not accept.")
@@ -55,9 +60,12 @@ class StallDetector(Generic[Key]):
 
 
 class Dispatcher:
-    """A thread of the web process. It keeps no state that a new one could not read from the database."""
+    """A thread of the web process. It keeps no state that a new one could not read from the database.
 
-    def __init__(self, database: Database, blobs: Blobs, send: Callable[[str], None], keep_days: float) -> None:
+    ``send`` takes the name of a task and the id of a job.
+    """
+
+    def __init__(self, database: Database, blobs: Blobs, send: Callable[[str, str], None], keep_days: float) -> None:
         self._database, self._send = database, send
         self._jobs, self._workers = StallDetector[tuple[str, int]](), StallDetector[str]()
         self._sent: dict[str, float] = {}
@@ -106,7 +114,7 @@ class Dispatcher:
     def recover(self) -> None:
         """Take back the jobs whose lease has run out, and remove workers without a heartbeat."""
         with self._database.reading() as session:
-            jobs = {job.id: job for job in session.scalars(select(ModelRow).where(ModelRow.status == "running"))}
+            jobs = {job.id: job for job in _running(session)}
             workers = {worker.id: worker for worker in session.scalars(select(Worker))}
         for id, _ in self._jobs.stalled((((job.id, job.attempt), job.beat) for job in jobs.values()), LEASE_SECONDS):
             job = jobs[id]
@@ -121,25 +129,27 @@ class Dispatcher:
                 session.execute(delete(Worker).where(Worker.id == name, Worker.beat == workers[name].beat))
 
     def dispatch(self) -> None:
-        """Send messages for the next jobs: as many as fill all slots, and one more for each slot."""
+        """Send messages for the next jobs: as many as fill all slots, and one more for each slot.
+
+        The tables take turns, so that no kind of job waits for all of another.
+        """
         if time.monotonic() < self._no_messages_until:
             return
         with self._database.reading() as session:
             slots = session.scalar(select(func.sum(Worker.slots))) or 0
-            running = session.scalar(select(func.count()).where(ModelRow.status == "running")) or 0
+            running = sum(_count(session, table, "running") for table in JOBS)
             wanted = max(2 * slots - running, 0) if slots else _UNKNOWN_SLOTS
-            queued = select(ModelRow.id).where(ModelRow.status == "queued").order_by(ModelRow.number).limit(wanted)
-            next_ones = session.scalars(queued).all()
+            next_ones = dict(_next_ones(session, wanted))
         now = time.monotonic()
         self._sent = {id: at for id, at in self._sent.items() if id in next_ones}
-        for id in next_ones:
+        for id, task in next_ones.items():
             # Without workers one message for each job is enough: more would pile up in the broker.
             due = id not in self._sent or (slots and now - self._sent[id] >= RESEND_SECONDS)
-            if due and not self._send_message(id, now):
+            if due and not self._send_message(task, id, now):
                 return
 
     def sweep(self) -> None:
-        """Remove old models, photos and files that no row refers to."""
+        """Remove old models, photos, captures and files that no row refers to."""
         log.info("swept", **asdict(self._sweeper.sweep()))
 
     def _sweep(self) -> None:
@@ -148,10 +158,10 @@ class Dispatcher:
             _try(self.sweep)
             self._stopped.wait(_SWEEP_SECONDS)
 
-    def _send_message(self, id: str, now: float) -> bool:
+    def _send_message(self, task: str, id: str, now: float) -> bool:
         """Send the message for a job; False if the broker does not accept it."""
         try:
-            self._send(id)
+            self._send(task, id)
         except Exception as error:  # noqa: BLE001 - a broker fails in many ways, and all of them mean: try later
             UNSENT.inc()
             self.broker_accepts, self._no_messages_until = False, time.monotonic() + _BACKOFF_SECONDS
@@ -188,35 +198,63 @@ def record_heartbeat(database: Database, worker: str, slots: int) -> None:
 def holds_jobs(database: Database, worker: str) -> bool:
     """Tell whether a worker has running jobs."""
     with database.reading() as session:
-        held = select(ModelRow.id).where(ModelRow.status == "running", ModelRow.worker == worker).limit(1)
-        return session.scalar(held) is not None
+        return any(True for _ in _running(session, worker))
 
 
 def remove_worker(database: Database, worker: str, error: dict[str, Any] | None = None) -> None:
     """Remove a worker that stops, or that ended by an ``error``, and take back its jobs at once."""
     with database.writing() as session:
         session.execute(delete(Worker).where(Worker.id == worker))
-        for job in session.scalars(
-            select(ModelRow).where(ModelRow.status == "running", ModelRow.worker == worker)
-        ).all():
+        for job in list(_running(session, worker)):
             take_back(session, job, error)
 
 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
     """Return the queue's metrics by name, each with its description."""
     with database.reading() as session:
-        counts = dict(session.execute(select(ModelRow.status, func.count()).group_by(ModelRow.status)).tuples().all())
-        queued = select(ModelRow.created).where(ModelRow.status == "queued").order_by(ModelRow.number).limit(1)
-        oldest = session.scalar(queued)
+        models, solves = (_counts(session, table) for table in (ModelRow, SolveRow))
+        waiting = (
+            select(table.created).where(table.status == "queued").order_by(table.number).limit(1) for table in JOBS
+        )
+        oldest = min((at for query in waiting if (at := session.scalar(query))), default=None)
         slots = session.scalar(select(func.sum(Worker.slots))) or 0
     return {
-        "models_queued": ("Models that are queued.", counts.get("queued", 0)),
-        "models_running": ("Models that are being grown.", counts.get("running", 0)),
-        "models_failed": ("Failed models that are kept.", counts.get("failed", 0)),
-        "models_succeeded": ("Finished models that are kept.", counts.get("succeeded", 0)),
+        "models_queued": ("Models that are queued.", models.get("queued", 0)),
+        "models_running": ("Models that are being grown.", models.get("running", 0)),
+        "models_failed": ("Failed models that are kept.", models.get("failed", 0)),
+        "models_succeeded": ("Finished models that are kept.", models.get("succeeded", 0)),
+        "solves_queued": ("Captures that are queued for their cameras to be found.", solves.get("queued", 0)),
+        "solves_running": ("Captures whose cameras are being found.", solves.get("running", 0)),
         "queue_age_seconds": (
-            "Time since the oldest queued model was requested, in seconds.",
+            "Time since the oldest queued job was requested, in seconds.",
             max(time.time() - oldest, 0.0) if oldest else 0.0,
         ),
-        "worker_slots": ("Models that all running workers can grow at once.", slots),
+        "worker_slots": ("Jobs that all running workers can do at once.", slots),
     }
+
+
+def _running(session: Session, worker: str | None = None) -> Iterator[AnyJob]:
+    """Yield the running jobs of all tables; those of one worker where it is named."""
+    for table in JOBS:
+        held: Any = select(table).where(table.status == "running")
+        yield from session.scalars(held if worker is None else held.where(table.worker == worker))
+
+
+def _next_ones(session: Session, wanted: int) -> Iterator[tuple[str, str]]:
+    """Yield the ids of the jobs to be done next, each with its task."""
+    lines = ([(id, TASKS[table]) for id in session.scalars(_queued(table).limit(wanted))] for table in JOBS)
+    in_turns = (job for turn in zip_longest(*lines) for job in turn if job is not None)
+    yield from islice(in_turns, wanted)
+
+
+def _queued(table: type[AnyJob]) -> Any:
+    return select(table.id).where(table.status == "queued").order_by(table.number)
+
+
+def _count(session: Session, table: type[AnyJob], status: str) -> int:
+    return session.scalar(select(func.count()).where(table.status == status)) or 0
+
+
+def _counts(session: Session, table: type[AnyJob]) -> dict[str, int]:
+    counted = session.execute(select(table.status, func.count()).group_by(table.status))
+    return {status: count for status, count in counted.all()}  # noqa: C416 - rows are no pairs to mypy

@@ -24,8 +24,9 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.data_folder import DataFolderError, check_version, is_open_to_others
 from treestroke.store.database import Database
+from treestroke.store.leases import UNFINISHED
 from treestroke.store.queries import referenced
-from treestroke.store.tables import ModelRow, Worker
+from treestroke.store.tables import JOBS, Worker
 
 _BROKER_SECONDS = 2
 _WEB_SECONDS = 5.0
@@ -287,4 +288,5 @@ def _beats(database: Database) -> dict[str, int]:
 
 def _waiting(database: Database) -> int:
     with database.reading() as session:
-        return session.scalar(select(func.count()).where(ModelRow.status.in_(("queued", "running")))) or 0
+        waiting = (select(func.count()).where(table.status.in_(UNFINISHED)) for table in JOBS)
+        return sum(session.scalar(query) or 0 for query in waiting)

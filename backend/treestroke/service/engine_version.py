@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Iterator, Mapping
 from functools import cache
+from importlib import metadata
 from pathlib import Path
 
 import cv2
@@ -12,9 +13,9 @@ import PIL
 
 from treestroke import __version__
 
-PACKAGES = ("core", "codec")
-MODULES = ("execution", "files", "jobs", "loading", "model", "report")
-"""Modules of ``service`` on the way from the inputs to a tree and its files."""
+PACKAGES = ("core", "codec", "engines")
+MODULES = ("execution", "files", "jobs", "loading", "model", "report", "solving")
+"""Modules of ``service`` on the way from the inputs to a tree and its files, or to a capture's structure."""
 _BELOW = ("limits", "wire_strokes")
 """Modules of the whole package that say what inputs may hold."""
 LIBRARIES = {
@@ -22,6 +23,7 @@ LIBRARIES = {
     "opencv": cv2.__version__,
     "pillow": PIL.__version__,
     "maxflow": maxflow.__version__,
+    "pycolmap": metadata.version("pycolmap"),  # slow to import
 }
 _BUILT = {".pyc", ".pyi", ".so", ".pyd"}
 """Compiled from the sources for one machine, or read by type checkers alone."""

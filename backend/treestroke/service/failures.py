@@ -12,16 +12,16 @@ from treestroke.core.errors import TreestrokeError
 
 _DETAILS = {
     "worker_lost": (
-        "The process that grew the tree ended unexpectedly three times. Try again; if it happens again, report it.",
+        "The process that worked on this ended unexpectedly three times. Try again; if it happens again, report it.",
         True,
     ),
-    "time_limit": ("The tree took longer to grow than this service allows. Try fewer iterations.", False),
-    "out_of_memory": ("The tree needs more memory than this service allows. Try a smaller photo.", False),
+    "time_limit": ("This took longer than the service allows. Try fewer iterations, or fewer photos.", False),
+    "out_of_memory": ("This needs more memory than the service allows. Try a smaller photo, or fewer photos.", False),
     "input_damaged": (
-        "A stored file that the tree is made of is damaged or missing. Upload the photo again and request a new model.",
+        "A stored file that this is made of is damaged or missing. Upload the photo again, then try again.",
         False,
     ),
-    "engine_error": ("The tree could not be grown. This is an error in treestroke; the log has the details.", False),
+    "engine_error": ("This could not be done. It is an error in treestroke; the log has the details.", False),
     "storage_full": ("The service's disk is full. Free some space, then try again.", True),
     "storage_read_only": ("The service may not write to its data folder. Make its user the folder's owner.", True),
     "storage_broken": ("The service's disk or database cannot be read or written. See `treestroke doctor`.", False),

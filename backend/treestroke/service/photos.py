@@ -2,8 +2,10 @@
 
 import hashlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from sqlalchemy import update
 
@@ -17,9 +19,12 @@ from treestroke.store.queries import new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
 from treestroke.store.tables import PhotoRow
 
+Keep = Callable[[Path, bytes, int, int], dict[str, Any]]
+"""Stores a photo: `tracer.keep_photo` and its like."""
+
 
 class NotFound(Exception):
-    """There is no such photo or model."""
+    """There is no such photo, model or capture."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,17 @@ def store_pixels(resources: Resources, content: bytes) -> PhotoRow:
 
     Raises
     ------
+    PhotoError, NoRoom, OSError
+        As `kept_columns`.
+    """
+    return PhotoRow(id=new_id("pho"), **kept_columns(resources, content, tracer.keep_photo))
+
+
+def kept_columns(resources: Resources, content: bytes, keep: Keep) -> dict[str, Any]:
+    """Store a photo by ``keep``, in a tracing process; return the columns of its row.
+
+    Raises
+    ------
     PhotoError
         It cannot be used.
     NoRoom
@@ -66,10 +82,10 @@ def store_pixels(resources: Resources, content: bytes) -> PhotoRow:
         room = resources.photos_bytes - stored_bytes(session)
     folder = resources.blobs.folder.parent
     try:
-        columns = resources.tracers(sha256, tracer.keep_photo, folder, content, resources.photo_bytes, room)
+        columns = resources.tracers(sha256, keep, folder, content, resources.photo_bytes, room)
     except Crashed as error:
         raise PhotoError("photo: it cannot be decoded; save or copy it again") from error
-    return PhotoRow(id=new_id("pho"), sha256=sha256, created=time.time(), **columns)
+    return {"sha256": sha256, "created": time.time(), **columns}
 
 
 def get_photo(resources: Resources, id: str) -> PhotoRow:

@@ -1,6 +1,6 @@
 """An estimate of how far a job is, by the phases that it goes through and about how long each takes."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import accumulate
 
 from treestroke.codec.inputs import SourceName
@@ -19,11 +19,9 @@ _SMALL_FILE = 0.05
 
 
 class ProgressEstimate:
-    """The phases of one model in order; those of growth are repeated for each variant."""
+    """The phases that one job goes through in order, each with about how long it takes."""
 
-    def __init__(self, settings: ModelSettings, source: SourceName = "photo") -> None:
-        each = {**_GROWING, "levels": 0.0 if settings.lod == "none" else _LEVELS, "write": _writing(settings)}
-        phases = [*_READING[source].items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
+    def __init__(self, phases: Sequence[tuple[str, float]]) -> None:
         self._names = [name for name, _ in phases]
         self._ends = list(accumulate(seconds for _, seconds in phases))
         self._at = 0
@@ -33,6 +31,12 @@ class ProgressEstimate:
         self._at = self._names.index(phase, self._at) if phase in self._names[self._at :] else self._at
         start = self._ends[self._at - 1] if self._at else 0.0
         return (start + fraction * (self._ends[self._at] - start)) / self._ends[-1]
+
+
+def model_phases(settings: ModelSettings, source: SourceName) -> list[tuple[str, float]]:
+    """Return the phases of one model; those of growth are repeated for each variant."""
+    each = {**_GROWING, "levels": 0.0 if settings.lod == "none" else _LEVELS, "write": _writing(settings)}
+    return [*_READING[source].items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
 
 
 def _writing(settings: ModelSettings) -> float:

@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import ColumnElement, delete, inspect, select, update
+from sqlalchemy import ColumnElement, delete, exists, inspect, select, update
 
 from treestroke.service.stored_models import RESTORABLE_SECONDS
 from treestroke.store.blobs import Blobs, state_of
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
 from treestroke.store.queries import referenced
-from treestroke.store.tables import ModelRow, PhotoRow, Replay, StoreClock, Stray
+from treestroke.store.tables import CaptureRow, ModelRow, PhotoRow, Replay, SolveRow, StoreClock, Stray
 
 STRAY_SECONDS = 3600.0
 """A file that no row refers to is kept this long: its row may be about to be written."""
@@ -32,6 +32,7 @@ _PAUSE_SECONDS = 0.02
 """Pause between two steps, in which others write."""
 _DAY = 86_400.0
 _FINISHED = ModelRow.status.not_in(UNFINISHED)  # NOT IN keeps SQLite from walking the index of states
+_SETTLED = ~exists().where(SolveRow.capture == CaptureRow.id, SolveRow.status.in_(UNFINISHED))
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,14 @@ class Swept:
 
     models: int
     photos: int
+    captures: int
     blobs: int
 
 
 class Sweeper:
     """Removes deleted rows and unreferenced files, in small steps between which others write.
 
-    Models and photos older than ``keep_days`` are deleted (0: never); ``over`` is set when this process ends.
+    Models, photos and captures older than ``keep_days`` are deleted (0: never); ``over`` is set when this process ends.
     """
 
     def __init__(
@@ -69,7 +71,7 @@ class Sweeper:
         """
         first, age_s = self._last is None, self._advance_clock()
         removed_until = age_s - RESTORABLE_SECONDS
-        for table in (ModelRow, PhotoRow, Replay):
+        for table in (ModelRow, PhotoRow, CaptureRow, Replay):
             self._in_steps(table, update(table).values(seen=age_s), table.seen.is_(None))
         if self._keep_days:
             self._delete_older_than(age_s - self._keep_days * _DAY, age_s)
@@ -79,8 +81,11 @@ class Sweeper:
         photos = self._in_steps(
             PhotoRow, delete(PhotoRow), PhotoRow.deleted.is_not(None), PhotoRow.seen <= removed_until
         )
+        captures = self._in_steps(
+            CaptureRow, delete(CaptureRow), CaptureRow.deleted.is_not(None), CaptureRow.seen <= removed_until, _SETTLED
+        )
         self._in_steps(Replay, delete(Replay), Replay.seen <= removed_until)
-        return Swept(models, photos, sum(self._sweep_folders(age_s, math.inf if first else stray_s)))
+        return Swept(models, photos, captures, sum(self._sweep_folders(age_s, math.inf if first else stray_s)))
 
     def _advance_clock(self) -> float:
         """Advance the store's clock and return its time, seconds.
@@ -99,9 +104,11 @@ class Sweeper:
         return clock.age_s
 
     def _delete_older_than(self, oldest: float, age_s: float) -> None:
-        for table, finished in ((ModelRow, _FINISHED), (PhotoRow, PhotoRow.id.is_not(None))):
+        over: dict[type[ModelRow | PhotoRow | CaptureRow], list[ColumnElement[bool]]]
+        over = {ModelRow: [_FINISHED], PhotoRow: [], CaptureRow: [_SETTLED]}
+        for table, conditions in over.items():
             change = update(table).values(deleted=time.time(), seen=age_s)
-            self._in_steps(table, change, table.deleted.is_(None), table.seen <= oldest, finished)
+            self._in_steps(table, change, table.deleted.is_(None), table.seen <= oldest, *conditions)
 
     def _in_steps(self, table: type[Any], change: Any, *conditions: ColumnElement[bool]) -> int:
         """Change all rows that meet conditions, a few at a time; return their number."""

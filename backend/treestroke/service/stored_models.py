@@ -5,7 +5,7 @@ import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import structlog
 from sqlalchemy import select, update
@@ -48,6 +48,11 @@ class StoredModel:
     eta_s: float | None
 
     @property
+    def id(self) -> str:
+        """The model's id."""
+        return self.row.id
+
+    @property
     def inputs(self) -> Inputs[ModelPart]:
         """The tree's inputs, as stored files."""
         return Inputs.of(self.parts)
@@ -84,7 +89,7 @@ def accept_model(
     photo = sent_photo or (None if order.photo is None else _photo_for(resources, order.photo, key))
     inputs = _store_inputs(resources, order, photo)
     row = _new_row(order, photo, inputs)
-    request = _digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
+    request = digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
     equal = _finished_model(resources, row)
     with resources.database.writing() as session:
         answered = _answered_before(session, key, request)
@@ -130,7 +135,7 @@ def find_changed(database: Database, versions: Mapping[str, Version | None]) -> 
                 ModelRow.id.in_(versions)
             )
         ).all()
-        waits = _waits(session, rows)
+        waits = queries.waits(session, ModelRow, rows)
         changed = [row.id for row in rows if Version(row.seq, *waits[row.number]) != versions[row.id]]
         found = session.scalars(select(ModelRow).where(ModelRow.id.in_(changed))).all() if changed else ()
         removed = dict.fromkeys(versions.keys() - {row.id for row in rows})
@@ -161,7 +166,7 @@ def cancel(database: Database, id: str) -> StoredModel:
     """
     with database.writing() as session:
         _row(session, id)
-        leases.cancel(session, id)
+        leases.cancel(session, ModelRow, ModelRow.id == id)
     return find_model(database, id, deleted=True)
 
 
@@ -175,7 +180,7 @@ def delete(database: Database, id: str) -> None:
     """
     with database.writing() as session:
         _row(session, id)
-        leases.cancel(session, id)
+        leases.cancel(session, ModelRow, ModelRow.id == id)
         session.execute(update(ModelRow).where(ModelRow.id == id).values(deleted=time.time(), seen=None))
 
 
@@ -243,7 +248,7 @@ def _fingerprint(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[Model
     """Return a digest of all that decides over the tree and its report, except the engine."""
     blobs = {name: part.blob for name, part in inputs.parts.items()}
     mended = [] if photo is None else photo.warnings
-    return _digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *mended])
+    return digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *mended])
 
 
 def _answered_before(session: Session, key: str | None, request: str) -> ModelRow | None:
@@ -265,7 +270,7 @@ def _answered_before(session: Session, key: str | None, request: str) -> ModelRo
 def _finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
     """Find a model that this engine has made from equal inputs; None also where one of its files is damaged."""
     with resources.database.reading() as session:
-        equal = queries.finished_model(session, row.fingerprint, row.engine)
+        equal = queries.finished(session, ModelRow, row.fingerprint, row.engine)
         files = {} if equal is None else queries.files(session, [equal.id])[equal.id]
     try:
         for file in files.values():
@@ -295,21 +300,14 @@ def _row(session: Session, id: str, deleted: bool = False) -> ModelRow:
 def _stored(session: Session, rows: Sequence[ModelRow]) -> list[StoredModel]:
     """Read what belongs to rows, by as many queries for many rows as for one."""
     ids = [row.id for row in rows]
-    parts, files, waits = queries.parts(session, ids), queries.files(session, ids), _waits(session, rows)
+    parts, files, waits = (
+        queries.parts(session, ids),
+        queries.files(session, ids),
+        queries.waits(session, ModelRow, rows),
+    )
     return [StoredModel(row, parts[row.id], files[row.id], *waits[row.number]) for row in rows]
 
 
-def _waits(session: Session, rows: Sequence[Any]) -> dict[int, tuple[int | None, float | None]]:
-    """Return each row's place in the queue and the seconds until it is finished, by its number."""
-    places = queries.queue_positions(session, [row.number for row in rows if row.status == "queued"])
-    unfinished = [row for row in rows if row.status not in leases.TERMINAL]
-    usual_s = queries.usual_seconds(session) if unfinished else 0.0
-    waits: dict[int, tuple[int | None, float | None]] = {row.number: (None, None) for row in rows}
-    for row in unfinished:
-        place = places.get(row.number)
-        waits[row.number] = place, usual_s * (1.0 - row.progress + (place or 1) - 1)
-    return waits
-
-
-def _digest(value: object) -> str:
+def digest(value: object) -> str:
+    """Return the SHA-256 of plain values."""
     return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
+from treestroke.codec.exif import exif_focal_px
 from treestroke.codec.image import decode_photo, decode_stored, encode_stored
 from treestroke.codec.refusals import checked, inside
 from treestroke.codec.sketch import sketch_of
@@ -67,6 +68,11 @@ def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, 
     height, width, _ = picture.shape
     kept = {"blob": Blobs(folder).put(stored), "bytes": len(stored), "width": width, "height": height}
     return {**kept, "warnings": [asdict(warning) for warning in mended]}
+
+
+def keep_capture_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
+    """Store a photo of a capture as `keep_photo` does, whose metadata also has the focal length."""
+    return {**keep_photo(folder, content, most, room), "focal_length_px": exif_focal_px(content)}
 
 
 def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] = ()) -> bytes:

@@ -2,18 +2,30 @@
 
 import secrets
 from collections.abc import Collection, Iterable, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from sqlalchemy import func, select, union
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import REFERENCES, File, ModelPart, ModelRow, PhotoRow
+from treestroke.store.leases import TERMINAL, AnyJob, JobRow
+from treestroke.store.tables import (
+    PHOTOS,
+    REFERENCES,
+    CapturePhoto,
+    CaptureRow,
+    File,
+    ModelPart,
+    ModelRow,
+    PhotoRow,
+    SolveRow,
+)
 
 FileRow = TypeVar("FileRow", File, ModelPart)
-Listed = TypeVar("Listed", ModelRow, PhotoRow)
+Listed = TypeVar("Listed", ModelRow, PhotoRow, CaptureRow)
+Kept = TypeVar("Kept", ModelRow, PhotoRow, CaptureRow)
 _RECENT = 20
-"""Finished models by whose times the next one's is estimated."""
-_FIRST_GUESS_S = 5.0
+"""Finished jobs by whose times the next one's is estimated."""
+_FIRST_GUESS_S = {ModelRow: 5.0, SolveRow: 120.0}
 
 
 def new_id(kind: str) -> str:
@@ -23,14 +35,17 @@ def new_id(kind: str) -> str:
 
 def photo(session: Session, id: str, deleted: bool = False) -> PhotoRow | None:
     """Find a photo; a deleted one only where ``deleted``."""
-    found = session.scalars(select(PhotoRow).where(PhotoRow.id == id)).first()
-    return found if found is not None and (deleted or found.deleted is None) else None
+    return _kept(session, PhotoRow, id, deleted)
 
 
 def model(session: Session, id: str, deleted: bool = False) -> ModelRow | None:
     """Find a model; a deleted one only where ``deleted``."""
-    found = session.scalars(select(ModelRow).where(ModelRow.id == id)).first()
-    return found if found is not None and (deleted or found.deleted is None) else None
+    return _kept(session, ModelRow, id, deleted)
+
+
+def capture(session: Session, id: str, deleted: bool = False) -> CaptureRow | None:
+    """Find a capture; a deleted one only where ``deleted``."""
+    return _kept(session, CaptureRow, id, deleted)
 
 
 def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
@@ -44,16 +59,31 @@ def parts(session: Session, models: Iterable[str]) -> dict[str, dict[str, ModelP
 
 
 def page(session: Session, table: type[Listed], cursor: str | None, limit: int) -> tuple[Sequence[Listed], str | None]:
-    """Return a page of models or photos, newest first, and the cursor of the next page: decimal digits."""
+    """Return a page of models, photos or captures, newest first, and the cursor of the next page: decimal digits."""
     query = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
     rows = session.scalars(query if cursor is None else query.where(table.number < int(cursor))).all()
     return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
 
 
-def finished_model(session: Session, fingerprint: str, engine: str) -> ModelRow | None:
-    """Find a model that this engine has finished with the same inputs, settings and seed."""
-    same = ModelRow.fingerprint == fingerprint, ModelRow.engine == engine, ModelRow.status == "succeeded"
-    return session.scalars(select(ModelRow).where(*same).limit(1)).first()
+def finished(session: Session, table: type[JobRow], fingerprint: str, engine: str) -> JobRow | None:
+    """Find a job that this engine has finished with the same fingerprint."""
+    same = table.fingerprint == fingerprint, table.engine == engine, table.status == "succeeded"
+    return session.scalars(select(table).where(*same).limit(1)).first()
+
+
+def capture_photos(session: Session, captures: Iterable[str]) -> dict[str, list[CapturePhoto]]:
+    """Return the photos of captures by their names, by capture."""
+    found: dict[str, list[CapturePhoto]] = {capture: [] for capture in captures}
+    photos = select(CapturePhoto).where(CapturePhoto.capture.in_(found)).order_by(CapturePhoto.name)
+    for row in session.scalars(photos):
+        found[row.capture].append(row)
+    return found
+
+
+def last_solve(session: Session, capture: str, fingerprint: str) -> SolveRow | None:
+    """Find the last time that the cameras of a capture's photos were asked for."""
+    asked = select(SolveRow).where(SolveRow.capture == capture, SolveRow.fingerprint == fingerprint)
+    return session.scalars(asked.order_by(SolveRow.number.desc()).limit(1)).first()
 
 
 def referenced(session: Session, beginning: str = "") -> set[str]:
@@ -66,35 +96,56 @@ def referenced(session: Session, beginning: str = "") -> set[str]:
     return set(session.scalars(union(*columns)))
 
 
-def queue_positions(session: Session, numbers: Collection[int]) -> dict[int, int]:
-    """Return each queued job's place in the queue, by job number: 1 is the next; other jobs are left out."""
+def queue_positions(session: Session, table: type[AnyJob], numbers: Collection[int]) -> dict[int, int]:
+    """Return each queued job's place among those of its table, by number: 1 is the next; other jobs are left out."""
     if not numbers:
         return {}
     places = (
-        select(ModelRow.number, func.row_number().over(order_by=ModelRow.number).label("place"))
-        .where(ModelRow.status == "queued", ModelRow.number <= max(numbers))
+        select(table.number, func.row_number().over(order_by=table.number).label("place"))
+        .where(table.status == "queued", table.number <= max(numbers))
         .subquery()
     )
     query = select(places.c.number, places.c.place).where(places.c.number.in_(numbers))
     return dict(session.execute(query).all())
 
 
-def usual_seconds(session: Session) -> float:
-    """Return the median seconds of the models finished last; one copied from an equal model was never started."""
+def usual_seconds(session: Session, table: type[AnyJob]) -> float:
+    """Return the median seconds of a table's jobs finished last; one answered from an equal one was never started."""
     took = session.scalars(
-        select(ModelRow.finished - ModelRow.started)
-        .where(ModelRow.status == "succeeded", ModelRow.started.is_not(None))
-        .order_by(ModelRow.started.desc())
+        select(table.finished - table.started)
+        .where(table.status == "succeeded", table.started.is_not(None))
+        .order_by(table.started.desc())
         .limit(_RECENT)
     ).all()
     known = sorted(seconds for seconds in took if seconds is not None)
-    return known[len(known) // 2] if known else _FIRST_GUESS_S
+    return known[len(known) // 2] if known else _FIRST_GUESS_S[table]
+
+
+def waits(session: Session, table: type[AnyJob], rows: Sequence[Any]) -> dict[int, tuple[int | None, float | None]]:
+    """Return each job's place in the queue and the seconds until it is finished, by its number.
+
+    A row has at least a job's number, status and progress.
+    """
+    places = queue_positions(session, table, [row.number for row in rows if row.status == "queued"])
+    unfinished = [row for row in rows if row.status not in TERMINAL]
+    usual_s = usual_seconds(session, table) if unfinished else 0.0
+    found: dict[int, tuple[int | None, float | None]] = {row.number: (None, None) for row in rows}
+    for row in unfinished:
+        place = places.get(row.number)
+        found[row.number] = place, usual_s * (1.0 - row.progress + (place or 1) - 1)
+    return found
 
 
 def stored_bytes(session: Session) -> int:
     """Return the bytes that all photos take, deleted but not yet removed ones too; equal pixels count once."""
-    blobs = select(func.max(PhotoRow.bytes).label("bytes")).group_by(PhotoRow.blob).subquery()
-    return session.scalar(select(func.sum(blobs.c.bytes))) or 0
+    blobs = (select(table.blob, func.max(table.bytes).label("bytes")).group_by(table.blob) for table in PHOTOS)
+    each = union(*blobs).subquery()
+    return session.scalar(select(func.sum(each.c.bytes))) or 0
+
+
+def _kept(session: Session, table: type[Kept], id: str, deleted: bool) -> Kept | None:
+    found = session.scalars(select(table).where(table.id == id)).first()
+    return found if found is not None and (deleted or found.deleted is None) else None
 
 
 def _by_model_and_name(session: Session, table: type[FileRow], models: Iterable[str]) -> dict[str, dict[str, FileRow]]:

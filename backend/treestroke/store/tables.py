@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, MetaData, String, false
+from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, MetaData, String, UniqueConstraint, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 _NAMES = {
@@ -35,10 +35,8 @@ class Aged:
     seen: Mapped[float | None]
 
 
-class PhotoRow(Aged, Table):
-    """An uploaded photo: upright sRGB pixels in a blob, without metadata."""
-
-    __tablename__ = "photos"
+class Pixels:
+    """A row of an uploaded photo: upright sRGB pixels in a blob, without metadata."""
 
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
@@ -52,28 +50,29 @@ class PhotoRow(Aged, Table):
     warnings: Mapped[list[dict[str, Any]]] = mapped_column(insert_default=list, server_default="[]")
     """What was mended when the photo was read: code, stroke and detail of each."""
     created: Mapped[float]
+
+
+class PhotoRow(Pixels, Aged, Table):
+    """A photo by itself."""
+
+    __tablename__ = "photos"
+
     deleted: Mapped[float | None]
 
 
-class ModelRow(Aged, Table):
-    """A tree that was asked for, is being made, or is made. This row is the job; a message only says that it waits.
+class Job:
+    """A row that is work for a worker: it waits, is under way, or is done. A message only says that it waits.
 
     ``attempt`` is the fence: each change made by a worker names its attempt, and is refused once another attempt has
     the job. ``beat`` rises while that attempt lives. ``seq`` rises with every change that viewers are shown.
     """
 
-    __tablename__ = "models"
-
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
-    name: Mapped[str] = mapped_column(String(200))
-    photo: Mapped[str | None] = mapped_column(String(40))
-    settings: Mapped[dict[str, Any]]
-    seed: Mapped[int] = mapped_column(BigInteger)
     engine: Mapped[str] = mapped_column(String(40))
-    """Engine of the worker that grew it or grows it; before that, of the web process."""
+    """Engine of the worker that did it or does it; before that, of the web process."""
     fingerprint: Mapped[str] = mapped_column(String(64))
-    """Digest of inputs, settings and seed: models with equal ones have equal trees."""
+    """Digest of all that decides over the result, except the engine: equal ones have equal results."""
     status: Mapped[str] = mapped_column(String(12))
     phase: Mapped[str | None] = mapped_column(String(12))
     phase_fraction: Mapped[float]
@@ -85,11 +84,22 @@ class ModelRow(Aged, Table):
     worker: Mapped[str | None] = mapped_column(String(120))
     cancel: Mapped[bool] = mapped_column(server_default=false())
     error: Mapped[dict[str, Any] | None]
-    report: Mapped[dict[str, Any] | None]
-    preview_seq: Mapped[int | None]
     created: Mapped[float]
     started: Mapped[float | None]
     finished: Mapped[float | None]
+
+
+class ModelRow(Job, Aged, Table):
+    """A tree that was asked for, is being made, or is made."""
+
+    __tablename__ = "models"
+
+    name: Mapped[str] = mapped_column(String(200))
+    photo: Mapped[str | None] = mapped_column(String(40))
+    settings: Mapped[dict[str, Any]]
+    seed: Mapped[int] = mapped_column(BigInteger)
+    report: Mapped[dict[str, Any] | None]
+    preview_seq: Mapped[int | None]
     deleted: Mapped[float | None]
 
 
@@ -113,6 +123,43 @@ class File(Table):
     name: Mapped[str] = mapped_column(String(40), primary_key=True)
     blob: Mapped[str] = mapped_column(String(64))
     bytes: Mapped[int]
+
+
+class CaptureRow(Aged, Table):
+    """Photos of one tree from several places; ``seq`` rises with every change of their number."""
+
+    __tablename__ = "captures"
+
+    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(40), unique=True)
+    name: Mapped[str] = mapped_column(String(200))
+    seq: Mapped[int]
+    created: Mapped[float]
+    deleted: Mapped[float | None]
+
+
+class CapturePhoto(Pixels, Table):
+    """A photo of a capture, whose name none of its others has."""
+
+    __tablename__ = "capture_photos"
+    __table_args__ = (UniqueConstraint("capture", "name"),)
+
+    capture: Mapped[str] = mapped_column(ForeignKey("captures.id", ondelete="CASCADE"))
+    name: Mapped[str] = mapped_column(String(200))
+    sent_name: Mapped[str] = mapped_column(String(200))
+    """The name it was sent by: ``name`` unless another photo of the capture had that already."""
+    focal_length_px: Mapped[float | None]
+    """Focal length, px, as its camera wrote it."""
+
+
+class SolveRow(Job, Table):
+    """Finding the cameras of a capture's photos; it belongs to those photos, told by its fingerprint."""
+
+    __tablename__ = "solves"
+
+    capture: Mapped[str] = mapped_column(ForeignKey("captures.id", ondelete="CASCADE"))
+    structure: Mapped[str | None] = mapped_column(String(64))
+    """Blob of what was found."""
 
 
 class Replay(Aged, Table):
@@ -160,17 +207,25 @@ class Stray(Table):
     """When it was first seen in this state, by the store's own clock."""
 
 
-REFERENCES = (PhotoRow.blob, ModelPart.blob, File.blob)
+JOBS: tuple[type[ModelRow] | type[SolveRow], ...] = (ModelRow, SolveRow)
+"""Every table whose rows are work for a worker."""
+PHOTOS: tuple[type[PhotoRow] | type[CapturePhoto], ...] = (PhotoRow, CapturePhoto)
+"""Every table of uploaded photos."""
+REFERENCES = (PhotoRow.blob, ModelPart.blob, File.blob, CapturePhoto.blob, SolveRow.structure)
 """Every column that names a blob."""
 
-Index("ix_models_queue", ModelRow.status, ModelRow.number)
-Index("ix_models_fingerprint", ModelRow.fingerprint, ModelRow.engine, ModelRow.status)
-Index("ix_models_times", ModelRow.status, ModelRow.started, ModelRow.finished)
-for _table in (ModelRow, PhotoRow):
+for _job in JOBS:
+    Index(f"ix_{_job.__tablename__}_queue", _job.status, _job.number)
+    Index(f"ix_{_job.__tablename__}_fingerprint", _job.fingerprint, _job.engine, _job.status)
+    Index(f"ix_{_job.__tablename__}_times", _job.status, _job.started, _job.finished)
+for _photos in PHOTOS:
+    Index(f"ix_{_photos.__tablename__}_stored", _photos.blob, _photos.bytes)
+    Index(f"ix_{_photos.__tablename__}_blob", _photos.blob)
+Index("ix_solves_capture", SolveRow.capture, SolveRow.fingerprint, SolveRow.number)
+Index("ix_solves_structure", SolveRow.structure)
+for _table in (ModelRow, PhotoRow, CaptureRow):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
-Index("ix_photos_stored", PhotoRow.blob, PhotoRow.bytes)
 Index("ix_replays_seen", Replay.seen)
-Index("ix_photos_blob", PhotoRow.blob)
 Index("ix_model_parts_blob", ModelPart.blob)
 Index("ix_files_blob", File.blob)

@@ -29,7 +29,9 @@ def _model(resources: ResourcesOf, id: ModelId) -> StoredModel:
     return stored_models.find_model(resources.database, id)
 
 
-async def _follower(watcher: WatcherOf, model: Annotated[StoredModel, Depends(_model)]) -> AsyncIterator[Follower]:
+async def _follower(
+    watcher: WatcherOf, model: Annotated[StoredModel, Depends(_model)]
+) -> AsyncIterator[Follower[StoredModel]]:
     """Yield a follower of the model; before the stream begins, while the response can still be a problem."""
     with watcher.follow(model) as follower:
         yield follower
@@ -48,7 +50,7 @@ def _growth(resources: Resources, model: StoredModel) -> str | None:
 async def follow_model(
     resources: ResourcesOf,
     model: Annotated[StoredModel, Depends(_model)],
-    follower: Annotated[Follower, Depends(_follower)],
+    follower: Annotated[Follower[StoredModel], Depends(_follower)],
     last_event_id: Annotated[str | None, Header(max_length=40)] = None,
 ) -> AsyncIterator[ServerSentEvent]:
     """Follow a model: ``snapshot``, then ``progress``, one ``preview``, and ``succeeded``, ``failed`` or ``canceled``.

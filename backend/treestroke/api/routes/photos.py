@@ -1,50 +1,21 @@
 """Photos and their traces."""
 
 from http import HTTPStatus
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import APIRouter, Depends, Request, Response
+from fastapi import APIRouter, Request, Response
 from fastapi.responses import FileResponse
-from starlette.datastructures import UploadFile
 
-from treestroke.api.deps import (
-    Cursor,
-    JsonBody,
-    Limit,
-    PhotoId,
-    ResourcesOf,
-    check_length,
-    form_of,
-    leads_to,
-    media_type,
-)
-from treestroke.api.errors import BODY, Refusal, documented
+from treestroke.api.deps import Cursor, JsonBody, Limit, PhotoId, ResourcesOf, leads_to
+from treestroke.api.errors import BODY, documented
 from treestroke.api.sending import file_responses, send_blob
+from treestroke.api.uploads import UPLOAD_BODY, UploadOf
 from treestroke.api.views import photo_view
-from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.schemas import PhotoInfo, PhotoPage, TraceAnswer
 from treestroke.service import photos
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/photos", tags=["photos"])
-_RAW = (*MEDIA_TYPES, "image/*", "application/octet-stream")
-_BINARY = {"type": "string", "format": "binary"}
-_UPLOAD: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["file"],
-                    "properties": {"file": _BINARY},
-                    "additionalProperties": False,
-                }
-            },
-            **{kind: {"schema": _BINARY} for kind in _RAW},
-        },
-    }
-}
 _TRACE: dict[str, Any] = {
     "requestBody": {
         "required": True,
@@ -60,23 +31,6 @@ _NEXT = {"next_page": {"operationId": "list_photos", "parameters": {"cursor": "$
 _LOCATION = {"schema": {"type": "string", "pattern": "^/v1/photos/pho_[0-9a-f]{24}$"}, "description": "the photo"}
 
 
-async def _photo_bytes(request: Request) -> bytes:
-    """Return an upload: the field ``file`` of a form, or the whole body."""
-    kind = media_type(request)
-    if kind != "multipart/form-data":
-        # A picture is judged by its bytes, not by its media type.
-        if not kind.startswith("image/") and kind not in (*_RAW, ""):
-            raise Refusal(
-                "unsupported_media_type", f"send a form with the field file, or the photo itself as {' or '.join(_RAW)}"
-            )
-        return await request.body()
-    async with form_of(request, max_files=1, max_fields=0) as form:
-        file = form.get("file")
-        if not isinstance(file, UploadFile):
-            raise Refusal("bad_request", "the form has no file in the field file; send the photo there")
-        return await file.read()
-
-
 @router.post(
     "",
     status_code=HTTPStatus.CREATED,
@@ -88,14 +42,11 @@ async def _photo_bytes(request: Request) -> bytes:
         },
         **documented(*BODY, "storage_full"),
     },
-    openapi_extra=_UPLOAD,
+    openapi_extra=UPLOAD_BODY,
 )
-def add_photo(
-    resources: ResourcesOf, content: Annotated[bytes, Depends(_photo_bytes)], response: Response
-) -> PhotoInfo:
+def add_photo(resources: ResourcesOf, upload: UploadOf, response: Response) -> PhotoInfo:
     """Upload a photo: JPEG, PNG, WebP, HEIC, AVIF or TIFF, one frame."""
-    check_length(content)
-    row = photos.add_photo(resources, content)
+    row = photos.add_photo(resources, upload.content)
     response.headers["Location"] = f"/v1/photos/{row.id}"
     return photo_view(row)
 

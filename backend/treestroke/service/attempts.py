@@ -1,0 +1,152 @@
+"""One attempt of a job: claim its row, hold its lease, do the work, publish its result or record why not."""
+
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Self
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from treestroke.core.errors import TreestrokeError
+from treestroke.service.engine_version import engine_version
+from treestroke.service.failures import code_of, problem_of, problem_of_input
+from treestroke.service.progress_estimate import ProgressEstimate
+from treestroke.store.blobs import Damaged
+from treestroke.store.database import Database
+from treestroke.store.leases import AnyJob, Holder, JobRow, claim, end, heartbeat
+
+_BEAT_SECONDS = 2.0
+_LOOK_SECONDS = 0.5
+log = structlog.get_logger()
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A job for a worker: the job's id, a token of this attempt, the worker's id, and the time limit."""
+
+    job: str
+    token: str
+    worker: str
+    seconds: float
+
+
+class Canceled(Exception):
+    """The person has canceled the job."""
+
+
+class Superseded(Exception):
+    """Another attempt has the job by now."""
+
+
+class TimeLimit(Exception):
+    """The job takes longer than is allowed."""
+
+
+class Heartbeat:
+    """Renews a job's lease from a thread of its own, records its progress, and notices when it is to stop."""
+
+    def __init__(self, database: Database, job: AnyJob, estimate: ProgressEstimate, seconds: float) -> None:
+        self._database, self._job, self._estimate = database, job, estimate
+        self._deadline = time.monotonic() + seconds
+        self._state: tuple[str | None, float, float] = (None, 0.0, 0.0)
+        self._stop_by: type[Exception] | None = None
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="heartbeat", daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def report(self, phase: str, fraction: float) -> None:
+        """Record the progress of the work, and interrupt it where it is to stop.
+
+        Raises
+        ------
+        Canceled, Superseded, TimeLimit
+            The work is to end here.
+        """
+        if self._stop_by is not None:
+            raise self._stop_by
+        if time.monotonic() > self._deadline:
+            raise TimeLimit
+        self._state = phase, fraction, self._estimate.progress(phase, fraction)
+
+    def _run(self) -> None:
+        shown, last_beat, pause = self._state, 0.0, 0.0
+        while not self._over.wait(pause):
+            pause = _LOOK_SECONDS
+            if self._state == shown and time.monotonic() - last_beat < _BEAT_SECONDS and not self._is_to_stop():
+                continue
+            state = self._state
+            # A database that is busy or full for a moment costs one beat; the lease outlasts several.
+            with suppress(SQLAlchemyError):
+                with self._database.autocommitting() as session:
+                    stop = heartbeat(session, self._job, *state)
+                self._stop_by = {None: Superseded, True: Canceled, False: None}[stop]
+                shown, last_beat = state, time.monotonic()
+
+    def _is_to_stop(self) -> bool:
+        """Return whether the row says that this attempt must stop."""
+        with suppress(SQLAlchemyError), self._database.reading() as session:
+            row: AnyJob | None = session.get(type(self._job), self._job.number)  # type: ignore[assignment]
+            return row is None or row.cancel or row.attempt != self._job.attempt or row.status != "running"
+        return False
+
+
+def carry_out(database: Database, table: type[JobRow], assignment: Assignment, work: Callable[[JobRow], None]) -> None:
+    """Do a job, unless another worker does or did; ``work`` publishes its result, else why there is none is recorded.
+
+    ``work`` may raise what `Heartbeat.report` raises.
+    """
+    holder = Holder(assignment.token, assignment.worker, engine_version())
+    with database.writing() as session:
+        job = claim(session, table, assignment.job, holder)
+    if job is None:
+        log.info("job_message_ignored", job=assignment.job)
+        return
+    with structlog.contextvars.bound_contextvars(job=job.id, attempt=job.attempt):
+        log.info("job_started")
+        try:
+            work(job)
+        except Superseded:
+            log.warning("job_superseded")
+        except Canceled:
+            _end(database, job, "canceled", None)
+        except TimeLimit:
+            _end(database, job, "failed", problem_of("time_limit"))
+        except TreestrokeError as error:
+            _end(database, job, "failed", problem_of_input(error))
+        except Damaged as error:
+            log.error("file_damaged", file=str(error))
+            _end(database, job, "failed", problem_of("input_damaged"))
+        except SQLAlchemyError as error:
+            # Nothing can be written now; the lease runs out, and the job is queued again.
+            log.error("database_failed", error=str(error))
+        except Exception as error:
+            code = code_of(error)
+            log.exception("job_broke", code=code)
+            _end(database, job, "failed", problem_of(code))
+
+
+def publish(database: Database, job: AnyJob, succeed: Callable[[Session], bool]) -> None:
+    """Publish a job's result by ``succeed``, which returns False where the attempt was taken back or is to stop."""
+    with database.writing() as session:
+        published = succeed(session)
+        # Not published: it was canceled at the last moment, or another attempt has the job.
+        canceled = not published and end(session, job, "canceled", None)
+    log.info("job_succeeded" if published else "job_canceled" if canceled else "job_superseded")
+
+
+def _end(database: Database, job: AnyJob, status: Any, error: dict[str, Any] | None) -> None:
+    with database.writing() as session:
+        ended = end(session, job, status, error)
+    log.info(f"job_{status}" if ended else "job_superseded", code=error["code"] if error else None)
