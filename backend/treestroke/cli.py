@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
-_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear", "trunk_unclear", *UNUSED_CODES)
+_PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear", "trunk_unclear")
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
 
 
@@ -235,7 +235,7 @@ def _make(options: argparse.Namespace) -> None:
 
 def _print_warnings(warnings: Sequence[Mapping[str, str]]) -> None:
     for warning in warnings:
-        if warning["code"] in _PRINTED:
+        if warning["code"] in _PRINTED or warning["stroke"].startswith("photos/"):
             print(f"treestroke: {warning['stroke']}: {warning['detail']}", file=sys.stderr)
 
 
@@ -351,7 +351,9 @@ def _photos(named: Sequence[str]) -> list[Path]:
     """
     found: list[Path] = []
     for path in map(Path, named):
-        inside = sorted(file for file in path.iterdir() if file.suffix.lower() in PHOTO_ENDINGS) if path.is_dir() else [path]
+        inside = (
+            sorted(file for file in path.iterdir() if file.suffix.lower() in PHOTO_ENDINGS) if path.is_dir() else [path]
+        )
         if not inside:
             raise UsageError(f"{path}: there is no photo in this folder; name one that has {ACCEPTED_FORMATS}")
         found += inside

@@ -4,7 +4,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from treestroke import schemas
-from treestroke.codec.structure import plain_camera, plain_cloud
+from treestroke.codec.cameras import plain_photo_camera
+from treestroke.codec.structure import plain_cloud
 from treestroke.core.capture import Structure
 from treestroke.limits import MAX_CLOUD_POINTS
 from treestroke.service.captures import StoredCapture
@@ -68,7 +69,7 @@ def capture_view(capture: StoredCapture, structure: Structure | None) -> schemas
         return schemas.CaptureInfo(**shown, cameras=[], cloud=None)
     return schemas.CaptureInfo(
         **shown,
-        cameras=[schemas.CameraInfo(**plain_camera(one.name, one.camera)) for one in structure.photos],
+        cameras=[schemas.CameraInfo(**plain_photo_camera(one.name, one.camera)) for one in structure.photos],
         cloud=schemas.CloudInfo(**plain_cloud(structure.cloud, MAX_CLOUD_POINTS)),
     )
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import OrthographicCamera
-from treestroke.core.pipeline.grown_tree import CapturedViews, LiveTree
+from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.skeleton.skeleton import Skeleton
 
 _DIGITS = 2
@@ -36,20 +36,6 @@ def plain_camera(camera: OrthographicCamera) -> dict[str, Any]:
         "metres_per_pixel": camera.metres_per_pixel,
         "root": list(camera.root_px),
     }
-
-
-def plain_cameras(captured: CapturedViews) -> list[dict[str, Any]]:
-    """Return the cameras of a capture's photos as they stand in reports and in the GLB's ``extras.cameras``."""
-    return [
-        {
-            "photo": name,
-            "camera_from_world": camera.camera_from_world.tolist(),
-            "focal_px": camera.focal_px,
-            "principal_px": list(camera.principal_px),
-            "size_px": [camera.width, camera.height],
-        }
-        for name, camera in zip(captured.names, captured.cameras, strict=True)
-    ]
 
 
 def plain_grown(tree: LiveTree) -> dict[str, Any]:

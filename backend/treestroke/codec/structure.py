@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from treestroke.codec.cameras import plain_photo_camera
 from treestroke.codec.json_text import read_json
 from treestroke.codec.refusals import checked
 from treestroke.core.capture import PointCloud, SolvedPhoto, Structure, UnusedPhoto
@@ -33,7 +34,7 @@ _Row = tuple[_Finite, _Finite, _Finite, _Finite]
 
 
 class _Photo(Wire):
-    """A photo whose camera was found, as `plain_camera` gives it, and the distortion of its lens."""
+    """A photo whose camera was found, as `plain_photo_camera` gives it, and the distortion of its lens."""
 
     photo: str
     camera_from_world: tuple[_Row, _Row, _Row]
@@ -75,7 +76,8 @@ def encode_structure(structure: Structure) -> bytes:
     value = {
         "version": VERSION,
         "photos": [
-            {**plain_camera(photo.name, photo.camera), "radial": float(photo.radial)} for photo in structure.photos
+            {**plain_photo_camera(photo.name, photo.camera), "radial": float(photo.radial)}
+            for photo in structure.photos
         ],
         "unused": [{"name": one.name, "code": one.code, "detail": one.detail} for one in structure.unused],
         "cloud": {
@@ -107,17 +109,6 @@ def decode_structure(text: bytes) -> Structure:
     except ValueError as error:
         raise StructureError(f"the structure is damaged ({error}); {_MEND}") from error
     return Structure(photos, cloud, tuple(UnusedPhoto(one.name, one.code, one.detail) for one in file.unused))
-
-
-def plain_camera(name: str, camera: PerspectiveCamera) -> dict[str, Any]:
-    """Return the camera of the photo of a ``name`` as plain values: pose by rows, lengths in px."""
-    return {
-        "photo": name,
-        "camera_from_world": camera.camera_from_world.tolist(),
-        "focal_px": float(camera.focal_px),
-        "principal_px": [float(one) for one in camera.principal_px],
-        "size_px": [camera.width, camera.height],
-    }
 
 
 def plain_cloud(cloud: PointCloud, most: int) -> dict[str, Any]:

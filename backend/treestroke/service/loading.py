@@ -9,12 +9,17 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
+from treestroke.codec.exif import exif_focal_px
 from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, ignore_warning
 from treestroke.codec.inputs import Inputs, part_of
 from treestroke.codec.project import Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
+from treestroke.codec.structure import decode_structure
+from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
+from treestroke.core.imaging.opacity import over_white
+from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
@@ -129,7 +134,7 @@ def load_captured(name: str, photo: PhotoLike, report: Report = silent, warn: Wa
         if isinstance(photo, np.ndarray):
             return captured_photo(name, over_white(load_photo(photo, report, warn)), None)
         content, _ = read_part("photo", photo)
-        return captured_photo(name, over_white(decode_photo(content, name, report, warn)), focal_share(content))
+        return captured_photo(name, over_white(decode_photo(content, name, report, warn)), exif_focal_px(content))
     except PhotoError as error:
         raise error if str(error).startswith(name) else error.within(name) from error
 
@@ -185,7 +190,7 @@ def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore
             case "views":
                 return load_views(inputs.parts[name])
             case "structure":
-                return decode_structure(*read_part(name, inputs.parts[name]))
+                return decode_structure(read_part(name, inputs.parts[name])[0])
             case "strokes":
                 return load_strokes(inputs.parts[name])
             case "sketch":

@@ -10,6 +10,7 @@ import numpy as np
 from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
+from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, ignore_grown
@@ -251,9 +252,15 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
-    structure = parts["structure"] if "structure" in parts else solve_apart(photos, report)
+    structure = parts["structure"] if "structure" in parts else _solved(photos, report)
     evidence = read_views(photos, structure, parts["views"], settings.height, report)
     return lambda rng: grow_views(evidence, settings, rng, report)
+
+
+def _solved(photos: Sequence[CapturedPhoto], report: Report) -> Structure:
+    from treestroke.engines.structure import solve  # slow to import, and only many photos need it
+
+    return solve(photos, report)
 
 
 def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:

@@ -7,7 +7,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from treestroke.codec.skeleton import plain_cameras
+from treestroke.codec.cameras import plain_cameras
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.silhouette import overlap, silhouette

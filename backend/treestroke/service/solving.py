@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 from treestroke.codec.image import decode_stored
 from treestroke.codec.structure import encode_structure
-from treestroke.core.capture import CapturedPhoto, Structure
+from treestroke.core.capture import Structure
 from treestroke.core.imaging.opacity import over_white
+from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.progress import Report
 from treestroke.service.attempts import Assignment, Canceled, Heartbeat, carry_out, publish
 from treestroke.service.captures import fingerprint
@@ -44,8 +45,7 @@ def _find(blobs: Blobs, photos: Sequence[CapturePhoto], report: Report) -> Struc
     captured = []
     for index, photo in enumerate(photos):
         report("decode", index / len(photos))
-        captured.append(
-            CapturedPhoto(photo.name, over_white(decode_stored(blobs.get(photo.blob))), photo.focal_length_px)
-        )
+        picture = over_white(decode_stored(blobs.get(photo.blob)))
+        captured.append(captured_photo(photo.name, picture, photo.focal_length_px))
     with one_thread():
         return solve(captured, report)

@@ -4,11 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from treestroke.codec.cameras import plain_cameras
 from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
 from treestroke.codec.gltf.rig import add_wind
-from treestroke.codec.skeleton import plain_camera, plain_cameras
+from treestroke.codec.skeleton import plain_camera
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.pipeline.grown_tree import CapturedViews

@@ -1,27 +1,35 @@
 """The first half of the recipe for many photos: from photos whose cameras are known to a grown tree (Tan et al. 2007)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, Structure, TreeMatte
-from treestroke.core.carve.measured import dense_cloud, measured_crown
+from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, SolvedPhoto, Structure, TreeMatte
+from treestroke.core.carve.measured import measured_crown
+from treestroke.core.carve.visual_hull import visual_hull
 from treestroke.core.errors import StrokesError
-from treestroke.core.geometry.camera import Camera, OrthographicCamera, PerspectiveCamera
+from treestroke.core.geometry.camera import Camera, OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.measured_crown import MeasuredCrown
 from treestroke.core.geometry.similarity import Similarity
+from treestroke.core.grow.replication import CrownBounds, ReplicationParams, grow_hidden
+from treestroke.core.lift.seen_branches import SeenBranches, seen_branches
 from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
+from treestroke.core.pipeline.growing import DOUBTFUL
 from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.tree_frame import in_frame, shown_height, tree_frame
+from treestroke.core.pipeline.taken import Taken
+from treestroke.core.pipeline.tree_frame import cloud_in_frame, height_above, in_frame, tree_frame
 from treestroke.core.pipeline.view_appearance import view_appearance
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.view_mattes import view_mattes
-from treestroke.core.stroke_rules import mend_strokes
-from treestroke.core.strokes import CaptureStrokes, Stroke, Strokes, StrokeWarning
+from treestroke.core.stroke_rules import NO_TRUNK, mend_strokes
+from treestroke.core.strokes import CameraDistance, CaptureStrokes, LengthInPhoto, Stroke, Strokes, StrokeWarning
 from treestroke.core.survey.measures import Scale, Stature
+from treestroke.core.types import Floats
+from treestroke.core.undistortion import undistorted, undistorted_points
 
 SHOT_SIDE = 1280
 """Longest side, px, of the pictures that a tree is measured in."""
@@ -105,9 +113,22 @@ def read_views(
     if drawn.scale is None:
         larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
         shots, cloud = tuple(in_frame(shot, larger) for shot in shots), cloud_in_frame(cloud, larger)
-    front = names.index(drawn.first)
     report("carve", 0.0)
-    ...
+    hull = visual_hull(shots, mattes)
+    crown = measured_crown(hull, shots, mattes, report)
+    report("branches", 0.0)
+    seen = seen_branches(shots, mattes, cloud, report)
+    return ViewsEvidence(
+        photos=used,
+        structure=structure,
+        shots=shots,
+        mattes=mattes,
+        cloud=cloud,
+        crown=crown,
+        seen=seen,
+        front=read_photo(shots[names.index(drawn.first)].picture, drawn.by_photo[drawn.first]),
+        known=drawn.scale is not None,
+    )
 
 
 def _mended(photos: Sequence[CapturedPhoto], drawn: CaptureStrokes) -> CaptureStrokes:
@@ -153,9 +174,7 @@ def _on_shots(
         if name not in carriers:
             fault = f"no camera was found for {name}; draw on a photo that is used, such as {shots[0].name}"
             raise StrokesError.at(place, fault, "photo_not_used")
-    by_photo = {
-        name: _moved(strokes, carriers[name]) for name, strokes in drawn.by_photo.items() if name in carriers
-    }
+    by_photo = {name: _moved(strokes, carriers[name]) for name, strokes in drawn.by_photo.items() if name in carriers}
     scale = drawn.scale
     if isinstance(scale, LengthInPhoto):
         points = carriers[scale.photo](scale.length.points)
@@ -216,7 +235,9 @@ def grow_views(
     silhouettes = tuple(
         Silhouette[Camera](matte.tree | matte.hidden, shot.camera) for shot, matte in zip(shots, mattes, strict=True)
     )
-    grown = grow_hidden(evidence.seen, evidence.crown, silhouettes, settings.iterations, rng, report)
+    bounds = CrownBounds(evidence.crown, silhouettes, float(evidence.crown.bounds[1, 1]))
+    params = ReplicationParams(settings.iterations)
+    grown = grow_hidden(evidence.seen.skeleton, bounds, evidence.seen.leaf_points, params, rng, report)
     appearance = view_appearance(shots, mattes, grown.skeleton, taken.foliage != "bare")
     camera = _front_camera(evidence.crown)
     scale = Scale(float(camera.metres_from_pixels(1.0)), evidence.known, 0.0)
@@ -227,9 +248,7 @@ def grow_views(
         volume=evidence.crown,
         appearance=appearance,
         camera=camera,
-        expected=tuple(
-            Silhouette[Camera](matte.tree, shot.camera) for shot, matte in zip(shots, mattes, strict=True)
-        ),
+        expected=tuple(Silhouette[Camera](matte.tree, shot.camera) for shot, matte in zip(shots, mattes, strict=True)),
         stature=Stature(top, scale, True, evidence.crown),
         score={},
         reading=_reading(evidence, taken),
