@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from tests.core.carve.walk import Ball, ball_points, camera_at, matte, sees, sees_post, shot, walk
 
+from treestroke.core.carve.carving import carved
 from treestroke.core.carve.measured import measured_crown
-from treestroke.core.carve.visual_hull import visual_hull
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.measured_crown import MeasuredCrown
 from treestroke.core.progress import silent
@@ -20,7 +20,7 @@ def crown_of(cameras: list[PerspectiveCamera], leaves: list[Ball], wood: list[Ba
         post = sees_post(camera, TOP) | (sees(camera, wood) if wood else False)
         mattes.append(matte(sees(camera, leaves) if leaves else np.zeros_like(post), post))
     shots = [shot(camera) for camera in cameras]
-    return measured_crown(visual_hull(shots, mattes), shots, mattes, silent)
+    return measured_crown(carved(shots, mattes, silent), shots)
 
 
 def test_leaves_fill_the_crown_and_not_the_trunk() -> None:
@@ -54,10 +54,3 @@ def test_sides_that_no_shot_was_taken_from_are_guessed_and_kept_in_bounds() -> N
     assert crown.guessed_at(behind).all()
     assert not crown.guessed_at(before).any()
     assert crown.bounds[0, 2] > -1.6
-
-
-def test_each_shot_needs_its_matte() -> None:
-    cameras = walk(6, 360)
-    shots, mattes = [shot(camera) for camera in cameras], [matte(sees(camera, [CROWN])) for camera in cameras]
-    with pytest.raises(ValueError, match="a matte for each shot"):
-        measured_crown(visual_hull(shots, mattes), shots, mattes[:-1], silent)

@@ -12,18 +12,23 @@ OTHER: Ball = ((0.2, 3.0, 2.3), 0.5)
 LIMB: list[Ball] = [((0.2, 3.0, z), 0.06) for z in np.arange(1.0, 1.9, 0.05)]
 
 
+@pytest.fixture(scope="module")
+def plain() -> VisualHull:
+    """The hull of the crown alone."""
+    return hull_of([CROWN], count=16)
+
+
 def hull_of(balls: list[Ball], count: int = 12, changed: dict[int, TreeMatte] | None = None) -> VisualHull:
     cameras = walk(count, 360)
     mattes = [(changed or {}).get(index, matte(sees(camera, balls))) for index, camera in enumerate(cameras)]
     return visual_hull([shot(camera) for camera in cameras], mattes)
 
 
-def test_the_hull_holds_what_the_mattes_show_and_little_more() -> None:
-    hull = hull_of([CROWN], count=16)
-    cubic_metres = np.count_nonzero(hull.cells.filled) * hull.cells.side**3
-    assert hull.inside(ball_points(CROWN, 0.99, np.random.default_rng(0))).all()
+def test_the_hull_holds_what_the_mattes_show_and_little_more(plain: VisualHull) -> None:
+    cubic_metres = np.count_nonzero(plain.cells.filled) * plain.cells.side**3
+    assert plain.inside(ball_points(CROWN, 0.99, np.random.default_rng(0))).all()
     assert 1.0 < cubic_metres / (4 / 3 * np.pi * CROWN[1] ** 3) < 1.25
-    assert hull.height == pytest.approx(4.2, abs=0.15)
+    assert plain.height == pytest.approx(4.2, abs=0.15)
 
 
 def test_a_thin_limb_stays_and_the_gap_around_it_is_empty() -> None:
@@ -56,24 +61,23 @@ def test_pixels_behind_something_say_nothing() -> None:
     assert hull.inside(ball_points(CROWN, 0.99, np.random.default_rng(0))).all()
 
 
-def test_the_share_outside_grows_with_the_mattes_that_miss_a_point() -> None:
-    hull = hull_of([CROWN])
-    shares = hull.share_outside(np.array([CROWN[0], (0.2, 3.0, 1.6), (0.2, 4.9, -0.1), (0.0, 50.0, 0.0)]))
+def test_the_share_outside_grows_with_the_mattes_that_miss_a_point(plain: VisualHull) -> None:
+    shares = plain.share_outside(np.array([CROWN[0], (0.2, 3.0, 1.6), (0.2, 4.9, -0.1), (0.0, 50.0, 0.0)]))
     assert shares[0] == 0
     assert 0.2 < shares[1] < 0.95
     assert shares[2:].tolist() == [1, 1]
     near = np.array([[0.2, 4.4, -0.1]])
-    assert hull.share_outside(near, 0.4)[0] < 0.1 < hull.share_outside(near)[0]
+    assert plain.share_outside(near, 0.4)[0] < 0.1 < plain.share_outside(near)[0]
 
 
-def test_noise_in_the_mattes_does_not_change_the_hull_much() -> None:
+def test_noise_in_the_mattes_does_not_change_the_hull_much(plain: VisualHull) -> None:
     rng = np.random.default_rng(1)
     changed = {
         index: matte(sees(camera, [CROWN]) ^ (rng.random((200, 160)) < 0.02))
-        for index, camera in enumerate(walk(12, 360))
+        for index, camera in enumerate(walk(16, 360))
     }
-    clean, noisy = (hull.cells for hull in (hull_of([CROWN]), hull_of([CROWN], changed=changed)))
-    sizes = [np.count_nonzero(cells.filled) * cells.side**3 for cells in (clean, noisy)]
+    noisy = hull_of([CROWN], 16, changed).cells
+    sizes = [np.count_nonzero(cells.filled) * cells.side**3 for cells in (plain.cells, noisy)]
     assert sizes[1] == pytest.approx(sizes[0], rel=0.1)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from treestroke.core.capture import Shot, TreeMatte
 from treestroke.core.geometry.camera import PerspectiveCamera
-from treestroke.core.types import Floats, Mask
+from treestroke.core.types import Floats, Mask, Picture
 
 WIDTH, HEIGHT, FOCAL = 160, 200, 190.0
 RING = 9.0
@@ -43,7 +43,20 @@ def sees_post(camera: PerspectiveCamera, top: float) -> Mask:
     return np.asarray(beside & (nearest[:, 1] >= 0) & (nearest[:, 1] <= top)).reshape(HEIGHT, WIDTH)
 
 
-def shot(camera: PerspectiveCamera, picture: np.ndarray | None = None) -> Shot:
+def painted(camera: PerspectiveCamera, ball: Ball) -> Picture:
+    """A picture (h, w, 3) of one ball whose surface is painted with an even pattern that repeats nowhere near."""
+    ahead = _ahead(camera)
+    to_middle = np.array(ball[0]) - camera.centre
+    along = ahead @ to_middle
+    chord = np.sqrt(np.maximum(ball[1] ** 2 - (to_middle @ to_middle - along**2), 0.0))
+    points = camera.centre + (along - chord)[:, None] * ahead
+    waves = np.random.default_rng(5).normal(0, 5.0, (3, 24))
+    grey = 120 + 25 * np.sin(points @ waves + np.arange(24)).sum(axis=1) / np.sqrt(12)
+    grey = np.where(sees(camera, [ball]).ravel(), np.clip(grey, 0, 255), 200)
+    return np.repeat(grey.astype(np.uint8)[:, None], 3, axis=1).reshape(HEIGHT, WIDTH, 3)
+
+
+def shot(camera: PerspectiveCamera, picture: Picture | None = None) -> Shot:
     """A shot, black if no picture is given."""
     return Shot("shot", np.zeros((HEIGHT, WIDTH, 3), np.uint8) if picture is None else picture, camera)
 

@@ -6,16 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from treestroke.core.capture import Shot, TreeMatte
-from treestroke.core.carve.tomography import HullGrid, filling, grid_of
-from treestroke.core.carve.visual_hull import VisualHull
+from treestroke.core.capture import Shot
+from treestroke.core.carve.carving import JOINED, Carving
+from treestroke.core.carve.tomography import HullGrid
+from treestroke.core.geometry.clumped_crown import Cells
 from treestroke.core.geometry.measured_crown import MeasuredCrown
 from treestroke.core.geometry.polyline import smoothed
-from treestroke.core.progress import Report
 from treestroke.core.types import Floats, Indices, Mask
 
-JOINED = 2
-"""Sides of the hull's cells that make one of the cells whose density is measured."""
 FILLED = 0.1
 """Density of a filled cell, in means over what leaves fill."""
 NEAR = 2
@@ -41,45 +39,32 @@ class _Sides:
     unseen: Mask
 
 
-def measured_crown(
-    hull: VisualHull, shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report
-) -> MeasuredCrown:
-    """Measure where in a hull leaves stand, and how densely; of a bare tree twigs.
+def measured_crown(carving: Carving, shots: Sequence[Shot]) -> MeasuredCrown:
+    """Tell where in a tree's hull leaves stand, and how densely; of a bare tree twigs.
 
     Sides that no shot was taken from are bounded by the hull and by the radius of the seen sides at the same height,
     and marked as guessed.
-
-    Raises
-    ------
-    ValueError
-        Not one matte for each shot.
     """
-    if len(shots) != len(mattes):
-        raise ValueError(f"a crown needs a matte for each shot, got {len(shots)} and {len(mattes)}")
-    cells = hull.cells
-    grid = grid_of(cells.filled, cells.corner, cells.side, JOINED)
-    report("density", 0.0)
-    good = [index for index, trusted in enumerate(hull.good.tolist()) if trusted]
-    filled = filling(grid, [(shots[index].camera, mattes[index]) for index in good])
-    density = filled.density.astype(np.float64)
-    if float((density * filled.leafy).sum()) >= LEAFLESS * float(density.sum()):
-        density = density * filled.leafy
+    grid, leafy = carving.grid, carving.filling.leafy
+    density = carving.filling.density.astype(np.float64)
+    if float((density * leafy).sum()) >= LEAFLESS * float(density.sum()):
+        density = density * leafy
     else:
         density[_below_crown(grid, density)] = 0
     sides = _sides(grid, density, np.array([shot.camera.centre for shot in shots]))
     density[_too_far(sides, density)] = 0
-    report("density", 1.0)
-    return _crown(hull, grid, density, sides.unseen)
+    return _crown(carving, density, sides.unseen)
 
 
-def _crown(hull: VisualHull, grid: HullGrid, density: Floats, unseen: Mask) -> MeasuredCrown:
+def _crown(carving: Carving, density: Floats, unseen: Mask) -> MeasuredCrown:
     """Fill the hull's cells by the densities (n,) of the joined ones."""
+    hull, grid = carving.hull.cells, carving.grid
     mean = float((density**2).sum() / density.sum())
     density = np.where(density >= FILLED * mean, density, 0.0)
-    fine, guessed = (_spread(grid, values, hull.cells.filled) for values in (density, unseen))
-    around = ndimage.binary_dilation(fine > 0, iterations=NEAR) & hull.cells.filled
-    cells = type(hull.cells)(fine > 0, hull.cells.corner, hull.cells.side)
-    return MeasuredCrown(cells, fine.astype(np.float32), around, hull.cells.filled, guessed > 0)
+    fine, guessed = (_spread(grid, values, hull.filled) for values in (density, unseen))
+    around = ndimage.binary_dilation(fine > 0, iterations=NEAR) & hull.filled
+    cells = Cells(fine > 0, hull.corner, hull.side)
+    return MeasuredCrown(cells, fine.astype(np.float32), around, hull.filled, guessed > 0)
 
 
 def _spread(grid: HullGrid, values: Floats | Mask, within: Mask) -> Floats:

@@ -10,6 +10,7 @@ from scipy import sparse
 
 from treestroke.core.capture import TreeMatte
 from treestroke.core.geometry.camera import PerspectiveCamera
+from treestroke.core.geometry.clumped_crown import Cells
 from treestroke.core.types import Floats, Indices, Mask
 
 Singles = NDArray[np.float32]
@@ -69,6 +70,41 @@ class Filling:
 
     density: Singles
     leafy: Singles
+
+
+@dataclass(frozen=True, eq=False)
+class DensityField:
+    """Densities to be asked for along lines of sight.
+
+    Attributes
+    ----------
+    padded
+        (x, y, z) density of each cell, -1 outside the hull; one more cell on each side.
+    corner
+        (3,) least corner of the cells, without those, metres.
+    side
+        Side of a cell, metres.
+    """
+
+    padded: Singles
+    corner: Floats
+    side: float
+
+    @property
+    def corners(self) -> Floats:
+        """(8, 3) corners of the box of the cells, metres."""
+        size = np.array(self.padded.shape) - 2
+        return np.asarray(self.corner + self.side * size * np.indices((2, 2, 2)).reshape(3, -1).T)
+
+    def along(self, start: Floats, ahead: Floats, way: float) -> Singles:
+        """Look up the density (n,) a ``way`` along directions (n, 3) from a point (3,), metres; -1 outside the hull."""
+        origin = (start - self.corner) / self.side + 1
+        size = self.padded.shape
+        x, y, z = (
+            np.clip(origin[axis] + ahead[:, axis] * (way / self.side), 0, size[axis] - 1).astype(np.int32)
+            for axis in range(3)
+        )
+        return np.asarray(self.padded.ravel()[(x * size[1] + y) * size[2] + z])
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,9 +220,9 @@ def _lengths(grid: HullGrid, index: NDArray[np.int32], start: Floats, ahead: Flo
     return matrix
 
 
-def grid_of(filled: Mask, corner: Floats, side: float, times: int) -> HullGrid:
-    """Join cells (x, y, z) into ones of ``times`` the side."""
-    wide = np.pad(filled, [(0, -length % times) for length in filled.shape])
+def grid_of(cells: Cells, times: int) -> HullGrid:
+    """Join cells into ones of ``times`` the side."""
+    wide = np.pad(cells.filled, [(0, -length % times) for length in cells.filled.shape])
     x, y, z = (length // times for length in wide.shape)
     share = wide.reshape(x, times, y, times, z, times).mean(axis=(1, 3, 5), dtype=np.float32)
-    return HullGrid(share, corner, times * side)
+    return HullGrid(share, cells.corner, times * cells.side)

@@ -22,6 +22,8 @@ SPLITS = 3
 """How often cells are split in two along each side."""
 CORNER, FACE = 0.87, 0.5
 """Radius, in sides, of the ball around a cell and in it: coarse cells are asked for as a whole, the finest closely."""
+LEAST_OPACITY = 0.35
+"""Share of a pixel that the tree has to cover: thin twigs cover no pixel by half."""
 SPECK_PX = 4
 """A matte's pieces of fewer pixels are taken for noise."""
 SOFT_PX = 1.5
@@ -48,7 +50,7 @@ class MatteDistance:
     camera
         The shot's camera.
     beside_px
-        (h, w) distance to the nearest pixel that the tree covers by half, px; 0 where the shot does not tell.
+        (h, w) distance to the nearest pixel that shows the tree, px; 0 where the shot does not tell.
     """
 
     camera: PerspectiveCamera
@@ -142,7 +144,9 @@ def visual_hull(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> VisualHul
 
 def _distance(camera: PerspectiveCamera, matte: TreeMatte) -> MatteDistance:
     """Measure how far pixels are from a matte without its specks."""
-    _, labels, stats, _ = cv2.connectedComponentsWithStats(matte.tree.astype(np.uint8), connectivity=8)
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(
+        (matte.opacity >= LEAST_OPACITY).astype(np.uint8), connectivity=8
+    )
     kept = stats[:, cv2.CC_STAT_AREA] >= SPECK_PX
     kept[0] = False
     told = kept[labels] | matte.hidden
@@ -210,7 +214,7 @@ def _blocks(matte: MatteDistance, middles: Floats, side: float) -> tuple[Mask, I
 
 
 def _one_piece(place: Indices, ring: float) -> Indices:
-    """Return those of cells (n, 3) that hang together in the piece with most cells well within the ``ring``, in cells.
+    """Return the cells of (n, 3) in the one piece that has most of them well within the ``ring``, in cells.
 
     Gaps of two cells are bridged. Elsewhere mattes leave cells by chance, above all close to cameras, where few look.
     """
