@@ -1,4 +1,4 @@
-"""The first half of the recipe for many photos: from photos whose cameras are known to a grown tree (Tan et al. 2007)."""
+"""The first half of the recipe for many photos: from photos with their cameras to a grown tree (Tan et al. 2007)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 
 from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, SolvedPhoto, Structure, TreeMatte
+from treestroke.core.carve.carving import carved
+from treestroke.core.carve.dense_points import dense_cloud
 from treestroke.core.carve.measured import measured_crown
-from treestroke.core.carve.visual_hull import visual_hull
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Camera, OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
@@ -113,10 +114,9 @@ def read_views(
     if drawn.scale is None:
         larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
         shots, cloud = tuple(in_frame(shot, larger) for shot in shots), cloud_in_frame(cloud, larger)
-    report("carve", 0.0)
-    hull = visual_hull(shots, mattes)
-    crown = measured_crown(hull, shots, mattes, report)
-    report("branches", 0.0)
+    carving = carved(shots, mattes, report)
+    crown = measured_crown(carving, shots)
+    cloud = dense_cloud(carving, shots, mattes, report)
     seen = seen_branches(shots, mattes, cloud, report)
     return ViewsEvidence(
         photos=used,
@@ -203,7 +203,7 @@ def _moved(strokes: Strokes, carry: Callable[[Floats], Floats]) -> Strokes:
         points = carry(stroke.points)
         if stroke.width is None:
             return Stroke(points)
-        beside = carry(stroke.points[:1] + [stroke.width, 0.0])
+        beside = carry(stroke.points[:1] + np.array([stroke.width, 0.0]))
         return Stroke(points, float(np.linalg.norm(beside - points[:1])))
 
     return Strokes(
