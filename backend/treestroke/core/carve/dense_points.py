@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,17 +28,23 @@ AGREE = 0.012
 """Difference of depth, as a share of the tree's height, up to which two shots see the same."""
 SPACING = 1 / 250
 """Distance of points, as a share of the tree's height: those nearer are joined."""
+EDGE = 0.02
+"""Weight of the colours of pixels at the tree's edges, which mix with what is behind, beside those within."""
 VEIL_PX = 4
 """Side of the blocks of pixels in which a nearer point hides one behind, px of the shots."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """Points (n, 3), metres, their colours (n, 3), sRGB, and how well their windows match (n,)."""
+    """Points (n, 3), metres, how well they match (n,), their colours (n, 3), sRGB, and how pure these are (n,)."""
 
     points: Floats
-    colours: Floats
     scores: Floats
+    colours: Floats
+    purity: Floats
+
+    def select(self, chosen: Mask) -> "_Found":
+        return _Found(self.points[chosen], self.scores[chosen], self.colours[chosen], self.purity[chosen])
 
 
 def dense_cloud(carving: Carving, shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report) -> PointCloud:
@@ -67,14 +74,10 @@ def dense_cloud(carving: Carving, shots: Sequence[Shot], mattes: Sequence[TreeMa
     for done, index in enumerate(chosen):
         report("points", done / len(chosen))
         depths.append(depth_map(swept[index], _neighbours(index, swept, carving), carving.field))
-    found = [_found(depth, shots[index]) for depth, index in zip(depths, chosen, strict=True)]
+    found = [_found(depth, shots[index], mattes[index]) for depth, index in zip(depths, chosen, strict=True)]
     height = carving.hull.height
-    kept = [_borne_out(each, depths, own, AGREE * height) for own, each in enumerate(found)]
-    points, colours = (
-        np.concatenate([values[keep] for values, keep in zip(parts, kept, strict=True)])
-        for parts in ([each.points for each in found], [each.colours for each in found])
-    )
-    points, colours = _joined(points, colours, SPACING * height)
+    kept = [each.select(_borne_out(each, depths, own, AGREE * height)) for own, each in enumerate(found)]
+    points, colours = _joined(kept, SPACING * height)
     report("points", 1.0)
     return PointCloud(points, colours, _seen(points, shots, mattes, AGREE * height))
 
@@ -88,16 +91,23 @@ def _neighbours(index: int, swept: dict[int, SweptShot], carving: Carving) -> li
     return [swept[other] for other in order[:NEIGHBOURS]]
 
 
-def _found(depth: DepthMap, shot: Shot) -> _Found:
-    """Place the pixels of a depth map in the world."""
+def _found(depth: DepthMap, shot: Shot, matte: TreeMatte) -> _Found:
+    """Place the pixels of a depth map in the world, and give them the colours of what the tree covers wholly."""
     row, column = np.nonzero((depth.depth_m > 0) & (depth.score >= LEAST_SCORE))
     places = np.asarray(np.stack([column, row], axis=1) + 0.5, dtype=np.float64)
     points = depth.camera.world_from_pixels(places, depth.depth_m[row, column].astype(np.float64))
     # Where the reduced part lies in the shot's own picture.
-    corner = np.array(shot.camera.principal_px) - REDUCTION * np.array(depth.camera.principal_px)
-    x, y = np.floor(REDUCTION * places + corner).astype(np.int64).T
-    colours = shot.picture[np.clip(y, 0, shot.camera.height - 1), np.clip(x, 0, shot.camera.width - 1), :3]
-    return _Found(points, colours.astype(np.float64), depth.score[row, column].astype(np.float64))
+    corner = np.round(np.array(shot.camera.principal_px) - REDUCTION * np.array(depth.camera.principal_px))
+    left, top = corner.astype(np.int64).tolist()
+    part = np.s_[top : top + REDUCTION * depth.camera.height, left : left + REDUCTION * depth.camera.width]
+    whole = cv2.erode(matte.opacity, np.ones((3, 3), np.uint8))
+    weight = (matte.opacity * (EDGE + whole))[part]
+    colours = shot.picture[..., :3][part] * weight[..., None]
+    size = depth.camera.width, depth.camera.height
+    purity = cv2.resize(weight, size, interpolation=cv2.INTER_AREA)[row, column].astype(np.float64)
+    sums = cv2.resize(colours, size, interpolation=cv2.INTER_AREA)[row, column].astype(np.float64)
+    colour = sums / np.maximum(purity, 1e-9)[:, None]
+    return _Found(points, depth.score[row, column].astype(np.float64), colour, np.maximum(purity, 1e-9))
 
 
 def _borne_out(found: _Found, depths: Sequence[DepthMap], own: int, tolerance: float) -> Mask:
@@ -122,18 +132,23 @@ def _pixels(places_px: Floats, shape: tuple[int, ...]) -> tuple[Indices, Indices
     return np.where(within, row, 0), np.where(within, column, 0), np.asarray(within)
 
 
-def _joined(points: Floats, colours: Floats, spacing: float) -> tuple[Floats, NDArray[np.uint8]]:
-    """Join points (n, 3) in cubes of a side, metres, to their means, and their colours (n, 3)."""
+def _joined(parts: Sequence[_Found], spacing: float) -> tuple[Floats, NDArray[np.uint8]]:
+    """Join points in cubes of a side, metres, to their means (n, 3), and their colours, pure ones first, (n, 3)."""
+    points, colours, purity = (
+        np.concatenate(values)
+        for values in zip(*[(part.points, part.colours, part.purity) for part in parts], strict=True)
+    )
     if len(points) == 0:
         return points, colours.astype(np.uint8)
-    _, group, count = np.unique(
-        np.floor(points / spacing).astype(np.int64), axis=0, return_inverse=True, return_counts=True
-    )
-    means = [
-        np.stack([np.bincount(group.ravel(), column, len(count)) for column in values.T], axis=1) / count[:, None]
-        for values in (points, colours)
-    ]
-    return means[0], np.clip(np.round(means[1]), 0, 255).astype(np.uint8)
+    _, group = np.unique(np.floor(points / spacing).astype(np.int64), axis=0, return_inverse=True)
+    places, tints = _means(points, np.ones(len(points)), group.ravel()), _means(colours, purity, group.ravel())
+    return places, np.clip(np.round(tints), 0, 255).astype(np.uint8)
+
+
+def _means(values: Floats, weights: Floats, group: Indices) -> Floats:
+    """Average values (n, d), weighted by (n,), over groups (n,): (groups, d)."""
+    total = np.bincount(group, weights)
+    return np.stack([np.bincount(group, weights * column) / total for column in values.T], axis=1)
 
 
 def _seen(points: Floats, shots: Sequence[Shot], mattes: Sequence[TreeMatte], tolerance: float) -> Mask:
