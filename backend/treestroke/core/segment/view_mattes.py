@@ -29,10 +29,10 @@ from treestroke.core.types import Floats, Mask, Opacity, Picture
 
 WORKING_SIDE = 640
 """Long side of the reduced shots in which the tree is looked for, px."""
-STEEP, LEVEL = 1.5, 1.0
+STEEP, LEVEL = 3.0, 1.5
 """Log odds that a pixel gains for each step of evidence of the voxels behind it, and the evidence that gains nothing.
 Tuned, as the other numbers here, on four rendered trees, one of them bare."""
-NEVER, MOST_BY_PLACE = -8.0, 1.0
+NEVER, MOST_BY_PLACE = -8.0, 2.0
 """Log odds of a pixel where the tree cannot be, and the greatest that voxels give: there are gaps in a crown."""
 HOPELESS = -2.5
 """Evidence up to which voxels are left out after the first round."""
@@ -47,8 +47,8 @@ POINT_PX = 2
 SOFT_PX = 0.6
 """Standard deviation, px, over which log odds are averaged before they are judged."""
 
-SURE_EVIDENCE = 2.0
-"""Evidence of voxels from which on the tree's pixels before them teach its colours."""
+FURTHER_ROUNDS = 2
+"""Rounds in which colours are learnt anew and the tree is found again."""
 LEAST_PIECE = 1e-3
 """Least area of a piece of the tree in a shot, as a share of all."""
 UNDER = 0.03
@@ -76,6 +76,15 @@ class _Drawn:
     trees: Mapping[int, DrawnTree]
     pictures: tuple[Picture, ...]
     bottom: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """The solid by all evidence; each reduced shot's log odds (h, w) by it alone, and its pixels (h, w) of the tree."""
+
+    solid: Solid
+    places: list[_Odds]
+    trees: list[Mask]
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,36 +149,37 @@ def _found(
         crown = solid.points[:, 1] >= drawn.bottom
         solid = solid.select(crown | around_trunk(trunk, solid.points, solid.side))
     trunks = [np.zeros_like(v.possible) if trunk is None else trunk_seen(trunk, v.camera) & v.possible for v in views]
-    solid, found = _judged(views, solid, odds, trunks, indices)
-    solid = solid.select(solid.odds > HOPELESS)
+    judged = _judged(views, solid, odds, trunks, indices)
     report("mattes", 0.3)
-    asked = [_low(view, tree) for view, tree in zip(views, found, strict=True)]
+    asked = [_low(view, tree) for view, tree in zip(views, judged.trees, strict=True)]
     far = far_odds([view.picture for view in views], [view.camera for view in views], asked, reach)
     far = [map_ + there for map_, there in zip(far, _beside(views, cloud, reach), strict=True)]
-    report("mattes", 0.5)
-    kept = [tree & (away > -1) for tree, away in zip(found, far, strict=True)]
-    colours = _carried(views, solid, drawn, kept)
-    ground = ground_colours([view.picture for view in views], [~tree for tree in kept])
-    odds = _odds(views, kept, colours, ground)
     views = [replace(v, said=None if v.said is None else v.said + away) for v, away in zip(views, far, strict=True)]
-    odds = [by_colour + away for by_colour, away in zip(odds, far, strict=True)]
-    solid, found = _judged(views, solid, odds, trunks, indices)
-    places = [_by_place(solid, view) for view in views]
-    parts = zip(found, trunks, far, places, strict=True)
+    report("mattes", 0.5)
+    for _ in range(FURTHER_ROUNDS):
+        kept = [tree & (away > -1) for tree, away in zip(judged.trees, far, strict=True)]
+        colours = _carried(views, judged, drawn, (kept, trunks))
+        ground = ground_colours([view.picture for view in views], [~tree for tree in kept])
+        odds = _odds(views, kept, colours, ground)
+        odds = [by_colour + away for by_colour, away in zip(odds, far, strict=True)]
+        judged = _judged(views, judged.solid.select(judged.solid.odds > HOPELESS), odds, trunks, indices)
+    parts = zip(judged.trees, trunks, far, judged.places, strict=True)
     return [_Found(_attached(tree), stem, away + place) for tree, stem, away, place in parts], colours, ground
 
 
-def _carried(views: Sequence[_View], solid: Solid, drawn: _Drawn, kept: Sequence[Mask]) -> TreeColours:
-    """Fit the tree's colours anew, to what the other reduced shots show of its crown (h, w), too."""
-    believed, further = [], []
-    for index, (view, tree) in enumerate(zip(views, kept, strict=True)):
+def _carried(
+    views: Sequence[_View], judged: _Judged, drawn: _Drawn, seen: tuple[Sequence[Mask], Sequence[Mask]]
+) -> TreeColours:
+    """Fit the tree's colours anew, to what the other reduced shots show of its crown and trunk (h, w), too."""
+    believed, crowns, stems = [], [], []
+    for index, (view, place, tree, stem) in enumerate(zip(views, judged.places, *seen, strict=True)):
         if index in drawn.trees:
             size = drawn.trees[index].alpha.shape[::-1]
             believed.append(cv2.resize(tree.astype(np.uint8), size, interpolation=cv2.INTER_NEAREST) > 0)
         else:
-            sure = inner(tree) & (projected(solid, view.camera, tree.shape) > SURE_EVIDENCE)
-            further.append(view.picture[sure])
-    return tree_colours(drawn.pictures, list(drawn.trees.values()), believed, further)
+            crowns.append(view.picture[inner(tree) & (place >= MOST_BY_PLACE) & ~stem])
+            stems.append(view.picture[inner(tree & stem)])
+    return tree_colours(drawn.pictures, list(drawn.trees.values()), believed, (crowns, stems))
 
 
 def _attached(tree: Mask) -> Mask:
@@ -188,17 +198,19 @@ def _odds(views: Sequence[_View], trees: Sequence[Mask], colours: TreeColours, g
 
 def _judged(
     views: Sequence[_View], solid: Solid, odds: Sequence[_Odds], trunks: Sequence[Mask], drawn: Sequence[int]
-) -> tuple[Solid, list[Mask]]:
-    """Return the solid by all shots' log odds, and each shot's pixels (h, w) of the tree by both."""
+) -> _Judged:
+    """Judge the solid by all reduced shots' log odds (h, w), and each shot's pixels by both."""
     evidence = []
     for view, by_colour, trunk in zip(views, odds, trunks, strict=True):
         whole = np.where(trunk, np.maximum(by_colour, ON_TRUNK), by_colour) if view.said is None else view.said
         evidence.append(np.where(view.possible, whole, NEVER).astype(np.float32))
     solid = weighed(solid, [view.camera for view in views], evidence, drawn)
-    found = []
-    for view, whole in zip(views, evidence, strict=True):
-        found.append(cv2.GaussianBlur(whole + _by_place(solid, view), (0, 0), SOFT_PX) > 0)
-    return solid, found
+    places = [_by_place(solid, view) for view in views]
+    trees = [
+        np.asarray(cv2.GaussianBlur(whole + place, (0, 0), SOFT_PX) > 0)
+        for whole, place in zip(evidence, places, strict=True)
+    ]
+    return _Judged(solid, places, trees)
 
 
 def _by_place(solid: Solid, view: _View) -> _Odds:

@@ -57,12 +57,15 @@ class TreeColours:
 
 
 def tree_colours(
-    pictures: Sequence[Picture], trees: Sequence[DrawnTree], kept: Sequence[Mask], further: Sequence[Picture] = ()
+    pictures: Sequence[Picture],
+    trees: Sequence[DrawnTree],
+    kept: Sequence[Mask],
+    further: tuple[Sequence[Picture], Sequence[Picture]] = ((), ()),
 ) -> TreeColours:
     """Fit the colour models to what stroked shots (h, w, 3), sRGB, show of the tree for sure.
 
-    ``kept`` (h, w) is where that is believed. ``further`` are pixels (n, 3) of a crown in other shots: the sun shines
-    on another side of it there.
+    ``kept`` (h, w) is where that is believed. ``further`` are pixels (n, 3) of the crown and of
+    the trunk in other shots: the sun shines on another side of them there.
     """
     crowns, stems = [], []
     for picture, tree, believed in zip(pictures, trees, kept, strict=True):
@@ -71,12 +74,12 @@ def tree_colours(
         crown = (sure if tree.bare else inner(sure)) & ~stem
         crowns.append(picture[crown])
         stems.append(picture[stem])
-    crown_colours, stem_colours = np.concatenate(crowns), np.concatenate(stems)
+    crown_colours, stem_colours = np.concatenate(crowns), np.concatenate([*stems, *further[1]])
     if any(tree.bare for tree in trees) or not len(crown_colours):
         return TreeColours(None, fitted([crown_colours, stem_colours], LEAF_COMPONENTS + WOOD_COMPONENTS))
     parts = [_sample(crown_colours)]
-    if further:
-        parts.append(_sample(np.concatenate(further)))
+    if further[0]:
+        parts.append(_sample(np.concatenate(further[0])))
     leaf = fit_mixture(np.concatenate(parts), LEAF_COMPONENTS)
     wood = fitted([stem_colours], WOOD_COMPONENTS) if len(stem_colours) >= FEWEST else None
     return TreeColours(leaf, wood)

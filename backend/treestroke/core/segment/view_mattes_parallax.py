@@ -22,7 +22,7 @@ MATCHES = 0.88
 CROWDED_PX, SOME, MANY = 9, 0.1, 0.35
 """Side of the square, px, in which matching windows are counted, the share of them that says nothing, and the share
 that says all: of leaves, too, a few match something far away by chance (5 % of their pixels 0.1 and more)."""
-FAR = 4.0
+FAR = 5.0
 """Greatest log odds against the tree."""
 FLAT = 6.0
 """Standard deviation of a window, steps of 255, below which it is too plain to match."""

@@ -1,7 +1,7 @@
 """Where in space a tree may stand, by what several shots of it show: voxels with soft evidence."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -30,7 +30,10 @@ OUTSIDE = -8.0
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """Voxels in which the tree may be: their middles (n, 3) and side, metres, and their evidence (n,), log odds."""
+    """Voxels in which the tree may be: their middles (n, 3) and side, metres, and their evidence (n,), log odds.
+
+    The evidence increases along the arrays.
+    """
 
     points: Floats
     odds: Odds
@@ -108,7 +111,9 @@ def weighed(
     veto = seen[list(drawn)].min(axis=0)
     fewest = max(1, round(DISSENT * len(cameras)))
     seen.partition(fewest - 1, axis=0)
-    return replace(solid, odds=np.minimum(seen[:fewest].mean(axis=0), veto))
+    odds = np.minimum(seen[:fewest].mean(axis=0), veto)
+    order = np.argsort(odds, kind="stable")
+    return Solid(solid.points[order], odds[order], solid.side)
 
 
 def projected(solid: Solid, camera: PerspectiveCamera, shape: tuple[int, int]) -> Odds:
@@ -116,11 +121,10 @@ def projected(solid: Solid, camera: PerspectiveCamera, shape: tuple[int, int]) -
 
     ``shape`` is (h, w) of the map, which covers the camera's whole picture.
     """
-    order = np.argsort(solid.odds, kind="stable")
     low = (max(1, shape[0] // 2), max(1, shape[1] // 2))
     picture = np.full(low[0] * low[1], OUTSIDE, dtype=np.float32)
-    index, inside = _places(solid.points[order], camera, low)
-    picture[index] = solid.odds[order][inside]
+    index, inside = _places(solid.points, camera, low)
+    picture[index] = solid.odds[inside]  # Of voxels on one pixel the last counts, which is the likeliest.
     grown = cv2.dilate(picture.reshape(low), np.ones((3, 3), np.uint8))
     return np.asarray(cv2.resize(grown, shape[::-1], interpolation=cv2.INTER_LINEAR))
 

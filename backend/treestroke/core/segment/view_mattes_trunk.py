@@ -16,7 +16,8 @@ Odds = NDArray[np.float32]
 LAYERS = 48
 """Heights at which the trunk is placed."""
 LEAN = 0.12
-"""How far a trunk may stand before or behind the root's plane, as a share of its height."""
+"""How far a trunk may stand before or behind the root's plane, as a share of its height, beside its width: its
+foot is drawn before its middle."""
 OFFSETS = 61
 """Places that are tried within that, at each height."""
 STIFF = 1.5
@@ -61,7 +62,8 @@ def standing_trunk(
     facing = camera.centre * (1, 0, 1) / np.hypot(camera.centre[0], camera.centre[2])
     distance = -(camera.centre @ facing)
     height = camera.centre[1] + rays[-1, 1] * distance / (rays[-1] @ facing)
-    steps = np.linspace(-LEAN, LEAN, OFFSETS) * height
+    reach = LEAN * height + 2 * float(half[0] * camera.pixel_size(np.zeros((1, 3)))[0])
+    steps = np.linspace(-reach, reach, OFFSETS)
     along = (distance + steps[None, :]) / (rays @ facing)[:, None]
     places = camera.centre + rays[:, None] * along[..., None]
     widths = half[:, None] * camera.pixel_size(places.reshape(-1, 3)).reshape(along.shape)
@@ -94,7 +96,7 @@ def _stiff_path(score: Floats) -> NDArray[np.int64]:
     """Choose a column in each row (n, m) so that the scores add up to most, less `STIFF` for each column moved."""
     columns = np.arange(score.shape[1])
     moving = STIFF * np.abs(columns[:, None] - columns[None])
-    total = score[0] - 2 * STIFF * np.abs(columns - score.shape[1] // 2)
+    total = score[0]
     before = np.zeros(score.shape, dtype=np.int64)
     for layer in range(1, len(score)):
         reached = total[None] - moving
