@@ -14,7 +14,7 @@ from treestroke.core.leaf.daylight import Daylight, daylight
 from treestroke.core.leaf.grid import FoliageGrid
 from treestroke.core.paint.palette import nearest_colour
 from treestroke.core.paint.seasons import Recolour
-from treestroke.core.types import Floats, Indices
+from treestroke.core.types import Floats, Indices, Mask
 
 AWAY = 0.5
 """How far behind what a view sees places have left its colour behind, over half the crown's width."""
@@ -107,13 +107,13 @@ class Colouring:
     recolour: Recolour | None = None
     mood: _Waves | None = None
 
-    def seen(self, points: Floats, rng: np.random.Generator) -> tuple[Indices, Floats]:
+    def seen(self, points: Floats, rng: np.random.Generator, shown: Mask | None = None) -> tuple[Indices, Floats]:
         """Choose a tile (n,) for each place (n, 3), metres, and how bright it is there (n,) over its own brightness.
 
         It is the tile nearest to the colour there in the view that shows the place best: the view toward which the
-        place stands furthest out of the crown.
+        place stands furthest out of the crown, of those in which it is ``shown`` (views, n).
         """
-        view, labs = self._best_view(points), np.empty(points.shape)
+        view, labs = self._best_view(points, shown), np.empty(points.shape)
         for number, grid in enumerate(self.grids):
             own = view == number
             labs[own] = grid.labs[grid.cells_of(points[own])]
@@ -161,14 +161,14 @@ class Colouring:
         y = points[:, 1] + away * UPDOWN * self.height * self.updown.at(points)
         return self._folded(x, y, right)
 
-    def _best_view(self, points: Floats) -> Indices:
-        """Find the view (n,) toward which each place (n, 3) stands furthest from the axis."""
+    def _best_view(self, points: Floats, among: Mask | None = None) -> Indices:
+        """Find the view (n,), ``among`` some (views, n), toward which places (n, 3) stand furthest from the axis."""
         cameras = [grid.camera for grid in self.grids]
         if len(cameras) == 1:
             return np.zeros(len(points), dtype=np.int64)
         outward = points - self.volume.axis(points[:, 1])
         nearness = np.stack([(outward * camera.toward_viewer(points)).sum(axis=1) for camera in cameras])
-        shown = np.stack([in_picture(camera, points) for camera in cameras])
+        shown = np.stack([in_picture(camera, points) for camera in cameras]) if among is None else among
         return np.asarray(np.argmax(np.where(shown, nearness, -np.inf), axis=0))
 
     def _folded(self, x: Floats, y: Floats, right: Floats) -> Floats:

@@ -43,18 +43,21 @@ class Outlines:
     fold: float
 
 
-def outlines_of(alphas: NDArray[np.uint8], fold: float = 0.0) -> Outlines:
-    """Find the dots of tiles (k, side, side) of alpha, on cards that are folded so far."""
-    dots = tuple(tuple(_hiding_dots(alpha, side) for alpha in alphas) for side in LATTICES)
+def outlines_of(alphas: NDArray[np.uint8], fold: float = 0.0, sure: float = SURE_SHARE) -> Outlines:
+    """Find the dots of tiles (k, side, side) of alpha, on cards that are folded so far.
+
+    Around a dot the tile's mean alpha is ``sure``, 0 to 1, or more.
+    """
+    dots = tuple(tuple(_hiding_dots(alpha, side, sure) for alpha in alphas) for side in LATTICES)
     probed = dots[LATTICES.index(PROBED)]
     spread = [np.linspace(0, len(d) - 1, PROBES).round().astype(np.int64) for d in probed]
     return Outlines(dots, np.stack([d[index] for d, index in zip(probed, spread, strict=True)]), fold)
 
 
-def _hiding_dots(alpha: NDArray[np.uint8], side: int) -> _Dots:
+def _hiding_dots(alpha: NDArray[np.uint8], side: int, sure: float) -> _Dots:
     """Dots (n, 2), one at least, that hide what is behind a tile with this alpha, reduced to ``side`` texels a side."""
     coarse = cv2.resize(alpha, (side, side), interpolation=cv2.INTER_AREA)
-    row, column = np.nonzero(coarse >= SURE_SHARE * min(255.0, float(coarse.max())))
+    row, column = np.nonzero(coarse >= sure * min(255.0, float(coarse.max())))
     return np.stack([(column + 0.5) * 2 / side - 1, 1 - (row + 0.5) * 2 / side], axis=1).astype(np.float32)
 
 
@@ -74,6 +77,17 @@ def newly_hidden(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: Foli
     foliage = grid.inside.take(cells)
     behind = grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None])
     return (free & foliage).mean(axis=1), (free & ~behind).mean(axis=1)
+
+
+def fit_and_gain(
+    nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid
+) -> tuple[Floats, Floats, Floats]:
+    """Return `share_inside` and the two shares of `newly_hidden` of cards (m,) at once."""
+    cells = _Shown.of(leaves, outlines.fold, grid).cells(outlines.probes[leaves.tiles], grid)
+    behind = grid.deeper(cells, grid.camera.depth(leaves.centres)[:, None])
+    free = np.isinf(nearest.take(cells))
+    foliage = (free & grid.inside.take(cells)).mean(axis=1)
+    return behind.mean(axis=1), foliage, (free & ~behind).mean(axis=1)
 
 
 def share_hidden(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid) -> Floats:

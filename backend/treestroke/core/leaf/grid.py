@@ -1,6 +1,7 @@
 """The foliage as one view shows it, on a coarse grid: where it is and what colour it has."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import cv2
@@ -16,6 +17,8 @@ from treestroke.core.types import Floats, Indices, Mask
 CELLS_ACROSS = 800
 """Cells over the foliage's breadth: a spray is about 16 cells wide, a leaf 4 (500 cells hide 2 % less of the foliage;
 1200 are no better; 6 crowns)."""
+CELLS_OF_MANY = 400
+"""The same where many views show a crown: they bound its leaves together."""
 MIN_STEP_PX = 0.25
 """Least side of a cell: a tiny tree's cells are finer than its pixels."""
 PADDING = 3
@@ -75,8 +78,13 @@ class FoliageGrid:
 
     def positions_of(self, points_world: Floats) -> Floats:
         """Project world points (n, 3), metres, to positions (n, 2) in the grid: x right and y down, in cells."""
+        return self._cropped.pixels_from_world(points_world) / self.step_px
+
+    @cached_property
+    def _cropped(self) -> Camera:
+        """The camera of the grid's part of the picture."""
         rows, columns = self.inside.shape
-        return self.camera.cropped(self.corner_px, (columns, rows)).pixels_from_world(points_world) / self.step_px
+        return self.camera.cropped(self.corner_px, (columns, rows))
 
     def pixels_of(self, cells: Indices, within: Floats) -> Floats:
         """Return picture points (n, 2), px, in cells of flat index (n,), at positions (n, 2), shares of a cell."""
@@ -94,10 +102,11 @@ def breadth(foliage: Mask) -> float:
     return max(float(columns[-1] - columns[0] + 1), float(np.sqrt(np.count_nonzero(foliage))))
 
 
-def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
+def foliage_grid(view: View, crown_middle: Floats, cells_across: int = CELLS_ACROSS) -> FoliageGrid:
     """Lay a grid over a view's foliage and average the picture's colours in its cells.
 
-    ``crown_middle`` (3,), world, metres, is where the side of a cell is measured.
+    ``crown_middle`` (3,), world, metres, is where the side of a cell is measured; ``cells_across`` are as many as lie
+    side by side over the foliage's breadth.
 
     Raises
     ------
@@ -109,7 +118,10 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         raise ValueError("a foliage grid needs a view that shows foliage")
     rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
     top, bottom, left, right = int(rows[0]), int(rows[-1]) + 1, int(columns[0]), int(columns[-1]) + 1
-    step = max(MIN_STEP_PX, max(right - left, float(np.sqrt(mask.sum()))) / CELLS_ACROSS)
+    step = max(
+        MIN_STEP_PX if cells_across == CELLS_ACROSS else 1.0,
+        max(right - left, float(np.sqrt(mask.sum()))) / cells_across,
+    )
     step = step if step >= 1 else 1 / round(1 / step)  # finer cells than pixels share the pixels' borders
     shrink = cv2.INTER_AREA if step >= 1 else cv2.INTER_NEAREST
     size = (max(1, round((right - left) / step)), max(1, round((bottom - top) / step)))
@@ -127,7 +139,7 @@ def foliage_grid(view: View, crown_middle: Floats) -> FoliageGrid:
         cell_m=step * float(view.camera.pixel_size(crown_middle[None])[0]),
         inside=inside,
         leaves_from=_depths(view.leaves_from[box], inside, size),
-        labs=_spray_labs(_padded(colour), inside).take(_nearest_inside(inside), axis=0),
+        labs=_spray_labs(_padded(colour), inside, cells_across).take(_nearest_inside(inside), axis=0),
     )
 
 
@@ -164,9 +176,9 @@ def _padded(image: NDArray[Any]) -> NDArray[np.float32]:
     return np.pad(image.astype(np.float32), border)
 
 
-def _spray_labs(colour: NDArray[np.float32], inside: Mask) -> Floats:
+def _spray_labs(colour: NDArray[np.float32], inside: Mask, across: int) -> Floats:
     """Colour of the sprays at the cells inside (n, 3), CIE Lab, by each cell's colour times weight, and weight (4)."""
-    sides = (round(SPRAY * CELLS_ACROSS), round(AROUND * SPRAY * CELLS_ACROSS))
+    sides = (round(SPRAY * across), round(AROUND * SPRAY * across))
     near, around = (cv2.blur(colour, (side, side)) for side in sides)
     cells = np.flatnonzero(inside)
     near, around = (np.asarray(part).reshape(-1, 4).take(cells, axis=0) for part in (near, around))

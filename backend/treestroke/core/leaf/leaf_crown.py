@@ -9,8 +9,8 @@ from treestroke.core.geometry.camera import in_picture
 from treestroke.core.geometry.crown_volume import CrownVolume
 from treestroke.core.leaf.arrangement import Poses, Seats
 from treestroke.core.leaf.colouring import Colouring, colouring_of
-from treestroke.core.leaf.coverage import Depths, Outlines, cover, outlines_of, share_hidden, share_inside
-from treestroke.core.leaf.grid import FoliageGrid, foliage_grid, side_grid
+from treestroke.core.leaf.coverage import SURE_SHARE, Depths, Outlines, cover, outlines_of, share_hidden, share_inside
+from treestroke.core.leaf.grid import CELLS_ACROSS, CELLS_OF_MANY, FoliageGrid, foliage_grid, side_grid
 from treestroke.core.leaf.leaves import Leaves
 from treestroke.core.paint.atlas import Atlas, tile_alphas, tile_labs
 from treestroke.core.paint.cut_outs import SOLID_ALPHA
@@ -34,6 +34,10 @@ LEAST_SIZE, MOST_SIZE = 0.3, 3.0
 """Bounds of the factor on a card's side, which is 1.5 to 3 % of the foliage's breadth."""
 HIDDEN = 0.9
 """Share of a card's opaque dots behind nearer cards from which on it is not seen."""
+AROUND = 3
+"""Number of views from which on they tell together where leaves are."""
+SURE_OF_MANY = 0.55
+"""`SURE_SHARE` where many views bound the crown: what is drawn of a card, neither more nor less."""
 MIDDLE = 0.6
 """How far down from the foliage's top, as a share of its height, the point is that cards face away from."""
 
@@ -90,6 +94,11 @@ class LeafCrown:
     card_area: float
 
     @property
+    def seen_around(self) -> bool:
+        """Whether so many views show it that they tell where its leaves are."""
+        return len(self.grids) >= AROUND
+
+    @property
     def foliage_area(self) -> float:
         """Area of the foliage in a view, square metres; of several views the mean."""
         return float(np.mean([grid.inside.sum() * grid.cell_m**2 for grid in self.grids]))
@@ -105,17 +114,20 @@ class LeafCrown:
         return Leaves(poses.centres, poses.rights, poses.ups, tiles, flips, light, seats.joints)
 
     def recoloured(self, leaves: Leaves, rng: np.random.Generator) -> Leaves:
-        """Give cards that no view shows the colours of unseen places."""
-        unseen, seen = np.ones(len(leaves), dtype=np.bool_), []
-        for grid in self.grids:
+        """Give cards that no view shows the colours of unseen places; of many views, the others those of the best."""
+        hidden, sides = np.ones((len(self.grids), len(leaves)), dtype=np.bool_), []
+        for number, grid in enumerate(self.grids):
             nearest = np.full(grid.inside.size, np.inf, dtype=np.float32)
             self.hide(nearest, leaves, grid)
-            hidden = share_hidden(nearest, leaves, self.outlines, grid) >= HIDDEN
-            seen.append(self.colouring.side(grid, nearest, leaves.centres[~hidden]))
-            unseen &= hidden
-        tiles, shades = leaves.tiles.copy(), leaves.shades.copy()
-        tiles[unseen], brightness = self.colouring.unseen(leaves.centres[unseen], seen, rng)
+            hidden[number] = share_hidden(nearest, leaves, self.outlines, grid) >= HIDDEN
+            sides.append(self.colouring.side(grid, nearest, leaves.centres[~hidden[number]]))
+        unseen, tiles, shades = hidden.all(axis=0), leaves.tiles.copy(), leaves.shades.copy()
+        tiles[unseen], brightness = self.colouring.unseen(leaves.centres[unseen], sides, rng)
         shades[unseen] = _light(brightness, rng)
+        if self.seen_around:
+            shown = ~hidden[:, ~unseen]
+            tiles[~unseen], brightness = self.colouring.seen(leaves.centres[~unseen], rng, shown)
+            shades[~unseen] = _light(brightness, rng)
         return replace(leaves, tiles=tiles, shades=shades)
 
     def dressed(
@@ -167,7 +179,8 @@ def leaf_crown(
     if not LEAST_SIZE <= size <= MOST_SIZE:
         raise ValueError(f"size must be {LEAST_SIZE} to {MOST_SIZE}, got {size}")
     alphas, inner = tile_alphas(atlas), volume.bounds.mean(axis=0)
-    grids = tuple(foliage_grid(view, inner) for view in appearance.views)
+    across = CELLS_ACROSS if len(appearance.views) < AROUND else CELLS_OF_MANY
+    grids = tuple(foliage_grid(view, inner, across) for view in appearance.views)
     imagined = tuple(side_grid(side, grids[0]) for side in appearance.imagined_sides if side.mask.any())
     top, centre, bottom = _heights(grids[0], inner)
     side = size * grids[0].breadth_m
@@ -178,7 +191,7 @@ def leaf_crown(
         imagined_sides=imagined,
         volume=volume,
         colouring=colouring_of(grids, volume, tile_labs(atlas), atlas.recolour, rng),
-        outlines=outlines_of(alphas, atlas.fold),
+        outlines=outlines_of(alphas, atlas.fold, SURE_SHARE if len(grids) < AROUND else SURE_OF_MANY),
         middle=middle,
         height=max(top, top - bottom),
         side=side,

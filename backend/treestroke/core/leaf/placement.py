@@ -25,6 +25,7 @@ from treestroke.core.leaf.leaf_density import leaf_weights
 from treestroke.core.leaf.leaves import Leaves, join_leaves, no_leaves
 from treestroke.core.leaf.postures import pose_by_posture, posture_of
 from treestroke.core.leaf.shown_limbs import LeafPlace, shown_limbs
+from treestroke.core.leaf.view_cover import cover_views
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import CONIFEROUS, FOLIAGE_KINDS, Floats, FoliageKind, Indices, TreeForm
@@ -96,7 +97,10 @@ def place_leaves(
     leaves = join_leaves([along, _at_tips(bare_tips(skeleton, along), params.density, place, rng)])
     report("leaf", 0.5)
     gaps = GapParams(min(1.0, params.density), params.max_cards - len(along))
-    patches = cover_gaps(leaves, skeleton, place, gaps, rng)
+    if crown.seen_around:
+        patches = cover_views(leaves, skeleton, crown, gaps, rng)
+    else:
+        patches = cover_gaps(leaves, skeleton, place, gaps, rng)
     leaves = crown.recoloured(join_leaves([leaves, *patches]), rng)
     report("leaf", 1.0)
     return leaves

@@ -46,6 +46,8 @@ class LeafStyle:
         Whether a palm bears strap leaves instead of fronds.
     length
         Length of a leaf that the photo shows, as a share of the spray's side; None to draw it as long as the species'.
+    across_px
+        Width of the foliage in the photo, px; None where that is the cover's.
 
     Raises
     ------
@@ -59,6 +61,7 @@ class LeafStyle:
     picture: NDArray[np.uint8] | None = None
     straps: bool = False
     length: float | None = None
+    across_px: float | None = None
 
     def __post_init__(self) -> None:
         if self.picture is not None:
@@ -125,7 +128,7 @@ def leaf_atlas(
         Nothing is covered, or the cover is not of the photo's size.
     """
     tiles = COLUMNS * COLUMNS
-    palette = foliage_palette(photo, cover, tiles, rng) if style.shown else grey_palette(tiles, rng)
+    palette = foliage_palette(photo, cover, tiles, rng, style.across_px) if style.shown else grey_palette(tiles, rng)
     flower = _in_flower(palette, kind, style)
     palette = _without_wood(palette) if flower else palette
     recolour = None if flower and style.picture is None else _recolour(palette, kind, style)

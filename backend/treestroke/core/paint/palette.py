@@ -97,12 +97,15 @@ def unshaded(lab: Floats) -> Floats:
     return np.concatenate([lightness, lab[:, 1:] * (lightness + 16) / (lab[:, :1] + 16)], axis=1)
 
 
-def foliage_palette(photo: Picture, cover: Opacity | Mask, clusters: int, rng: np.random.Generator) -> Palette:
+def foliage_palette(
+    photo: Picture, cover: Opacity | Mask, clusters: int, rng: np.random.Generator, across_px: float | None = None
+) -> Palette:
     """Cluster the sprays of a foliage on a photo (h, w, 3), sRGB, by k-means of their colours, hue before lightness.
 
     ``cover`` (h, w) is the share of each pixel that shows a leaf in its own colour. A cluster's members are single
     pixels: leaves lie beside lighter and darker ones, as in the photo, though differing more by `DETAIL`. Pixels count
-    by the least cover of their neighbours, since sky shines into a leaf's border.
+    by the least cover of their neighbours, since sky shines into a leaf's border. The foliage is ``across_px`` wide, as
+    wide as the cover where that is None.
 
     Source: k-means, Lloyd 1982; clustering by what surrounds a pixel is ours.
 
@@ -116,7 +119,8 @@ def foliage_palette(photo: Picture, cover: Opacity | Mask, clusters: int, rng: n
     share = np.asarray(cover, dtype=np.float32)
     inner = cv2.erode(share, np.ones((3, 3), np.uint8))
     index = _drawn(np.asarray(inner if inner.sum() > INNER_SHARE * share.sum() else share, dtype=np.float32), rng)
-    pixels = photo.reshape(-1, 3)[index], _spray_colours(photo, share, index)
+    across = float(np.count_nonzero(share.any(axis=0))) if across_px is None else across_px
+    pixels = photo.reshape(-1, 3)[index], _spray_colours(photo, share, index, across)
     samples, sprays = (unshaded(lab_from_rgb(colours)) for colours in pixels)
     labels = _k_means(sprays * (OF_LIGHTNESS, 1.0, 1.0), clusters, ROUNDS, rng)
     counts = np.bincount(labels)
@@ -143,9 +147,9 @@ def _drawn(weight: Opacity, rng: np.random.Generator) -> Indices:
     return np.sort(index[np.argpartition(keys, -SAMPLES)[-SAMPLES:]])
 
 
-def _spray_colours(photo: Picture, cover: Opacity, index: Indices) -> Picture:
+def _spray_colours(photo: Picture, cover: Opacity, index: Indices, across_px: float) -> Picture:
     """Mean colours (n, 3) about some places (n,), flat, of the pixels of a photo, by their cover (h, w)."""
-    side = max(1, round(SPRAY * np.count_nonzero(cover.any(axis=0))))
+    side = max(1, round(SPRAY * across_px))
     weighted = cv2.multiply(photo.astype(np.float32), cv2.merge([cover] * 3))
     total, share = (np.asarray(cv2.blur(part, (side, side))) for part in (weighted, cover))
     mean = total.reshape(-1, 3)[index] / np.maximum(share.ravel()[index], np.float32(1e-4))[:, None]

@@ -12,7 +12,7 @@ from treestroke.core.grow.palm import is_forked
 from treestroke.core.leaf.cards import cards
 from treestroke.core.leaf.fruit import FruitParams, hang_fruit, with_fruit
 from treestroke.core.leaf.grid import breadth
-from treestroke.core.leaf.leaf_crown import LEAST_SIZE, MOST_SIZE, SIDES, leaf_crown
+from treestroke.core.leaf.leaf_crown import AROUND, LEAST_SIZE, MOST_SIZE, SIDES, leaf_crown
 from treestroke.core.leaf.leaves import Leaves, no_leaves
 from treestroke.core.leaf.placement import LeafParams, place_leaves
 from treestroke.core.mesh.bark import TEXTURE_SIZE, BarkParams, bark_texture
@@ -34,6 +34,12 @@ from treestroke.core.types import Opacity, Picture
 
 BARE_TUBES = TubeParams(max_triangles=130_000)
 """A bare tree has no leaves, and all its twigs are bark."""
+PAINTED = 6
+"""Of many views, how many show what leaves look like."""
+OF_CARD = 0.45
+"""Length of a leaf, over a card's side, up to which cards are enlarged for the leaves that many views show."""
+MOST_LARGER = 1.8
+"""Greatest factor on the size of cards by the leaves that many views show."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,11 +98,16 @@ def _leaves(
         return no_leaves(), None
     species = species_for(settings.species, tree.kind, tree.taken.form)
     straps = tree.kind == "palm" and is_forked(tree.grown)
-    length = _seen_length(leafy[0], species) if tree.kind == "leaves" and tree.appearance.shows_leaves else None
-    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps, length)
-    atlas = leaf_atlas(*_coloured(leafy), tree.kind, rng, style)
+    shown = tuple(leafy[index] for index in np.unique(np.linspace(0, len(leafy) - 1, PAINTED).astype(int)))
+    length, larger = None, 1.0
+    if tree.kind == "leaves" and tree.appearance.shows_leaves:
+        length, larger = _seen_length(shown, species)
+    across = None if len(leafy) < AROUND else max(breadth(view.foliage) for view in shown)
+    style = LeafStyle(species, settings.season, tree.appearance.shows_leaves, picture, straps, length, across)
+    atlas = leaf_atlas(*_coloured(shown), tree.kind, rng, style)
     report("leaf", 0.2)
     size, density = size_and_density(settings.season, species, tree.kind)
+    size *= larger
     crown = leaf_crown(
         replace(tree.appearance, views=leafy),
         tree.volume,
@@ -108,11 +119,21 @@ def _leaves(
     return place_leaves(tree.grown.skeleton, crown, params, rng, report), atlas
 
 
-def _seen_length(view: View, species: Species) -> float | None:
-    """Length of a leaf that a view shows, as a share of the side of a card of usual size; None where it shows none."""
-    spray_px = 0.5 * sum(SIDES) * breadth(view.foliage)
-    seen_px = leaf_length_px(view.picture, view.own_colour, spray_px)
-    return None if seen_px is None else bounded_length(seen_px / spray_px, species)
+def _seen_length(views: tuple[View, ...], species: Species) -> tuple[float | None, float]:
+    """Length of a leaf that views show, as a share of the side of a card; None where they show none. And a factor.
+
+    Many views show a crown so well that cards may be as much larger, by the factor, as its leaves are.
+    """
+    seen = []
+    for view in views if len(views) >= AROUND else views[:1]:
+        spray_px = 0.5 * sum(SIDES) * breadth(view.foliage)
+        seen_px = leaf_length_px(view.picture, view.own_colour, spray_px)
+        seen += [] if seen_px is None else [seen_px / spray_px]
+    if not seen:
+        return None, 1.0
+    usual = float(np.median(seen))
+    larger = min(max(usual / OF_CARD, 1.0), MOST_LARGER) if len(views) >= AROUND else 1.0
+    return bounded_length(usual / larger, species), larger
 
 
 def _coloured(views: tuple[View, ...]) -> tuple[Picture, Opacity]:
