@@ -45,8 +45,8 @@ def measured_crown(carving: Carving, shots: Sequence[Shot]) -> MeasuredCrown:
     Sides that no shot was taken from are bounded by the hull and by the radius of the seen sides at the same height,
     and marked as guessed.
     """
-    grid, leafy = carving.grid, carving.filling.leafy
-    density = carving.filling.density.astype(np.float64)
+    grid, leafy = carving.grid, carving.leafy
+    density = carving.density.astype(np.float64)
     if float((density * leafy).sum()) >= LEAFLESS * float(density.sum()):
         density = density * leafy
     else:
