@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from tests.core.carve.walk import Ball, ball_points, camera_at, matte, sees, sees_post, shot, walk
 
-from treestroke.core.carve.carving import carved
+from treestroke.core.capture import PointCloud
+from treestroke.core.carve.carving import carved, with_points
 from treestroke.core.carve.measured import measured_crown
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.measured_crown import MeasuredCrown
@@ -54,3 +55,19 @@ def test_sides_that_no_shot_was_taken_from_are_guessed_and_kept_in_bounds() -> N
     assert crown.guessed_at(behind).all()
     assert not crown.guessed_at(before).any()
     assert crown.bounds[0, 2] > -1.6
+
+
+def test_lines_of_sight_are_open_up_to_the_points_that_shots_see() -> None:
+    cameras = walk(8, 360)
+    shots, mattes = [shot(camera) for camera in cameras], [matte(sees(camera, [CROWN])) for camera in cameras]
+    carving = carved(shots, mattes, silent)
+    outward = np.random.default_rng(2).normal(size=(3000, 3))
+    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+    points = CROWN[0] + 0.5 * outward
+    seen = np.stack([(outward * camera.toward_viewer(points)).sum(axis=1) > 0.2 for camera in cameras], axis=1)
+    told = with_points(carving, shots, PointCloud(points, np.zeros((3000, 3), np.uint8), seen))
+    away = np.linalg.norm(carving.grid.middles - CROWN[0], axis=1)
+    level = np.abs(carving.grid.middles[:, 1] - CROWN[0][1]) < 0.2
+    before, after = (each.density[level & (away > 0.75) & (away < 1.0)].mean() for each in (carving, told))
+    assert after < 0.5 * before
+    assert told.density[level & (np.abs(away - 0.5) < 0.1)].mean() > 3 * after

@@ -1,17 +1,32 @@
 """What the mattes of a capture leave of space: the hull, and how densely it is filled."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.capture import Shot, TreeMatte
-from treestroke.core.carve.tomography import DensityField, Filling, HullGrid, filling, grid_of
+from treestroke.core.capture import PointCloud, Shot, TreeMatte
+from treestroke.core.carve.tomography import (
+    DensityField,
+    HullGrid,
+    SightLines,
+    Singles,
+    densities,
+    grid_of,
+    leafiness,
+    lines_of,
+    lines_to,
+    together,
+)
 from treestroke.core.carve.visual_hull import VisualHull, visual_hull
 from treestroke.core.progress import Report
 
 JOINED = 2
 """Sides of the hull's cells that make one of the cells whose density is measured."""
+
+
+MOST_LINES = 6000
+"""Points of each shot that tell of open lines of sight."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,20 +38,26 @@ class Carving:
     hull
         The hull.
     grid
-        Its cells, `JOINED` to larger ones.
-    filling
-        What fills these.
+        Its cells, `JOINED` to n larger ones.
+    lines
+        The mattes' lines of sight through these.
+    density
+        (n,) leaves and wood in them: how many a line of one metre meets in the mean.
+    leafy
+        (n,) share of the covered lines through each that end on leaves, not on wood.
     """
 
     hull: VisualHull
     grid: HullGrid
-    filling: Filling
+    lines: SightLines
+    density: Singles
+    leafy: Singles
 
     @property
     def field(self) -> DensityField:
         """Densities of leaves and wood, to be asked for along lines of sight."""
         padded = np.full(self.grid.share.shape, -1.0, dtype=np.float32)
-        padded[tuple(self.grid.places.T)] = self.filling.density
+        padded[tuple(self.grid.places.T)] = self.density
         return DensityField(np.pad(padded, 1, constant_values=-1.0), self.grid.corner, self.grid.side)
 
 
@@ -54,6 +75,21 @@ def carved(shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report) -
     report("density", 0.0)
     grid = grid_of(hull.cells, JOINED)
     good = np.flatnonzero(hull.good).tolist()
-    filled = filling(grid, [(shots[index].camera, mattes[index]) for index in good])
+    lines = together([lines_of(grid, shots[index].camera, mattes[index]) for index in good])
+    carving = Carving(hull, grid, lines, densities(grid, lines), leafiness(lines))
     report("density", 1.0)
-    return Carving(hull, grid, filled)
+    return carving
+
+
+def with_points(carving: Carving, shots: Sequence[Shot], cloud: PointCloud) -> Carving:
+    """Measure the densities again, now that points are known: lines of sight are open up to the points that shots see.
+
+    Source: Kutulakos and Seitz 2000, section 3 (what is seen carves what is before it); here one wrong point does not.
+    """
+    parts = [carving.lines]
+    for index, shot in enumerate(shots):
+        seen = np.flatnonzero(cloud.seen[:, index])
+        seen = seen[:: max(-(-len(seen) // MOST_LINES), 1)]
+        if len(seen):
+            parts.append(lines_to(carving.grid, shot.camera, cloud.points[seen]))
+    return replace(carving, density=densities(carving.grid, together(parts)))

@@ -18,8 +18,9 @@ FILLED = 0.1
 """Density of a filled cell, in means over what leaves fill."""
 NEAR = 2
 """How many of the hull's cells from filled ones leaves are admitted too."""
-LEAFLESS = 0.05
-"""Share of leaves in what the mattes show below which a tree is bare: its crown is made of twigs."""
+LEAFLESS = 0.25
+"""Share of leaves in what the mattes show below which a tree is bare: its crown is made of twigs. The soft edges of
+twigs may pass for leaves."""
 WIDE = 2.5
 """Spread of a bare crown's lowest level, in those of the trunk below."""
 UNSEEN_RAD = np.deg2rad(80.0)
@@ -45,8 +46,8 @@ def measured_crown(carving: Carving, shots: Sequence[Shot]) -> MeasuredCrown:
     Sides that no shot was taken from are bounded by the hull and by the radius of the seen sides at the same height,
     and marked as guessed.
     """
-    grid, leafy = carving.grid, carving.filling.leafy
-    density = carving.filling.density.astype(np.float64)
+    grid, leafy = carving.grid, carving.leafy
+    density = carving.density.astype(np.float64)
     if float((density * leafy).sum()) >= LEAFLESS * float(density.sum()):
         density = density * leafy
     else:

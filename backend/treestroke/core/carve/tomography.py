@@ -1,7 +1,8 @@
 """How densely leaves fill the cells of a hull, from how much of each line of sight the mattes show to be covered."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -11,6 +12,7 @@ from scipy import sparse
 from treestroke.core.capture import TreeMatte
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.clumped_crown import Cells
+from treestroke.core.geometry.vectors import unit
 from treestroke.core.types import Floats, Indices, Mask
 
 Singles = NDArray[np.float32]
@@ -23,6 +25,8 @@ SUBSETS, SWEEPS = 8, 10
 """Parts into which the lines are dealt, and how often all are used: after 20 sweeps little is gained."""
 WRONG = 0.02
 """Share of the mattes' pixels taken to be wrong; with 0.5 to 5 % crowns came out nearly the same."""
+ABOUT = 1.5
+"""Distance from a point that a shot sees, in sides of a cell, from where on its line is not known to be open."""
 DENSEST = 3.0
 """Density, in means of the filled cells, above which a cell's is taken for a line's that nothing else explains."""
 
@@ -45,31 +49,22 @@ class HullGrid:
     corner: Floats
     side: float
 
-    @property
+    @cached_property
     def places(self) -> Indices:
         """(n, 3) places of the cells that the tree may fill."""
         return np.argwhere(self.share > 0)
 
-    @property
+    @cached_property
+    def index(self) -> NDArray[np.int32]:
+        """(cells,) which of those each cell of the flat grid is, -1 where the tree cannot be."""
+        index = np.full(self.share.shape, -1, dtype=np.int32)
+        index[tuple(self.places.T)] = np.arange(len(self.places))
+        return index.ravel()
+
+    @cached_property
     def middles(self) -> Floats:
         """(n, 3) their middles, metres."""
         return np.asarray(self.corner + self.side * (self.places + 0.5))
-
-
-@dataclass(frozen=True, eq=False)
-class Filling:
-    """What fills the n cells that a tree may fill, in the order of their places.
-
-    Attributes
-    ----------
-    density
-        (n,) leaves and wood: how many of them a line of one metre meets in the mean.
-    leafy
-        (n,) share of the covered lines through each that end on leaves, not on wood.
-    """
-
-    density: Singles
-    leafy: Singles
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,16 +103,67 @@ class DensityField:
 
 
 @dataclass(frozen=True, eq=False)
-class _Lines:
-    """Lines of sight: lengths (lines, n) in cells, metres, and the shares covered, and covered by leaves, (lines,)."""
+class SightLines:
+    """Lines of sight through n cells, and what they meet there.
+
+    Attributes
+    ----------
+    lengths
+        (lines, n) how long each runs in each cell, metres.
+    covered
+        (lines,) how much of each is covered, 0 to 1.
+    leaf
+        (lines,) how much of each is covered by leaves, not wood.
+    """
 
     lengths: sparse.csr_matrix
     covered: Singles
     leaf: Singles
 
 
-def filling(grid: HullGrid, views: Iterable[tuple[PerspectiveCamera, TreeMatte]]) -> Filling:
-    """Find densities by which the lines of sight are covered as the mattes show.
+def together(parts: Sequence[SightLines]) -> SightLines:
+    """Gather lines of sight through the same cells."""
+    return SightLines(
+        sparse.vstack([part.lengths for part in parts], format="csr"),
+        np.concatenate([part.covered for part in parts]),
+        np.concatenate([part.leaf for part in parts]),
+    )
+
+
+def lines_of(grid: HullGrid, camera: PerspectiveCamera, matte: TreeMatte) -> SightLines:
+    """Gather the lines of sight of a shot's blocks of pixels that pass the cells, where the shot tells."""
+    covered, leaf, hidden = (
+        _blocks(values) for values in (matte.opacity, matte.opacity * (1 - matte.wood), matte.hidden)
+    )
+    row, column = np.nonzero(_passing(covered.shape, camera, grid.middles, grid.side) & (hidden == 0))
+    middles_px = np.asarray(BLOCK_PX * (np.stack([column, row], axis=1) + 0.5), dtype=np.float64)
+    ahead = unit(camera.world_from_pixels(middles_px, 1.0) - camera.centre)
+    near, far = _through_box(grid, camera.centre, ahead)
+    return SightLines(_lengths(grid, camera.centre, ahead, near, far), covered[row, column], leaf[row, column])
+
+
+def lines_to(grid: HullGrid, camera: PerspectiveCamera, points: Floats) -> SightLines:
+    """Make lines of sight of a shot that sees points (n, 3), metres: open up to each point, and covered about it."""
+    away = points - camera.centre
+    distance, ahead = np.linalg.norm(away, axis=1), unit(away)
+    near, far = _through_box(grid, camera.centre, ahead)
+    about = ABOUT * grid.side
+    ends = np.clip(distance - about, near, far), np.clip(distance + about, near, far)
+    parts = []
+    for begin, end, covered in ((near, ends[0], 0.0), (ends[0], ends[1], 1.0)):
+        share = np.full(len(points), covered, dtype=np.float32)
+        parts.append(SightLines(_lengths(grid, camera.centre, ahead, begin, end), share, share))
+    return together(parts)
+
+
+def leafiness(lines: SightLines) -> Singles:
+    """Measure the share of covered lines through each cell that end on leaves: (n,)."""
+    met = lines.lengths.T @ lines.covered
+    return np.asarray(np.clip((lines.lengths.T @ lines.leaf) / np.maximum(met, 1e-9), 0, 1), dtype=np.float32)
+
+
+def densities(grid: HullGrid, lines: SightLines) -> Singles:
+    """Find the densities (n,) by which lines of sight are covered as they are seen to be.
 
     A line that meets L things in the mean is open with the probability exp(-L); some pixels are wrong. The most likely
     densities come from expectation and maximization: the things that a line is expected to have met are dealt to its
@@ -128,28 +174,12 @@ def filling(grid: HullGrid, views: Iterable[tuple[PerspectiveCamera, TreeMatte]]
     Reche-Martinez, Martin and Drettakis 2004, section 4 (opacity as line integrals); Lange and Carson 1984 (the
     maximization, here for lines of which is only known whether they meet something); Hudson and Larkin 1994 (subsets).
     """
-    middles, size = grid.middles, grid.share.shape
-    index = np.full(size, -1, dtype=np.int32)
-    index[tuple(grid.places.T)] = np.arange(len(middles))
-    parts = [_lines(grid, index, middles, camera, matte) for camera, matte in views]
-    lines = _Lines(
-        sparse.vstack([part.lengths for part in parts], format="csr"),
-        np.concatenate([part.covered for part in parts]),
-        np.concatenate([part.leaf for part in parts]),
-    )
-    met = lines.lengths.T @ lines.covered
-    leafy = np.clip((lines.lengths.T @ lines.leaf) / np.maximum(met, 1e-9), 0, 1)
-    return Filling(_densities(lines, grid.share[tuple(grid.places.T)]), leafy.astype(np.float32))
-
-
-def _densities(lines: _Lines, first: Singles) -> Singles:
-    """Find the most likely densities (n,) of cells, begun with (n,)."""
     part_of = np.arange(len(lines.covered)) * 5 % SUBSETS
     parts = []
     for part in range(SUBSETS):
         lengths, covered = lines.lengths[part_of == part], lines.covered[part_of == part]
         parts.append((lengths, lengths.T.tocsr(), covered, np.asarray(lengths.sum(axis=0)).ravel()))
-    density = first
+    density = grid.share[tuple(grid.places.T)]
     for _ in range(SWEEPS):
         for lengths, turned, covered, through in parts:
             missed = np.exp(-(lengths @ density))
@@ -159,21 +189,6 @@ def _densities(lines: _Lines, first: Singles) -> Singles:
         filled = density > 0.05 * density.mean()
         density = np.minimum(density, DENSEST * density[filled].mean())
     return np.asarray(density, dtype=np.float32)
-
-
-def _lines(
-    grid: HullGrid, index: NDArray[np.int32], middles: Floats, camera: PerspectiveCamera, matte: TreeMatte
-) -> _Lines:
-    """Gather the lines of sight of a shot's blocks of pixels that pass cells (n,), where the shot tells."""
-    covered, leaf, hidden = (
-        _blocks(values) for values in (matte.opacity, matte.opacity * (1 - matte.wood), matte.hidden)
-    )
-    row, column = np.nonzero(_passing(covered.shape, camera, middles, grid.side) & (hidden == 0))
-    middles_px = np.asarray(BLOCK_PX * (np.stack([column, row], axis=1) + 0.5), dtype=np.float64)
-    ahead = camera.world_from_pixels(middles_px, 1.0) - camera.centre
-    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
-    lengths = _lengths(grid, index, camera.centre, ahead)
-    return _Lines(lengths, covered[row, column], leaf[row, column])
 
 
 def _blocks(values: NDArray[np.generic]) -> Singles:
@@ -193,29 +208,34 @@ def _passing(shape: tuple[int, ...], camera: PerspectiveCamera, middles: Floats,
     return np.asarray(cv2.dilate(passing, np.ones((2 * half + 1, 2 * half + 1), np.uint8)) > 0)
 
 
-def _lengths(grid: HullGrid, index: NDArray[np.int32], start: Floats, ahead: Floats) -> sparse.csr_matrix:
-    """Measure how long lines from one point in directions (m, 3) run in cells: (m, n), metres."""
-    size = np.array(grid.share.shape)
-    origin = (start - grid.corner) / grid.side
+def _through_box(grid: HullGrid, start: Floats, ahead: Floats) -> tuple[Floats, Floats]:
+    """Find how far, metres, lines from one point in unit directions (m, 3) enter and leave the grid: (m,), (m,)."""
+    low = grid.corner - start
     with np.errstate(divide="ignore"):
-        ends = np.stack([-origin, size - origin]) / ahead[:, None]
-    near = np.maximum(np.minimum(ends[:, 0], ends[:, 1]).max(axis=1), 0)
-    far = np.maximum(ends[:, 0], ends[:, 1]).min(axis=1)
-    count = max(int(np.ceil(((far - near) / STEP).max(initial=0))), 1)
+        ends = np.stack([low, low + grid.side * np.array(grid.share.shape)]) / ahead[:, None]
+    near = np.maximum(ends.min(axis=1).max(axis=1), 0)
+    return near, np.maximum(ends.max(axis=1).min(axis=1), near)
+
+
+def _lengths(grid: HullGrid, start: Floats, ahead: Floats, near: Floats, far: Floats) -> sparse.csr_matrix:
+    """Measure how far lines from a point, in unit directions (m, 3), run in cells between distances: (m, n), metres."""
+    size, index = grid.share.shape, grid.index
+    count = max(int(np.ceil(((far - near) / grid.side / STEP).max(initial=0))), 1)
     places = np.full((len(ahead), count), -1, dtype=np.int32)
-    flat = index.ravel()
-    first = [(origin[axis] + ahead[:, axis] * near).astype(np.float32) for axis in range(3)]
-    slope = [ahead[:, axis].astype(np.float32) for axis in range(3)]
+    first = ((start - grid.corner + ahead * near[:, None]) / grid.side).astype(np.float32).T
+    slope, room = ahead.astype(np.float32).T, ((far - near) / grid.side).astype(np.float32)
     for step in range(count):
         way = np.float32(STEP * (step + 0.5))
-        x, y, z = ((begin + rise * way).astype(np.int32) for begin, rise in zip(first, slope, strict=True))
-        within = (x >= 0) & (x < size[0]) & (y >= 0) & (y < size[1]) & (z >= 0) & (z < size[2])
-        places[:, step] = np.where(within, flat[np.where(within, (x * size[1] + y) * size[2] + z, 0)], -1)
+        x, y, z = (
+            np.ascontiguousarray(begin + rise * way).astype(np.int32) for begin, rise in zip(first, slope, strict=True)
+        )
+        within = (way <= room) & (x >= 0) & (x < size[0]) & (y >= 0) & (y < size[1]) & (z >= 0) & (z < size[2])
+        places[:, step] = np.where(within, index[np.where(within, (x * size[1] + y) * size[2] + z, 0)], -1)
     held = places >= 0
     ends_at = np.concatenate([[0], np.cumsum(held.sum(axis=1))])
     cells = places[held]
     lengths = np.full(len(cells), STEP * grid.side, dtype=np.float32)
-    matrix = sparse.csr_matrix((lengths, cells, ends_at), (len(ahead), int(index.max()) + 1))
+    matrix = sparse.csr_matrix((lengths, cells, ends_at), (len(ahead), len(grid.places)))
     matrix.sum_duplicates()
     return matrix
 
