@@ -20,7 +20,7 @@ UNDER_GROUND = 0.005
 SLACK_PX = 0.7
 """How far a cell's middle may lie beside a matte at the finest side: half a pixel each of the matte and the camera."""
 
-HOLE_PX, THICK_PX = 9, 13
+HOLE_PX, THICK_PX = 9, 17
 """Width of holes that are filled, px, and of the parts in which they are: trunks, not tangles of twigs."""
 AROUND = 0.08
 """Side of the square about a point that tells what is by chance, as a share of the height."""
