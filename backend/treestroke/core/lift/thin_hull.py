@@ -20,6 +20,8 @@ UNDER_GROUND = 0.005
 SLACK_PX = 0.7
 """How far a cell's middle may lie beside a matte at the finest side: half a pixel each of the matte and the camera."""
 
+HOLE_PX, THICK_PX = 9, 17
+"""Width of holes that are filled, px, and of the parts in which they are: trunks, not tangles of twigs."""
 AROUND = 0.08
 """Side of the square about a point that tells what is by chance, as a share of the height."""
 MOST_CHANCE = 0.6
@@ -91,11 +93,29 @@ class ShownArea:
 
 def shown_area(shot: Shot, tree: Mask, shown: Mask, hidden: Mask) -> ShownArea:
     """Prepare what a shot shows (h, w) of a tree: the part ``shown``, which the rest, or what is hidden, may cover."""
-    may_show = (tree | hidden).astype(np.uint8)
-    inner, outer = (cv2.distanceTransform(mask, cv2.DIST_L2, 5) for mask in (may_show, 1 - may_show))
-    inside = cv2.distanceTransform(shown.astype(np.uint8), cv2.DIST_L2, 5).astype(np.float32)
-    away = cv2.distanceTransform((~shown).astype(np.uint8), cv2.DIST_L2, 5)
-    return ShownArea(shot, shown, (inner - outer).astype(np.float32), away.astype(np.float32), inside, tree)
+    shown = _healed(shown)
+    may_show = tree | hidden | shown
+    within = _inner(may_show)
+    return ShownArea(
+        shot,
+        shown,
+        within_px=within - _inner(~may_show),
+        away_px=_inner(~shown),
+        inside_px=_inner(shown),
+        tree=tree,
+    )
+
+
+def _inner(mask: Mask) -> Opacity:
+    """Return the distance (h, w) of each pixel of a mask from the nearest one that is none of it, px."""
+    return np.asarray(cv2.distanceTransform(mask.astype(np.uint8), cv2.DIST_L2, 5), dtype=np.float32)
+
+
+def _healed(mask: Mask) -> Mask:
+    """Fill holes (h, w) in thick parts of a mask: bark has spots that look like leaves, or like what is behind."""
+    hole, part = (cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (size, size)) for size in (HOLE_PX, THICK_PX))
+    filled = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, hole)
+    return np.asarray(mask | (cv2.morphologyEx(filled, cv2.MORPH_OPEN, part) > 0))
 
 
 def _pixels(shot: Shot, points_world: Floats) -> tuple[Mask, tuple[Indices, Indices]]:
