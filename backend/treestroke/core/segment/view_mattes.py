@@ -47,6 +47,8 @@ POINT_PX = 2
 SOFT_PX = 0.6
 """Standard deviation, px, over which log odds are averaged before they are judged."""
 
+FOREIGN = -4.5
+"""Mean log odds by colour about a place on the trunk from which on something else is seen there."""
 FURTHER_ROUNDS = 2
 """Rounds in which colours are learnt anew and the tree is found again."""
 LEAST_PIECE = 1e-3
@@ -162,8 +164,12 @@ def _found(
     views = [replace(v, said=None if v.said is None else v.said + away) for v, away in zip(views, far, strict=True)]
     report("mattes", 0.5)
     for _ in range(FURTHER_ROUNDS):
-        kept = [tree & (away > -1) for tree, away in zip(judged.trees, far, strict=True)]
-        colours = _carried(views, judged, drawn, (kept, trunks))
+        kept = [
+            tree & (away > -1) & ~(stem & (by_colour < 0.5 * NEVER))
+            for tree, away, stem, by_colour in zip(judged.trees, far, trunks, odds, strict=True)
+        ]
+        bark = [stem & (by_colour > 0.25 * NEVER) for stem, by_colour in zip(trunks, odds, strict=True)]
+        colours = _carried(views, judged, drawn, (kept, bark))
         ground = ground_colours([view.picture for view in views], [~tree for tree in kept])
         odds = _odds(views, kept, colours, ground)
         odds = [by_colour + away for by_colour, away in zip(odds, far, strict=True)]
@@ -279,14 +285,25 @@ def _tree_matte(shot: Shot, found: _Found, models: tuple[TreeColours, Mixture], 
     trunk = cv2.resize(found.trunk.astype(np.float32), size, interpolation=cv2.INTER_LINEAR) > 0.5
     near = cv2.resize(found.tree.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
     region = (cv2.dilate(near, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)) > 0.5) & (odds > 0.5 * NEVER)
+    hidden = np.zeros(region.shape, dtype=np.bool_)
     if drawn is None or drawn.bare:
-        whole = odds + log_odds_by_height(colours.tree, ground, shot.picture, near > 0.5)
-        whole = np.where(trunk, np.maximum(whole, ON_TRUNK), whole)
-        opacity = matte(shot.picture, _likely(whole), region)
+        by_colour = log_odds_by_height(colours.tree, ground, shot.picture, near > 0.5)
+        whole = np.where(trunk, np.maximum(odds + by_colour, ON_TRUNK), odds + by_colour)
+        hidden = _hidden(trunk, by_colour)
+        opacity = np.where(hidden, 0, matte(shot.picture, _likely(whole), region)).astype(np.float32)
     else:
         opacity = drawn.alpha * region
     wood = np.where(trunk, 1.0, colours.wood_share(shot.picture)) * (opacity > 0)
-    return TreeMatte(opacity, wood.astype(np.float32), np.zeros(opacity.shape, dtype=np.bool_))
+    return TreeMatte(opacity, wood.astype(np.float32), hidden)
+
+
+def _hidden(trunk: Mask, by_colour: _Odds) -> Mask:
+    """Where (h, w) a trunk's place has the colours of something else all across: that stands before it."""
+    across = int(np.median(trunk.sum(axis=1)[trunk.any(axis=1)])) if trunk.any() else 0
+    size = (2 * across + 1, 2 * across + 1)
+    share = cv2.blur(trunk.astype(np.float32), size)
+    odds = cv2.blur(np.clip(by_colour, NEVER, -NEVER) * trunk, size) / np.maximum(share, 1e-6)
+    return np.asarray(trunk & (odds < FOREIGN))
 
 
 def _likely(odds: NDArray[np.floating]) -> Opacity:
