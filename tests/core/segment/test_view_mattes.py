@@ -1,5 +1,7 @@
 """A tree photographed from all around is found in every shot by the strokes in one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.core.segment.walked_tree import NO_POINTS, cover, strokes_on, walk
@@ -56,3 +58,16 @@ def test_it_needs_strokes_on_a_shot_that_is_there(walked: Walk) -> None:
     shots, _, _ = walked
     with pytest.raises(ValueError, match="strokes need one of 6 shots"):
         view_mattes(shots, {8: strokes_on(shots[0])}, NO_POINTS)
+
+
+def test_a_crate_before_the_trunk_hides_it(walked: Walk) -> None:
+    shots, _, mattes = walked
+    assert not any(matte.hidden.any() for matte in mattes)
+    before = list(shots)
+    x, y = before[2].camera.pixels_from_world(np.array([[0.0, 0.8, 0.0]]))[0].astype(int).tolist()
+    picture = before[2].picture.copy()
+    picture[y - 10 : y + 10, x - 14 : x + 14] = (180, 40, 160)
+    before[2] = replace(before[2], picture=picture)
+    matte = view_mattes(before[:4], {0: strokes_on(shots[0])}, NO_POINTS)[2]
+    assert matte.hidden[y - 5 : y + 5, x].all()
+    assert not matte.tree[y - 5 : y + 5, x].any()

@@ -47,6 +47,8 @@ POINT_PX = 2
 SOFT_PX = 0.6
 """Standard deviation, px, over which log odds are averaged before they are judged."""
 
+FOREIGN = -4.5
+"""Mean log odds by colour about a place on the trunk from which on something else is seen there."""
 FURTHER_ROUNDS = 2
 """Rounds in which colours are learnt anew and the tree is found again."""
 LEAST_PIECE = 1e-3
@@ -61,12 +63,17 @@ _Odds = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """A shot reduced: its picture (h, w, 3) and camera; where (h, w) the tree may be; what strokes say, if any do."""
+    """A shot reduced: its picture (h, w, 3) and camera; where (h, w) the tree may be; what strokes say, if any do.
 
+    ``full`` (H, W, 3) is the shot's own picture. Strokes on a ``bare`` tree do not say where there is no twig.
+    """
+
+    full: Picture
     picture: Picture
     camera: PerspectiveCamera
     possible: Mask
     said: _Odds | None
+    bare: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,8 +164,12 @@ def _found(
     views = [replace(v, said=None if v.said is None else v.said + away) for v, away in zip(views, far, strict=True)]
     report("mattes", 0.5)
     for _ in range(FURTHER_ROUNDS):
-        kept = [tree & (away > -1) for tree, away in zip(judged.trees, far, strict=True)]
-        colours = _carried(views, judged, drawn, (kept, trunks))
+        kept = [
+            tree & (away > -1) & ~(stem & (by_colour < 0.5 * NEVER))
+            for tree, away, stem, by_colour in zip(judged.trees, far, trunks, odds, strict=True)
+        ]
+        bark = [stem & (by_colour > 0.25 * NEVER) for stem, by_colour in zip(trunks, odds, strict=True)]
+        colours = _carried(views, judged, drawn, (kept, bark))
         ground = ground_colours([view.picture for view in views], [~tree for tree in kept])
         odds = _odds(views, kept, colours, ground)
         odds = [by_colour + away for by_colour, away in zip(odds, far, strict=True)]
@@ -191,9 +202,22 @@ def _attached(tree: Mask) -> Mask:
 
 
 def _odds(views: Sequence[_View], trees: Sequence[Mask], colours: TreeColours, ground: Mixture) -> list[_Odds]:
-    """Log odds (h, w) of tree in each reduced shot, by colours, given about where (h, w) it is."""
-    tree = colours.tree
-    return [log_odds_by_height(tree, ground, view.picture, near) for view, near in zip(views, trees, strict=True)]
+    """Log odds (h, w) of tree in each reduced shot, by colours, given about where (h, w) it is.
+
+    Twigs of a bare tree are thinner than a reduced shot's pixels: there the likeliest pixel of the shot counts.
+    """
+    tree, maps = colours.tree, []
+    for view, near in zip(views, trees, strict=True):
+        if colours.leaf is not None:
+            maps.append(log_odds_by_height(tree, ground, view.picture, near))
+            continue
+        height, width = view.full.shape[:2]
+        there = cv2.resize(near.astype(np.uint8), (width, height), interpolation=cv2.INTER_NEAREST) > 0
+        fine = log_odds_by_height(tree, ground, view.full, there)
+        side = max(1, round(width / near.shape[1]))
+        likeliest = cv2.dilate(fine, np.ones((side, side), np.uint8))
+        maps.append(cv2.resize(likeliest, near.shape[::-1], interpolation=cv2.INTER_NEAREST).astype(np.float32))
+    return maps
 
 
 def _judged(
@@ -202,7 +226,9 @@ def _judged(
     """Judge the solid by all reduced shots' log odds (h, w), and each shot's pixels by both."""
     evidence = []
     for view, by_colour, trunk in zip(views, odds, trunks, strict=True):
-        whole = np.where(trunk, np.maximum(by_colour, ON_TRUNK), by_colour) if view.said is None else view.said
+        whole = np.where(trunk, np.maximum(by_colour, ON_TRUNK), by_colour)
+        if view.said is not None:
+            whole = np.maximum(view.said, whole) if view.bare else view.said
         evidence.append(np.where(view.possible, whole, NEVER).astype(np.float32))
     solid = weighed(solid, [view.camera for view in views], evidence, drawn)
     places = [_by_place(solid, view) for view in views]
@@ -259,14 +285,25 @@ def _tree_matte(shot: Shot, found: _Found, models: tuple[TreeColours, Mixture], 
     trunk = cv2.resize(found.trunk.astype(np.float32), size, interpolation=cv2.INTER_LINEAR) > 0.5
     near = cv2.resize(found.tree.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
     region = (cv2.dilate(near, np.ones((2 * FRINGE_PX + 1,) * 2, np.uint8)) > 0.5) & (odds > 0.5 * NEVER)
-    if drawn is None:
-        whole = odds + log_odds_by_height(colours.tree, ground, shot.picture, near > 0.5)
-        whole = np.where(trunk, np.maximum(whole, ON_TRUNK), whole)
-        opacity = matte(shot.picture, _likely(whole), region)
+    hidden = np.zeros(region.shape, dtype=np.bool_)
+    if drawn is None or drawn.bare:
+        by_colour = log_odds_by_height(colours.tree, ground, shot.picture, near > 0.5)
+        whole = np.where(trunk, np.maximum(odds + by_colour, ON_TRUNK), odds + by_colour)
+        hidden = _hidden(trunk, by_colour)
+        opacity = np.where(hidden, 0, matte(shot.picture, _likely(whole), region)).astype(np.float32)
     else:
         opacity = drawn.alpha * region
     wood = np.where(trunk, 1.0, colours.wood_share(shot.picture)) * (opacity > 0)
-    return TreeMatte(opacity, wood.astype(np.float32), np.zeros(opacity.shape, dtype=np.bool_))
+    return TreeMatte(opacity, wood.astype(np.float32), hidden)
+
+
+def _hidden(trunk: Mask, by_colour: _Odds) -> Mask:
+    """Where (h, w) a trunk's place has the colours of something else all across: that stands before it."""
+    across = int(np.median(trunk.sum(axis=1)[trunk.any(axis=1)])) if trunk.any() else 0
+    size = (2 * across + 1, 2 * across + 1)
+    share = cv2.blur(trunk.astype(np.float32), size)
+    odds = cv2.blur(np.clip(by_colour, NEVER, -NEVER) * trunk, size) / np.maximum(share, 1e-6)
+    return np.asarray(trunk & (odds < FOREIGN))
 
 
 def _likely(odds: NDArray[np.floating]) -> Opacity:
@@ -291,10 +328,10 @@ def _view(shot: Shot, solid: Solid, tree: DrawnTree | None) -> _View:
     )
     possible = projected(solid, camera, size[::-1]) > -1
     if tree is None:
-        return _View(picture, camera, possible, None)
+        return _View(shot.picture, picture, camera, possible, None)
     possible &= cv2.resize(tree.region.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0.5
     alpha = cv2.resize(tree.alpha, size, interpolation=cv2.INTER_AREA)
-    return _View(picture, camera, possible, (-NEVER * (alpha - 0.4)).astype(np.float32))
+    return _View(shot.picture, picture, camera, possible, (-NEVER * (alpha - 0.4)).astype(np.float32), tree.bare)
 
 
 def _outline(strokes: Strokes) -> Floats:
