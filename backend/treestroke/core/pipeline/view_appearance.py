@@ -1,6 +1,7 @@
 """What several photos of one tree show of it: a view for each, for its leaves and its bark."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -22,6 +23,8 @@ SURELY_LEAF = 0.25
 """How likely a pixel may be wood that by its own colour is a leaf."""
 MARGIN = 0.1
 """Width of what is kept around the tree, as a share of its greater extent in the picture."""
+ALIKE_SHOWN = 0.8
+"""How much of the stem a view shows, over what the best one shows, that is good enough for its bark."""
 TWIG = 0.012
 """Width of wood, as a share of the tree's height, up to which leaves hide it on a bare tree that is given leaves."""
 FULL = 0.9

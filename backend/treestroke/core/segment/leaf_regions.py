@@ -103,7 +103,7 @@ def leaf_regions(
     area = ROUNDNESS * leaf_px**2
     region = _joined(len(place), pairs[:, alike])
     region = _merged(region, colours, pairs, SMALL * area)
-    points = np.stack([place % width, place // width], axis=1) + 0.5
+    points: Floats = np.stack([place % width, place // width], axis=1).astype(np.float64) + 0.5
     region = _merged(_split(region, points, LARGE * area, leaf_px), colours, pairs, SMALL * area)
     labels = np.full(foliage.shape, -1, dtype=np.int64)
     labels[box][foliage[box]] = region
