@@ -88,6 +88,14 @@ def test_a_sunny_side_stays_brighter():
     assert greys[0] > greys[9] + 40
 
 
+def test_bark_is_read_on_the_side_in_the_usual_light():
+    azimuths = np.deg2rad(np.arange(0, 360, 20))
+    shots = [shot_from(azimuth, round(100 + 30 * np.cos(azimuth))) for azimuth in azimuths]
+    view = view_appearance(shots, [matte()] * len(shots), TREE).bark_view
+    assert abs(int(view.picture[0, 0, 0]) - 100) < 12
+    assert (view.stem.radii_px > 0).any()
+
+
 def test_a_bare_tree_can_be_given_leaves_between_its_twigs():
     row, column = np.indices((SIZE, SIZE))
     twigs = (np.hypot(row - 36, column - 60) < 24) & (column % 3 == 0)

@@ -28,7 +28,7 @@ PLACES = 120_000
 """Most places in the crown that are weighed."""
 MOST_DRAWS = 12
 """How many times as many points are tried for them at most: the crown fills as little of its box."""
-SIZES = (*(1.0,) * 3, *(0.8,) * 3, *(0.6,) * 3, *(0.45,) * 3, *(0.34,) * 3, *(0.26,) * 3, *(0.2,) * 3)
+SIZES = (*(1.0,) * 3, *(0.8,) * 3, *(0.6,) * 2, *(0.45,) * 2, *(0.34,) * 2, *(0.26,) * 2, 0.2, 0.2)
 """Sizes of the cards, round by round, the large ones first."""
 SEATS = 8000
 """Places on thin branches that cards may hang from."""

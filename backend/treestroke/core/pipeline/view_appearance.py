@@ -1,6 +1,7 @@
 """What several photos of one tree show of it: a view for each, for its leaves and its bark."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -22,6 +23,8 @@ SURELY_LEAF = 0.25
 """How likely a pixel may be wood that by its own colour is a leaf."""
 MARGIN = 0.1
 """Width of what is kept around the tree, as a share of its greater extent in the picture."""
+ALIKE_SHOWN = 0.8
+"""How much of the stem a view shows, over what the best one shows, that is good enough for its bark."""
 TWIG = 0.012
 """Width of wood, as a share of the tree's height, up to which leaves hide it on a bare tree that is given leaves."""
 FULL = 0.9
@@ -57,7 +60,27 @@ def view_appearance(
     lit = [
         (Shot(shot.name, picture, shot.camera), matte) for (shot, matte), picture in zip(pairs, pictures, strict=True)
     ]
-    return Appearance(tuple(_view(*pair, skeleton, stem, shows_leaves) for pair in lit), shows_leaves)
+    return Appearance(
+        _bark_in_usual_light(tuple(_view(*pair, skeleton, stem, shows_leaves) for pair in lit)), shows_leaves
+    )
+
+
+def _bark_in_usual_light(views: tuple[View, ...]) -> tuple[View, ...]:
+    """Leave the stem's pixels to one view: of those that show most of it, that which is least in sun or shade."""
+    shown = np.array([view.stem.radii_px.sum() for view in views])
+    rivals = np.flatnonzero(shown >= ALIKE_SHOWN * shown.max())
+    light = [_stem_light(views[rival]) for rival in rivals.tolist()]
+    chosen = int(rivals[np.argsort(light, kind="stable")[len(rivals) // 2]])
+    return tuple(
+        view if number == chosen else replace(view, stem=StemPixels(view.stem.points_px, 0.0 * view.stem.radii_px))
+        for number, view in enumerate(views)
+    )
+
+
+def _stem_light(view: View) -> float:
+    """Mean light of the stem's axis where it is seen, steps of sRGB."""
+    seen = view.stem.points_px[view.stem.radii_px > 0]
+    return float(sample_nearest(view.picture, seen, 0).mean()) if len(seen) else 0.0
 
 
 def _cropped(shot: Shot, matte: TreeMatte) -> tuple[Shot, TreeMatte]:
