@@ -55,6 +55,31 @@ def test_photos_left_out_are_named_with_the_reason() -> None:
     assert "01.jpg" in next(one.detail for one in solved().unused if one.name == "copy.jpg")
 
 
+def test_photos_held_either_way_share_a_lens() -> None:
+    cameras = ring(6, 70.0)
+    for number in (1, 4):
+        wide = cameras[number]
+        cameras[number] = replace(wide, width=wide.height, height=wide.width, principal_px=wide.principal_px[::-1])
+    structure = solve(photos_of(cameras))
+    assert len(structure.photos) == 6
+    assert len({photo.camera.focal_px for photo in structure.photos}) == 1
+    assert structure.photos[1].camera.height > structure.photos[1].camera.width
+    assert np.median(centre_errors(structure, {f"{n:02d}.jpg": one for n, one in enumerate(cameras)})) < 0.01
+
+
+def test_the_same_photos_give_the_same_structure() -> None:
+    first, second = (solve(walk()[:5]) for _ in range(2))
+    assert (first.cloud.points == second.cloud.points).all()
+    assert all((a.camera.centre == b.camera.centre).all() for a, b in zip(first.photos, second.photos, strict=True))
+
+
+def test_a_set_in_two_parts_uses_the_larger_and_names_the_other() -> None:
+    structure = solve([*walk()[:6], *photos_of(CAMERAS[:4], seed=9, prefix="other")])
+    assert [photo.name for photo in structure.photos] == [f"{n:02d}.jpg" for n in range(6)]
+    assert {one.name: one.code for one in structure.unused} == {f"other{n:02d}.jpg": "other_group" for n in range(4)}
+    assert "other01.jpg, other02.jpg and other03.jpg" in structure.unused[0].detail
+
+
 def test_fewer_than_five_photos_are_refused() -> None:
     with pytest.raises(CaptureError, match="00.jpg, 01.jpg, 02.jpg and 03.jpg") as refusal:
         solve(walk()[:4])

@@ -153,10 +153,13 @@ def cache_of(
         database.close()
 
 
-def reconstruct(cache: pycolmap.DatabaseCache, registered: Callable[[], None]) -> list[pycolmap.Reconstruction]:
+def reconstruct(
+    cache: pycolmap.DatabaseCache, registered: Callable[[], None], few_matches: bool = False
+) -> list[pycolmap.Reconstruction]:
     """Find cameras and points, by incremental structure from motion; the largest model first.
 
-    ``registered()`` is called whenever a view has been added.
+    ``registered()`` is called whenever a view has been added. With ``few_matches``, half of COLMAP's usual number of
+    points in common is enough: for thin plants before a plain ground.
     """
     options = pycolmap.IncrementalPipelineOptions()
     options.num_threads = 1  # sums in a fixed order: the same photos give the same cameras
@@ -166,6 +169,9 @@ def reconstruct(cache: pycolmap.DatabaseCache, registered: Callable[[], None]) -
     options.max_num_models = 4
     options.init_num_trials = 30
     options.min_focal_length_ratio, options.max_focal_length_ratio = _PIXELS_PER_RADIAN_RANGE
+    if few_matches:
+        options.mapper.init_min_num_inliers //= 2
+        options.mapper.abs_pose_min_num_inliers //= 2
     models = pycolmap.ReconstructionManager()
     pipeline = pycolmap.IncrementalPipeline(options, cache, models)
     called = pycolmap.IncrementalPipelineCallback.NEXT_IMAGE_REG_CALLBACK

@@ -23,6 +23,7 @@ from treestroke.engines.bad_photos import (
 )
 from treestroke.engines.densifying import densify
 from treestroke.engines.features import Features, find_features
+from treestroke.engines.lone_points import confirmed
 from treestroke.engines.mapping import (
     Pair,
     View,
@@ -151,14 +152,22 @@ def _largest(
         advanced(min(count / len(matched.photos), 1.0))
 
     flat = [shows_no_parallax(geometry) for geometry in matched.pairs.values()]
-    models = reconstruct(cache_of(matched.views, matched.cameras, matched.pairs), registered)
-    largest = models[0].num_reg_images() if models else 0
+    cache = cache_of(matched.views, matched.cameras, matched.pairs)
+    models = reconstruct(cache, registered)
+    flat_share = float(np.mean(flat)) if flat else 0.0
+    if _most_photos(models) <= len(matched.photos) / 2 and flat_share <= _FLAT_SHARE:
+        models = max(models, reconstruct(cache, registered, few_matches=True), key=_most_photos)
+    largest = _most_photos(models)
     if largest < LEAST_PHOTOS or _spread(models[0]) < _LEAST_SPREAD:
-        if len(flat) >= len(matched.photos) - 1 and (np.mean(flat) > _FLAT_SHARE or largest >= LEAST_PHOTOS):
+        if len(flat) >= len(matched.photos) - 1 and (flat_share > _FLAT_SHARE or largest >= LEAST_PHOTOS):
             raise no_parallax(matched.names)
         together = indices_of(models[0]) if models else []
         raise too_little_overlap(matched.names, [matched.names[index] for index in together])
     return models[0], models[1:]
+
+
+def _most_photos(models: Sequence[pycolmap.Reconstruction]) -> int:
+    return max((model.num_reg_images() for model in models), default=0)
 
 
 def _spread(model: pycolmap.Reconstruction) -> float:
@@ -198,6 +207,7 @@ def _structure(
         camera = PerspectiveCamera(width, height, pose, float(focal) * view.reduction, (width / 2, height / 2))
         solved.append(SolvedPhoto(photo.name, camera, float(radial)))
     cloud = _cloud(matched, model, used, (points - middle) / scale @ upright.T)
+    cloud = cloud.select(confirmed(cloud.points, cloud.seen, np.array([photo.camera.centre for photo in solved])))
     place = {name: number for number, name in enumerate(order)}
     return Structure(tuple(solved), cloud, tuple(sorted(unused, key=lambda one: place[one.name])))
 
