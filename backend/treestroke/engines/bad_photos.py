@@ -16,6 +16,8 @@ _BLURRED = 0.4
 """Share of the median sharpness of a set below which a photo of it is blurred.
 
 Photos of the tuning sets differ by 15 %; one blurred by 2 px of 1280 has a quarter."""
+_ENOUGH_ALIKE = 3
+"""Photos of one size, so of one camera, that tell how sharp it is."""
 _SAME_SIDE = 48
 _SAME_LEVELS = 4.0
 """Greatest mean difference of two thumbnails' levels that may be of one photo."""
@@ -51,15 +53,17 @@ def _thumbnail(photo: CapturedPhoto) -> Floats:
 
 
 def blurred(photos: Sequence[CapturedPhoto], features: Sequence[Features]) -> dict[int, UnusedPhoto]:
-    """Return the photos that are far less sharp than the others, by their indices."""
-    usual = float(np.median([one.sharpness for one in features]))
-    return {
-        index: UnusedPhoto(
-            photo.name, "blurred", f"{photo.name} is blurred: take it again from the same place and hold still"
-        )
-        for index, (photo, one) in enumerate(zip(photos, features, strict=True))
-        if one.sharpness < _BLURRED * usual
-    }
+    """Return the photos that are far less sharp than the others of their camera, by their indices."""
+    sharpness = np.array([one.sharpness for one in features])
+    sizes = [tuple(sorted(photo.picture.shape[:2])) for photo in photos]
+    found: dict[int, UnusedPhoto] = {}
+    for index, photo in enumerate(photos):
+        alike = [one == sizes[index] for one in sizes]
+        usual = np.median(sharpness[alike] if sum(alike) >= _ENOUGH_ALIKE else sharpness)
+        if sharpness[index] < _BLURRED * usual:
+            detail = f"{photo.name} is blurred: take it again from the same place and hold still"
+            found[index] = UnusedPhoto(photo.name, "blurred", detail)
+    return found
 
 
 def without_camera(name: str, group: Sequence[str]) -> UnusedPhoto:

@@ -10,6 +10,7 @@ from treestroke.core.types import Floats
 from treestroke.engines.epipolar_matching import Rays, match_along_lines
 from treestroke.engines.features import Features
 from treestroke.engines.mapping import SEED, Pair, View, cache_of, indices_of
+from treestroke.engines.side_by_side import side_by_side
 
 _NEIGHBOURS = 4
 """Photos with each of which a photo is matched once more."""
@@ -31,15 +32,17 @@ def densify(
     """Add the points of further matches to a model, and adjust it; ``advanced(fraction)`` is told how far it is."""
     rays = {index: _rays(model, views[index], features[index], index) for index in indices_of(model)}
     points = np.array([point.xyz for point in model.points3D.values()])
-    pairs = dict(found)
     ranges = _neighbours(rays, points)
-    for number, (pair, parallax) in enumerate(ranges.items()):
-        matches = match_along_lines(rays[pair[0]], rays[pair[1]], parallax)
+
+    def match(pair: Pair) -> pycolmap.TwoViewGeometry:
         geometry = pycolmap.TwoViewGeometry()
         geometry.config = int(pycolmap.TwoViewGeometryConfiguration.CALIBRATED)
+        matches = match_along_lines(rays[pair[0]], rays[pair[1]], ranges[pair])
         geometry.inlier_matches = matches.astype(np.uint32)
-        pairs[pair] = geometry
-        advanced(0.6 * (number + 1) / len(ranges))
+        return geometry
+
+    matched = side_by_side(match, list(ranges), lambda part: advanced(0.7 * part))
+    pairs = {**found, **dict(zip(ranges, matched, strict=True))}
     _triangulate(model, cache_of(views, cameras, pairs))
     advanced(0.8)
     _adjust(model)

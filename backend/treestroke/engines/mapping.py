@@ -19,6 +19,8 @@ from treestroke.engines.features import WORKING_SIDE, Features
 Pair = tuple[int, int]
 """Indices of two photos, ascending."""
 
+pycolmap.logging.minloglevel = 2  # errors only: it tells of each step
+
 SEED = 1
 """Seed of all that COLMAP draws by chance."""
 _LEAST_INLIERS = 20

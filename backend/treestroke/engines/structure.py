@@ -1,9 +1,8 @@
 """Structure from motion: where the photos of a tree were taken, and points that several of them see."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 import pycolmap
@@ -36,10 +35,9 @@ from treestroke.engines.mapping import (
     view_of,
 )
 from treestroke.engines.matching import match_descriptors
+from treestroke.engines.side_by_side import side_by_side
 from treestroke.engines.upright import unit_scale, up_direction, upright_turn
 
-_THREADS = 2
-"""Photos, or pairs of them, that are worked on at once; the result is the same for any number."""
 _STRONG = 1000
 """Features by which it is found out which photos are worth matching: the largest, which most others show again."""
 _STRONG_RATIO = 0.85
@@ -49,9 +47,6 @@ _LEAST_SPREAD = 0.03
 """Least distance between the farthest two cameras over their distance from the points; below, there is no parallax."""
 _FLAT_SHARE = 0.7
 """Share of the pairs that look as if taken from one place from which on all photos were."""
-
-A = TypeVar("A")
-B = TypeVar("B")
 
 
 class _Matched(NamedTuple):
@@ -103,9 +98,7 @@ def _match(
     photos: Sequence[CapturedPhoto], advanced: Callable[[float], None]
 ) -> tuple[_Matched, dict[int, UnusedPhoto]]:
     """Find features and matches; photos that repeat another or are blurred are left out."""
-    features = list(
-        _side_by_side(lambda photo: find_features(photo.picture), photos, lambda part: advanced(0.4 * part))
-    )
+    features = list(side_by_side(lambda photo: find_features(photo.picture), photos, lambda part: advanced(0.4 * part)))
     strong = [one.descriptors[np.argsort(-one.sizes_px, kind="stable")[:_STRONG]] for one in features]
     order = [np.argsort(-one.sizes_px, kind="stable")[:_STRONG] for one in features]
 
@@ -114,7 +107,7 @@ def _match(
         return np.column_stack([order[pair[0]][found[:, 0]], order[pair[1]][found[:, 1]]])
 
     every = list(combinations(range(len(photos)), 2))
-    coarse = dict(zip(every, _side_by_side(compare, every, lambda part: advanced(0.4 + 0.05 * part)), strict=True))
+    coarse = dict(zip(every, side_by_side(compare, every, lambda part: advanced(0.4 + 0.05 * part)), strict=True))
     unused = repeated(photos, features, coarse)
     unused |= {index: one for index, one in blurred(photos, features).items() if index not in unused}
     check_count([photo.name for photo in photos], list(unused.values()))
@@ -132,7 +125,7 @@ def _match(
         return verified(views, cameras, pair, found)
 
     chosen = [(place[first], place[second]) for first, second in _worth_matching(used, alike)]
-    geometries = zip(chosen, _side_by_side(verify, chosen, lambda part: advanced(0.45 + 0.55 * part)), strict=True)
+    geometries = zip(chosen, side_by_side(verify, chosen, lambda part: advanced(0.45 + 0.55 * part)), strict=True)
     pairs = {pair: geometry for pair, geometry in geometries if geometry is not None}
     return _Matched(kept, kept_features, views, cameras, pairs), unused
 
@@ -243,18 +236,3 @@ def _cloud(matched: _Matched, model: pycolmap.Reconstruction, used: Sequence[int
         np.add.at(total, point[of_image], picture[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)])
     counted = np.maximum(np.bincount(point, minlength=len(points)), 1)
     return PointCloud(points, np.round(total / counted[:, None]).astype(np.uint8), seen)
-
-
-def _side_by_side(work: Callable[[A], B], items: Sequence[A], advanced: Callable[[float], None]) -> Iterable[B]:
-    """Return what ``work`` returns for each item, in their order, on several threads."""
-    with ThreadPoolExecutor(_THREADS) as pool:
-        futures = [pool.submit(work, item) for item in items]
-        try:
-            results = []
-            for number, future in enumerate(futures, start=1):
-                results.append(future.result())
-                advanced(number / len(futures))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return results

@@ -1,0 +1,137 @@
+"""Structure from motion in a process of its own, bounded in time and memory: COLMAP may crash or take too long.
+
+This process does not import pycolmap: its zlib would stand in for OpenCV's where it comes first, and PNG files break.
+"""
+
+import multiprocessing
+import resource
+import signal
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from multiprocessing.connection import Connection
+from typing import Literal, NamedTuple
+
+import cv2
+import numpy as np
+
+from treestroke.core.capture import CapturedPhoto, SolvedPhoto, Structure
+from treestroke.core.progress import Report, silent
+from treestroke.engines.features import WORKING_SIDE
+
+
+class SolveBounds(NamedTuple):
+    """What a solve may take: seconds, and bytes of address space."""
+
+    seconds: float
+    memory: int
+
+
+class SolveEnded(Exception):
+    """The process ended before it had a result.
+
+    Attributes
+    ----------
+    why
+        It took too long (``slow``), ran out of memory (``memory``) or died (``crash``).
+    """
+
+    def __init__(self, why: Literal["slow", "memory", "crash"]) -> None:
+        super().__init__(
+            {
+                "slow": "finding the cameras took too long; give fewer photos",
+                "memory": "finding the cameras ran out of memory; give fewer photos",
+                "crash": "the process that finds the cameras died",
+            }[why]
+        )
+        self.why = why
+
+
+def solve_in_process(photos: Sequence[CapturedPhoto], bounds: SolveBounds, report: Report = silent) -> Structure:
+    """Do what `treestroke.engines.structure.solve` does in a process of its own, and end it whatever happens.
+
+    An exception that ``report`` raises ends the work; with this process the other one ends too.
+
+    Raises
+    ------
+    CaptureError
+        As `solve` does.
+    SolveEnded
+        The process took too long, ran out of memory or died.
+    """
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    with ours:
+        with theirs:  # closed in this process, so that the other's end is noticed
+            process = context.Process(target=_work, args=(theirs, bounds.memory), daemon=True)
+            process.start()
+        try:
+            structure = _result(ours, [_reduced(photo) for photo in photos], bounds.seconds, report)
+        except (EOFError, ConnectionError) as lost:
+            raise SolveEnded("crash") from lost
+        finally:
+            process.kill()
+            process.join()
+            process.close()
+    return _enlarged(structure, photos)
+
+
+def _result(connection: Connection, photos: Sequence[CapturedPhoto], seconds: float, report: Report) -> Structure:
+    """Return what the process at the other end finds."""
+    deadline = time.monotonic() + seconds
+    connection.send(photos)
+    while connection.poll(max(deadline - time.monotonic(), 0.0)):
+        message = connection.recv()
+        if isinstance(message, Structure):
+            return message
+        if isinstance(message, MemoryError):
+            raise SolveEnded("memory") from message
+        if isinstance(message, Exception):
+            raise message
+        report(*message)
+    raise SolveEnded("slow")
+
+
+def _work(connection: Connection, memory: int) -> None:
+    """Solve the photos that arrive; a report fails, and ends this process, once the parent is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is handled by the parent
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    from treestroke.engines.structure import solve
+
+    with suppress(EOFError, ConnectionError):
+        outcome: Structure | Exception
+        try:
+            outcome = solve(connection.recv(), lambda stage, fraction: connection.send((stage, fraction)))
+        except ConnectionError:
+            raise
+        except Exception as error:  # noqa: BLE001 - any error is raised again in the parent
+            short = isinstance(error, cv2.error) and error.code == cv2.Error.StsNoMem
+            outcome = MemoryError() if short else error
+        connection.send(outcome)
+
+
+def _reduced(photo: CapturedPhoto) -> CapturedPhoto:
+    """Return a photo no larger than it is searched: fewer bytes to hand over."""
+    height, width = photo.picture.shape[:2]
+    scale = WORKING_SIDE / max(width, height)
+    if scale >= 1:
+        return photo
+    size = max(round(width * scale), 1), max(round(height * scale), 1)
+    small = cv2.resize(photo.picture, size, interpolation=cv2.INTER_AREA)
+    focal = None if photo.focal_px is None else photo.focal_px * scale
+    return CapturedPhoto(photo.name, np.asarray(small, np.uint8), focal)
+
+
+def _enlarged(structure: Structure, photos: Sequence[CapturedPhoto]) -> Structure:
+    """Return a structure of reduced photos as that of the photos themselves."""
+    pictures = {photo.name: photo.picture for photo in photos}
+    solved = [_of_size(photo, *pictures[photo.name].shape[1::-1]) for photo in structure.photos]
+    return replace(structure, photos=tuple(solved))
+
+
+def _of_size(photo: SolvedPhoto, width: int, height: int) -> SolvedPhoto:
+    camera = photo.camera
+    focal = camera.focal_px * max(width, height) / max(camera.width, camera.height)
+    principal = width / 2, height / 2
+    return replace(photo, camera=replace(camera, width=width, height=height, focal_px=focal, principal_px=principal))

@@ -1,0 +1,45 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.engines.rendered_set import FOCAL, centre_errors, photos_of, picture, ring
+
+from treestroke.core.capture import CapturedPhoto
+from treestroke.core.errors import CaptureError
+from treestroke.engines.solving import SolveBounds, SolveEnded, solve_in_process
+
+BOUNDS = SolveBounds(seconds=300.0, memory=3 * 2**30)
+CAMERAS = ring(5, 60.0)
+
+
+def test_large_photos_are_solved_in_another_process() -> None:
+    photos = photos_of(CAMERAS)
+    camera = replace(CAMERAS[1], width=1440, height=1080, focal_px=3 * FOCAL, principal_px=(720.0, 540.0))
+    large = CapturedPhoto(photos[1].name, picture(camera))
+    fractions: list[float] = []
+    structure = solve_in_process([photos[0], large, *photos[2:]], BOUNDS, lambda _, f: fractions.append(f))
+    assert [photo.camera.width for photo in structure.photos] == [480, 1440, 480, 480, 480]
+    assert structure.photos[1].camera.focal_px == pytest.approx(3 * structure.photos[0].camera.focal_px, rel=0.05)
+    assert np.median(centre_errors(structure, {f"{n:02d}.jpg": one for n, one in enumerate(CAMERAS)})) < 0.01
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+def test_refusals_arrive_with_their_code() -> None:
+    with pytest.raises(CaptureError) as refusal:
+        solve_in_process(photos_of(CAMERAS)[:3], BOUNDS)
+    assert refusal.value.code == "too_few_photos"
+
+
+def test_a_solve_that_takes_too_long_is_ended() -> None:
+    with pytest.raises(SolveEnded) as ended:
+        solve_in_process(photos_of(CAMERAS), BOUNDS._replace(seconds=0.2))
+    assert ended.value.why == "slow"
+
+
+def test_what_the_report_raises_ends_the_process() -> None:
+    def report(stage: str, fraction: float) -> None:
+        raise KeyError(stage)
+
+    with pytest.raises(KeyError, match="solve"):
+        solve_in_process(photos_of(CAMERAS), BOUNDS, report)
