@@ -203,6 +203,24 @@ class Reason(Wire):
 class CapturePhotoInfo(Wire):
     """A photo of a capture."""
 
+    model_config = ConfigDict(
+        json_schema_extra={
+            "example": {
+                "id": "cph_1c2d3e4f5a6b7c8d9e0f1a2b",
+                "name": "IMG_03.jpg",
+                "width": 3024,
+                "height": 4032,
+                "sha256": "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08",
+                "focal_px": 3028.4,
+                "created": "2026-05-04T09:30:00.000Z",
+                "image": "/v1/captures/cap_7b1d0c2e3f4a5968778695a4/photos/cph_1c2d3e4f5a6b7c8d9e0f1a2b/image",
+                "warnings": [],
+                "used": None,
+                "reason": None,
+            }
+        }
+    )
+
     id: str
     name: str = Field(description="its file name; with a number where another photo of the capture had it")
     width: int

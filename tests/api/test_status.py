@@ -5,6 +5,7 @@ from typing import Any
 
 import httpx
 import pytest
+from tests.api import drawn
 from tests.api.conftest import PATIENCE_SECONDS
 from tests.faults.processes import wait_for
 
@@ -85,6 +86,8 @@ def test_what_there_is_not_says_where_to_look(client: httpx.Client) -> None:
         ("/v1/models", "GET, HEAD, OPTIONS, POST"),
         ("/v1/models/x", "DELETE, GET, HEAD, OPTIONS, PATCH"),
         ("/v1/models/x/cancel", "OPTIONS, POST"),
+        ("/v1/captures/x/photos", "OPTIONS, POST"),
+        ("/v1/captures/x/photos/y", "DELETE, GET, HEAD, OPTIONS"),
         ("/v1/photos", "GET, HEAD, OPTIONS, POST"),
         ("/v1/photos/x", "DELETE, GET, HEAD, OPTIONS"),
         ("/livez", "GET, HEAD, OPTIONS"),
@@ -122,10 +125,14 @@ def test_an_invented_method_is_refused_and_makes_no_series(client: httpx.Client)
 def test_head_is_get_without_the_body(
     client: httpx.Client, document: dict[str, Any], made: dict[str, Any], photo: str
 ) -> None:
-    named = {"view": "front", "ending": "glb"}
+    capture = client.post("/v1/captures").json()["id"]
+    of_capture = client.post(f"/v1/captures/{capture}/photos", content=drawn.encoded()).json()["id"]
+    ids = {"/v1/captures": capture, "/v1/photos": photo}
+    named = {"view": "front", "ending": "glb", "photo": of_capture}
     paths = [path for path, one in document["paths"].items() if "get" in one and not path.endswith("/events")]
     for template in [*paths, "/", "/favicon.ico", "/nothing", "/page/nothing"]:
-        path = template.format(id=photo if "photos" in template else made["id"], **named)
+        id = next((id for begins, id in ids.items() if template.startswith(begins)), made["id"])
+        path = template.format(id=id, **named)
         with client.stream("GET", path) as whole:  # the answer may be gigabytes
             head = client.head(path, headers={"Range": "bytes=0-1"})
             assert head.status_code == whole.status_code, path
@@ -160,6 +167,17 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "get_image",
         "trace_photo",
         "trace_sketches",
+        "make_capture",
+        "list_captures",
+        "get_capture",
+        "delete_capture",
+        "add_capture_photo",
+        "get_capture_photo",
+        "get_capture_image",
+        "remove_capture_photo",
+        "solve_capture",
+        "cancel_solve",
+        "follow_capture",
         "ask_for_model",
         "list_models",
         "get_model",
@@ -199,10 +217,12 @@ def test_every_body_has_an_example(document: dict[str, Any]) -> None:
         "post /v1/photos",
         "post /v1/photos/{id}/trace",
         "post /v1/sketches/trace",
+        "post /v1/captures",
+        "post /v1/captures/{id}/photos",
         "post /v1/models",
         "patch /v1/models/{id}",
     }
-    del asking["post /v1/photos"]  # bytes
+    del asking["post /v1/photos"], asking["post /v1/captures/{id}/photos"]  # bytes
     assert all("example" in kind for content in asking.values() for kind in content.values())
 
 

@@ -278,11 +278,12 @@ def _stored(session: Session, rows: Sequence[CaptureRow]) -> list[StoredCapture]
     photos = queries.capture_photos(session, [row.id for row in rows])
     solves = {row.id: queries.last_solve(session, row.id, fingerprint(photos[row.id])) for row in rows}
     waits = queries.waits(session, SolveRow, [solve for solve in solves.values() if solve is not None])
-    return [
-        StoredCapture(row, photos[row.id], solve, *(() if solve is None else waits[solve.number]))
-        for row in rows
-        for solve in (solves[row.id],)
-    ]
+    stored = []
+    for row in rows:
+        solve = solves[row.id]
+        place, eta_s = (None, None) if solve is None else waits[solve.number]
+        stored.append(StoredCapture(row, photos[row.id], solve, place, eta_s))
+    return stored
 
 
 def _present(session: Session, id: str, sent_name: str, sha256: str) -> CapturePhoto | None:
