@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, SolvedPhoto, Structure, TreeMatte
-from treestroke.core.carve.carving import carved
+from treestroke.core.carve.carving import carved, with_points
 from treestroke.core.carve.dense_points import dense_cloud
 from treestroke.core.carve.measured import measured_crown
 from treestroke.core.errors import StrokesError
@@ -115,8 +115,8 @@ def read_views(
         larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
         shots, cloud = tuple(in_frame(shot, larger) for shot in shots), cloud_in_frame(cloud, larger)
     carving = carved(shots, mattes, report)
-    crown = measured_crown(carving, shots)
     cloud = dense_cloud(carving, shots, mattes, report)
+    crown = measured_crown(with_points(carving, shots, cloud), shots)
     seen = seen_branches(shots, mattes, cloud, report)
     return ViewsEvidence(
         photos=used,
