@@ -102,7 +102,11 @@ def _adjust(model: pycolmap.Reconstruction) -> None:
     options.ceres.solver_options.num_threads = 1
     options.ceres.solver_options.max_num_iterations = 30
     options.ceres.solver_options.function_tolerance = 1e-6
-    pycolmap.bundle_adjustment(model, options)
+    config = pycolmap.BundleAdjustmentConfig()
+    for number in sorted(model.reg_image_ids()):
+        config.add_image(number)
+    config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
+    pycolmap.create_default_bundle_adjuster(options, config, model).solve()
 
 
 def _unit(vectors: Floats) -> Floats:
