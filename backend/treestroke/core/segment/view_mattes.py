@@ -47,6 +47,8 @@ POINT_PX = 2
 SOFT_PX = 0.6
 """Standard deviation, px, over which log odds are averaged before they are judged."""
 
+SURELY, LEAST_SEEN = 2.0, 0.08
+"""Log odds from which on a pixel is the drawn tree's, and the share of these that may have less than that evidence."""
 FOREIGN = -4.5
 """Mean log odds by colour about a place on the trunk from which on something else is seen there."""
 FURTHER_ROUNDS = 2
@@ -231,7 +233,9 @@ def _judged(
             whole = np.maximum(view.said, whole) if view.bare else view.said
         evidence.append(np.where(view.possible, whole, NEVER).astype(np.float32))
     solid = weighed(solid, [view.camera for view in views], evidence, drawn)
-    places = [_by_place(solid, view) for view in views]
+    behind = [projected(solid, view.camera, view.possible.shape) for view in views]
+    level = _level(views, behind)
+    places = [_by_place(view, there, level) for view, there in zip(views, behind, strict=True)]
     trees = [
         np.asarray(cv2.GaussianBlur(whole + place, (0, 0), SOFT_PX) > 0)
         for whole, place in zip(evidence, places, strict=True)
@@ -239,10 +243,20 @@ def _judged(
     return _Judged(solid, places, trees)
 
 
-def _by_place(solid: Solid, view: _View) -> _Odds:
-    """Log odds (h, w) of tree in a reduced shot by the voxels behind each pixel."""
-    evidence = projected(solid, view.camera, view.possible.shape)
-    return np.where(view.possible, np.clip(STEEP * (evidence - LEVEL), NEVER, MOST_BY_PLACE), NEVER).astype(np.float32)
+def _level(views: Sequence[_View], behind: Sequence[_Odds]) -> float:
+    """Return the evidence of voxels that speaks neither for nor against: less, where the drawn tree itself has less.
+
+    So a tree too thin for its cameras' errors is not lost.
+    """
+    drawn = [there[view.said > SURELY] for view, there in zip(views, behind, strict=True) if view.said is not None]
+    known = np.concatenate(drawn)
+    return min(LEVEL, float(np.quantile(known, LEAST_SEEN))) if len(known) else LEVEL
+
+
+def _by_place(view: _View, behind: _Odds, level: float) -> _Odds:
+    """Log odds (h, w) of tree in a reduced shot by the evidence (h, w) of the voxels behind each pixel."""
+    odds = np.clip(STEEP * (behind - level), NEVER, MOST_BY_PLACE)
+    return np.where(view.possible, odds, NEVER).astype(np.float32)
 
 
 def _standing(views: Sequence[_View], trees: Mapping[int, DrawnTree], odds: Sequence[_Odds]) -> StandingTrunk | None:
