@@ -157,7 +157,7 @@ def _axis(points: Floats, front: Floats, eye: Floats, height: float) -> Floats:
         # x^2 + z^2 = 2 a x + 2 b z + c (Kasa 1976)
         terms = np.column_stack([2 * (on - start), np.ones(len(on))])
         (a, b, c), *_ = np.linalg.lstsq(terms, ((on - start) ** 2).sum(axis=1), rcond=None)
-        middle, radius = start + [a, b], float(np.sqrt(max(c + a * a + b * b, 0.0)))
+        middle, radius = start + np.array([a, b]), float(np.sqrt(max(c + a * a + b * b, 0.0)))
     believed = radius <= LARGEST_RADIUS * height and np.hypot(*(middle - start)) <= AROUND_TRUNK * height
     return np.asarray(middle if believed else start)
 
