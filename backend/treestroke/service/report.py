@@ -23,7 +23,10 @@ from treestroke.service.files import Bundle
 
 SCORED_HEIGHT = 400
 """Px, of the front view that the silhouette score is measured on."""
-STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "levels", "write")
+STAGES = (
+    *("decode", "solve", "foliage", "trace", "lift", "mattes", "hull", "density", "points", "branches"),
+    *("grow", "leaf", "mesh", "levels", "write"),
+)
 
 
 def variant_seeds(first: int, count: int) -> list[int]:
