@@ -135,8 +135,16 @@ def test_the_fields_of_an_answer_are_those_of_its_schema(
 
 def test_the_library_s_arguments_are_documented() -> None:
     page = text_of("docs/library.md")
-    arguments = {name for function in (treestroke.model, treestroke.sketch) for name in signature(function).parameters}
-    calls = {name for call in re.findall(r"`treestroke\.(?:model|sketch)\((.*?)\)`", page) for name in call.split(", ")}
+    arguments = {
+        name
+        for function in (treestroke.model, treestroke.model_views, treestroke.sketch)
+        for name in signature(function).parameters
+    }
+    calls = {
+        name
+        for call in re.findall(r"`treestroke\.(?:model|model_views|sketch)\((.*?)\)`", page)
+        for name in call.split(", ")
+    }
     (table,) = (t for t in tables(page) if t[0].startswith("| argument"))
     assert calls | {name for row in table[2:] for name in named(cells(row)[0])} == arguments
 
