@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from treestroke.core.lift.centre_lines import CentreLines
 from treestroke.core.lift.limb_radii import limb_radii
 from treestroke.core.lift.point_graph import PointGraph
+from treestroke.core.lift.ridge_fit import fitted
 from treestroke.core.lift.thin_hull import ShownArea
 from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.measure import edge_lengths
@@ -44,9 +45,12 @@ def path_skeleton(
         points.append(line[1:])
         seen.append(shown[1:])
     places = np.concatenate(points)
-    measured = np.where(np.concatenate(seen), limb_radii(places, wood), 0.0)
-    radii = _tapering(measured, np.array(parents), np.array(owner), THINNEST * graph.unit)
-    return _without_guesses(Skeleton(places, radii, np.array(parents)), np.concatenate(seen))
+    shown, least = np.concatenate(seen), THINNEST * graph.unit
+    measured = np.where(shown, limb_radii(places, wood), 0.0)
+    radii = _tapering(measured, np.array(parents), np.array(owner), least)
+    tree, widths = fitted(Skeleton(places, radii, np.array(parents)), wood)
+    radii = _tapering(np.where(shown & (widths > 0), widths, measured), tree.parents, np.array(owner), least)
+    return _without_guesses(Skeleton(tree.points, radii, tree.parents), shown)
 
 
 def _joints(graph: PointGraph, path: Indices) -> tuple[Floats, Mask]:
