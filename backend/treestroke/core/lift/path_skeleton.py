@@ -1,6 +1,7 @@
 """The skeleton along centre lines: smooth, with radii that taper."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -10,7 +11,9 @@ from scipy.spatial import cKDTree
 from treestroke.core.lift.centre_lines import CentreLines
 from treestroke.core.lift.limb_radii import limb_radii
 from treestroke.core.lift.point_graph import PointGraph
+from treestroke.core.lift.ridge_fit import fitted
 from treestroke.core.lift.thin_hull import ShownArea
+from treestroke.core.lift.tips import lengthened
 from treestroke.core.skeleton.edit import subskeleton
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
@@ -22,8 +25,20 @@ JOINT_STEP = 2.5
 """Distance between joints, in units of the graph."""
 GUESS = 0.5
 """What a length that is not seen costs, relative to what one that is seen is worth."""
+ENOUGH_WIDTHS = 3
+"""Joints of a path whose widths are known from which on these alone tell its radii."""
 THINNEST = 0.15
 """Least radius, in units of the graph."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Laid:
+    """Joints (n, 3), metres, whether each is seen (n,), its parent (n,) and the number of its path (n,)."""
+
+    points: Floats
+    seen: Mask
+    parents: Indices
+    owner: Indices
 
 
 def path_skeleton(
@@ -43,10 +58,13 @@ def path_skeleton(
         owner += [number] * (len(line) - 1)
         points.append(line[1:])
         seen.append(shown[1:])
-    places = np.concatenate(points)
-    measured = np.where(np.concatenate(seen), limb_radii(places, wood), 0.0)
-    radii = _tapering(measured, np.array(parents), np.array(owner), THINNEST * graph.unit)
-    return _without_guesses(Skeleton(places, radii, np.array(parents)), np.concatenate(seen))
+    least = THINNEST * graph.unit
+    first = _Laid(*(np.concatenate(part) for part in (points, seen)), np.array(parents), np.array(owner))
+    laid = _lengthened(first, wood, graph.unit, least)
+    radii, measured = _radii(laid, wood, least)
+    tree, widths = fitted(Skeleton(laid.points, radii, laid.parents), wood)
+    radii = _tapering(_told(widths * laid.seen, measured, laid.owner), tree.parents, laid.owner, least)
+    return _without_guesses(Skeleton(tree.points, radii, tree.parents), laid.seen)
 
 
 def _joints(graph: PointGraph, path: Indices) -> tuple[Floats, Mask]:
@@ -67,6 +85,34 @@ def _join(points: Floats, owner: Indices, parent: int, place: Floats) -> int:
     """Return the joint of the parent path that is nearest to a place (3,), metres; the root without one."""
     own = np.flatnonzero(owner == parent)
     return int(own[cKDTree(points[own]).query(place)[1]]) if parent >= 0 else 0
+
+
+def _radii(laid: _Laid, wood: Sequence[ShownArea], least: float) -> tuple[Floats, Floats]:
+    """Return tapering radii (n,), metres, and those measured (n,), 0 where nothing is seen."""
+    measured = np.where(laid.seen, limb_radii(laid.points, wood), 0.0)
+    return _tapering(measured, laid.parents, laid.owner, least), measured
+
+
+def _lengthened(laid: _Laid, wood: Sequence[ShownArea], unit_m: float, least: float) -> _Laid:
+    """Let the paths go on while enough shots show it."""
+    count = len(laid.points)
+    ends = np.flatnonzero((np.bincount(laid.parents[1:], minlength=count) == 0) & laid.seen)
+    points, parents, whose = lengthened(Skeleton(laid.points, _radii(laid, wood, least)[0], laid.parents), ends, wood, unit_m)
+    return _Laid(
+        np.concatenate([laid.points, points]),
+        np.concatenate([laid.seen, np.ones(len(points), dtype=np.bool_)]),
+        np.concatenate([laid.parents, parents]),
+        np.concatenate([laid.owner, laid.owner[whose]]),
+    )
+
+
+def _told(widths: Floats, measured: Floats, owner: Indices) -> Floats:
+    """Return the radii (n,) by ``widths``, 0 where unknown; of a path with too few of them those ``measured`` instead.
+
+    Where other wood stands beside a limb, as at its fork, they measure that, too.
+    """
+    known = np.bincount(owner, weights=widths > 0)
+    return np.where(known[owner] >= ENOUGH_WIDTHS, widths, measured)
 
 
 def _tapering(measured: Floats, parents: Indices, owner: Indices, least: float) -> Floats:

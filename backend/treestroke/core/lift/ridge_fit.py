@@ -1,0 +1,162 @@
+"""Joints moved to the middle of the limbs in the shots, and radii by how wide the limbs are there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+from scipy.sparse import coo_matrix, eye
+from scipy.sparse.linalg import spsolve
+
+from treestroke.core.geometry.vectors import unit
+from treestroke.core.lift.thin_hull import ShownArea
+from treestroke.core.skeleton.skeleton import Skeleton
+from treestroke.core.types import Floats, Indices, Mask
+
+ROUNDS = 3
+"""Rounds of measuring and moving."""
+SAMPLES = 81
+"""Places across a limb at which a shot is looked up."""
+LOOK_RADII, LOOK_PX = 1.7, 5.0
+"""How far to both sides they reach: so many radii and so many px more."""
+OFF_RADII, OFF_PX = 0.7, 2.0
+"""How far aside of its axis a limb may be seen, likewise."""
+WIDEST, WIDEST_PX = 1.4, 2.5
+"""Width up to which what is seen is one limb, over its own, and px more."""
+LEAST_ACROSS = 0.3
+"""Sine of the least angle between a limb and the line of sight at which its sides tell."""
+BENT, MOVED, ROBUST_PX = 0.6, 0.05, 1.0
+"""Weights of bending and of moving against the shots, and the offset, px, from which on a shot counts less."""
+FEWEST = 3
+"""Shots that must show a limb's width."""
+WIDTH_QUANTILE = 0.4
+"""Which of the widths that the shots show tells, from the least up: other wood may stand beside the limb."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Across:
+    """What shots (s) show across joints (n): whether a limb by itself; how far aside it is and its radius, px.
+
+    ``aside`` (s, n, 3) is the unit vector that an offset is measured along, ``pixel_m`` (s, n) a pixel's size, metres.
+    """
+
+    told: Mask
+    offset_px: Floats
+    radius_px: Floats
+    aside: Floats
+    pixel_m: Floats
+
+
+def fitted(skeleton: Skeleton, areas: Sequence[ShownArea]) -> tuple[Skeleton, Floats]:
+    """Move the joints of a skeleton (3D, metres) to the middle of what the shots show of their limbs.
+
+    Also returns the radii (n,), metres, by the widths that the shots show; 0 where too few show a limb by itself.
+
+    Limbs are straight to within a pixel over a few joints: all corrections are found together by least squares, with a
+    weight on bending, robustly by reweighting (Huber 1964). The root stays.
+    """
+    for _ in range(ROUNDS):
+        across = _measured(skeleton, areas)
+        skeleton = Skeleton(skeleton.points + _moves(skeleton, across), skeleton.radii, skeleton.parents)
+    return skeleton, _radii(_measured(skeleton, areas))
+
+
+def _measured(skeleton: Skeleton, areas: Sequence[ShownArea]) -> _Across:
+    """Measure what the shots show across each joint."""
+    along = _tangents(skeleton)
+    columns = zip(*(_one_shot(skeleton, along, area) for area in areas), strict=True)
+    told, offset, radius, aside, pixel = (np.stack(column) for column in columns)
+    return _Across(told.astype(np.bool_), offset, radius, aside, pixel)
+
+
+def _one_shot(skeleton: Skeleton, along: Floats, area: ShownArea) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+    """Return the row of one shot in `_Across`."""
+    camera, points = area.shot.camera, skeleton.points
+    pixel = camera.pixel_size(points)
+    sight = unit(points - camera.centre)
+    aside = np.cross(along, sight)
+    clear = np.linalg.norm(aside, axis=1) > LEAST_ACROSS
+    aside = unit(aside)
+    middle = camera.pixels_from_world(points)
+    step = camera.pixels_from_world(points + aside * pixel[:, None]) - middle
+    radius = np.maximum(skeleton.radii / pixel, 0.5)
+    reach = LOOK_RADII * radius + LOOK_PX
+    offsets = np.linspace(-1, 1, SAMPLES) * reach[:, None]
+    x, y = np.moveaxis(middle[:, None] + offsets[:, :, None] * step[:, None] - 0.5, 2, 0)
+    shown = map_coordinates(area.shown.astype(np.float32), [y, x], order=1, mode="constant") >= 0.5
+    first, last = _run(shown, offsets, OFF_RADII * radius + OFF_PX)
+    known = (first > 0) & (last < SAMPLES - 1) & (last >= first) & clear
+    rows, apart = np.arange(len(points)), 2 * reach / (SAMPLES - 1)
+    left, right = offsets[rows, first], offsets[rows, np.minimum(last, SAMPLES - 1)]
+    width = right - left + apart
+    known &= width <= WIDEST * 2 * radius + WIDEST_PX
+    return known.astype(np.float64), 0.5 * (left + right), 0.5 * width, aside, pixel
+
+
+def _run(shown: Mask, offsets: Floats, off: Floats) -> tuple[Indices, Indices]:
+    """Return the first and last place (n,) of the run of ``shown`` (n, k) that is nearest to the middle.
+
+    The last is before the first where none is within ``off`` (n,) of it.
+    """
+    count = shown.shape[1]
+    distance = np.where(shown, np.abs(offsets), np.inf)
+    start, rows, place = distance.argmin(axis=1), np.arange(len(shown)), np.arange(count)
+    gaps_before = np.maximum.accumulate(np.where(shown, -1, place), axis=1)
+    gaps_after = np.minimum.accumulate(np.where(shown, count, place)[:, ::-1], axis=1)[:, ::-1]
+    first, last = gaps_before[rows, start] + 1, gaps_after[rows, start] - 1
+    return np.minimum(first, count - 1), np.where(distance[rows, start] <= off, last, -1)
+
+
+def _tangents(skeleton: Skeleton) -> Floats:
+    """Return unit vectors (n, 3) along the limbs at their joints: from the parent to the mean of the children."""
+    parents, points = skeleton.parents, skeleton.points
+    has = np.flatnonzero(parents >= 0)
+    edge = np.zeros_like(points)
+    edge[has] = unit(points[has] - points[parents[has]])
+    onward = np.zeros_like(points)
+    np.add.at(onward, parents[has], edge[has] * skeleton.radii[has, None] ** 2)
+    return unit(edge + unit(onward), otherwise=np.array([0.0, 1.0, 0.0]))
+
+
+def _moves(skeleton: Skeleton, across: _Across) -> Floats:
+    """Solve for the moves (n, 3), metres, of all joints but the root."""
+    count, unit_m = len(skeleton), float(np.median(across.pixel_m))
+    weight = across.told / np.maximum(np.abs(across.offset_px) / ROBUST_PX, 1.0)
+    matrix = np.einsum("sn,sni,snj->nij", weight, across.aside, across.aside)
+    wanted = np.einsum("sn,sni,sn->ni", weight * across.pixel_m, across.aside, across.offset_px)
+    row = np.repeat(np.arange(3 * count).reshape(count, 3), 3, axis=1)
+    column = np.tile(np.arange(3 * count).reshape(count, 3), (1, 3))
+    system = coo_matrix((matrix.ravel(), (row.ravel(), column.ravel())), shape=(3 * count,) * 2).tocsc()
+    bending, bent = _bending(skeleton)
+    size = float(weight.sum() / count)
+    system = system + size * BENT * (bending.T @ bending) + MOVED * size * eye(3 * count, format="csc")
+    moves = spsolve(system, wanted.ravel() - size * BENT * (bending.T @ bent)).reshape(-1, 3)
+    limit = 2.0 * unit_m + 0.5 * skeleton.radii[:, None]
+    moves = np.clip(moves, -limit, limit)
+    moves[skeleton.parents < 0] = 0.0
+    return np.asarray(moves)
+
+
+def _bending(skeleton: Skeleton) -> tuple[coo_matrix, Floats]:
+    """Return the matrix (3m, 3n) of second differences at joints within limbs, and their present values (3m,)."""
+    parents = skeleton.parents
+    thickest = np.full(len(skeleton), -1, dtype=np.int64)
+    for joint in np.argsort(skeleton.radii, kind="stable").tolist():
+        if parents[joint] >= 0:
+            thickest[parents[joint]] = joint
+    middle = np.flatnonzero((parents >= 0) & (thickest >= 0))
+    before, after = parents[middle], thickest[middle]
+    axis = np.arange(3)
+    row = np.arange(3 * len(middle)).reshape(-1, 3)
+    places = np.concatenate([(3 * joint[:, None] + axis).ravel() for joint in (middle, before, after)])
+    values = np.repeat([1.0, -0.5, -0.5], row.size)
+    matrix = coo_matrix((values, (np.tile(row.ravel(), 3), places)), shape=(row.size, 3 * len(skeleton))).tocsc()
+    return matrix, np.asarray(matrix @ skeleton.points.ravel())
+
+
+def _radii(across: _Across) -> Floats:
+    """Return the radii (n,), metres, that the shots show; 0 where too few do."""
+    radii = np.sort(np.where(across.told, across.radius_px * across.pixel_m, np.inf), axis=0)
+    count = across.told.sum(axis=0)
+    place = np.floor(WIDTH_QUANTILE * np.maximum(count - 1, 0)).astype(np.int64)
+    return np.where(count >= FEWEST, np.take_along_axis(radii, place[None], axis=0)[0], 0.0)
