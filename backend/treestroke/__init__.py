@@ -1,6 +1,7 @@
-"""A 3D tree from a photo of a real tree and a few strokes, or from two sketches of a tree.
+"""A 3D tree from a photo or many photos of a real tree and a few strokes, or from two sketches of a tree.
 
-The functions are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)`` and
+The functions are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)``,
+``treestroke.model_views(photos, views, settings, seed, report)`` and
 ``treestroke.sketch(front, side, settings, seed, report)``.
 They are imported at first use, so that ``treestroke --version`` and a wrong command respond at once.
 """
@@ -9,16 +10,27 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from treestroke.core.errors import FruitError, LeafError, PhotoError, SettingsError, StrokesError, TreestrokeError
+    from treestroke.core.errors import (
+        CaptureError,
+        FruitError,
+        LeafError,
+        PhotoError,
+        SettingsError,
+        StrokesError,
+        TreestrokeError,
+    )
     from treestroke.core.pipeline.grown_tree import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
-    from treestroke.core.strokes import Sketch, Stroke, Strokes
-    from treestroke.service.model import Model, model, sketch
+    from treestroke.core.strokes import CaptureStrokes, Sketch, Stroke, Strokes
+    from treestroke.engines.solving import SolveEnded
+    from treestroke.service.model import Model, model, model_views, sketch
     from treestroke.service.trace import Trace, trace
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "CaptureError",
+    "CaptureStrokes",
     "FruitError",
     "LeafError",
     "LiveTree",
@@ -27,18 +39,21 @@ __all__ = [
     "PhotoError",
     "SettingsError",
     "Sketch",
+    "SolveEnded",
     "Stroke",
     "Strokes",
     "StrokesError",
     "Trace",
     "TreestrokeError",
     "model",
+    "model_views",
     "sketch",
     "trace",
 ]
 
 _HOMES = {
     "treestroke.core.errors": (
+        "CaptureError",
         "FruitError",
         "LeafError",
         "PhotoError",
@@ -48,8 +63,9 @@ _HOMES = {
     ),
     "treestroke.core.pipeline.grown_tree": ("LiveTree",),
     "treestroke.core.pipeline.settings": ("ModelSettings",),
-    "treestroke.core.strokes": ("Sketch", "Stroke", "Strokes"),
-    "treestroke.service.model": ("Model", "model", "sketch"),
+    "treestroke.core.strokes": ("CaptureStrokes", "Sketch", "Stroke", "Strokes"),
+    "treestroke.engines.solving": ("SolveEnded",),
+    "treestroke.service.model": ("Model", "model", "model_views", "sketch"),
     "treestroke.service.trace": ("Trace", "trace"),
 }
 

@@ -79,6 +79,7 @@ def test_strokes_and_their_history_survive_a_reload(visitor: Visitor) -> None:
     drawn(visitor)
     visitor.draw(LIMB, button="right")
     visitor.until(lambda: len(last_branches(visitor)) == 2)
+    visitor.wait_until_traced()
     both = last_branches(visitor)
     visitor.reload()
     visitor.wait_for_preview("live")

@@ -20,6 +20,8 @@ Pair = tuple[int, int]
 """Indices of two photos, ascending."""
 
 pycolmap.logging.minloglevel = 2  # errors only: it tells of each step
+for _level in (pycolmap.logging.INFO, pycolmap.logging.WARNING, pycolmap.logging.ERROR):
+    pycolmap.logging.set_log_destination(_level, "")  # no file of its own
 
 SEED = 1
 """Seed of all that COLMAP draws by chance."""

@@ -87,7 +87,7 @@ def test_cards_cover_the_foliage_of_every_view(crown, leaves):
         crown.hide(nearest, leaves, grid)
         covered = np.isfinite(nearest)
         assert covered[grid.inside.ravel()].mean() > 0.9
-        assert covered[~grid.inside.ravel()].mean() < 0.03
+        assert covered[~grid.inside.ravel()].mean() < 0.05
 
 
 def test_cards_lie_in_the_crown_and_mostly_in_the_foliage_of_every_view(crown, leaves):

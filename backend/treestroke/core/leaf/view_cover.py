@@ -40,10 +40,10 @@ LEAST_DENSE = 0.2
 """Weight of places where no leaf was measured, over that of a mean density: no measurement is all right."""
 BEFORE_WOOD = 0.5
 """Worth of hiding wood where a view shows leaves, over that of covering what is open."""
-OUTSIDE_COST, OF_SIZE = 1.0, 4.0
+OUTSIDE_COST, OF_SIZE = 0.2, 1.0
 """Cost of what a card covers beside the foliage, over the worth of foliage that it covers: of the smallest cards, and
 more by this for the largest, since smaller ones cover the fringe after them."""
-FITTING = 0.4
+FITTING = 0.25
 """Share of such a card's opaque dots that must lie in the foliage of each view that sees it."""
 WITHIN = 0.5
 """Side of the window in which a place's surroundings are looked at, over a card's side."""
