@@ -8,16 +8,19 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from typing import Any, NoReturn
 
 import pytest
 from PIL import Image
+from tests import walked_capture
 from tests.api import drawn, sketched
 from tests.api.corpora import saved
 
 import treestroke
 from treestroke.cli import main
-from treestroke.codec.image import decode_photo
+from treestroke.codec.image import decode_photo, encode_png
 from treestroke.codec.usd import has_usd
+from treestroke.engines.solving import SolveEnded
 
 QUICK = ["--iterations", "5"]
 
@@ -335,6 +338,25 @@ def test_a_full_disk_is_exit_1_and_leaves_the_old_file_whole(run, tmp_path: Path
         signal.signal(signal.SIGXFSZ, handler)
     assert (code, len(lines), left) == (1, 1, ["tree.glb"])
     assert (tmp_path / "tree.glb").read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("why", ["slow", "memory", "crash"])
+def test_cameras_that_the_machine_could_not_find_are_exit_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, why: Any
+) -> None:
+    def end(*_: object) -> NoReturn:
+        raise SolveEnded(why)
+
+    monkeypatch.setattr("treestroke.service.model.solve_in_process", end)
+    for name, shot in zip(walked_capture.names(), walked_capture.shots(), strict=True):
+        (tmp_path / name).write_bytes(encode_png(shot.picture))
+    (tmp_path / "views.json").write_text(json.dumps(walked_capture.views()))
+    argv = ["views", str(tmp_path), "--strokes", str(tmp_path / "views.json"), "--out", str(tmp_path / "tree.glb")]
+    assert main(argv) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("treestroke: ")
+    assert str(SolveEnded(why)) in line
+    assert not (tmp_path / "tree.glb").exists()
 
 
 def test_a_full_device_is_exit_1(maple_photo: Path, maple_strokes: Path, capsys: pytest.CaptureFixture[str]) -> None:

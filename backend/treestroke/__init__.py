@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from treestroke.core.pipeline.grown_tree import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
     from treestroke.core.strokes import CaptureStrokes, Sketch, Stroke, Strokes
+    from treestroke.engines.solving import SolveEnded
     from treestroke.service.model import Model, model, model_views, sketch
     from treestroke.service.trace import Trace, trace
 
@@ -38,6 +39,7 @@ __all__ = [
     "PhotoError",
     "SettingsError",
     "Sketch",
+    "SolveEnded",
     "Stroke",
     "Strokes",
     "StrokesError",
@@ -62,6 +64,7 @@ _HOMES = {
     "treestroke.core.pipeline.grown_tree": ("LiveTree",),
     "treestroke.core.pipeline.settings": ("ModelSettings",),
     "treestroke.core.strokes": ("CaptureStrokes", "Sketch", "Stroke", "Strokes"),
+    "treestroke.engines.solving": ("SolveEnded",),
     "treestroke.service.model": ("Model", "model", "model_views", "sketch"),
     "treestroke.service.trace": ("Trace", "trace"),
 }

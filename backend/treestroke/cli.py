@@ -211,6 +211,7 @@ def _make(options: argparse.Namespace) -> None:
     inputs, settings = _inputs(options)
     settings |= _chosen(options)
     from treestroke.codec.image import encode_png
+    from treestroke.engines.solving import SolveEnded
     from treestroke.service.model import Options, make_tree
     from treestroke.store.atomic_write import write_atomically
 
@@ -219,6 +220,8 @@ def _make(options: argparse.Namespace) -> None:
     line = ProgressLine(sys.stderr, wanted.settings.iterations) if sys.stderr.isatty() else None
     try:
         result = make_tree(inputs, wanted, line or silent)
+    except SolveEnded as ended:
+        raise MachineFault(f"{ended}; nothing was written") from ended
     finally:
         if line:
             line.clear()

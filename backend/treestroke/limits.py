@@ -9,7 +9,7 @@ MIN_CANVAS, MAX_CANVAS = 16, 16_384
 MAX_PHOTO_BYTES = 25_000_000
 """Most bytes of an uploaded photo."""
 MIN_PHOTOS, MAX_PHOTOS = 5, 60
-"""Fewest and most photos of a capture."""
+"""Fewest photos whose cameras are looked for, and most photos of a capture."""
 MAX_TEXT_BYTES = 64_000_000
 """Most bytes of JSON: more than the longest allowed strokes need."""
 MAX_STRUCTURE_BYTES = 32_000_000
@@ -21,10 +21,8 @@ MAX_LEAF_BYTES = 4_000_000
 MAX_NAME = 200
 """Most characters of a model's name."""
 MAX_ID = 40
-"""Most characters of a photo's id in a request."""
+"""Most characters of the id of a photo or a capture in a request."""
 MAX_REV = 2**53 - 1
 """Largest whole number that every JSON reader keeps exactly."""
-MIN_CAPTURE_PHOTOS, MAX_CAPTURE_PHOTOS = 5, 40
-"""Least number of a capture's photos whose cameras are looked for, and greatest number of a capture's photos."""
 MAX_CLOUD_POINTS = 5000
 """Most points of a capture's cloud that a response holds."""

@@ -141,6 +141,7 @@ class ModelInfo(Wire):
                 "id": "mdl_0a1b2c3d4e5f60718293a4b5",
                 "name": "The old oak",
                 "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
+                "capture": None,
                 "status": "running",
                 "phase": "grow",
                 "phase_fraction": 0.4,
@@ -165,7 +166,8 @@ class ModelInfo(Wire):
 
     id: str
     name: str
-    photo: str | None = Field(description="null where it is made of sketches alone")
+    photo: str | None = Field(description="null where it is made of sketches alone, or of a capture")
+    capture: str | None = Field(default=None, description="where it is made of one")
     status: Status
     phase: str | None = Field(description="the step under way")
     phase_fraction: float = Field(ge=0, le=1)

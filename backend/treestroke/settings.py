@@ -36,7 +36,7 @@ class Settings(BaseSettings):
     ]
     model_seconds: Annotated[float, _setting(300, "a model that takes longer fails, in seconds", gt=0, le=86_400)]
     solve_seconds: Annotated[
-        float, _setting(1200, "finding a capture's cameras fails if it takes longer, in seconds", gt=0, le=86_400)
+        float, _setting(600, "finding a capture's cameras fails if it takes longer, in seconds", gt=0, le=86_400)
     ]
     memory_mb: Annotated[
         int, _setting(4096, "address space of one tracing or growing process, in MB", ge=1024, le=2**20)

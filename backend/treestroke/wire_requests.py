@@ -10,7 +10,16 @@ from pydantic.json_schema import SkipJsonSchema
 from treestroke.core.pipeline import settings as table
 from treestroke.core.pipeline.settings import MAX_SEED, Choice, Several, Span, Toggle
 from treestroke.limits import MAX_ID, MAX_LEAF_BYTES, MAX_NAME, MAX_REV
-from treestroke.wire_strokes import STROKES_EXAMPLE, RequestPart, Sketch, Sketches, Strokes, no_default, text_length
+from treestroke.wire_strokes import (
+    STROKES_EXAMPLE,
+    CaptureStrokes,
+    RequestPart,
+    Sketch,
+    Sketches,
+    Strokes,
+    no_default,
+    text_length,
+)
 
 NAME_PATTERN = r"^[^\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069]*$"
 """A line of text: no controls, no line ends, nothing that turns the direction of what follows it."""
@@ -32,6 +41,12 @@ def _photo_id(schema: dict[str, Any]) -> None:
     """Document a photo's id where it may be absent."""
     no_default(schema)
     schema["pattern"] = "^pho_[0-9a-f]{24}$"
+
+
+def _capture_id(schema: dict[str, Any]) -> None:
+    """Document a capture's id where it may be absent."""
+    no_default(schema)
+    schema["pattern"] = "^cap_[0-9a-f]{24}$"
 
 
 def _setting_type(allowed: table.Allowed) -> Any:
@@ -115,7 +130,8 @@ class ModelRequest(TreeRequest):
     """A tree to be made.
 
     It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
-    of its left side, perhaps with the photo that they were drawn over.
+    of its left side, perhaps with the photo that they were drawn over; or of a solved capture and strokes over some of
+    its photos.
     """
 
     model_config = ConfigDict(json_schema_extra={"example": MODEL_EXAMPLE})
@@ -124,6 +140,12 @@ class ModelRequest(TreeRequest):
         default=None, max_length=MAX_ID, json_schema_extra=_photo_id
     )
     sketches: Sketches | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    capture: Annotated[str, Strict()] | SkipJsonSchema[None] = Field(
+        default=None, max_length=MAX_ID, json_schema_extra=_capture_id
+    )
+    views: CaptureStrokes | SkipJsonSchema[None] = Field(
+        default=None, description="with a capture", json_schema_extra=no_default
+    )
     leaf: EncodedPng | SkipJsonSchema[None] = Field(
         default=None, description="PNG of a leaf cut out, base64", json_schema_extra=no_default
     )

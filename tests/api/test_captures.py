@@ -4,18 +4,26 @@ import hashlib
 import io
 from collections.abc import Sequence
 from typing import Any
+from zipfile import ZipFile
 
 import httpx
 import numpy as np
 import pytest
 from PIL import Image
+from tests import walked_capture
 from tests.api import drawn
 from tests.api.conftest import PATIENCE_SECONDS, Service
 from tests.api.test_events import events
 from tests.engines.rendered_set import photos_of, ring
 from tests.faults.processes import wait_for
+from tests.structures import small_structure
+from tests.walked_capture import write_structure
 
 from treestroke.codec.image import encode_png
+from treestroke.codec.project import read_project
+from treestroke.codec.structure import encode_structure
+from treestroke.store.blobs import Blobs
+from treestroke.store.database import Database
 
 
 def made(client: httpx.Client, seeds: Sequence[int] = (), **body: Any) -> str:
@@ -184,6 +192,77 @@ def test_the_same_photos_in_another_capture_are_solved_at_once(client: httpx.Cli
     answer = client.post(f"{second}/solve")
     assert answer.status_code == 200
     assert answer.json()["cameras"] == client.get(first).json()["cameras"]
+
+
+def test_cameras_are_told_in_pixels_of_the_photos(service: Service) -> None:
+    """Photos are solved smaller than they are; here in pictures of 64 by 48 px."""
+    place = made(service.client, range(70, 75))
+    found = small_structure([f"{seed}.png" for seed in range(70, 75)], [])
+    write_structure(Database(service.data), Blobs(service.data), place.rpartition("/")[2], found)
+    capture = service.client.get(place).json()
+    assert capture["status"] == "solved"
+    scale = drawn.WIDTH / 64
+    for told, solved in zip(capture["cameras"], found.photos, strict=True):
+        assert told["size_px"] == [drawn.WIDTH, drawn.HEIGHT]
+        assert told["focal_px"] == pytest.approx(scale * solved.camera.focal_px)
+        assert told["principal_px"] == pytest.approx([drawn.WIDTH / 2, drawn.HEIGHT / 2])
+        assert told["camera_from_world"] == solved.camera.camera_from_world.tolist()
+
+
+@pytest.fixture(scope="module")
+def tree_walk(service: Service) -> str:
+    """The id of a solved capture of a small tree."""
+    place = made(service.client)
+    for name, shot in zip(walked_capture.names(), walked_capture.shots(), strict=True):
+        assert add(service.client, place, name, encode_png(shot.picture)).status_code == 201
+    id = place.rpartition("/")[2]
+    write_structure(Database(service.data), Blobs(service.data), id, walked_capture.structure())
+    return id
+
+
+def test_a_capture_becomes_a_tree(service: Service, tree_walk: str) -> None:
+    client, wish = service.client, walked_capture.request(tree_walk, name="Around")
+    asked = client.post("/v1/models", json=wish, headers={"idempotency-key": tree_walk})
+    assert (asked.status_code, asked.json()["capture"], asked.json()["photo"]) == (202, tree_walk, None)
+    told = list(events(client, f"/v1/models/{asked.json()['id']}"))
+    assert [event.name for event in told if event.name != "progress"] == ["snapshot", "preview", "succeeded"]
+    model = client.get(asked.headers["location"]).json()
+    assert {"tree.glb", "preview.png", "views.json", "project"} <= set(model["files"])
+    assert "structure.json" not in model["files"]
+    assert client.get(model["files"]["views.json"]).json() == walked_capture.views()
+    assert client.get(model["files"]["tree.glb"]).content[:4] == b"glTF"
+    assert [camera["photo"] for camera in model["report"]["cameras"]] == walked_capture.names()
+    again = client.post("/v1/models", json=wish)
+    assert (again.status_code, again.json()["report"]) == (200, model["report"])
+    assert client.post("/v1/models", json=wish, headers={"idempotency-key": tree_walk}).json()["id"] == model["id"]
+
+
+def test_the_project_of_a_capture_s_tree_holds_its_photos_and_cameras(service: Service, tree_walk: str) -> None:
+    asked = service.client.post("/v1/models", json=walked_capture.request(tree_walk)).json()
+    content = service.client.get(asked["files"]["project"]).content
+    photos = {f"photos/{name}.png" for name in walked_capture.names()}
+    with ZipFile(io.BytesIO(content)) as archive:
+        assert set(archive.namelist()) == {*photos, "views.json", "structure.json", "settings.json"}
+    project = read_project(io.BytesIO(content), "x")
+    assert project.inputs.parts["structure"] == encode_structure(walked_capture.structure())
+    service.finished(service.client.get(f"/v1/models/{asked['id']}"))
+
+
+def test_a_tree_of_a_capture_that_is_not_solved_is_refused(client: httpx.Client) -> None:
+    place = made(client, range(5))
+    answer = client.post("/v1/models", json=walked_capture.request(place.rpartition("/")[2]))
+    assert (answer.status_code, answer.json()["code"]) == (409, "capture_unsolved")
+    assert [fault["pointer"] for fault in answer.json()["errors"]] == ["/capture"]
+    nowhere = client.post("/v1/models", json=walked_capture.request("cap_" + "0" * 24))
+    assert (nowhere.status_code, nowhere.json()["code"]) == (404, "capture_not_found")
+
+
+def test_strokes_over_a_photo_that_the_capture_does_not_have_are_refused(client: httpx.Client, tree_walk: str) -> None:
+    over = walked_capture.views()
+    over["views"][0]["photo"] = "IMG_9.jpg"
+    answer = client.post("/v1/models", json=walked_capture.request(tree_walk, views=over))
+    assert (answer.status_code, answer.json()["code"]) == (422, "photo_unknown")
+    assert [fault["pointer"] for fault in answer.json()["errors"]] == ["/views/views/0/photo"]
 
 
 def test_photos_that_do_not_go_together_fail_with_a_sentence(client: httpx.Client) -> None:

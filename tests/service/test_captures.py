@@ -9,7 +9,7 @@ from tests.structures import small_structure
 
 from treestroke.codec.structure import encode_structure
 from treestroke.core.errors import CaptureError, PhotoError, TreestrokeError
-from treestroke.limits import MAX_CAPTURE_PHOTOS, MAX_NAME
+from treestroke.limits import MAX_NAME, MAX_PHOTOS
 from treestroke.service import captures
 from treestroke.service.captures import StoredCapture
 from treestroke.service.engine_version import engine_version
@@ -129,9 +129,9 @@ def test_a_photo_that_cannot_be_used_changes_nothing(resources: Resources) -> No
 
 
 def test_a_capture_has_only_so_many_photos_and_knows_all_of_them(resources: Resources) -> None:
-    id = add_capture(resources.database, [f"{number:064}" for number in range(MAX_CAPTURE_PHOTOS - 1)]).id
+    id = add_capture(resources.database, [f"{number:064}" for number in range(MAX_PHOTOS - 1)]).id
     add(resources, id, "last.png")
-    with pytest.raises(CaptureError, match="there are 40, at most 40 are allowed; remove some") as refused:
+    with pytest.raises(CaptureError, match="there are 60, at most 60 are allowed; remove some") as refused:
         add(resources, id, "one more.png", 1)
     assert refused.value.code == "capture_full"
     assert add(resources, id, "last.png") == ("last.png", False)

@@ -7,9 +7,10 @@ from tests.conftest import DATA
 
 import treestroke
 from treestroke.service.model import Model
-from treestroke.service.report import STAGES
 
 QUICK = {"iterations": 5}
+
+STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "levels", "write")
 
 
 @pytest.fixture(scope="module")

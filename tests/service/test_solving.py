@@ -1,6 +1,4 @@
-import sys
 from collections.abc import Callable, Sequence
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,13 +9,15 @@ from treestroke.codec.image import decode_photo
 from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.errors import CaptureError
 from treestroke.core.progress import Report
-from treestroke.service import captures
+from treestroke.engines.solving import SolveBounds, SolveEnded
+from treestroke.service import captures, solving
 from treestroke.service.attempts import Assignment
 from treestroke.service.captures import StoredCapture
 from treestroke.service.photos import Resources
 from treestroke.service.solving import solve_capture
+from treestroke.store.leases import MAX_ATTEMPTS
 
-Solve = Callable[[Sequence[CapturedPhoto], Report], Structure]
+Solve = Callable[[Sequence[CapturedPhoto], SolveBounds, Report], Structure]
 
 
 @pytest.fixture
@@ -37,16 +37,18 @@ def carry_out(resources: Resources, capture: StoredCapture, seconds: float = 60)
 
 def use(monkeypatch: pytest.MonkeyPatch, solve: Solve) -> None:
     """Put a stand-in in the place of the engine."""
-    monkeypatch.setitem(sys.modules, "treestroke.engines.structure", SimpleNamespace(solve=solve))
+    monkeypatch.setattr(solving, "solve_in_process", solve)
 
 
 def test_the_engine_is_given_the_photos_by_name_and_what_it_finds_is_kept(
     resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given: list[CapturedPhoto] = []
+    bounds: list[SolveBounds] = []
 
-    def solve(photos: Sequence[CapturedPhoto], report: Report) -> Structure:
+    def solve(photos: Sequence[CapturedPhoto], within: SolveBounds, report: Report) -> Structure:
         given.extend(photos)
+        bounds.append(within)
         report("solve", 0.5)
         return small_structure([photo.name for photo in photos], [])
 
@@ -55,6 +57,7 @@ def test_the_engine_is_given_the_photos_by_name_and_what_it_finds_is_kept(
     assert [photo.name for photo in given] == [f"{seed}.png" for seed in range(5)]
     assert np.array_equal(given[3].picture, decode_photo(drawn.encoded(seed=3), "photo"))
     assert after.status == "solved"
+    assert bounds == [SolveBounds(60, 3 * 2**30)]
     structure = captures.structure_of(resources.blobs, after)
     assert structure is not None
     assert [photo.name for photo in structure.photos] == [photo.name for photo in given]
@@ -79,7 +82,13 @@ def test_photos_that_do_not_go_together_are_named(
 
 
 @pytest.mark.parametrize(
-    ("error", "code"), [(MemoryError(), "out_of_memory"), (RuntimeError("colmap"), "engine_error")]
+    ("error", "code"),
+    [
+        (MemoryError(), "out_of_memory"),
+        (RuntimeError("colmap"), "engine_error"),
+        (SolveEnded("memory"), "out_of_memory"),
+        (SolveEnded("slow"), "time_limit"),
+    ],
 )
 def test_an_engine_that_breaks_fails_the_solve(
     resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch, error: Exception, code: str
@@ -93,10 +102,37 @@ def test_an_engine_that_breaks_fails_the_solve(
     assert (after.status, after.solve.error and after.solve.error["code"]) == ("failed", code)
 
 
+def test_a_solve_whose_process_crashes_is_tried_again_and_fails_in_the_end(
+    resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def crash(*_: object) -> Structure:
+        raise SolveEnded("crash")
+
+    use(monkeypatch, crash)
+    for attempt in range(1, MAX_ATTEMPTS):
+        after = carry_out(resources, capture)
+        assert after.solve is not None
+        assert (after.status, after.solve.attempt) == ("queued", attempt)
+    after = carry_out(resources, capture)
+    assert after.solve is not None
+    assert (after.status, after.solve.error and after.solve.error["code"]) == ("failed", "worker_lost")
+
+
+def test_a_solve_that_crashes_after_it_was_canceled_is_not_tried_again(
+    resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def crash(*_: object) -> Structure:
+        captures.cancel(resources.database, capture.id)
+        raise SolveEnded("crash")
+
+    use(monkeypatch, crash)
+    assert carry_out(resources, capture).status == "unsolved"
+
+
 def test_a_solve_that_takes_too_long_fails(
     resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    use(monkeypatch, lambda photos, report: small_structure())
+    use(monkeypatch, lambda photos, bounds, report: small_structure())
     after = carry_out(resources, capture, seconds=0)
     assert after.solve is not None
     assert (after.status, after.solve.error and after.solve.error["code"]) == ("failed", "time_limit")
@@ -118,7 +154,7 @@ def test_a_solve_stops_when_it_is_canceled_and_is_not_published(
 def test_a_damaged_photo_is_not_the_engine_s_fault(
     resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    use(monkeypatch, lambda photos, report: small_structure())
+    use(monkeypatch, lambda photos, bounds, report: small_structure())
     resources.blobs.path(capture.photos[2].blob).write_bytes(b"damaged")
     after = carry_out(resources, capture)
     assert after.solve is not None

@@ -41,6 +41,7 @@ _STATUS = {
     "method_not_allowed": 405,
     "body_too_slow": 408,
     "request_too_slow": 408,
+    "capture_unsolved": 409,
     "body_too_large": 413,
     "unsupported_media_type": 415,
     "range_not_satisfiable": 416,

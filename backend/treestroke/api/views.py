@@ -1,5 +1,6 @@
 """Stored photos, models and captures as the API shows them."""
 
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -35,6 +36,7 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
         id=row.id,
         name=row.name,
         photo=row.photo,
+        capture=row.capture,
         status=row.status,  # type: ignore[arg-type]
         phase=row.phase,
         phase_fraction=row.phase_fraction,
@@ -69,9 +71,16 @@ def capture_view(capture: StoredCapture, structure: Structure | None) -> schemas
         return schemas.CaptureInfo(**shown, cameras=[], cloud=None)
     return schemas.CaptureInfo(
         **shown,
-        cameras=[schemas.CameraInfo(**plain_photo_camera(one.name, one.camera)) for one in structure.photos],
+        cameras=_cameras(capture.photos, structure),
         cloud=schemas.CloudInfo(**plain_cloud(structure.cloud, MAX_CLOUD_POINTS)),
     )
+
+
+def _cameras(photos: Sequence[CapturePhoto], structure: Structure) -> list[schemas.CameraInfo]:
+    """Return the cameras that were found, in pixels of the upright photos: large ones are solved smaller."""
+    sizes = {photo.name: (photo.width, photo.height) for photo in photos}
+    cameras = {one.name: one.camera.resized(*sizes[one.name]) for one in structure.photos}
+    return [schemas.CameraInfo(**plain_photo_camera(name, camera)) for name, camera in cameras.items()]
 
 
 def capture_photo_view(row: CapturePhoto, structure: Structure | None = None) -> schemas.CapturePhotoInfo:

@@ -1,11 +1,12 @@
-"""Strokes over the photos of a capture: JSON to values."""
+"""Strokes over the photos of a capture: JSON to values and back."""
 
+import json
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from treestroke.codec.json_text import check_ascii, read_json
-from treestroke.codec.strokes import stroke_of
+from treestroke.codec.strokes import plain_length, plain_strokes, stroke_of
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import check_count
 from treestroke.core.strokes import CameraDistance, CaptureStrokes, Length, LengthInPhoto, Strokes
@@ -66,6 +67,19 @@ def capture_strokes_of(described: "DescribedStrokes") -> CaptureStrokes:
             erase=tuple(stroke_of(stroke) for stroke in view.erase),
         )
     return CaptureStrokes(by_photo, None if described.scale is None else _scale_of(described.scale))
+
+
+def encode_capture_strokes(drawn: CaptureStrokes) -> str:
+    """Return strokes over several photos as JSON that `parse_capture_strokes` reads back."""
+    views = [{"photo": name, **plain_strokes(strokes)} for name, strokes in drawn.by_photo.items()]
+    scale = {} if drawn.scale is None else {"scale": _plain_scale(drawn.scale)}
+    return json.dumps({"views": views, **scale})
+
+
+def _plain_scale(scale: LengthInPhoto | CameraDistance) -> dict[str, object]:
+    if isinstance(scale, CameraDistance):
+        return {"photos": list(scale.photos), "metres": scale.metres}
+    return {"photo": scale.photo, **plain_length(scale.length)}
 
 
 def _scale_of(described: "DescribedLength | DescribedDistance") -> LengthInPhoto | CameraDistance:

@@ -42,9 +42,12 @@ def stored_inputs(parts: Mapping[str, bytes]) -> Inputs[bytes]:
     TreestrokeError
         As `check_parts`.
     """
-    return Inputs.of(
-        {name: StoredPhoto(part) if part_of(name).kind == "photo" else part for name, part in parts.items()}
-    )
+    return Inputs.of({name: stored_part(name, part) for name, part in parts.items()})
+
+
+def stored_part(name: str, content: bytes) -> bytes:
+    """Return the bytes of a part that a service or a project file keeps, as `stored_inputs` does."""
+    return StoredPhoto(content) if part_of(name).kind == "photo" else content
 
 
 def read_project(file: BinaryIO, name: str) -> Project:

@@ -69,6 +69,7 @@ _BY_KEY = {
     ),
     "seed": Rule("seed_invalid", f"{{value}} is not allowed; give a whole number from 0 to {MAX_SEED}"),
     "photo": Rule("wrong_type", "it must be a photo's id; upload the photo first"),
+    "capture": Rule("wrong_type", "it must be a capture's id; make a capture first"),
     "leaf": _NOT_PNG,
     "fruit": _NOT_PNG,
     "rev": Rule("wrong_type", f"it must be a whole number, at most {MAX_REV}; send one or leave it out"),

@@ -71,14 +71,24 @@ def stroke_of(described: "CrownStroke | BranchStroke | EraseStroke") -> Stroke:
 
 def encode_strokes(strokes: Strokes) -> str:
     """Return strokes as JSON that `parse_strokes` reads back."""
-    value: dict[str, object] = {
+    value = plain_strokes(strokes)
+    if strokes.scale is not None:
+        value["scale"] = plain_length(strokes.scale)
+    return json.dumps(value)
+
+
+def plain_strokes(strokes: Strokes) -> dict[str, object]:
+    """Return strokes, a scale apart, as plain mappings, lists and numbers."""
+    return {
         "crown": plain_stroke(strokes.crown),
         "branches": [plain_stroke(stroke) for stroke in strokes.branches],
         "erase": [plain_stroke(stroke) for stroke in strokes.erase],
     }
-    if strokes.scale is not None:
-        value["scale"] = {"points": strokes.scale.points.tolist(), "metres": strokes.scale.metres}
-    return json.dumps(value)
+
+
+def plain_length(length: Length) -> dict[str, object]:
+    """Return a known length as plain lists and numbers."""
+    return {"points": length.points.tolist(), "metres": length.metres}
 
 
 def plain_stroke(stroke: Stroke) -> dict[str, object]:

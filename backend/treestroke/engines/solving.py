@@ -3,15 +3,18 @@
 This process does not import pycolmap: its zlib would stand in for OpenCV's where it comes first, and PNG files break.
 """
 
-import multiprocessing
+import os
 import resource
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import cv2
 import numpy as np
@@ -60,21 +63,29 @@ def solve_in_process(photos: Sequence[CapturedPhoto], bounds: SolveBounds, repor
     SolveEnded
         The process took too long, ran out of memory or died.
     """
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe()
+    ours, theirs = Pipe()
     with ours:
         with theirs:  # closed in this process, so that the other's end is noticed
-            process = context.Process(target=_work, args=(theirs, bounds.memory), daemon=True)
-            process.start()
+            process = _start(theirs.fileno(), bounds.memory)
         try:
             structure = _result(ours, [_reduced(photo) for photo in photos], bounds.seconds, report)
         except (EOFError, ConnectionError) as lost:
             raise SolveEnded("crash") from lost
         finally:
             process.kill()
-            process.join()
-            process.close()
+            process.wait()
     return _enlarged(structure, photos)
+
+
+def _start(pipe: int, memory: int) -> "subprocess.Popen[bytes]":
+    """Start the other process at the end of a pipe, a file's number.
+
+    `multiprocessing` would run the caller's own script there once more, which must be written for that.
+    """
+    code = f"from treestroke.engines.solving import work; work({pipe}, {memory})"
+    paths = os.pathsep.join(path or os.curdir for path in sys.path)
+    environment = {**os.environ, "PYTHONPATH": paths}
+    return subprocess.Popen([sys.executable, "-P", "-c", code], pass_fds=(pipe,), env=environment)
 
 
 def _result(connection: Connection, photos: Sequence[CapturedPhoto], seconds: float, report: Report) -> Structure:
@@ -93,9 +104,15 @@ def _result(connection: Connection, photos: Sequence[CapturedPhoto], seconds: fl
     raise SolveEnded("slow")
 
 
-def _work(connection: Connection, memory: int) -> None:
-    """Solve the photos that arrive; a report fails, and ends this process, once the parent is gone."""
+def work(pipe: int, memory: int) -> None:
+    """Solve, in at most so many bytes of memory, the photos that arrive by a pipe, a file's number.
+
+    A report fails, and ends this process, once the parent is gone.
+    """
+    connection: Connection[Any, Any] = Connection(pipe)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is handled by the parent
+    _, most = resource.getrlimit(resource.RLIMIT_AS)
+    memory = memory if most == resource.RLIM_INFINITY else min(memory, most)  # a worker's own limit holds here, too
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     from treestroke.engines.structure import solve
 

@@ -18,7 +18,7 @@ from treestroke.service.failures import code_of, problem_of, problem_of_input
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
-from treestroke.store.leases import AnyJob, Holder, JobRow, claim, end, heartbeat
+from treestroke.store.leases import AnyJob, Holder, JobRow, claim, end, heartbeat, take_back
 
 _BEAT_SECONDS = 2.0
 _LOOK_SECONDS = 0.5
@@ -45,6 +45,10 @@ class Superseded(Exception):
 
 class TimeLimit(Exception):
     """The job takes longer than is allowed."""
+
+
+class AttemptLost(Exception):
+    """A process that the work needs died; another attempt may do better."""
 
 
 class Heartbeat:
@@ -105,7 +109,7 @@ class Heartbeat:
 def carry_out(database: Database, table: type[JobRow], assignment: Assignment, work: Callable[[JobRow], None]) -> None:
     """Do a job, unless another worker does or did; ``work`` publishes its result, else why there is none is recorded.
 
-    ``work`` may raise what `Heartbeat.report` raises.
+    ``work`` may raise what `Heartbeat.report` raises, and `AttemptLost`.
     """
     holder = Holder(assignment.token, assignment.worker, engine_version())
     with database.writing() as session:
@@ -121,6 +125,9 @@ def carry_out(database: Database, table: type[JobRow], assignment: Assignment, w
             log.warning("job_superseded")
         except Canceled:
             _end(database, job, "canceled", None)
+        except AttemptLost as lost:
+            log.error("attempt_lost", why=str(lost.__cause__))
+            _take_back(database, job)
         except TimeLimit:
             _end(database, job, "failed", problem_of("time_limit"))
         except TreestrokeError as error:
@@ -144,6 +151,14 @@ def publish(database: Database, job: AnyJob, succeed: Callable[[Session], bool])
         # Not published: it was canceled at the last moment, or another attempt has the job.
         canceled = not published and end(session, job, "canceled", None)
     log.info("job_succeeded" if published else "job_canceled" if canceled else "job_superseded")
+
+
+def _take_back(database: Database, job: AnyJob) -> None:
+    """Queue a job again, or end it where it has used up its attempts."""
+    with database.writing() as session:
+        now: AnyJob | None = session.get(type(job), job.number)  # type: ignore[assignment]
+        if now is not None and now.attempt == job.attempt:
+            take_back(session, now, problem_of("worker_lost"))
 
 
 def _end(database: Database, job: AnyJob, status: Any, error: dict[str, Any] | None) -> None:

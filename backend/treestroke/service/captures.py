@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import structlog
 from sqlalchemy import delete as delete_from
@@ -17,12 +17,12 @@ from treestroke.codec.refusals import checked
 from treestroke.codec.structure import decode_structure
 from treestroke.core.capture import Structure
 from treestroke.core.errors import CaptureError, TreestrokeError
-from treestroke.limits import MAX_CAPTURE_PHOTOS, MAX_NAME, MIN_CAPTURE_PHOTOS
+from treestroke.limits import MAX_NAME, MAX_PHOTOS, MIN_PHOTOS
 from treestroke.service import tracer
 from treestroke.service.engine_version import engine_version
+from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
-from treestroke.service.stored_models import digest
 from treestroke.store import leases, queries
 from treestroke.store.blobs import Blobs, Damaged
 from treestroke.store.database import Database
@@ -217,8 +217,8 @@ def solve(resources: Resources, id: str) -> StoredCapture:
     ready = _ready(resources, fingerprint(asked.photos))
     with resources.database.writing() as session:
         (now,) = _stored(session, [_row(session, id)])
-        if len(now.photos) < MIN_CAPTURE_PHOTOS:
-            need = f"there are {len(now.photos)}, at least {MIN_CAPTURE_PHOTOS} are needed; take more around the tree"
+        if len(now.photos) < MIN_PHOTOS:
+            need = f"there are {len(now.photos)}, at least {MIN_PHOTOS} are needed; take more around the tree"
             raise CaptureError(f"photos: {need}", code="too_few_photos")
         made = _new_solve(now, ready)
         if made is not None:
@@ -252,6 +252,11 @@ def structure_of(blobs: Blobs, capture: StoredCapture) -> Structure | None:
     if capture.solve is None or capture.solve.structure is None:
         return None
     return decode_structure(blobs.get(capture.solve.structure))
+
+
+def warnings_of(photos: Sequence[CapturePhoto]) -> list[dict[str, Any]]:
+    """Return what was mended when photos were read, each with the photo's name as its place."""
+    return [{**warning, "stroke": f"photos/{photo.name}"} for photo in photos for warning in photo.warnings]
 
 
 def fingerprint(photos: Sequence[CapturePhoto]) -> str:
@@ -291,8 +296,8 @@ def _present(session: Session, id: str, sent_name: str, sha256: str) -> CaptureP
     _row(session, id)
     photos = session.scalars(select(CapturePhoto).where(CapturePhoto.capture == id)).all()
     same = next((one for one in photos if (one.sent_name, one.sha256) == (sent_name, sha256)), None)
-    if same is None and len(photos) >= MAX_CAPTURE_PHOTOS:
-        fault = f"there are {len(photos)}, at most {MAX_CAPTURE_PHOTOS} are allowed; remove some"
+    if same is None and len(photos) >= MAX_PHOTOS:
+        fault = f"there are {len(photos)}, at most {MAX_PHOTOS} are allowed; remove some"
         raise CaptureError(f"photos: {fault}", code="capture_full")
     return same
 

@@ -6,13 +6,15 @@ from typing import Any
 
 from treestroke.codec.archive import zipped
 from treestroke.codec.image import encode_png
-from treestroke.codec.inputs import Inputs
-from treestroke.codec.project import stored_inputs
+from treestroke.codec.inputs import Inputs, part_of
+from treestroke.codec.project import stored_part
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.pipeline.grown_tree import LiveTree
+from treestroke.core.progress import Report
 from treestroke.service.attempts import Assignment, Heartbeat, carry_out, publish
+from treestroke.service.captures import warnings_of
 from treestroke.service.files import Bundle
-from treestroke.service.loading import load_settings
+from treestroke.service.loading import PartLike, load_settings, load_stored_capture
 from treestroke.service.model import Options, make_tree
 from treestroke.service.progress_estimate import ProgressEstimate, model_phases
 from treestroke.store import queries
@@ -42,8 +44,7 @@ def _make(
     database: Database, blobs: Blobs, job: ModelRow, inputs: Inputs[ModelPart], heartbeat: Heartbeat
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     """Make the tree and store its files, which are seen only once they are published; return report and files."""
-    heartbeat.report("decode", 0.0)
-    contents = stored_inputs({name: blobs.get(part.blob) for name, part in inputs.parts.items()})
+    contents = _contents(blobs, inputs, heartbeat.report)
 
     def show(grown: LiveTree) -> None:
         content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
@@ -52,7 +53,7 @@ def _make(
             add_file(session, job, GROWTH, blob, len(content), **first)
 
     made = make_tree(contents, Options.of(job.settings, job.seed), heartbeat.report, show)
-    made = made.with_warnings(_mended_in_photo(database, job))
+    made = made.with_warnings(_mended_in_photos(database, job))
     heartbeat.report("preview", 0.0)
     trees = _packed(made.bundles)
     outputs = {**trees, PREVIEW: encode_png(made.preview())}
@@ -62,9 +63,22 @@ def _make(
     return {**made.report, "files": {name: len(content) for name, content in trees.items()}}, files
 
 
-def _mended_in_photo(database: Database, job: ModelRow) -> list[dict[str, Any]]:
-    """Return what was mended when the photo was read: its blob holds only the pixels."""
+def _contents(blobs: Blobs, inputs: Inputs[ModelPart], report: Report) -> Inputs[PartLike]:
+    """Return the parts' bytes; the many photos of a capture are decoded one by one, so that none is kept whole."""
+    contents: dict[str, PartLike] = {}
+    for done, (name, part) in enumerate(inputs.parts.items()):
+        report("decode", done / len(inputs.parts))
+        content = blobs.get(part.blob)
+        many = part_of(name).many
+        contents[name] = load_stored_capture(name.partition("/")[2], content) if many else stored_part(name, content)
+    return Inputs.of(contents)
+
+
+def _mended_in_photos(database: Database, job: ModelRow) -> list[dict[str, Any]]:
+    """Return what was mended when the photos were read: their blobs hold only the pixels."""
     with database.reading() as session:
+        if job.capture is not None:
+            return warnings_of(queries.capture_photos(session, [job.capture])[job.capture])
         row = None if job.photo is None else queries.photo(session, job.photo, deleted=True)
         return [] if row is None else row.warnings
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
 from treestroke.codec.exif import exif_focal_px
-from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, ignore_warning
+from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, decode_stored, ignore_warning
 from treestroke.codec.inputs import Inputs, part_of
 from treestroke.codec.project import Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
@@ -31,7 +31,7 @@ PhotoLike = FileLike | Picture
 StrokesLike = FileLike | Mapping[str, Any] | Strokes
 SketchLike = FileLike | Mapping[str, Any] | Sketch
 ViewsLike = FileLike | Mapping[str, Any] | CaptureStrokes
-PartLike = FileLike | Mapping[str, Any] | Picture | Strokes | CaptureStrokes | Sketch
+PartLike = FileLike | Mapping[str, Any] | Picture | CapturedPhoto | Strokes | CaptureStrokes | Sketch
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
@@ -122,14 +122,26 @@ def load_views(views: ViewsLike) -> CaptureStrokes:
     return parse_capture_strokes(*read_part("views", views))
 
 
-def load_captured(name: str, photo: PhotoLike, report: Report = silent, warn: Warn = ignore_warning) -> CapturedPhoto:
-    """Decode one photo of a capture, named by its file, at no more than `CAPTURED_SIDE` px.
+def load_stored_capture(name: str, stored: bytes, focal_px: float | None = None) -> CapturedPhoto:
+    """Decode one photo of a capture that the service keeps, at no more than `CAPTURED_SIDE` px.
+
+    ``focal_px`` is its focal length, px of the photo, where that is known.
+    """
+    return captured_photo(name, over_white(decode_stored(stored)), focal_px)
+
+
+def load_captured(
+    name: str, photo: PhotoLike | CapturedPhoto, report: Report = silent, warn: Warn = ignore_warning
+) -> CapturedPhoto:
+    """Decode one photo of a capture, named by its file, at no more than `CAPTURED_SIDE` px, unless it is decoded.
 
     Raises
     ------
     PhotoError
         As `load_photo`; the message names the file.
     """
+    if isinstance(photo, CapturedPhoto):
+        return photo
     try:
         if isinstance(photo, np.ndarray):
             return captured_photo(name, over_white(load_photo(photo, report, warn)), None)

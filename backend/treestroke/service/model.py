@@ -10,7 +10,6 @@ import numpy as np
 from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
-from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, ignore_grown
@@ -23,6 +22,7 @@ from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
+from treestroke.engines.solving import SolveBounds, solve_in_process
 from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import Bundle, check_files, tree_files
 from treestroke.service.loading import (
@@ -40,6 +40,9 @@ from treestroke.service.report import tree_report, variant_seeds
 
 GENERATOR = f"treestroke {__version__}"
 """The generator that files name; without the engine's digest, so that the same tree has the same bytes."""
+
+SOLVE_BOUNDS = SolveBounds(seconds=600.0, memory=3 * 2**30)
+"""What finding the cameras of as many photos as a capture may have takes at most."""
 
 GrowTree = Callable[[np.random.Generator], GrownTree]
 """Grows one tree with the given random numbers: the first half of a recipe."""
@@ -176,6 +179,8 @@ def model_views(
     ------
     PhotoError, CaptureError, StrokesError, LeafError, FruitError, SettingsError
         An input cannot be used; the message says what, where and how to mend it.
+    SolveEnded
+        Finding the cameras took too long, ran out of memory or crashed.
     """
     named = photos if isinstance(photos, Mapping) else {os.path.basename(photo): photo for photo in photos}
     several = {f"photos/{photo}": content for photo, content in named.items()}
@@ -226,6 +231,8 @@ def make_tree(
     ------
     TreestrokeError
         An input cannot be used.
+    SolveEnded
+        Finding the cameras of several photos took too long, ran out of memory or crashed.
     """
     check_files(options.settings)
     watch, mended = Stopwatch(report), list[StrokeWarning]()
@@ -252,15 +259,9 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
-    structure = parts["structure"] if "structure" in parts else _solved(photos, report)
+    structure = parts["structure"] if "structure" in parts else solve_in_process(photos, SOLVE_BOUNDS, report)
     evidence = read_views(photos, structure, parts["views"], settings.height, report)
     return lambda rng: grow_views(evidence, settings, rng, report)
-
-
-def _solved(photos: Sequence[CapturedPhoto], report: Report) -> Structure:
-    from treestroke.engines.structure import solve  # slow to import, and only many photos need it
-
-    return solve(photos, report)
 
 
 def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from treestroke.codec.capture_strokes import capture_strokes_of, encode_capture_strokes
 from treestroke.codec.image import decode_cutout
 from treestroke.codec.inputs import SIDES, check_parts, part_of
 from treestroke.codec.json_text import read_json
@@ -15,7 +16,7 @@ from treestroke.codec.strokes import encode_strokes, strokes_of
 from treestroke.core.errors import StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import plain_settings, settings_from
 from treestroke.core.stroke_rules import Place, require_trunk
-from treestroke.core.strokes import Sketch, Strokes
+from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
 from treestroke.service.files import check_files
 from treestroke.wire_requests import FormRequest, ModelRequest, Rename, TreeRequest
 from treestroke.wire_strokes import PictureSketch, Sketches
@@ -26,10 +27,11 @@ _JSON_FIELDS = ("strokes", "settings", "seed")
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """The drawn parts of a request as values: strokes over a photo, and sketches by view."""
+    """The drawn parts of a request as values: strokes over a photo, sketches by view, strokes over a capture."""
 
     strokes: Strokes | None
     sketches: Mapping[str, Sketch]
+    views: CaptureStrokes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +40,12 @@ class ModelOrder:
 
     Attributes
     ----------
-    photo
-        A stored photo's id; None where the request names none.
+    photo, capture
+        The id of a stored photo, or of a capture; None where the request names none.
     parts
-        What else the tree is made of, as files: strokes, front, side, leaf, fruit.
+        What else the tree is made of, as files: strokes, views, front, side, leaf, fruit.
     drawing
-        The strokes and sketches among them as values, to be checked against the photo.
+        The strokes and sketches among them as values, to be checked against the photo or the capture.
     settings
         All settings by name, plain values.
     within
@@ -51,6 +53,7 @@ class ModelOrder:
     """
 
     photo: str | None
+    capture: str | None
     parts: dict[str, bytes]
     drawing: Drawing
     settings: dict[str, Any]
@@ -70,8 +73,8 @@ def read_order(body: bytes) -> ModelOrder:
     request = checked(ModelRequest, read_body(body), TreestrokeError)
     sketches = request.sketches or Sketches()
     within: Place = ("sketches",)
-    check_parts({*request.model_fields_set, *sketches.model_fields_set}, within)
-    return _order(request, request.photo, sketches, within)
+    _check_source(request, {*request.model_fields_set, *sketches.model_fields_set}, within)
+    return _order(request, sketches, within)
 
 
 def read_form(fields: Mapping[str, bytes], brings_photo: bool = True) -> ModelOrder:
@@ -88,7 +91,7 @@ def read_form(fields: Mapping[str, bytes], brings_photo: bool = True) -> ModelOr
     name = fields.get("name", b"").decode("utf-8", "surrogateescape")
     request = checked(FormRequest, {**values, "name": name}, TreestrokeError)
     check_parts({*values, "photo"} if brings_photo else values, ())
-    return _order(request, None, request, ())
+    return _order(request, request, ())
 
 
 def read_name(body: bytes) -> str:
@@ -113,6 +116,20 @@ def read_body(body: bytes) -> Any:
     return read_json(body, StrokesError, "body: it is", "send valid JSON")
 
 
+def _check_source(request: ModelRequest, sent: set[str], within: Place) -> None:
+    """Check that what was sent makes a tree: a capture's photos come by its id."""
+    if request.capture is None:
+        if request.views is not None:
+            raise TreestrokeError.at(("capture",), "missing: views need a capture; send its id too", "missing_key")
+        check_parts(sent, within)
+        return
+    other = next((key for key in ("photo", "strokes", "sketches") if key in request.model_fields_set), None)
+    if other is not None:
+        fault = "there is a capture too, and a tree is made of one of them; leave the other out"
+        raise TreestrokeError.at((other,), fault, "strokes_and_sketch")
+    check_parts({*sent, "photos"})
+
+
 def _field(key: str, content: bytes) -> Any:
     """Return a form's field as the value that its description checks."""
     if key in _JSON_FIELDS or (key in SIDES and not content.startswith(PNG)):
@@ -120,13 +137,15 @@ def _field(key: str, content: bytes) -> Any:
     return content
 
 
-def _order(
-    request: ModelRequest | FormRequest, photo: str | None, sketches: Sketches | FormRequest, within: Place
-) -> ModelOrder:
+def _order(request: ModelRequest | FormRequest, sketches: Sketches | FormRequest, within: Place) -> ModelOrder:
     """Return what a checked request asks for, its parts as files and as values."""
     parts: dict[str, bytes] = {}
     drawn: dict[str, Sketch] = {}
-    strokes = None
+    strokes = views = photo = capture = None
+    if isinstance(request, ModelRequest):
+        photo, capture, views = request.photo, request.capture, _views(request)
+    if views is not None:
+        parts["views"] = encode_capture_strokes(views).encode()
     if request.strokes is not None:
         strokes = _strokes(request)
         parts["strokes"] = encode_strokes(strokes).encode()
@@ -136,7 +155,16 @@ def _order(
     for name, picture in (("leaf", request.leaf), ("fruit", request.fruit)):
         if picture is not None:
             parts[name] = _cutout(picture, name)
-    return ModelOrder(photo, parts, Drawing(strokes, drawn), _settings(request), request.seed, request.name, within)
+    drawing, settings = Drawing(strokes, drawn, views), _settings(request)
+    return ModelOrder(photo, capture, parts, drawing, settings, request.seed, request.name, within)
+
+
+def _views(request: ModelRequest) -> CaptureStrokes | None:
+    """Return a request's strokes over the photos of a capture, where it has some."""
+    try:
+        return None if request.views is None else capture_strokes_of(request.views)
+    except StrokesError as error:
+        raise inside(("views",), error) from error
 
 
 def _strokes(request: TreeRequest) -> Strokes:

@@ -23,10 +23,6 @@ from treestroke.service.files import Bundle
 
 SCORED_HEIGHT = 400
 """Px, of the front view that the silhouette score is measured on."""
-STAGES = (
-    *("decode", "solve", "foliage", "trace", "lift", "mattes", "hull", "density", "points", "branches"),
-    *("grow", "leaf", "mesh", "levels", "write"),
-)
 
 
 def variant_seeds(first: int, count: int) -> list[int]:
@@ -49,7 +45,7 @@ def tree_report(
         "seed": seed,
         "settings": {**plain_settings(settings), "foliage": tree.taken.foliage},
         "taken": plain_taken(tree.taken),
-        "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},
+        "seconds": {stage: round(seconds, 4) for stage, seconds in watch.seconds.items()},
         "counts": {**counts[0], "bytes": next(iter(files.values()))},
         "score": scores[0],
         "reading": asdict(tree.reading),

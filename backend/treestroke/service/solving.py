@@ -1,16 +1,15 @@
 """Find the cameras of one queued capture in an attempt, and publish what was found."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from treestroke.codec.image import decode_stored
 from treestroke.codec.structure import encode_structure
 from treestroke.core.capture import Structure
-from treestroke.core.imaging.opacity import over_white
-from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.progress import Report
-from treestroke.service.attempts import Assignment, Canceled, Heartbeat, carry_out, publish
+from treestroke.engines.solving import SolveEnded, solve_in_process
+from treestroke.service.attempts import Assignment, AttemptLost, Canceled, Heartbeat, TimeLimit, carry_out, publish
 from treestroke.service.captures import fingerprint
-from treestroke.service.execution import one_thread
+from treestroke.service.loading import load_stored_capture
+from treestroke.service.model import SOLVE_BOUNDS
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store import queries
 from treestroke.store.blobs import Blobs
@@ -20,6 +19,9 @@ from treestroke.store.tables import CapturePhoto, SolveRow
 
 _PHASES = [("decode", 0.1), ("solve", 0.9)]
 """Share of the time of each phase, measured on photos of 12 megapixels."""
+
+_MEANT: Mapping[str, type[Exception]] = {"slow": TimeLimit, "memory": MemoryError, "crash": AttemptLost}
+"""What the end of the process that finds the cameras means for the attempt."""
 
 
 def solve_capture(database: Database, blobs: Blobs, assignment: Assignment) -> None:
@@ -31,21 +33,20 @@ def solve_capture(database: Database, blobs: Blobs, assignment: Assignment) -> N
         if fingerprint(photos) != job.fingerprint:
             raise Canceled  # the capture has other photos by now
         with Heartbeat(database, job, ProgressEstimate(_PHASES), assignment.seconds) as heartbeat:
-            structure = _find(blobs, photos, heartbeat.report)
+            structure = _find(blobs, photos, assignment.seconds, heartbeat.report)
         blob = blobs.put(encode_structure(structure))
         publish(database, job, lambda session: complete(session, job, structure=blob))
 
     carry_out(database, SolveRow, assignment, solve)
 
 
-def _find(blobs: Blobs, photos: Sequence[CapturePhoto], report: Report) -> Structure:
+def _find(blobs: Blobs, photos: Sequence[CapturePhoto], seconds: float, report: Report) -> Structure:
     """Find the cameras of stored photos."""
-    from treestroke.engines.structure import solve  # slow to import, and only a worker's child needs it
-
     captured = []
     for index, photo in enumerate(photos):
         report("decode", index / len(photos))
-        picture = over_white(decode_stored(blobs.get(photo.blob)))
-        captured.append(captured_photo(photo.name, picture, photo.focal_length_px))
-    with one_thread():
-        return solve(captured, report)
+        captured.append(load_stored_capture(photo.name, blobs.get(photo.blob), photo.focal_length_px))
+    try:
+        return solve_in_process(captured, SOLVE_BOUNDS._replace(seconds=seconds), report)
+    except SolveEnded as ended:
+        raise _MEANT[ended.why] from ended

@@ -1,19 +1,20 @@
 """Stored models: accepted, found, named, stopped, deleted and restored."""
 
 import hashlib
-import json
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import structlog
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
-from treestroke.service import tracer
+from treestroke.core.errors import CaptureError
+from treestroke.service import captures, tracer
 from treestroke.service.engine_version import engine_version
+from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Resources
 from treestroke.store import leases, queries
@@ -69,6 +70,14 @@ class StoredModel:
         return Version(self.row.seq, self.queue_position, self.eta_s)
 
 
+@dataclass(frozen=True)
+class _Base:
+    """What a tree is drawn over: its parts, stored already, and what was mended when they were read."""
+
+    parts: dict[str, ModelPart]
+    warnings: list[dict[str, Any]]
+
+
 def accept_model(
     resources: Resources, order: ModelOrder, key: str | None, sent_photo: PhotoRow | None = None
 ) -> StoredModel:
@@ -80,16 +89,20 @@ def accept_model(
     Raises
     ------
     NotFound, TreestrokeError, KeyReused
-        There is no such photo; something in the request cannot be used; the key was used for another request.
+        There is no such photo or capture; something in the request cannot be used, or the capture is not solved; the
+        key was used for another request.
     Damaged
         The photo's file is damaged.
     OSError
         The disk is full.
     """
+    if order.capture and (before := _repeated(resources, order, key)) is not None:
+        return before
     photo = sent_photo or (None if order.photo is None else _photo_for(resources, order.photo, key))
-    inputs = _store_inputs(resources, order, photo)
-    row = _new_row(order, photo, inputs)
-    request = digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
+    base = _drawn_over_capture(resources, order) if order.capture else _drawn_over_photo(resources, order, photo)
+    inputs = Inputs.of({**base.parts, **_sent_parts(resources, order)})
+    row = _new_row(order, photo, _fingerprint(order, base, inputs))
+    request = _request_digest(order, row, photo)
     equal = _finished_model(resources, row)
     with resources.database.writing() as session:
         answered = _answered_before(session, key, request)
@@ -209,30 +222,63 @@ def _photo_for(resources: Resources, id: str, key: str | None) -> PhotoRow:
     return photo
 
 
-def _store_inputs(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> Inputs[ModelPart]:
-    """Check what was drawn, against the photo where there is one, and store the parts' files."""
-    blob = None if photo is None else photo.blob
-    path = None if blob is None else resources.blobs.path(blob)
-    resources.tracers(blob or "", tracer.check_drawing, path, order.drawing, order.within)
-    sent = {
+def _drawn_over_photo(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> _Base:
+    """Check what was drawn, against the photo where there is one."""
+    path = None if photo is None else resources.blobs.path(photo.blob)
+    key = "" if photo is None else photo.blob
+    resources.tracers(key, tracer.check_drawing, path, order.drawing, order.within)
+    return _Base({}, []) if photo is None else _Base({"photo": _picture("photo", photo.blob)}, photo.warnings)
+
+
+def _drawn_over_capture(resources: Resources, order: ModelOrder) -> _Base:
+    """Check what was drawn, against the capture; its photos and their cameras are parts that share its files.
+
+    Raises
+    ------
+    NotFound
+        There is no such capture.
+    CaptureError
+        It is not solved.
+    """
+    assert order.capture is not None
+    assert order.drawing.views is not None
+    capture = captures.find_capture(resources.database, order.capture)
+    structure = None if capture.solve is None else capture.solve.structure
+    if structure is None:
+        fault = f"its cameras are not known, it is {capture.status}; solve it first"
+        raise CaptureError.at(("capture",), fault, "capture_unsolved")
+    sizes = {photo.name: (photo.width, photo.height) for photo in capture.photos}
+    path = resources.blobs.check(structure)
+    resources.tracers(structure, tracer.check_views, path, order.drawing.views, sizes)
+    cameras = ModelPart(name="structure", blob=structure, media_type="application/json")
+    pictures = {name: _picture(name, photo.blob) for photo in capture.photos for name in [f"photos/{photo.name}"]}
+    return _Base({**pictures, "structure": cameras}, captures.warnings_of(capture.photos))
+
+
+def _picture(name: str, blob: str) -> ModelPart:
+    return ModelPart(name=name, blob=blob, media_type="image/png")
+
+
+def _sent_parts(resources: Resources, order: ModelOrder) -> dict[str, ModelPart]:
+    """Store the parts' files that came with the request."""
+    return {
         name: ModelPart(
             name=name, blob=resources.blobs.put(content), media_type=part_of(name).format_of(content).media_type
         )
         for name, content in order.parts.items()
     }
-    stored = None if blob is None else ModelPart(name="photo", blob=blob, media_type="image/png")
-    return Inputs.of({"photo": stored, **sent})
 
 
-def _new_row(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> ModelRow:
+def _new_row(order: ModelOrder, photo: PhotoRow | None, fingerprint: str) -> ModelRow:
     return ModelRow(
         id=queries.new_id("mdl"),
         name=order.name,
         photo=None if photo is None else photo.id,
+        capture=order.capture,
         settings=order.settings,
         seed=order.seed,
         engine=engine_version(),
-        fingerprint=_fingerprint(order, photo, inputs),
+        fingerprint=fingerprint,
         status="queued",
         phase_fraction=0.0,
         progress=0.0,
@@ -244,11 +290,36 @@ def _new_row(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart
     )
 
 
-def _fingerprint(order: ModelOrder, photo: PhotoRow | None, inputs: Inputs[ModelPart]) -> str:
+def _fingerprint(order: ModelOrder, base: _Base, inputs: Inputs[ModelPart]) -> str:
     """Return a digest of all that decides over the tree and its report, except the engine."""
     blobs = {name: part.blob for name, part in inputs.parts.items()}
-    mended = [] if photo is None else photo.warnings
-    return digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *mended])
+    return digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *base.warnings])
+
+
+def _request_digest(order: ModelOrder, row: ModelRow, photo: PhotoRow | None) -> str:
+    """Return a digest of what was asked for."""
+    if order.capture is not None:
+        return _capture_request_digest(order)
+    return digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
+
+
+def _capture_request_digest(order: ModelOrder) -> str:
+    """Return a digest of what was asked for; a capture counts by its id, since its photos may be others by now."""
+    parts = {name: hashlib.sha256(content).hexdigest() for name, content in order.parts.items()}
+    return digest([order.capture, parts, order.settings, order.seed, order.name])
+
+
+def _repeated(resources: Resources, order: ModelOrder, key: str | None) -> StoredModel | None:
+    """Find the model that a request for one of a capture was answered with when it was sent before.
+
+    Raises
+    ------
+    KeyReused
+        The key was used for another request.
+    """
+    with resources.database.reading() as session:
+        row = _answered_before(session, key, _capture_request_digest(order))
+    return None if row is None else find_model(resources.database, row.id, deleted=True)
 
 
 def _answered_before(session: Session, key: str | None, request: str) -> ModelRow | None:
@@ -306,8 +377,3 @@ def _stored(session: Session, rows: Sequence[ModelRow]) -> list[StoredModel]:
         queries.waits(session, ModelRow, rows),
     )
     return [StoredModel(row, parts[row.id], files[row.id], *waits[row.number]) for row in rows]
-
-
-def digest(value: object) -> str:
-    """Return the SHA-256 of plain values."""
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()

@@ -15,11 +15,13 @@ from treestroke.codec.image import decode_photo, decode_stored, encode_stored
 from treestroke.codec.refusals import checked, inside
 from treestroke.codec.sketch import sketch_of
 from treestroke.codec.strokes import strokes_of
+from treestroke.codec.structure import decode_structure
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
+from treestroke.core.pipeline.drawn_views import check_used, mend_views
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import read_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
-from treestroke.core.strokes import Sketch, StrokeWarning
+from treestroke.core.strokes import CaptureStrokes, Sketch, StrokeWarning
 from treestroke.core.types import Picture
 from treestroke.service.model_request import Drawing, read_body
 from treestroke.service.trace import Trace, trace, trace_sketches
@@ -122,6 +124,19 @@ def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> N
         height, width = picture.shape[:2]
         _within(("strokes",), mend_strokes, drawing.strokes, width, height)
     _within(within, _check_sketches, drawing.sketches, picture)
+
+
+def check_views(structure: Path, drawn: CaptureStrokes, sizes_px: Mapping[str, tuple[int, int]]) -> None:
+    """Check strokes over a capture, whose photos have (width, height), so that every accepted model can be made.
+
+    Raises
+    ------
+    StrokesError
+        One cannot be used; the pointer leads into the request.
+    """
+    solved = decode_structure(read_blob(structure))
+    _within(("views",), mend_views, drawn, sizes_px)
+    _within(("views",), check_used, drawn, {photo.name for photo in solved.photos})
 
 
 def _check_sketches(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:

@@ -96,6 +96,7 @@ class ModelRow(Job, Aged, Table):
 
     name: Mapped[str] = mapped_column(String(200))
     photo: Mapped[str | None] = mapped_column(String(40))
+    capture: Mapped[str | None] = mapped_column(String(40))
     settings: Mapped[dict[str, Any]]
     seed: Mapped[int] = mapped_column(BigInteger)
     report: Mapped[dict[str, Any] | None]
@@ -109,7 +110,7 @@ class ModelPart(Table):
     __tablename__ = "model_parts"
 
     model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"), primary_key=True)
-    name: Mapped[str] = mapped_column(String(40), primary_key=True)
+    name: Mapped[str] = mapped_column(String(220), primary_key=True)
     blob: Mapped[str] = mapped_column(String(64))
     media_type: Mapped[str] = mapped_column(String(40))
 

@@ -461,6 +461,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/models/{id}/views.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Views
+         * @description Download the strokes over the photos of a capture that the tree was made of.
+         */
+        get: operations["get_views"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/v1/models/{id}/project": {
         parameters: {
             query?: never;
@@ -980,9 +1000,14 @@ export interface components {
             name: string;
             /**
              * Photo
-             * @description null where it is made of sketches alone
+             * @description null where it is made of sketches alone, or of a capture
              */
             photo: string | null;
+            /**
+             * Capture
+             * @description where it is made of one
+             */
+            capture?: string | null;
             /**
              * Status
              * @enum {string}
@@ -1278,6 +1303,19 @@ export interface components {
             width?: number;
         };
         /**
+         * CameraDistance
+         * @description How far apart two photos were taken.
+         */
+        CameraDistance: {
+            /**
+             * Photos
+             * @description the photos' file names
+             */
+            photos: string[];
+            /** Metres */
+            metres: number;
+        };
+        /**
          * CaptureRequest
          * @description A capture to be made: photos of one tree from several places, which are added one by one.
          */
@@ -1287,6 +1325,19 @@ export interface components {
              * @default
              */
             name: string;
+        };
+        /**
+         * CaptureStrokes
+         * @description What was drawn over the photos of a tree.
+         */
+        CaptureStrokes: {
+            /** Views */
+            views: components["schemas"]["ViewStrokes"][];
+            /**
+             * Scale
+             * @description sets the tree's scale in place of its height
+             */
+            scale?: components["schemas"]["LengthInPhoto"] | components["schemas"]["CameraDistance"];
         };
         /**
          * CrownStroke
@@ -1342,11 +1393,33 @@ export interface components {
             metres: number;
         };
         /**
+         * LengthInPhoto
+         * @description A straight line over something of known length that stands beside the tree, in one of the photos.
+         */
+        LengthInPhoto: {
+            /** Points */
+            points: [
+                number,
+                number
+            ][];
+            /**
+             * Metres
+             * @description the line's length
+             */
+            metres: number;
+            /**
+             * Photo
+             * @description the photo's file name
+             */
+            photo: string;
+        };
+        /**
          * ModelRequest
          * @description A tree to be made.
          *
          *     It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
-         *     of its left side, perhaps with the photo that they were drawn over.
+         *     of its left side, perhaps with the photo that they were drawn over; or of a solved capture and strokes over some of
+         *     its photos.
          */
         ModelRequest: {
             strokes?: components["schemas"]["Strokes"];
@@ -1364,6 +1437,13 @@ export interface components {
             /** Photo */
             photo?: string;
             sketches?: components["schemas"]["Sketches"];
+            /** Capture */
+            capture?: string;
+            /**
+             * Views
+             * @description with a capture
+             */
+            views?: components["schemas"]["CaptureStrokes"];
             /**
              * Leaf
              * @description PNG of a leaf cut out, base64
@@ -1624,6 +1704,22 @@ export interface components {
             side?: components["schemas"]["Sketch"];
             /** @description what the grown skeleton grows by */
             settings?: components["schemas"]["ModelSettings"];
+        };
+        /**
+         * ViewStrokes
+         * @description What was drawn over one of several photos.
+         */
+        ViewStrokes: {
+            /**
+             * Photo
+             * @description the photo's file name
+             */
+            photo: string;
+            crown: components["schemas"]["CrownStroke"];
+            /** Branches */
+            branches?: components["schemas"]["BranchStroke"][];
+            /** Erase */
+            erase?: components["schemas"]["EraseStroke"][];
         };
     };
     responses: never;
@@ -3315,6 +3411,15 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
             /** @description Request Entity Too Large */
             413: {
                 headers: {
@@ -4037,6 +4142,101 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["Strokes"];
+                };
+            };
+            /** @description The part that Range requests */
+            206: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": string;
+                };
+            };
+            /** @description If-None-Match has this file's ETag */
+            304: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Requested Range Not Satisfiable */
+            416: {
+                headers: {
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_views: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CaptureStrokes"];
                 };
             };
             /** @description The part that Range requests */

@@ -71,6 +71,12 @@ def get_strokes(request: Request, resources: ResourcesOf, id: ModelId) -> Respon
     return _drawing(request, resources, id, "strokes.json")
 
 
+@router.get("/views.json", response_class=FileResponse, responses=file_responses(_JSON, "CaptureStrokes"))
+def get_views(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
+    """Download the strokes over the photos of a capture that the tree was made of."""
+    return _drawing(request, resources, id, "views.json")
+
+
 @router.get(
     "/project",
     response_class=FileResponse,

@@ -48,7 +48,7 @@ _LOCATION = {
     "Location": {"schema": {"type": "string", "pattern": "^/v1/models/mdl_[0-9a-f]{24}$"}, "description": "the model"},
     "Preference-Applied": {"schema": {"type": "string"}, "description": "the wait that Prefer asked for"},
 }
-_FILES = ("get_tree", "get_preview", "get_strokes", "get_sketch", "get_project", "get_tree_file")
+_FILES = ("get_tree", "get_preview", "get_strokes", "get_views", "get_sketch", "get_project", "get_tree_file")
 _CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
@@ -136,7 +136,7 @@ async def _content(field: UploadFile | str) -> bytes:
     responses={
         HTTPStatus.OK: {"model": ModelInfo, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
         HTTPStatus.ACCEPTED: {"model": ModelInfo, "headers": _LOCATION, "links": _LINKS},
-        **documented(*BODY, "not_found", "storage_full"),
+        **documented(*BODY, "not_found", "capture_unsolved", "storage_full"),
     },
     openapi_extra=_REQUEST_BODY,
 )

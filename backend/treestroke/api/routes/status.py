@@ -12,15 +12,15 @@ from treestroke.codec.image import MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
 from treestroke.limits import (
-    MAX_CAPTURE_PHOTOS,
     MAX_LEAF_BYTES,
     MAX_NAME,
     MAX_PHOTO_BYTES,
+    MAX_PHOTOS,
     MAX_POINTS,
     MAX_SKETCH_BYTES,
     MAX_STROKES,
     MAX_TEXT_BYTES,
-    MIN_CAPTURE_PHOTOS,
+    MIN_PHOTOS,
 )
 from treestroke.schemas import Health, Limits, Version
 from treestroke.service.engine_version import engine_version
@@ -64,8 +64,8 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
         sketch_bytes=MAX_SKETCH_BYTES,
         trace_seconds=settings.trace_seconds,
         model_seconds=settings.model_seconds,
-        capture_photos_min=MIN_CAPTURE_PHOTOS,
-        capture_photos_max=MAX_CAPTURE_PHOTOS,
+        capture_photos_min=MIN_PHOTOS,
+        capture_photos_max=MAX_PHOTOS,
         solve_seconds=settings.solve_seconds,
         wait_seconds=MAX_WAIT_SECONDS,
         settings={

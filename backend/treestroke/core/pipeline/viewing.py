@@ -17,6 +17,7 @@ from treestroke.core.geometry.measured_crown import MeasuredCrown
 from treestroke.core.geometry.similarity import Similarity
 from treestroke.core.grow.replication import CrownBounds, ReplicationParams, grow_hidden
 from treestroke.core.lift.seen_branches import SeenBranches, seen_branches
+from treestroke.core.pipeline.drawn_views import check_used, mend_views
 from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
 from treestroke.core.pipeline.growing import DOUBTFUL
 from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, Reading
@@ -26,8 +27,7 @@ from treestroke.core.pipeline.tree_frame import cloud_in_frame, height_above, in
 from treestroke.core.pipeline.view_appearance import view_appearance
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.view_mattes import view_mattes
-from treestroke.core.stroke_rules import NO_TRUNK, mend_strokes
-from treestroke.core.strokes import CameraDistance, CaptureStrokes, LengthInPhoto, Stroke, Strokes, StrokeWarning
+from treestroke.core.strokes import CaptureStrokes, LengthInPhoto, Stroke, Strokes, StrokeWarning
 from treestroke.core.survey.measures import Scale, Stature
 from treestroke.core.types import Floats
 from treestroke.core.undistortion import undistorted, undistorted_points
@@ -100,7 +100,8 @@ def read_views(
         The strokes do not describe a tree, or lie on a photo that is not there or not used.
     """
     report("mattes", 0.0)
-    drawn, by_name = _mended(photos, drawn), {photo.name: photo for photo in photos}
+    by_name = {photo.name: photo for photo in photos}
+    drawn = mend_views(drawn, {photo.name: photo.size_px for photo in photos})
     used = tuple(by_name[solved.name] for solved in structure.photos)
     shots = tuple(
         undistorted(photo.picture, solved, SHOT_SIDE) for photo, solved in zip(used, structure.photos, strict=True)
@@ -131,30 +132,6 @@ def read_views(
     )
 
 
-def _mended(photos: Sequence[CapturedPhoto], drawn: CaptureStrokes) -> CaptureStrokes:
-    """Check the strokes of each photo against its size, and mend them where possible.
-
-    Raises
-    ------
-    StrokesError
-        As `mend_strokes`; or there is no such photo, or no trunk.
-    """
-    sizes = {photo.name: photo.size_px for photo in photos}
-    mended = {}
-    for index, (name, strokes) in enumerate(drawn.by_photo.items()):
-        if name not in sizes:
-            fault = f"there is no photo {name}; the photos are {', '.join(sorted(sizes)[:5])}"
-            raise StrokesError.at(("views", index, "photo"), fault, "photo_unknown")
-        try:
-            mended[name] = mend_strokes(strokes, *sizes[name]).strokes
-        except StrokesError as error:
-            raise type(error)(f"{name}: {error}", code=error.code, pointer=f"/views/{index}{error.pointer}") from error
-    found = replace(drawn, by_photo=mended)
-    if not mended[found.first].branches:
-        raise StrokesError.at(("views", 0, "branches"), NO_TRUNK, "trunk_missing")
-    return found
-
-
 def _on_shots(
     drawn: CaptureStrokes, photos: Sequence[CapturedPhoto], structure: Structure, shots: Sequence[Shot]
 ) -> CaptureStrokes:
@@ -169,26 +146,13 @@ def _on_shots(
         photo.name: partial(_carried, reduction=photo.reduction, solved=solved, shot=shot)
         for photo, solved, shot in zip(photos, structure.photos, shots, strict=True)
     }
-    named = {drawn.first: ("views",), **_named_by(drawn.scale)}
-    for name, place in named.items():
-        if name not in carriers:
-            fault = f"no camera was found for {name}; draw on a photo that is used, such as {shots[0].name}"
-            raise StrokesError.at(place, fault, "photo_not_used")
+    check_used(drawn, carriers)
     by_photo = {name: _moved(strokes, carriers[name]) for name, strokes in drawn.by_photo.items() if name in carriers}
     scale = drawn.scale
     if isinstance(scale, LengthInPhoto):
         points = carriers[scale.photo](scale.length.points)
         scale = replace(scale, length=replace(scale.length, points=points))
     return CaptureStrokes(by_photo, scale)
-
-
-def _named_by(scale: LengthInPhoto | CameraDistance | None) -> dict[str, tuple[str, ...]]:
-    """Return the photos that a scale names, with the place where it does."""
-    if scale is None:
-        return {}
-    if isinstance(scale, LengthInPhoto):
-        return {scale.photo: ("scale", "photo")}
-    return dict.fromkeys(scale.photos, ("scale", "photos"))
 
 
 def _carried(points_px: Floats, *, reduction: float, solved: SolvedPhoto, shot: Shot) -> Floats:
