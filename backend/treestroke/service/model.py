@@ -18,7 +18,7 @@ from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.pipeline.sketching import grow_sketches, read_sketches
-from treestroke.core.pipeline.viewing import grow_views, read_views
+from treestroke.core.pipeline.viewing import grow_views, mended_views, read_views
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
@@ -252,8 +252,9 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
+    drawn = mended_views(photos, parts["views"])  # what is wrong with it is told before a minute's work
     structure = parts["structure"] if "structure" in parts else _solved(photos, report)
-    evidence = read_views(photos, structure, parts["views"], settings.height, report)
+    evidence = read_views(photos, structure, drawn, settings.height, report)
     return lambda rng: grow_views(evidence, settings, rng, report)
 
 

@@ -24,6 +24,8 @@ from treestroke.service.files import Bundle
 SCORED_HEIGHT = 400
 """Px, of the front view that the silhouette score is measured on."""
 STAGES = ("decode", "foliage", "trace", "lift", "grow", "leaf", "mesh", "levels", "write")
+VIEWS_STAGES = ("solve", "mattes", "density", "hull", "points", "branches")
+"""Stages that only a tree of many photos has."""
 
 
 def variant_seeds(first: int, count: int) -> list[int]:
@@ -46,7 +48,9 @@ def tree_report(
         "seed": seed,
         "settings": {**plain_settings(settings), "foliage": tree.taken.foliage},
         "taken": plain_taken(tree.taken),
-        "seconds": {stage: round(watch.seconds[stage], 4) for stage in STAGES if stage in watch.seconds},
+        "seconds": {
+            stage: round(watch.seconds[stage], 4) for stage in (*VIEWS_STAGES, *STAGES) if stage in watch.seconds
+        },
         "counts": {**counts[0], "bytes": next(iter(files.values()))},
         "score": scores[0],
         "reading": asdict(tree.reading),

@@ -1,6 +1,6 @@
 """The first half of the recipe for many photos: from photos with their cameras to a grown tree (Tan et al. 2007)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -100,7 +100,7 @@ def read_views(
         The strokes do not describe a tree, or lie on a photo that is not there or not used.
     """
     report("mattes", 0.0)
-    drawn, by_name = _mended(photos, drawn), {photo.name: photo for photo in photos}
+    drawn, by_name = mended_views(photos, drawn), {photo.name: photo for photo in photos}
     used = tuple(by_name[solved.name] for solved in structure.photos)
     shots = tuple(
         undistorted(photo.picture, solved, SHOT_SIDE) for photo, solved in zip(used, structure.photos, strict=True)
@@ -131,20 +131,20 @@ def read_views(
     )
 
 
-def _mended(photos: Sequence[CapturedPhoto], drawn: CaptureStrokes) -> CaptureStrokes:
+def mended_views(photos: Sequence[CapturedPhoto], drawn: CaptureStrokes) -> CaptureStrokes:
     """Check the strokes of each photo against its size, and mend them where possible.
+
+    It needs no cameras, so that faults are told before they are looked for.
 
     Raises
     ------
     StrokesError
-        As `mend_strokes`; or there is no such photo, or no trunk.
+        As `mend_strokes`; or there is no such photo, or no trunk, or a distance of a photo from itself.
     """
     sizes = {photo.name: photo.size_px for photo in photos}
     mended = {}
     for index, (name, strokes) in enumerate(drawn.by_photo.items()):
-        if name not in sizes:
-            fault = f"there is no photo {name}; the photos are {', '.join(sorted(sizes)[:5])}"
-            raise StrokesError.at(("views", index, "photo"), fault, "photo_unknown")
+        _check_known(name, sizes, ("views", index, "photo"))
         try:
             mended[name] = mend_strokes(strokes, *sizes[name]).strokes
         except StrokesError as error:
@@ -152,7 +152,19 @@ def _mended(photos: Sequence[CapturedPhoto], drawn: CaptureStrokes) -> CaptureSt
     found = replace(drawn, by_photo=mended)
     if not mended[found.first].branches:
         raise StrokesError.at(("views", 0, "branches"), NO_TRUNK, "trunk_missing")
+    for name, place in _named_by(drawn.scale).items():
+        _check_known(name, sizes, place)
+    if isinstance(drawn.scale, CameraDistance) and len(set(drawn.scale.photos)) < 2:
+        fault = f"{drawn.scale.photos[0]} is named twice; name the two photos between which you measured"
+        raise StrokesError.at(("scale", "photos"), fault, "scale_invalid")
     return found
+
+
+def _check_known(name: str, known: Collection[str], place: tuple[str | int, ...]) -> None:
+    """Refuse the name of a photo that is not there."""
+    if name not in known:
+        fault = f"there is no photo {name}; name one that is: {', '.join(sorted(known)[:5])}"
+        raise StrokesError.at(place, fault, "photo_unknown")
 
 
 def _on_shots(
