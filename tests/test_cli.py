@@ -1,5 +1,6 @@
 """The command line, in process: exit codes, single lines, and files whole or not at all."""
 
+import io
 import json
 import os
 import resource
@@ -15,10 +16,14 @@ from PIL import Image
 from tests import walked_capture
 from tests.api import drawn, sketched
 from tests.api.corpora import saved
+from tests.core.pipeline.walked_capture import structure_of
+from tests.core.segment.walked_tree import strokes_on, walk
 
 import treestroke
 from treestroke.cli import main
 from treestroke.codec.image import decode_photo, encode_png
+from treestroke.codec.project import write_project
+from treestroke.codec.structure import encode_structure
 from treestroke.codec.usd import has_usd
 from treestroke.engines.solving import SolveEnded
 
@@ -95,6 +100,13 @@ def test_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
         ["sketch", "a.treestroke", "--photo", "b.jpg", "--out", "x.glb"],
         ["sketch", "missing.json", "--out", "x.glb"],
         ["sketch", "missing.treestroke", "--out", "x.glb"],
+        ["views"],
+        ["views", "a.jpg", "b.jpg"],
+        ["views", "a.jpg", "b.jpg", "--out", "x.glb"],
+        ["views", "a.jpg", "b/a.jpg", "--strokes", "v.json", "--out", "x.glb"],
+        ["views", "missing", "--strokes", "v.json", "--out", "x.glb"],
+        ["views", "missing.treestroke", "--out", "x.glb"],
+        ["views", "a.treestroke", "--strokes", "v.json", "--out", "x.glb"],
         ["trace", "photo.jpg"],
         ["trace", "photo.jpg", "--strokes", "s.json", "--seed", "1"],
     ],
@@ -497,3 +509,45 @@ def test_usdz_says_at_once_what_it_needs(run) -> None:
     code, lines, left = run("--files", "usdz")
     assert (code, left) == (2, [])
     assert "make usd" in lines[0]
+
+
+def test_a_project_of_many_photos_needs_no_search_for_cameras(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shots, _ = walk(5)
+    drawn = strokes_on(shots[0])
+    crown, trunk = ({"points": stroke.points.tolist()} for stroke in (drawn.crown, drawn.branches[0]))
+    views = {"views": [{"photo": shots[0].name, "crown": crown, "branches": [trunk]}]}
+    parts = {f"photos/{shot.name}": encode_png(shot.picture) for shot in shots}
+    parts |= {"views": json.dumps(views).encode(), "structure": encode_structure(structure_of(shots))}
+    project = tmp_path / "ash.treestroke"
+    with project.open("wb") as file:
+        write_project(file, {name: io.BytesIO(part) for name, part in parts.items()}, {"iterations": 5, "height": 4.5})
+    report = tmp_path / "ash.json"
+    assert main(["views", str(project), "--out", str(tmp_path / "ash.glb"), "--report", str(report)]) == 0
+    told = json.loads(report.read_text())
+    assert "solve" not in told["seconds"]
+    assert told["seconds"]["mattes"] > 0
+    assert [camera["photo"] for camera in told["cameras"]] == [shot.name for shot in shots]
+    assert told["measures"]["height"]["value"] == pytest.approx(4.5, rel=0.1)
+    assert (tmp_path / "ash.glb").read_bytes().startswith(b"glTF")
+    assert capsys.readouterr().err == "treestroke: photos/shaken.jpg: shaken.jpg is blurred: take it again\n"
+
+
+def test_a_folder_without_photos_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "notes.txt").write_text("an ash")
+    assert main(["views", str(tmp_path), "--strokes", "v.json", "--out", str(tmp_path / "x.glb")]) == 2
+    assert capsys.readouterr().err.startswith(f"treestroke: {tmp_path}: there is no photo in this folder")
+
+
+def test_strokes_on_a_missing_photo_are_refused_before_cameras_are_sought(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "treestroke.engines.structure", None)
+    for shot in walk(5)[0]:
+        (tmp_path / shot.name).write_bytes(encode_png(shot.picture))
+    views = tmp_path / "views.json"
+    crown = {"points": [[10, 10], [90, 10], [90, 90]]}
+    views.write_text(json.dumps({"views": [{"photo": "gone.jpg", "crown": crown}]}))
+    assert main(["views", str(tmp_path), "--strokes", str(views), "--out", str(tmp_path / "x.glb")]) == 2
+    assert "there is no photo gone.jpg; name one that is: 0.jpg" in capsys.readouterr().err

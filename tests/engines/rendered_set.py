@@ -10,8 +10,8 @@ from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.types import Floats, Picture
 
-SIZE = 480, 360
-FOCAL = 520.0
+SIZE = 360, 270
+FOCAL = 440.0
 RING = 8.0
 BOXES = [(-1.6, 0.0, -1.2, 1.0, 1.6), (0.0, 0.0, 0.0, 0.8, 2.4), (1.5, 0.0, 0.8, 1.0, 0.9), (1.2, 0.0, -1.8, 1.0, 2.0)]
 """Of each box the middle of its foot, its breadth and its height."""

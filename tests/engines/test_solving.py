@@ -14,11 +14,11 @@ CAMERAS = ring(5, 60.0)
 
 def test_large_photos_are_solved_in_another_process() -> None:
     photos = photos_of(CAMERAS)
-    camera = replace(CAMERAS[1], width=1440, height=1080, focal_px=3 * FOCAL, principal_px=(720.0, 540.0))
+    camera = replace(CAMERAS[1], width=1080, height=810, focal_px=3 * FOCAL, principal_px=(540.0, 405.0))
     large = CapturedPhoto(photos[1].name, picture(camera))
     fractions: list[float] = []
     structure = solve_in_process([photos[0], large, *photos[2:]], BOUNDS, lambda _, f: fractions.append(f))
-    assert [photo.camera.width for photo in structure.photos] == [480, 1440, 480, 480, 480]
+    assert [photo.camera.width for photo in structure.photos] == [360, 1080, 360, 360, 360]
     assert structure.photos[1].camera.focal_px == pytest.approx(3 * structure.photos[0].camera.focal_px, rel=0.05)
     assert np.median(centre_errors(structure, {f"{n:02d}.jpg": one for n, one in enumerate(CAMERAS)})) < 0.01
     assert fractions == sorted(fractions)

@@ -95,8 +95,9 @@ def check_count(photos: Sequence[str], unused: Sequence[UnusedPhoto]) -> None:
         return
     why = "".join(f"; {one.detail}" for one in unused[:3])
     have = f"only {listed(used)}" if used else "none"
+    need = f"at least {LEAST_PHOTOS} photos from different places around the tree are needed"
     raise CaptureError(
-        f"at least {LEAST_PHOTOS} photos from different places around the tree are needed, usable: {have}{why}",
+        f"{need}, usable: {have}{why}; take more",
         code="too_few_photos",
     )
 

@@ -10,6 +10,7 @@ import numpy as np
 from treestroke import __version__
 from treestroke.codec.inputs import CUTOUTS, Inputs
 from treestroke.codec.preview import draw_preview
+from treestroke.core.pipeline.drawn_views import mend_views
 from treestroke.core.pipeline.dressing import OwnPictures
 from treestroke.core.pipeline.evidence import read_photo
 from treestroke.core.pipeline.finishing import OnGrown, TreeModel, finish, ignore_grown
@@ -259,8 +260,9 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
+    drawn = mend_views(parts["views"], {photo.name: photo.size_px for photo in photos})  # faults are told at once
     structure = parts["structure"] if "structure" in parts else solve_in_process(photos, SOLVE_BOUNDS, report)
-    evidence = read_views(photos, structure, parts["views"], settings.height, report)
+    evidence = read_views(photos, structure, drawn, settings.height, report)
     return lambda rng: grow_views(evidence, settings, rng, report)
 
 

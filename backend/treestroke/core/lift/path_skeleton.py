@@ -97,7 +97,9 @@ def _lengthened(laid: _Laid, wood: Sequence[ShownArea], unit_m: float, least: fl
     """Let the paths go on while enough shots show it."""
     count = len(laid.points)
     ends = np.flatnonzero((np.bincount(laid.parents[1:], minlength=count) == 0) & laid.seen)
-    points, parents, whose = lengthened(Skeleton(laid.points, _radii(laid, wood, least)[0], laid.parents), ends, wood, unit_m)
+    points, parents, whose = lengthened(
+        Skeleton(laid.points, _radii(laid, wood, least)[0], laid.parents), ends, wood, unit_m
+    )
     return _Laid(
         np.concatenate([laid.points, points]),
         np.concatenate([laid.seen, np.ones(len(points), dtype=np.bool_)]),

@@ -17,7 +17,7 @@ def mend_views(drawn: CaptureStrokes, sizes_px: Mapping[str, tuple[int, int]]) -
     Raises
     ------
     StrokesError
-        As `mend_strokes`; or there is no such photo, or no trunk.
+        As `mend_strokes`; or there is no such photo, no trunk, or a distance of a photo from itself.
     """
     for place, name in [*_drawn_over(drawn), *_named_by(drawn.scale)]:
         if name not in sizes_px:
@@ -32,6 +32,9 @@ def mend_views(drawn: CaptureStrokes, sizes_px: Mapping[str, tuple[int, int]]) -
     found = replace(drawn, by_photo=mended)
     if not mended[found.first].branches:
         raise StrokesError.at(("views", 0, "branches"), NO_TRUNK, "trunk_missing")
+    if isinstance(drawn.scale, CameraDistance) and len(set(drawn.scale.photos)) < 2:
+        fault = f"{drawn.scale.photos[0]} is named twice; name the two photos between which you measured"
+        raise StrokesError.at(("scale", "photos"), fault, "scale_invalid")
     return found
 
 

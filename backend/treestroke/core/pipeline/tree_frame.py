@@ -192,10 +192,7 @@ def _metres_per_unit(cameras: Mapping[str, PerspectiveCamera], drawn: CaptureStr
         return None
     if isinstance(drawn.scale, CameraDistance):
         first, second = (_camera(cameras, name, ("scale", "photos")).centre for name in drawn.scale.photos)
-        apart = float(np.linalg.norm(first - second))
-        if not apart > 0:
-            raise StrokesError.at(("scale",), "both photos are the same; name two photos", "scale_invalid")
-        return drawn.scale.metres / apart
+        return drawn.scale.metres / max(float(np.linalg.norm(first - second)), 1e-9)
     camera = _camera(cameras, drawn.scale.photo, ("scale", "photo"))
     return _metres_by_line(camera, drawn.scale.length, root)
 
