@@ -62,8 +62,7 @@ def lengthened(
         count += len(going)
     none = np.zeros(0, dtype=np.int64)
     return tuple(  # type: ignore[return-value]
-        np.concatenate([empty, *parts])
-        for empty, parts in ((np.zeros((0, 3)), added), (none, joined), (none, whose))
+        np.concatenate([empty, *parts]) for empty, parts in ((np.zeros((0, 3)), added), (none, joined), (none, whose))
     )
 
 
@@ -75,7 +74,9 @@ def _directions(points: Floats, parents: Indices, ends: Indices) -> Floats:
     return unit(points[ends] - points[back], otherwise=np.array([0.0, 1.0, 0.0]))
 
 
-def _stepped(at: Floats, ways: Floats, step: float, areas: Sequence[ShownArea], left: Sequence[Opacity]) -> tuple[Floats, Mask]:
+def _stepped(
+    at: Floats, ways: Floats, step: float, areas: Sequence[ShownArea], left: Sequence[Opacity]
+) -> tuple[Floats, Mask]:
     """Return the best place (k, 3) a step on from places (k, 3) about ways (k, 3), and whether enough shots show it."""
     side = unit(np.cross(ways, np.where(np.abs(ways[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])))
     up = np.cross(ways, side)
