@@ -17,10 +17,13 @@ FEWEST = 2
 """Shots that must show a place."""
 
 
-def limb_radii(points: Floats, areas: Sequence[ShownArea]) -> Floats:
+def limb_radii(
+    points: Floats, areas: Sequence[ShownArea], quantiles: tuple[float, float] = (QUANTILE, INSIDE_QUANTILE)
+) -> Floats:
     """Measure the radius of the wood (n,), metres, about points (n, 3) on centre lines; 0 where too few shots show it.
 
-    In each shot it is the greatest distance from the outline near the point.
+    In each shot it is the greatest distance from the outline near the point; ``quantiles`` tell which of the shots'
+    counts, of the tree's outline and of the wood's.
     """
     within, inside = (np.full((len(areas), len(points)), np.inf) for _ in range(2))
     for number, area in enumerate(areas):
@@ -30,7 +33,7 @@ def limb_radii(points: Floats, areas: Sequence[ShownArea]) -> Floats:
         within[number, shows] = ((of_tree - OUTLINE_PX) * pixel)[shows]
         inside[number, shows] = ((of_wood - OUTLINE_PX) * pixel)[shows]
     told = np.isfinite(within).sum(axis=0)
-    radii = np.minimum(_ranked(within, told, QUANTILE), _ranked(inside, told, INSIDE_QUANTILE))
+    radii = np.minimum(_ranked(within, told, quantiles[0]), _ranked(inside, told, quantiles[1]))
     return np.where(told >= FEWEST, np.maximum(radii, 0.0), 0.0)
 
 

@@ -27,6 +27,8 @@ GUESS = 0.5
 """What a length that is not seen costs, relative to what one that is seen is worth."""
 ENOUGH_WIDTHS = 3
 """Joints of a path whose widths are known from which on these alone tell its radii."""
+SURE_QUANTILES = 0.1, 0.3
+"""Which of the radii tell where no shot shows a limb by itself: it lies within what all of them show."""
 THINNEST = 0.15
 """Least radius, in units of the graph."""
 
@@ -59,10 +61,11 @@ def path_skeleton(
         points.append(line[1:])
         seen.append(shown[1:])
     least = THINNEST * graph.unit
-    first = _Laid(*(np.concatenate(part) for part in (points, seen)), np.array(parents), np.array(owner))
+    first = _Laid(np.concatenate(points), np.concatenate(seen), np.array(parents), np.array(owner))
     laid = _lengthened(first, wood, graph.unit, least)
     radii, measured = _radii(laid, wood, least)
     tree, widths = fitted(Skeleton(laid.points, radii, laid.parents), wood)
+    measured = np.where(laid.seen, limb_radii(tree.points, wood, SURE_QUANTILES), 0.0)
     radii = _tapering(_told(widths * laid.seen, measured, laid.owner), tree.parents, laid.owner, least)
     return _without_guesses(Skeleton(tree.points, radii, tree.parents), laid.seen)
 

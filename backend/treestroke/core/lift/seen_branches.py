@@ -47,8 +47,9 @@ def seen_branches(
 
     Source: Tan et al. 2007, section 5.1. The graph's places are not only the cloud's points, which lie on few limbs,
     but all small cells that more shots show as wood than would by chance; paths keep to the middle of the wood, so a
-    path is a centre line without bins, and the radius is measured by the mattes; of the branches where silhouettes
-    cross by chance, those go that explain no pixel of their own.
+    path is a centre line without bins; of the branches where silhouettes cross by chance, those go that explain no
+    pixel of their own. Joints are moved onto the middle of the wood in the shots, to less than a cell, tips go on as
+    far as the shots show wood, and the radius is measured by the mattes.
 
     Raises
     ------

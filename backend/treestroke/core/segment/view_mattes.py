@@ -24,6 +24,7 @@ from treestroke.core.segment.view_mattes_drawn import DrawnTree, drawn_tree
 from treestroke.core.segment.view_mattes_parallax import far_odds, horizon
 from treestroke.core.segment.view_mattes_solid import Solid, lowest_height, projected, solid_around, weighed
 from treestroke.core.segment.view_mattes_trunk import StandingTrunk, around_trunk, standing_trunk, trunk_seen
+from treestroke.core.segment.view_mattes_twigs import with_twigs
 from treestroke.core.strokes import Strokes
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
@@ -305,6 +306,8 @@ def _tree_matte(shot: Shot, found: _Found, models: tuple[TreeColours, Mixture], 
         whole = np.where(trunk, np.maximum(odds + by_colour, ON_TRUNK), odds + by_colour)
         hidden = _hidden(trunk, by_colour)
         opacity = np.where(hidden, 0, matte(shot.picture, _likely(whole), region)).astype(np.float32)
+        if colours.leaf is None:
+            opacity = with_twigs(shot.picture, opacity)
     else:
         opacity = drawn.alpha * region
     wood = np.where(trunk, 1.0, colours.wood_share(shot.picture)) * (opacity > 0)
