@@ -90,7 +90,7 @@ OUTSIDE = Strokes(Stroke(np.array([[900.0, 10.0], [950.0, 10.0], [950.0, 60.0]])
     [
         (bad("gone.jpg"), "photo_unknown", "/views/0/photo"),
         (bad(trunk=False), "trunk_missing", "/views/0/branches"),
-        (bad(scale=CameraDistance(("0.jpg", "gone.jpg"), 2.0)), "photo_unknown", "/scale/photos"),
+        (bad(scale=CameraDistance(("0.jpg", "gone.jpg"), 2.0)), "photo_unknown", "/scale/photos/1"),
         (bad(scale=CameraDistance(("0.jpg", "0.jpg"), 2.0)), "scale_invalid", "/scale/photos"),
         (CaptureStrokes({"0.jpg": OUTSIDE}, None), "stroke_too_short", "/views/0/crown"),
     ],

@@ -22,6 +22,7 @@ from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
 from treestroke.core.pipeline.growing import DOUBTFUL
 from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.shown_kinds import odds_by_shots
 from treestroke.core.pipeline.taken import Taken
 from treestroke.core.pipeline.tree_frame import cloud_in_frame, height_above, in_frame, tree_frame
 from treestroke.core.pipeline.view_appearance import view_appearance
@@ -119,6 +120,7 @@ def read_views(
     cloud = dense_cloud(carving, shots, mattes, report)
     crown = measured_crown(with_points(carving, shots, cloud), shots)
     seen = seen_branches(shots, mattes, cloud, report)
+    front = read_photo(shots[names.index(drawn.first)].picture, drawn.by_photo[drawn.first])
     return ViewsEvidence(
         photos=used,
         structure=structure,
@@ -127,7 +129,7 @@ def read_views(
         cloud=cloud,
         crown=crown,
         seen=seen,
-        front=read_photo(shots[names.index(drawn.first)].picture, drawn.by_photo[drawn.first]),
+        front=replace(front, odds=odds_by_shots(front.odds, shots, mattes, crown)),
         known=drawn.scale is not None,
     )
 
