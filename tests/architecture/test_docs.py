@@ -21,7 +21,7 @@ from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import ModelRequest
 from treestroke.wire_strokes import CaptureStrokes, Strokes, StrokeSketch
 
-COMMANDS = ("model", "sketch", "trace", "serve", "worker", "doctor")
+COMMANDS = ("model", "views", "sketch", "trace", "serve", "worker", "doctor")
 INVOCATION = re.compile(r"^(?:\$ )?treestroke (\w+)(.*)$", re.M)
 
 
@@ -83,7 +83,7 @@ def test_the_flags_of_a_command_are_those_of_its_help(command: str, capsys: pyte
         for flag, of, _ in rows(section("docs/cli.md", "Flags"))
         if of == "all" or command in of.split(", ")
     }
-    if command in ("model", "sketch"):
+    if command in ("model", "views", "sketch"):
         assert f"`{command}`" in section("docs/cli.md", "Flags")
         written |= {f"--{f.name.replace('_', '-')}" for f in fields(ModelSettings)} | {"--no-compress"}
     assert written == flags_of(command, capsys)
