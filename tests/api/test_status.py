@@ -37,7 +37,7 @@ def test_the_limits_are_told(client: httpx.Client) -> None:
     assert (limits["photo_bytes"], limits["photo_pixels"]) == (25_000_000, 50_000_000)
     assert (limits["photo_stored_bytes"], limits["photos_stored_bytes"]) == (120_000_000, 20_000_000_000)
     assert (limits["photo_side_min"], limits["photo_side_max"]) == (64, 16_384)
-    assert (limits["capture_photos_min"], limits["capture_photos_max"]) == (5, 40)
+    assert (limits["capture_photos_min"], limits["capture_photos_max"]) == (5, 60)
     assert (limits["strokes"], limits["points"]) == (200, 10_000)
     assert (limits["leaf_bytes"], limits["sketch_bytes"]) == (4_000_000, 25_000_000)
     assert set(limits["settings"]) == set(ModelSettings.__dataclass_fields__)
@@ -189,6 +189,7 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "get_tree",
         "get_preview",
         "get_strokes",
+        "get_views",
         "get_sketch",
         "get_project",
         "get_tree_file",

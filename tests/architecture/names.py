@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+import treestroke
 from treestroke.api.app import make_app
 from treestroke.settings import Settings
 
@@ -79,6 +80,8 @@ def routes() -> frozenset[str]:
 def exists(dotted: str) -> bool:
     """Tell whether a dotted name, such as ``core.geometry.Camera`` or ``Mesh.hold``, is one of the package's."""
     parts = dotted.removeprefix("treestroke.").split(".")
+    if dotted.startswith("treestroke.") and parts[0] in treestroke.__all__ and len(parts) == 1:
+        return True
     if parts[0] in members():
         return len(parts) == 1 or (len(parts) == 2 and parts[1] in members()[parts[0]])
     return any(_in_module(path, parts[at:]) for at in range(len(parts), 0, -1) for path in _modules_called(parts[:at]))

@@ -19,9 +19,9 @@ from treestroke.schemas import CaptureInfo, ModelInfo, PhotoInfo, Problem
 from treestroke.service.failures import _DETAILS, problem_of_input
 from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import ModelRequest
-from treestroke.wire_strokes import Strokes, StrokeSketch
+from treestroke.wire_strokes import CaptureStrokes, Strokes, StrokeSketch
 
-COMMANDS = ("model", "sketch", "trace", "serve", "worker", "doctor")
+COMMANDS = ("model", "views", "sketch", "trace", "serve", "worker", "doctor")
 INVOCATION = re.compile(r"^(?:\$ )?treestroke (\w+)(.*)$", re.M)
 
 
@@ -83,7 +83,7 @@ def test_the_flags_of_a_command_are_those_of_its_help(command: str, capsys: pyte
         for flag, of, _ in rows(section("docs/cli.md", "Flags"))
         if of == "all" or command in of.split(", ")
     }
-    if command in ("model", "sketch"):
+    if command in ("model", "views", "sketch"):
         assert f"`{command}`" in section("docs/cli.md", "Flags")
         written |= {f"--{f.name.replace('_', '-')}" for f in fields(ModelSettings)} | {"--no-compress"}
     assert written == flags_of(command, capsys)
@@ -189,14 +189,16 @@ def test_the_doctor_s_parts_are_those_that_it_examines() -> None:
 
 
 def test_examples_in_json_are_what_the_service_takes_and_gives() -> None:
-    (strokes,), (sketch,), (request, problem) = (
+    (strokes,), (sketch,), (views,), (request, captured, problem) = (
         [json.loads(fence.text) for fence in fences(f"docs/{name}.md", "json")]
-        for name in ("formats", "sketches", "http")
+        for name in ("formats", "sketches", "views", "http")
     )
     assert set(strokes) == set(Strokes.model_fields)
     Strokes.model_validate(strokes)
     StrokeSketch.model_validate(sketch)
+    CaptureStrokes.model_validate(views)
     ModelRequest.model_validate(request)
+    ModelRequest.model_validate(captured)
     assert set(problem) == set(Problem.model_fields)
     Problem.model_validate(problem)
 
