@@ -44,11 +44,12 @@ class _Laid:
 
 
 def path_skeleton(
-    graph: PointGraph, lines: CentreLines, kept: Mask, wood: Sequence[ShownArea]
+    graph: PointGraph, lines: CentreLines, kept: Mask, wood: Sequence[ShownArea], bare: bool
 ) -> tuple[Skeleton, Mask]:
     """Lay a skeleton (3D, metres) along the paths (k,) that are ``kept``, and tell which joints (n,) are seen.
 
-    Radii are those that the shots show of the ``wood``.
+    Radii are those that the shots show of the ``wood``. On a ``bare`` tree joints are moved to its middle there, and
+    tips go on; amid leaves its outlines are too often theirs (a leafy oak lost true branches).
 
     The first joint is the root of the graph. A path that leads over more that is not seen than it shows is left out.
     """
@@ -62,12 +63,18 @@ def path_skeleton(
         seen.append(shown[1:])
     least = THINNEST * graph.unit
     first = _Laid(np.concatenate(points), np.concatenate(seen), np.array(parents), np.array(owner))
+    if not bare:
+        return _without_guesses(Skeleton(first.points, _radii(first, wood, least), first.parents), first.seen)
     laid = _lengthened(first, wood, graph.unit, least)
-    radii, measured = _radii(laid, wood, least)
-    tree, widths = fitted(Skeleton(laid.points, radii, laid.parents), wood)
+    return _without_guesses(_fitted(laid, wood, least), laid.seen)
+
+
+def _fitted(laid: _Laid, wood: Sequence[ShownArea], least: float) -> Skeleton:
+    """Return the skeleton with its joints in the middle of the wood, and radii by how wide that is."""
+    tree, widths = fitted(Skeleton(laid.points, _radii(laid, wood, least), laid.parents), wood)
     measured = np.where(laid.seen, limb_radii(tree.points, wood, SURE_QUANTILES), 0.0)
     radii = _tapering(_told(widths * laid.seen, measured, laid.owner), tree.parents, laid.owner, least)
-    return _without_guesses(Skeleton(tree.points, radii, tree.parents), laid.seen)
+    return Skeleton(tree.points, radii, tree.parents)
 
 
 def _joints(graph: PointGraph, path: Indices) -> tuple[Floats, Mask]:
@@ -90,10 +97,10 @@ def _join(points: Floats, owner: Indices, parent: int, place: Floats) -> int:
     return int(own[cKDTree(points[own]).query(place)[1]]) if parent >= 0 else 0
 
 
-def _radii(laid: _Laid, wood: Sequence[ShownArea], least: float) -> tuple[Floats, Floats]:
-    """Return tapering radii (n,), metres, and those measured (n,), 0 where nothing is seen."""
+def _radii(laid: _Laid, wood: Sequence[ShownArea], least: float) -> Floats:
+    """Return tapering radii (n,), metres, by how far joints lie within the wood."""
     measured = np.where(laid.seen, limb_radii(laid.points, wood), 0.0)
-    return _tapering(measured, laid.parents, laid.owner, least), measured
+    return _tapering(measured, laid.parents, laid.owner, least)
 
 
 def _lengthened(laid: _Laid, wood: Sequence[ShownArea], unit_m: float, least: float) -> _Laid:
@@ -101,7 +108,7 @@ def _lengthened(laid: _Laid, wood: Sequence[ShownArea], unit_m: float, least: fl
     count = len(laid.points)
     ends = np.flatnonzero((np.bincount(laid.parents[1:], minlength=count) == 0) & laid.seen)
     points, parents, whose = lengthened(
-        Skeleton(laid.points, _radii(laid, wood, least)[0], laid.parents), ends, wood, unit_m
+        Skeleton(laid.points, _radii(laid, wood, least), laid.parents), ends, wood, unit_m
     )
     return _Laid(
         np.concatenate([laid.points, points]),

@@ -7,7 +7,7 @@ from treestroke.core.capture import PointCloud, Shot, TreeMatte
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.lift.branch_points import is_branch
 from treestroke.core.lift.centre_lines import centre_lines
-from treestroke.core.lift.explained import explained
+from treestroke.core.lift.explained import OWN_BARE, OWN_SHARE, explained
 from treestroke.core.lift.path_skeleton import path_skeleton
 from treestroke.core.lift.point_graph import FINE, FINE_BARE, point_graph
 from treestroke.core.lift.thin_hull import shown_area
@@ -48,8 +48,8 @@ def seen_branches(
     Source: Tan et al. 2007, section 5.1. The graph's places are not only the cloud's points, which lie on few limbs,
     but all small cells that more shots show as wood than would by chance; paths keep to the middle of the wood, so a
     path is a centre line without bins; of the branches where silhouettes cross by chance, those go that explain no
-    pixel of their own. Joints are moved onto the middle of the wood in the shots, to less than a cell, tips go on as
-    far as the shots show wood, and the radius is measured by the mattes.
+    pixel of their own. The radius is measured by the mattes. Joints of a bare tree are moved onto the middle of the
+    wood in the shots, to less than a cell, and tips go on as far as the shots show wood.
 
     Raises
     ------
@@ -67,6 +67,7 @@ def seen_branches(
     if not lines.paths:
         raise TreestrokeError("no trunk is seen in enough photos: mark it with a branch stroke in two or three of them")
     report("branches", 0.7)
-    skeleton, seen = path_skeleton(graph, lines, explained(lines, graph, wood), wood)
+    kept = explained(lines, graph, wood, OWN_BARE if bare else OWN_SHARE)
+    skeleton, seen = path_skeleton(graph, lines, kept, wood, bare)
     report("branches", 1.0)
     return SeenBranches(skeleton, seen, cloud.points[~is_branch(cloud, shots, mattes)])
