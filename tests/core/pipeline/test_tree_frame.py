@@ -10,7 +10,7 @@ from treestroke.core.capture import PointCloud
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.similarity import Similarity
-from treestroke.core.pipeline.tree_frame import height_above, tree_frame
+from treestroke.core.pipeline.tree_frame import height_above, shows_tree, tree_frame
 from treestroke.core.strokes import CameraDistance, CaptureStrokes, Length, LengthInPhoto, Stroke, Strokes
 from treestroke.core.types import Floats
 
@@ -97,3 +97,12 @@ def test_photos_without_a_camera_are_refused(drawn: CaptureStrokes, pointer: str
     with pytest.raises(StrokesError, match=r"9\.jpg") as refused:
         tree_frame(CAMERAS, cloud(), drawn, HEIGHT)
     assert (refused.value.code, refused.value.pointer) == ("photo_not_used", pointer)
+
+
+def test_a_photo_shows_the_tree_where_some_of_it_is_inside() -> None:
+    ahead = WALK[0]
+    aside = Similarity(np.array([12.0, 0.0, 0.0]), np.eye(3), 1.0).camera(ahead)
+    behind = Similarity(np.array([0.0, 0.0, 12.0]), np.eye(3), 1.0).camera(ahead)
+    above = Similarity(np.array([0.0, -8.0, 0.0]), np.eye(3), 1.0).camera(ahead)
+    assert [shows_tree(camera, HEIGHT) for camera in (ahead, aside, behind, above)] == [True, False, False, False]
+    assert shows_tree(above, 3 * HEIGHT)

@@ -5,11 +5,12 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.core.pipeline.walked_capture import HEIGHT, SHAKEN, structure_of
+from tests.core.pipeline.walked_capture import HEIGHT, structure_of
 from tests.core.segment.walked_tree import cover, strokes_on, walk
 
-from treestroke.core.capture import CapturedPhoto
+from treestroke.core.capture import CapturedPhoto, SolvedPhoto
 from treestroke.core.errors import StrokesError
+from treestroke.core.geometry.similarity import Similarity
 from treestroke.core.pipeline.drawn_views import mend_views
 from treestroke.core.pipeline.finishing import TreeModel, finish
 from treestroke.core.pipeline.settings import ModelSettings
@@ -24,7 +25,12 @@ STRUCTURE = structure_of(SHOTS)
 
 @cache
 def evidence() -> ViewsEvidence:
-    return read_views((*PHOTOS, replace(PHOTOS[0], name="shaken.jpg")), STRUCTURE, DRAWN, HEIGHT)
+    """Read the walk with a blurred photo, and one that was taken far away beside another tree."""
+    aside = Similarity(np.array([40.0, 0.0, 0.0]), np.eye(3), 1.0).camera(STRUCTURE.photos[0].camera)
+    cloud = replace(STRUCTURE.cloud, seen=np.pad(STRUCTURE.cloud.seen, ((0, 0), (0, 1))))
+    with_ash = replace(STRUCTURE, photos=(*STRUCTURE.photos, SolvedPhoto("ash.jpg", aside, 0.0)), cloud=cloud)
+    further = tuple(replace(PHOTOS[0], name=name) for name in ("shaken.jpg", "ash.jpg"))
+    return read_views((*PHOTOS, *further), with_ash, DRAWN, HEIGHT)
 
 
 @cache
@@ -73,8 +79,12 @@ def test_cameras_and_unused_photos_go_along() -> None:
     assert captured is not None
     assert captured.names == tuple(shot.name for shot in SHOTS)
     assert {(camera.width, camera.height) for camera in captured.cameras} == {(200, 150)}
-    assert captured.unused == (SHAKEN,)
-    assert ("blurred", "photos/shaken.jpg") in [(warning.code, warning.stroke) for warning in grown().warnings]
+    assert [(photo.name, photo.code) for photo in captured.unused] == [
+        ("shaken.jpg", "blurred"),
+        ("ash.jpg", "other_tree"),
+    ]
+    told = {(warning.code, warning.stroke) for warning in grown().warnings}
+    assert told >= {("blurred", "photos/shaken.jpg"), ("other_tree", "photos/ash.jpg")}
 
 
 def bad(name: str = SHOTS[0].name, trunk: bool = True, scale: CameraDistance | None = None) -> CaptureStrokes:

@@ -35,6 +35,9 @@ GROUND_REACH, GROUND_RANK = 0.15, 0.1
 """Without such points: how far from the root, as a share of its distance, ground tells how high it is, and the rank
 among the heights there that is the ground's."""
 
+AXIS_POINTS = 20
+"""Places along a tree's axis of which a photo of it shows at least one."""
+
 
 def tree_frame(
     cameras: Mapping[str, PerspectiveCamera], cloud: PointCloud, drawn: CaptureStrokes, height_m: float
@@ -184,6 +187,14 @@ def height_above(camera: PerspectiveCamera, root: Floats, top_px: Floats) -> flo
     ray = camera.world_from_pixels(top_px[None], 1.0)[0] - camera.centre
     ahead = unit((root - camera.centre) * [1.0, 0.0, 1.0])
     return float(camera.centre[1] + (root - camera.centre) @ ahead / max(ray @ ahead, 1e-9) * ray[1] - root[1])
+
+
+def shows_tree(camera: PerspectiveCamera, height_m: float) -> bool:
+    """Tell whether some of the tree's axis, from the root at the origin to ``height_m`` above, is in a picture."""
+    axis = np.linspace(0.0, height_m, AXIS_POINTS)[:, None] * [0.0, 1.0, 0.0]
+    x, y = camera.pixels_from_world(axis).T
+    inside = (x >= 0) & (x <= camera.width) & (y >= 0) & (y <= camera.height)
+    return bool((inside & (camera.depth(axis) > 0)).any())
 
 
 def _metres_per_unit(cameras: Mapping[str, PerspectiveCamera], drawn: CaptureStrokes, root: Floats) -> float | None:

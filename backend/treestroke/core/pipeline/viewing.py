@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, SolvedPhoto, Structure, TreeMatte
+from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, SolvedPhoto, Structure, TreeMatte, UnusedPhoto
 from treestroke.core.carve.carving import carved, with_points
 from treestroke.core.carve.dense_points import dense_cloud
 from treestroke.core.carve.measured import measured_crown
@@ -24,7 +24,7 @@ from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, Readin
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.shown_kinds import odds_by_shots
 from treestroke.core.pipeline.taken import Taken
-from treestroke.core.pipeline.tree_frame import cloud_in_frame, height_above, in_frame, tree_frame
+from treestroke.core.pipeline.tree_frame import cloud_in_frame, height_above, in_frame, shows_tree, tree_frame
 from treestroke.core.pipeline.view_appearance import view_appearance
 from treestroke.core.progress import Report, silent
 from treestroke.core.segment.view_mattes import view_mattes
@@ -111,7 +111,10 @@ def read_views(
     cameras = {shot.name: shot.camera for shot in shots}
     frame = tree_frame(cameras, structure.cloud, drawn, height_m)
     shots, cloud = tuple(in_frame(shot, frame) for shot in shots), cloud_in_frame(structure.cloud, frame)
+    structure, shots, cloud = _of_tree(photos, structure, shots, cloud, _drawn_height(shots, drawn))
     names = [shot.name for shot in shots]
+    used = tuple(by_name[name] for name in names)
+    drawn = replace(drawn, by_photo={name: one for name, one in drawn.by_photo.items() if name in names})
     mattes = view_mattes(shots, {names.index(name): strokes for name, strokes in drawn.by_photo.items()}, cloud, report)
     if drawn.scale is None:
         larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
@@ -177,6 +180,36 @@ def _moved(strokes: Strokes, carry: Callable[[Floats], Floats]) -> Strokes:
         branches=tuple(moved(stroke) for stroke in strokes.branches),
         erase=tuple(moved(stroke) for stroke in strokes.erase),
     )
+
+
+def _drawn_height(shots: Sequence[Shot], drawn: CaptureStrokes) -> float:
+    """Return the height of the crown stroke's top above the root, metres."""
+    camera = next(shot.camera for shot in shots if shot.name == drawn.first)
+    crown = drawn.by_photo[drawn.first].crown.points
+    return height_above(camera, np.zeros(3), crown[crown[:, 1].argmin()])
+
+
+def _of_tree(
+    photos: Sequence[CapturedPhoto], structure: Structure, shots: tuple[Shot, ...], cloud: PointCloud, height_m: float
+) -> tuple[Structure, tuple[Shot, ...], PointCloud]:
+    """Leave out the photos that look past the tree, such as those of another tree in the same place."""
+    shown = np.array([shows_tree(shot.camera, height_m) for shot in shots])
+    if shown.all():
+        return structure, shots, cloud
+    past = [_past_tree(shot.name) for shot, of_tree in zip(shots, shown, strict=True) if not of_tree]
+    place = {photo.name: index for index, photo in enumerate(photos)}
+    kept = Structure(
+        tuple(photo for photo, of_tree in zip(structure.photos, shown, strict=True) if of_tree),
+        replace(structure.cloud, seen=structure.cloud.seen[:, shown]),
+        tuple(sorted([*structure.unused, *past], key=lambda one: place.get(one.name, -1))),
+    )
+    of_shots = tuple(shot for shot, of_tree in zip(shots, shown, strict=True) if of_tree)
+    return kept, of_shots, replace(cloud, seen=cloud.seen[:, shown])
+
+
+def _past_tree(name: str) -> UnusedPhoto:
+    detail = f"{name} does not show the tree that was drawn: leave it out, or make a capture of its own of another tree"
+    return UnusedPhoto(name, "other_tree", detail)
 
 
 def _seen_height(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> float:
