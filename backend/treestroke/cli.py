@@ -14,27 +14,22 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from treestroke import __version__
-from treestroke.codec.inputs import CUTOUTS, PARTS, SOURCES, Inputs, Source
-from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, PHOTO_ENDINGS
+from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, read_by
+from treestroke.codec.inputs import CUTOUTS, PARTS, SOURCES, Source
+from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
-from treestroke.core.pipeline.settings import ModelSettings, Several, Span, Toggle
+from treestroke.core.pipeline.settings import ModelSettings, Several, Toggle
 from treestroke.core.progress import silent
 from treestroke.memory import search_for_garbage_often
 from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
-    from treestroke.service.loading import PartLike
-
     Commands = argparse._SubParsersAction["Parser"]
 
 BAD_INPUT, OUR_FAULT, INTERRUPTED = 2, 1, 130
 _PART_WIDTH = 13
 _PRINTED = ("side_assumed", "photo_cut_short", "outside_photo", "crown_unclear", "trunk_unclear")
 """Codes of the warnings that are printed: something was assumed, or what was drawn may not be a tree."""
-
-
-class UsageError(TreestrokeError):
-    """The command itself is wrong."""
 
 
 class MachineFault(Exception):
@@ -208,8 +203,8 @@ def _add_settings(command: argparse.ArgumentParser) -> None:
 
 def _make(options: argparse.Namespace) -> None:
     outputs = _outputs(options, ("out", "report", "preview"))
-    inputs, settings = _inputs(options)
-    settings |= _chosen(options)
+    inputs, settings = inputs_of(options)
+    settings |= chosen_settings(options)
     from treestroke.codec.image import encode_png
     from treestroke.engines.solving import SolveEnded
     from treestroke.service.model import Options, make_tree
@@ -249,7 +244,7 @@ def _stem(out: Path) -> str:
 
 def _check_further(options: argparse.Namespace, further: Collection[Path]) -> None:
     """Refuse to write over a file that the command reads."""
-    read = _read(options)
+    read = read_by(options)
     for path in further:
         if os.path.realpath(path) in read or path.is_dir():
             problem = "the command reads it" if path.is_file() else "it is a folder"
@@ -311,101 +306,10 @@ def _service_settings(options: argparse.Namespace) -> Any:
     return read_settings(**{name: value for name, value in flags.items() if value is not None})
 
 
-def _inputs(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str, Any]]:
-    """Return what the tree is made of, and a project's settings, the seed among them."""
-    parts, project_path = _parts(options), _project_path(options)
-    if project_path is None:
-        if options.first in ("photo", "photos") and not {"strokes", "views"} & parts.keys():
-            raise UsageError("--strokes is missing; name the strokes' JSON file")
-        return Inputs.of(parts), {}
-    from treestroke.service.loading import load_project
-
-    for name in parts:
-        if name not in CUTOUTS:
-            raise UsageError(f"--{name}: a project has its own {name}; leave the flag out")
-    project = load_project(project_path)
-    return Inputs.of({**project.inputs.parts, **parts}), project.settings
-
-
-def _project_path(options: argparse.Namespace) -> str | None:
-    """Return the project that the command reads, where it reads one."""
-    first = getattr(options, options.first)
-    named = first if isinstance(first, list) else [first]
-    return named[0] if len(named) == 1 and named[0].endswith(".treestroke") else None
-
-
-def _parts(options: argparse.Namespace) -> dict[str, str]:
-    """Return the paths of the files that the tree is made of, a project apart, by part."""
-    paths = {name: getattr(options, name, None) for name in PARTS}
-    if _project_path(options) is not None:
-        paths[options.first] = None
-    photos = paths.pop("photos")
-    several = {} if photos is None else {f"photos/{path.name}": str(path) for path in _photos(photos)}
-    return {name: path for name, path in paths.items() if path is not None} | several
-
-
-def _photos(named: Sequence[str]) -> list[Path]:
-    """Return the photos that paths name, those of folders in the order of their names.
-
-    Raises
-    ------
-    UsageError
-        A folder has no photo, or two photos have one name.
-    """
-    found: list[Path] = []
-    for path in map(Path, named):
-        inside = (
-            sorted(file for file in path.iterdir() if file.suffix.lower() in PHOTO_ENDINGS) if path.is_dir() else [path]
-        )
-        if not inside:
-            raise UsageError(f"{path}: there is no photo in this folder; name one that has {ACCEPTED_FORMATS}")
-        found += inside
-    names = [path.name for path in found]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise UsageError(f"{twice}: two photos have this name; rename one, for strokes name photos by it")
-    return found
-
-
-def _read(options: argparse.Namespace) -> set[str]:
-    """Return the resolved paths of all files that the command reads."""
-    project = _project_path(options)
-    return {os.path.realpath(path) for path in (*_parts(options).values(), *([project] if project else []))}
-
-
-def _chosen(options: argparse.Namespace) -> dict[str, Any]:
-    """Return the settings that flags name, and the seed."""
-    flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
-    settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
-    return settings if options.seed is None else {**settings, "seed": _whole(options.seed)}
-
-
-def _value(name: str, text: str | bool) -> object:
-    """Read a flag's value as the setting's kind; what does not fit stays text, which the settings refuse by name."""
-    allowed = {entry.name: entry.metadata["allowed"] for entry in fields(ModelSettings)}[name]
-    if isinstance(text, bool):
-        return text
-    if isinstance(allowed, Several):
-        return [name.strip() for name in text.split(",") if name.strip()]
-    if not isinstance(allowed, Span):
-        return text
-    try:
-        return int(text) if allowed.whole else float(text)
-    except ValueError:
-        return text
-
-
-def _whole(text: str) -> object:
-    try:
-        return int(text)
-    except ValueError:
-        return text
-
-
 def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Path]:
     """Return the paths to write, by flag; refuse, before any work, those that cannot be written."""
     outputs = {name: path for name in names if (path := getattr(options, name)) is not None}
-    taken = _read(options)
+    taken = read_by(options)
     for name, path in outputs.items():
         if path.is_dir() or not path.parent.is_dir():
             problem = "it is a folder" if path.is_dir() else f"there is no folder {path.parent}"

@@ -1,6 +1,6 @@
 """More points for a solved model: matches along epipolar lines, triangulated; then all adjusted together once more."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from itertools import combinations
 
 import numpy as np
@@ -9,7 +9,7 @@ import pycolmap
 from treestroke.core.types import Floats
 from treestroke.engines.epipolar_matching import Rays, match_along_lines
 from treestroke.engines.features import Features
-from treestroke.engines.mapping import SEED, Pair, View, cache_of, indices_of
+from treestroke.engines.mapping import SEED, Matched, Pair, View, cache_of, indices_of
 from treestroke.engines.side_by_side import side_by_side
 
 _NEIGHBOURS = 4
@@ -21,16 +21,9 @@ _ERROR_PX = 2.0
 """Greatest error of a point in a photo, working pixels."""
 
 
-def densify(
-    model: pycolmap.Reconstruction,
-    views: Sequence[View],
-    features: Sequence[Features],
-    cameras: Sequence[pycolmap.Camera],
-    found: Mapping[Pair, pycolmap.TwoViewGeometry],
-    advanced: Callable[[float], None],
-) -> None:
+def densify(model: pycolmap.Reconstruction, photos: Matched, advanced: Callable[[float], None]) -> None:
     """Add the points of further matches to a model, and adjust it; ``advanced(fraction)`` is told how far it is."""
-    rays = {index: _rays(model, views[index], features[index], index) for index in indices_of(model)}
+    rays = {index: _rays(model, photos.views[index], photos.features[index], index) for index in indices_of(model)}
     points = np.array([point.xyz for point in model.points3D.values()])
     ranges = _neighbours(rays, points)
 
@@ -42,8 +35,8 @@ def densify(
         return geometry
 
     matched = side_by_side(match, list(ranges), lambda part: advanced(0.7 * part))
-    pairs = {**found, **dict(zip(ranges, matched, strict=True))}
-    _triangulate(model, cache_of(views, cameras, pairs))
+    pairs = {**photos.pairs, **dict(zip(ranges, matched, strict=True))}
+    _triangulate(model, cache_of(photos.views, photos.cameras, pairs))
     advanced(0.8)
     _adjust(model)
 

@@ -8,6 +8,7 @@ to landscape, so that photos of one camera share one model of it, however it was
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pycolmap
@@ -63,6 +64,21 @@ class View:
     points_px: Floats
     reduction: float
     turn: Floats
+
+
+class Matched(NamedTuple):
+    """Photos with their features and matches; all lists are in the order of ``photos``."""
+
+    photos: Sequence[CapturedPhoto]
+    features: Sequence[Features]
+    views: "Sequence[View]"
+    cameras: Sequence[pycolmap.Camera]
+    pairs: Mapping[Pair, pycolmap.TwoViewGeometry]
+
+    @property
+    def names(self) -> list[str]:
+        """The photos' file names."""
+        return [photo.name for photo in self.photos]
 
 
 def view_of(photo: CapturedPhoto, features: Features) -> View:

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations
-from typing import NamedTuple
 
 import numpy as np
 import pycolmap
@@ -22,9 +21,10 @@ from treestroke.engines.bad_photos import (
     without_camera,
 )
 from treestroke.engines.densifying import densify
-from treestroke.engines.features import Features, find_features
+from treestroke.engines.features import find_features
 from treestroke.engines.lone_points import confirmed
 from treestroke.engines.mapping import (
+    Matched,
     Pair,
     View,
     cache_of,
@@ -50,21 +50,6 @@ _FLAT_SHARE = 0.7
 """Share of the pairs that look as if taken from one place from which on all photos were."""
 
 
-class _Matched(NamedTuple):
-    """Photos with their features and matches; all lists are in the order of ``photos``."""
-
-    photos: Sequence[CapturedPhoto]
-    features: Sequence[Features]
-    views: Sequence[View]
-    cameras: Sequence[pycolmap.Camera]
-    pairs: Mapping[Pair, pycolmap.TwoViewGeometry]
-
-    @property
-    def names(self) -> list[str]:
-        """The photos' file names."""
-        return [photo.name for photo in self.photos]
-
-
 def solve(photos: Sequence[CapturedPhoto], report: Report = silent) -> Structure:
     """Find where photos of one tree were taken, and points that several of them see, by structure from motion.
 
@@ -81,14 +66,7 @@ def solve(photos: Sequence[CapturedPhoto], report: Report = silent) -> Structure
     with threadpool_limits(1):  # pictures and pairs run side by side instead
         matched, unused = _match(photos, lambda part: report("solve", 0.65 * part))
         model, others = _largest(matched, lambda part: report("solve", 0.65 + 0.15 * part))
-        densify(
-            model,
-            matched.views,
-            matched.features,
-            matched.cameras,
-            matched.pairs,
-            lambda part: report("solve", 0.8 + 0.19 * part),
-        )
+        densify(model, matched, lambda part: report("solve", 0.8 + 0.19 * part))
         left_out = [*unused.values(), *_without_camera(matched, model, others)]
         structure = _structure(matched, model, [photo.name for photo in photos], left_out)
     report("solve", 1.0)
@@ -97,7 +75,7 @@ def solve(photos: Sequence[CapturedPhoto], report: Report = silent) -> Structure
 
 def _match(
     photos: Sequence[CapturedPhoto], advanced: Callable[[float], None]
-) -> tuple[_Matched, dict[int, UnusedPhoto]]:
+) -> tuple[Matched, dict[int, UnusedPhoto]]:
     """Find features and matches; photos that repeat another or are blurred are left out."""
     features = list(side_by_side(lambda photo: find_features(photo.picture), photos, lambda part: advanced(0.4 * part)))
     strong = [one.descriptors[np.argsort(-one.sizes_px, kind="stable")[:_STRONG]] for one in features]
@@ -128,7 +106,7 @@ def _match(
     chosen = [(place[first], place[second]) for first, second in _worth_matching(used, alike)]
     geometries = zip(chosen, side_by_side(verify, chosen, lambda part: advanced(0.45 + 0.55 * part)), strict=True)
     pairs = {pair: geometry for pair, geometry in geometries if geometry is not None}
-    return _Matched(kept, kept_features, views, cameras, pairs), unused
+    return Matched(kept, kept_features, views, cameras, pairs), unused
 
 
 def _worth_matching(used: Sequence[int], alike: Mapping[Pair, int]) -> list[Pair]:
@@ -141,7 +119,7 @@ def _worth_matching(used: Sequence[int], alike: Mapping[Pair, int]) -> list[Pair
 
 
 def _largest(
-    matched: _Matched, advanced: Callable[[float], None]
+    matched: Matched, advanced: Callable[[float], None]
 ) -> tuple[pycolmap.Reconstruction, list[pycolmap.Reconstruction]]:
     """Return the model with most photos, and the others."""
     count = 2
@@ -178,7 +156,7 @@ def _spread(model: pycolmap.Reconstruction) -> float:
 
 
 def _without_camera(
-    matched: _Matched, model: pycolmap.Reconstruction, others: Sequence[pycolmap.Reconstruction]
+    matched: Matched, model: pycolmap.Reconstruction, others: Sequence[pycolmap.Reconstruction]
 ) -> Iterator[UnusedPhoto]:
     """Say why photos have no camera in the model."""
     have = set(indices_of(model))
@@ -189,7 +167,7 @@ def _without_camera(
 
 
 def _structure(
-    matched: _Matched, model: pycolmap.Reconstruction, order: Sequence[str], unused: Sequence[UnusedPhoto]
+    matched: Matched, model: pycolmap.Reconstruction, order: Sequence[str], unused: Sequence[UnusedPhoto]
 ) -> Structure:
     """Return a model as a structure with Y up."""
     used = indices_of(model)
@@ -226,7 +204,7 @@ def _points(model: pycolmap.Reconstruction) -> Floats:
     return np.array([model.point3D(number).xyz for number in sorted(model.point3D_ids())]).reshape(-1, 3)
 
 
-def _cloud(matched: _Matched, model: pycolmap.Reconstruction, used: Sequence[int], points: Floats) -> PointCloud:
+def _cloud(matched: Matched, model: pycolmap.Reconstruction, used: Sequence[int], points: Floats) -> PointCloud:
     """Return the model's points, moved to ``points``, with their colours: the mean of those in the photos."""
     column = {index + 1: number for number, index in enumerate(used)}
     rows = [

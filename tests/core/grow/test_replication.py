@@ -34,7 +34,7 @@ def bounds(columns: slice = slice(None)) -> CrownBounds:
     mask = np.zeros((600, 400), dtype=bool)
     mask[:, columns] = True
     box = np.stack([MIDDLE - RADIUS, MIDDLE + RADIUS])
-    return CrownBounds(Ball(box), [Silhouette(mask, CAMERA)], 5.4)  # type: ignore[arg-type]
+    return CrownBounds(Ball(box), [Silhouette(mask, CAMERA)], leaves(), 5.4)  # type: ignore[arg-type]
 
 
 def leaves() -> Floats:
@@ -47,7 +47,7 @@ def leaves() -> Floats:
 def grown(params: ReplicationParams | None = None, limits: CrownBounds | None = None) -> Grown:
     """Grow a fork, 3.6 m high, into the ball."""
     params = params or ReplicationParams()
-    return grow_hidden(fork(), limits or bounds(), leaves(), params, np.random.default_rng(5))
+    return grow_hidden(fork(), limits or bounds(), params, np.random.default_rng(5))
 
 
 def test_branches_grow_to_where_leaves_were_measured() -> None:

@@ -80,10 +80,21 @@ class ReplicationParams:
 
 @dataclass(frozen=True, eq=False)
 class CrownBounds:
-    """Where hidden branches may stand: a crown, the silhouettes of all photos, and the tree's height, metres."""
+    """Where hidden branches may stand, and where they lead.
+
+    Attributes
+    ----------
+    crown, silhouettes
+        The crown, and the tree in all photos.
+    leaf_points
+        (m, 3) where leaves were measured, metres: near the branches' ends.
+    height
+        The tree's height, metres.
+    """
 
     crown: CrownVolume
     silhouettes: Sequence[Silhouette[Camera]]
+    leaf_points: Floats
     height: float
 
     def admits(self, places: Floats) -> Mask:
@@ -125,19 +136,18 @@ class _Growing:
 def grow_hidden(
     skeleton: Skeleton,
     bounds: CrownBounds,
-    leaf_points: Floats,
     params: ReplicationParams,
     rng: np.random.Generator,
     report: Report = silent,
 ) -> Grown:
     """Grow the branches that leaves hide, from the visible ones (3D, metres, measured radii), which stay.
 
-    ``leaf_points`` (m, 3), metres, are where leaves were measured: near the branches' ends. New wood stands where the
+    New wood stands where the
     crown admits it and all silhouettes show it. ``report("grow", fraction)`` is called with each generation.
 
     Source: Tan et al. 2007, section 5.2; the module's head says where we differ.
     """
-    ends = _ends(bounds, leaf_points)
+    ends = _ends(bounds)
     visible = list(skeleton.points), skeleton.parents.tolist(), [0] * len(skeleton)
     growing = _Growing(*visible, ends, np.ones(len(ends), dtype=np.bool_))
     growing.serve(0, params.served * bounds.height)
@@ -176,9 +186,10 @@ def _reached(growing: _Growing) -> float:
     return float(1 - growing.waiting.mean()) if len(growing.waiting) else 0.0
 
 
-def _ends(bounds: CrownBounds, leaf_points: Floats) -> Floats:
+def _ends(bounds: CrownBounds) -> Floats:
     """Choose points (m, 3), metres, that stand for branch ends: on leaves, and, fewer, inside the crown."""
     low, high = bounds.crown.bounds
+    leaf_points = bounds.leaf_points
     spacing = INSIDE_SPACING * bounds.height
     axes = [np.arange(start + spacing / 2, end, spacing) for start, end in zip(low, high, strict=True)]
     inside = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

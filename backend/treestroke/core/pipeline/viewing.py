@@ -92,8 +92,7 @@ def read_views(
 ) -> ViewsEvidence:
     """Find the tree in all photos of a capture, its crown and the branches that are seen.
 
-    ``structure`` holds the photos' cameras, ``drawn`` strokes in px of the upright photos; a tree without a scale is
-    ``height_m`` high.
+    ``drawn`` is in px of the upright photos; a tree without a scale is ``height_m`` high.
 
     Raises
     ------
@@ -104,18 +103,16 @@ def read_views(
     by_name = {photo.name: photo for photo in photos}
     drawn = mend_views(drawn, {photo.name: photo.size_px for photo in photos})
     used = tuple(by_name[solved.name] for solved in structure.photos)
-    shots = tuple(
-        undistorted(photo.picture, solved, SHOT_SIDE) for photo, solved in zip(used, structure.photos, strict=True)
-    )
+    pairs = zip(used, structure.photos, strict=True)
+    shots = tuple(undistorted(photo.picture, solved, SHOT_SIDE) for photo, solved in pairs)
     drawn = _on_shots(drawn, used, structure, shots)
-    cameras = {shot.name: shot.camera for shot in shots}
-    frame = tree_frame(cameras, structure.cloud, drawn, height_m)
+    frame = tree_frame({shot.name: shot.camera for shot in shots}, structure.cloud, drawn, height_m)
     shots, cloud = tuple(in_frame(shot, frame) for shot in shots), cloud_in_frame(structure.cloud, frame)
     structure, shots, cloud = _of_tree(photos, structure, shots, cloud, _drawn_height(shots, drawn))
     names = [shot.name for shot in shots]
     used = tuple(by_name[name] for name in names)
     drawn = replace(drawn, by_photo={name: one for name, one in drawn.by_photo.items() if name in names})
-    mattes = view_mattes(shots, {names.index(name): strokes for name, strokes in drawn.by_photo.items()}, cloud, report)
+    mattes = view_mattes(shots, {names.index(name): one for name, one in drawn.by_photo.items()}, cloud, report)
     if drawn.scale is None:
         larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
         shots, cloud = tuple(in_frame(shot, larger) for shot in shots), cloud_in_frame(cloud, larger)
@@ -234,9 +231,9 @@ def grow_views(
     silhouettes = tuple(
         Silhouette[Camera](matte.tree | matte.hidden, shot.camera) for shot, matte in zip(shots, mattes, strict=True)
     )
-    bounds = CrownBounds(evidence.crown, silhouettes, float(evidence.crown.bounds[1, 1]))
+    bounds = CrownBounds(evidence.crown, silhouettes, evidence.seen.leaf_points, float(evidence.crown.bounds[1, 1]))
     params = ReplicationParams(settings.iterations)
-    grown = grow_hidden(evidence.seen.skeleton, bounds, evidence.seen.leaf_points, params, rng, report)
+    grown = grow_hidden(evidence.seen.skeleton, bounds, params, rng, report)
     appearance = view_appearance(shots, mattes, grown.skeleton, taken.foliage != "bare")
     camera = _front_camera(evidence.crown)
     scale = Scale(float(camera.metres_from_pixels(1.0)), evidence.known, 0.0)

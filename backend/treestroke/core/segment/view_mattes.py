@@ -334,15 +334,7 @@ def _view(shot: Shot, solid: Solid, tree: DrawnTree | None) -> _View:
     factor = min(1.0, WORKING_SIDE / max(height, width))
     size = max(1, round(width * factor)), max(1, round(height * factor))
     picture = np.asarray(cv2.resize(shot.picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-    x, y = shot.camera.principal_px
-    across, down = size[0] / width, size[1] / height
-    camera = replace(
-        shot.camera,
-        width=size[0],
-        height=size[1],
-        focal_px=shot.camera.focal_px * across,
-        principal_px=(x * across, y * down),
-    )
+    camera = shot.camera.resized(*size)
     possible = projected(solid, camera, size[::-1]) > -1
     if tree is None:
         return _View(shot.picture, picture, camera, possible, None)

@@ -53,7 +53,7 @@ class TreeColours:
         colours = table_colours()
         odds = log_density(self.wood, colours) - log_density(self.leaf, colours)
         odds = np.clip(odds, -MOST, MOST) + np.log(WOOD_SHARE / (1 - WOOD_SHARE))
-        return (1 / (1 + np.exp(-odds))).astype(np.float32)[table_index(pixels)]
+        return np.asarray((1 / (1 + np.exp(-odds))).astype(np.float32)[table_index(pixels)])
 
 
 def tree_colours(

@@ -74,7 +74,7 @@ def _best_match(
     grey: Map, other: Map, cameras: tuple[PerspectiveCamera, PerspectiveCamera], box: tuple[slice, slice], reach: float
 ) -> Map:
     """Best correlation (h, w) of a box of one shot with another over all planes beyond the tree and the ground."""
-    patch = np.ascontiguousarray(grey[box])
+    patch: Map = np.ascontiguousarray(grey[box])
     size = patch.shape[1], patch.shape[0]
     mean, spread = _moments(patch)
     best = np.zeros(patch.shape, dtype=np.float32)
@@ -83,7 +83,7 @@ def _best_match(
         warped = cv2.warpPerspective(
             other, homography @ shift, size, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, borderValue=-1.0
         )
-        mean_there, spread_there = _moments(warped)
+        mean_there, spread_there = _moments(np.asarray(warped, np.float32))
         product = cv2.blur(cv2.multiply(patch, warped), (WINDOW, WINDOW))
         match = (product - mean * mean_there) / (spread * spread_there)
         np.maximum(best, match, out=best)
@@ -92,7 +92,7 @@ def _best_match(
 
 def _moments(picture: Map) -> tuple[Map, Map]:
     """Mean and standard deviation of the windows about each pixel, the latter `FLAT` at least."""
-    mean = cv2.blur(picture, (WINDOW, WINDOW))
+    mean = np.asarray(cv2.blur(picture, (WINDOW, WINDOW)), np.float32)
     square = cv2.blur(cv2.multiply(picture, picture), (WINDOW, WINDOW))
     return mean, np.sqrt(np.maximum(square - mean * mean, FLAT**2))
 

@@ -57,7 +57,7 @@ def solid_around(outlines: Sequence[Floats], cameras: Sequence[PerspectiveCamera
     drawn = [_on_plane(outline, camera) for outline, camera in zip(outlines, cameras, strict=True)]
     top = max(float(up.max()) for _, up in drawn)
     side = top * (1 + MARGIN + BELOW) / LAYERS
-    heights = (np.arange(LAYERS) + 0.5) * side - BELOW * top
+    heights: Floats = (np.arange(LAYERS, dtype=np.float64) + 0.5) * side - BELOW * top
     radius = np.max([_half_widths(across, up, heights, MARGIN * top) for across, up in drawn], axis=0)
     reach = int(np.ceil(radius.max() / side))
     steps = np.arange(-reach, reach + 1) * side
