@@ -14,7 +14,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from tests.architecture.documents import PAGES, fences, named, rows, section, text_of
+from tests.architecture.documents import PAGES, cells, fences, named, rows, section, tables, text_of
 from tests.architecture.names import ROOT
 from tests.running import serving
 
@@ -112,7 +112,7 @@ def test_every_page_with_python_is_known() -> None:
 
 
 def test_the_documented_problem_is_what_the_service_answers(address: str) -> None:
-    order, problem = (json.loads(fence.text) for fence in fences("docs/http.md", "json"))
+    order, _, problem = (json.loads(fence.text) for fence in fences("docs/http.md", "json"))
     del order["strokes"]["branches"]
     answer = httpx.post(f"{address}/v1/models", json=order, trust_env=False)
     assert answer.headers["Content-Type"] == "application/problem+json"
@@ -127,7 +127,9 @@ def test_a_report_has_the_keys_that_are_documented(place: Path) -> None:
     def documented(page: str, heading: str) -> set[str]:
         return {key for cell, *_ in rows(section(f"docs/{page}.md", heading)) for key in named(cell)}
 
-    assert {named(cell)[0] for cell, _ in rows(text_of("docs/report.md").split("\n## ")[0])} == set(report)
+    for_all, for_many = tables(text_of("docs/report.md").split("\n## ")[0])
+    assert {named(cells(row)[0])[0] for row in for_all[2:]} == set(report)
+    assert {named(cells(row)[0])[0] for row in for_many[2:]} == {"registered", "cameras", "photos"}
     assert documented("report", "Measures") == set(report["measures"])
     assert documented("report", "Reading") == set(report["reading"])
     of_sketches = documented("sketches", "How well the tree fits")
