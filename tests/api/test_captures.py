@@ -14,7 +14,7 @@ from tests import walked_capture
 from tests.api import drawn
 from tests.api.conftest import PATIENCE_SECONDS, Service
 from tests.api.test_events import events
-from tests.engines.rendered_set import photos_of, ring
+from tests.engines.rendered_set import SIZE, photos_of, ring
 from tests.faults.processes import wait_for
 from tests.structures import small_structure
 from tests.walked_capture import write_structure
@@ -177,7 +177,7 @@ def test_the_cameras_of_a_walk_are_found_and_followed(client: httpx.Client, walk
     assert [camera["photo"] for camera in capture["cameras"]] == [f"{number}.png" for number in range(6)]
     for camera in capture["cameras"]:
         assert np.array(camera["camera_from_world"]).shape == (3, 4)
-        assert camera["size_px"] == [480, 360]
+        assert camera["size_px"] == list(SIZE)
     used = {photo["name"]: (photo["used"], photo["reason"] is None) for photo in capture["photos"]}
     assert used == {**{f"{number}.png": (True, True) for number in range(6)}, "copy.png": (False, False)}
     assert 0 < len(capture["cloud"]["points"]) == len(capture["cloud"]["colours"]) <= 5000
