@@ -550,4 +550,4 @@ def test_strokes_on_a_missing_photo_are_refused_before_cameras_are_sought(
     crown = {"points": [[10, 10], [90, 10], [90, 90]]}
     views.write_text(json.dumps({"views": [{"photo": "gone.jpg", "crown": crown}]}))
     assert main(["views", str(tmp_path), "--strokes", str(views), "--out", str(tmp_path / "x.glb")]) == 2
-    assert "there is no photo gone.jpg; name one that is: 0.jpg" in capsys.readouterr().err
+    assert "there is no photo gone.jpg; the photos are 0.jpg" in capsys.readouterr().err

@@ -1,6 +1,6 @@
 """A tree of two balls of leaves, as four views from all around show it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import pytest
@@ -72,7 +72,7 @@ def tree() -> Skeleton:
 def crown(views: tuple[View, ...], volume: TurnedOutline) -> LeafCrown:
     pictures = np.hstack([view.picture for view in views])
     atlas = leaf_atlas(pictures, np.hstack([view.opacity for view in views]), "leaves", np.random.default_rng(3))
-    held = TwoBalls(**vars(volume))
+    held = TwoBalls(**{part.name: getattr(volume, part.name) for part in fields(volume)})
     return leaf_crown(Appearance(views, True), held, atlas, 3.0, np.random.default_rng(0))
 
 
