@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 SOURCE = Path(__file__).parents[2] / "backend" / "treestroke"
-MAY_READ: dict[str, str] = {
+MAY_READ = {
     "core/geometry/camera.py": "is where it stands",
     "codec/skeleton.py": "writes the photo's frame into files, as extras.photo has it",
     "codec/preview.py": "draws its front view at the photo's framing, in a picture of its own size",
@@ -12,17 +12,10 @@ MAY_READ: dict[str, str] = {
     "core/undistortion.py": "takes the distortion of a camera's lens out of its picture",
     "engines/mapping.py": "tells COLMAP, which has cameras of its own",
     "service/report.py": "reports the scale",
-}
-MAY_READ |= {
     "codec/cameras.py": "writes the cameras of a capture into reports and files",
     "core/geometry/similarity.py": "carries cameras into another frame",
-    "core/carve/plane_sweep.py": "maps planes of space from one picture to another",
-    "core/carve/dense_points.py": "finds the place of a reduced part of a picture",
-    "core/carve/visual_hull.py": "compares a cell's size with a pixel's",
-    "core/pipeline/view_appearance.py": "tells from which side a photo was taken",
-    "core/segment/view_mattes_parallax.py": "maps planes of space from one picture to another",
+    "core/geometry/plane_maps.py": "maps planes of space from one picture to another",
     "core/segment/view_mattes_solid.py": "projects millions of cells in single precision",
-    "engines/solving.py": "brings cameras to the size of the photos",
 }
 SECTIONS = {
     "core/geometry/outline_volume.py": "stores outlines as rows of the picture that they were seen in",

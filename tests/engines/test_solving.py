@@ -1,8 +1,6 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from tests.engines.rendered_set import FOCAL, centre_errors, photos_of, picture, ring
+from tests.engines.rendered_set import centre_errors, photos_of, picture, ring
 
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import CaptureError
@@ -12,14 +10,13 @@ BOUNDS = SolveBounds(seconds=300.0, memory=3 * 2**30)
 CAMERAS = ring(5, 60.0)
 
 
-def test_large_photos_are_solved_in_another_process() -> None:
+def test_photos_of_two_sizes_are_solved_in_another_process() -> None:
     photos = photos_of(CAMERAS)
-    camera = replace(CAMERAS[1], width=1080, height=810, focal_px=3 * FOCAL, principal_px=(540.0, 405.0))
-    large = CapturedPhoto(photos[1].name, picture(camera))
+    larger = CapturedPhoto(photos[1].name, picture(CAMERAS[1].resized(720, 540)))
     fractions: list[float] = []
-    structure = solve_in_process([photos[0], large, *photos[2:]], BOUNDS, lambda _, f: fractions.append(f))
-    assert [photo.camera.width for photo in structure.photos] == [360, 1080, 360, 360, 360]
-    assert structure.photos[1].camera.focal_px == pytest.approx(3 * structure.photos[0].camera.focal_px, rel=0.05)
+    structure = solve_in_process([photos[0], larger, *photos[2:]], BOUNDS, lambda _, f: fractions.append(f))
+    assert [photo.camera.width for photo in structure.photos] == [360, 720, 360, 360, 360]
+    assert structure.photos[1].camera.focal_px == pytest.approx(2 * structure.photos[0].camera.focal_px, rel=0.05)
     assert np.median(centre_errors(structure, {f"{n:02d}.jpg": one for n, one in enumerate(CAMERAS)})) < 0.01
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0

@@ -115,3 +115,10 @@ def test_what_the_report_raises_ends_the_work() -> None:
 
     with pytest.raises(Stopped):
         solve(walk(), report)
+
+
+def test_more_photos_than_are_read_are_refused_at_once() -> None:
+    (photo, *_) = walk()
+    with pytest.raises(CaptureError, match="there are 61 photos, at most 60 are read") as refusal:
+        solve([replace(photo, name=f"{number}.jpg") for number in range(61)])
+    assert refusal.value.code == "too_many_photos"

@@ -1,4 +1,6 @@
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -145,3 +147,10 @@ def test_strokes_without_a_trunk_are_refused(maple_photo: Path, maple_strokes: P
     points = [[0, 0], [crown.photo.shape[1], 0], [300, 400]]
     with pytest.raises(treestroke.StrokesError, match="branches"):
         treestroke.model(maple_photo, {"crown": {"points": points}})
+
+
+def test_a_tree_of_one_photo_needs_no_library_of_many() -> None:
+    heavy = ["scipy", "pycolmap", "sklearn", "pydantic"]
+    code = f"import sys, treestroke.service.model; print([name for name in {heavy} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -10,8 +10,8 @@ from treestroke.core.errors import CaptureError
 from treestroke.core.types import Floats, Indices
 from treestroke.engines.features import Features
 from treestroke.engines.mapping import Pair
+from treestroke.limits import MAX_PHOTOS, MIN_PHOTOS
 
-LEAST_PHOTOS = 5
 _BLURRED = 0.5
 """Share of the median sharpness of a set below which a photo of it is blurred.
 
@@ -82,20 +82,23 @@ def without_camera(name: str, group: Sequence[str]) -> UnusedPhoto:
 
 
 def check_count(photos: Sequence[str], unused: Sequence[UnusedPhoto]) -> None:
-    """Refuse fewer than 5 photos, those left out not counted.
+    """Refuse too many photos, and fewer than 5, those left out not counted.
 
     Raises
     ------
     CaptureError
-        There are fewer.
+        There are more or fewer.
     """
+    if len(photos) > MAX_PHOTOS:
+        fault = f"there are {len(photos)} photos, at most {MAX_PHOTOS} are read; leave some out"
+        raise CaptureError(fault, code="too_many_photos")
     left_out = {one.name for one in unused}
     used = [name for name in photos if name not in left_out]
-    if len(used) >= LEAST_PHOTOS:
+    if len(used) >= MIN_PHOTOS:
         return
     why = "".join(f"; {one.detail}" for one in unused[:3])
     have = f"only {listed(used)}" if used else "none"
-    need = f"at least {LEAST_PHOTOS} photos from different places around the tree are needed"
+    need = f"at least {MIN_PHOTOS} photos from different places around the tree are needed"
     raise CaptureError(
         f"{need}, usable: {have}{why}; take more",
         code="too_few_photos",

@@ -18,7 +18,7 @@ _WIDEST_RAD = np.radians(45.0)
 """Greatest parallax at which SIFT still matches well (Lowe 2004, section 6: up to 50 degrees)."""
 _PARALLAX_MARGIN = 1.5
 _ERROR_PX = 2.0
-"""Greatest error of a point in a photo, working pixels."""
+"""Greatest error of a point in a photo, px."""
 
 
 def densify(model: pycolmap.Reconstruction, photos: Matched, advanced: Callable[[float], None]) -> None:

@@ -13,7 +13,7 @@ from treestroke.core.types import Floats, Indices
 from treestroke.engines.matching import clear
 
 _TOLERANCE_PX = 1.5
-"""Greatest distance of a match from its epipolar line, working pixels."""
+"""Greatest distance of a match from its epipolar line, px."""
 _RATIO = 0.85
 """As the ratio of `match_descriptors`, but among the features on the line."""
 _LEAST_PARALLAX_RAD = np.radians(1.5)

@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 
 from treestroke.core.types import Floats, Picture
 
-WORKING_SIDE = 1280
-"""Longest side, px, at which photos are searched: where their features are as many as the solve has time for."""
 LENGTH = 512.0
 """Length of every descriptor; its components are whole numbers, so that sums of products of them are exact."""
 _MOST = 8000
@@ -50,23 +48,15 @@ class Features:
 
 def find_features(picture: Picture) -> Features:
     """Find the features of an upright photo (h, w, 3) sRGB, at most 8000."""
-    height, width = picture.shape[:2]
-    reduction = max(width, height) / WORKING_SIDE
     grey = cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY)
-    if reduction > 1:
-        size = max(round(width / reduction), 1), max(round(height / reduction), 1)
-        grey = cv2.resize(grey, size, interpolation=cv2.INTER_AREA)
     sift = cv2.SIFT.create(_MOST, 3, _CONTRAST, _EDGE, 1.6, enable_precise_upscale=True)
     found, raw = sift.detectAndCompute(grey, None)
-    scale = np.array([width / grey.shape[1], height / grey.shape[0]])
     points = np.array([one.pt for one in found]).reshape(-1, 2) + 0.5
     sizes = np.array([one.size for one in found])
     response = np.array([one.response for one in found])
     order = np.argsort(-response, kind="stable")
     descriptors = np.zeros((0, 128), np.float32) if raw is None else _hellinger(np.asarray(raw, np.float64))
-    return Features(
-        points[order] * scale, (sizes * scale[0])[order], descriptors[order], _sharpness(np.asarray(grey, np.uint8))
-    )
+    return Features(points[order], sizes[order], descriptors[order], _sharpness(np.asarray(grey, np.uint8)))
 
 
 def _hellinger(raw: Floats) -> NDArray[np.float32]:

@@ -2,8 +2,7 @@
 
 COLMAP: Schoenberger and Frahm 2016, "Structure-from-Motion Revisited".
 
-Pixels here are working pixels: each photo made smaller until its longest side has `WORKING_SIDE`, and a portrait turned
-to landscape, so that photos of one camera share one model of it, however it was held.
+Portraits are turned to landscape here, so that photos of one camera share one model of it, however it was held.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -15,7 +14,7 @@ import pycolmap
 
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.types import Floats, Indices
-from treestroke.engines.features import WORKING_SIDE, Features
+from treestroke.engines.features import Features
 
 Pair = tuple[int, int]
 """Indices of two photos, ascending."""
@@ -47,13 +46,11 @@ class View:
     name
         Its file name.
     size
-        (width, height) in working pixels, landscape.
+        (width, height), px, landscape.
     focal_px
-        Focal length in working pixels; None if unknown.
+        Focal length, px; None if unknown.
     points_px
-        (n, 2) its features in working pixels.
-    reduction
-        How many pixels of the photo a working pixel has.
+        (n, 2) its features, px.
     turn
         (3, 3) rotation to the camera of this view from the camera of the upright photo.
     """
@@ -62,7 +59,6 @@ class View:
     size: tuple[float, float]
     focal_px: float | None
     points_px: Floats
-    reduction: float
     turn: Floats
 
 
@@ -84,14 +80,10 @@ class Matched(NamedTuple):
 def view_of(photo: CapturedPhoto, features: Features) -> View:
     """Return a photo as COLMAP sees it."""
     height, width = photo.picture.shape[:2]
-    reduction = max(width, height) / min(max(width, height), WORKING_SIDE)
-    points = features.points_px / reduction
-    size = width / reduction, height / reduction
-    focal = None if photo.focal_px is None else photo.focal_px / reduction
     if width >= height:
-        return View(photo.name, size, focal, points, reduction, _UNTURNED)
-    turned = np.column_stack([points[:, 1], size[0] - points[:, 0]])
-    return View(photo.name, size[::-1], focal, turned, reduction, _TURNED)
+        return View(photo.name, (width, height), photo.focal_px, features.points_px, _UNTURNED)
+    turned = np.column_stack([features.points_px[:, 1], width - features.points_px[:, 0]])
+    return View(photo.name, (height, width), photo.focal_px, turned, _TURNED)
 
 
 def cameras_of(views: Sequence[View]) -> list[pycolmap.Camera]:

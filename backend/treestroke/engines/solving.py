@@ -11,17 +11,14 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import Any, Literal, NamedTuple
 
 import cv2
-import numpy as np
 
-from treestroke.core.capture import CapturedPhoto, SolvedPhoto, Structure
+from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.progress import Report, silent
-from treestroke.engines.features import WORKING_SIDE
 
 
 class SolveBounds(NamedTuple):
@@ -68,13 +65,12 @@ def solve_in_process(photos: Sequence[CapturedPhoto], bounds: SolveBounds, repor
         with theirs:  # closed in this process, so that the other's end is noticed
             process = _start(theirs.fileno(), bounds.memory)
         try:
-            structure = _result(ours, [_reduced(photo) for photo in photos], bounds.seconds, report)
+            return _result(ours, photos, bounds.seconds, report)
         except (EOFError, ConnectionError) as lost:
             raise SolveEnded("crash") from lost
         finally:
             process.kill()
             process.wait()
-    return _enlarged(structure, photos)
 
 
 def _start(pipe: int, memory: int) -> "subprocess.Popen[bytes]":
@@ -126,29 +122,3 @@ def work(pipe: int, memory: int) -> None:
             short = isinstance(error, cv2.error) and error.code == cv2.Error.StsNoMem
             outcome = MemoryError() if short else error
         connection.send(outcome)
-
-
-def _reduced(photo: CapturedPhoto) -> CapturedPhoto:
-    """Return a photo no larger than it is searched: fewer bytes to hand over."""
-    height, width = photo.picture.shape[:2]
-    scale = WORKING_SIDE / max(width, height)
-    if scale >= 1:
-        return photo
-    size = max(round(width * scale), 1), max(round(height * scale), 1)
-    small = cv2.resize(photo.picture, size, interpolation=cv2.INTER_AREA)
-    focal = None if photo.focal_px is None else photo.focal_px * scale
-    return CapturedPhoto(photo.name, np.asarray(small, np.uint8), focal)
-
-
-def _enlarged(structure: Structure, photos: Sequence[CapturedPhoto]) -> Structure:
-    """Return a structure of reduced photos as that of the photos themselves."""
-    pictures = {photo.name: photo.picture for photo in photos}
-    solved = [_of_size(photo, *pictures[photo.name].shape[1::-1]) for photo in structure.photos]
-    return replace(structure, photos=tuple(solved))
-
-
-def _of_size(photo: SolvedPhoto, width: int, height: int) -> SolvedPhoto:
-    camera = photo.camera
-    focal = camera.focal_px * max(width, height) / max(camera.width, camera.height)
-    principal = width / 2, height / 2
-    return replace(photo, camera=replace(camera, width=width, height=height, focal_px=focal, principal_px=principal))

@@ -12,7 +12,6 @@ from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.progress import Report, silent
 from treestroke.core.types import Floats, Indices
 from treestroke.engines.bad_photos import (
-    LEAST_PHOTOS,
     blurred,
     check_count,
     no_parallax,
@@ -38,6 +37,7 @@ from treestroke.engines.mapping import (
 from treestroke.engines.matching import match_descriptors
 from treestroke.engines.side_by_side import side_by_side
 from treestroke.engines.upright import unit_scale, up_direction, upright_turn
+from treestroke.limits import MIN_PHOTOS
 
 _STRONG = 1000
 """Features by which it is found out which photos are worth matching: the largest, which most others show again."""
@@ -136,8 +136,8 @@ def _largest(
     if _most_photos(models) <= len(matched.photos) / 2 and flat_share <= _FLAT_SHARE:
         models = max(models, reconstruct(cache, registered, few_matches=True), key=_most_photos)
     largest = _most_photos(models)
-    if largest < LEAST_PHOTOS or _spread(models[0]) < _LEAST_SPREAD:
-        if len(flat) >= len(matched.photos) - 1 and (flat_share > _FLAT_SHARE or largest >= LEAST_PHOTOS):
+    if largest < MIN_PHOTOS or _spread(models[0]) < _LEAST_SPREAD:
+        if len(flat) >= len(matched.photos) - 1 and (flat_share > _FLAT_SHARE or largest >= MIN_PHOTOS):
             raise no_parallax(matched.names)
         together = indices_of(models[0]) if models else []
         raise too_little_overlap(matched.names, [matched.names[index] for index in together])
@@ -177,12 +177,12 @@ def _structure(
     middle, scale = unit_scale(centres, points)
     solved = []
     for index, turn, centre in zip(used, turns, centres, strict=True):
-        photo, view = matched.photos[index], matched.views[index]
+        photo = matched.photos[index]
         height, width = photo.picture.shape[:2]
         focal, _, _, radial = model.camera(model.image(index + 1).camera_id).params
         rotation = turn @ upright.T
         pose = np.column_stack([rotation, -rotation @ (upright @ (centre - middle) / scale)])
-        camera = PerspectiveCamera(width, height, pose, float(focal) * view.reduction, (width / 2, height / 2))
+        camera = PerspectiveCamera(width, height, pose, float(focal), (width / 2, height / 2))
         solved.append(SolvedPhoto(photo.name, camera, float(radial)))
     cloud = _cloud(matched, model, used, (points - middle) / scale @ upright.T)
     cloud = cloud.select(confirmed(cloud.points, cloud.seen, np.array([photo.camera.centre for photo in solved])))

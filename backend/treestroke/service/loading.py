@@ -15,7 +15,6 @@ from treestroke.codec.inputs import Inputs, part_of
 from treestroke.codec.project import Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
 from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.codec.structure import decode_structure
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.imaging.opacity import over_white
@@ -202,6 +201,8 @@ def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore
             case "views":
                 return load_views(inputs.parts[name])
             case "structure":
+                from treestroke.codec.structure import decode_structure  # with pydantic, and few trees have one
+
                 return decode_structure(read_part(name, inputs.parts[name])[0])
             case "strokes":
                 return load_strokes(inputs.parts[name])

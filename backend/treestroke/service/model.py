@@ -18,7 +18,6 @@ from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.settings import ModelSettings, check_seed
 from treestroke.core.pipeline.sketching import grow_sketches, read_sketches
-from treestroke.core.pipeline.viewing import grow_views, read_views
 from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
@@ -259,6 +258,8 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
+    from treestroke.core.pipeline.viewing import grow_views, read_views  # with scipy, slow, and of no use for one photo
+
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
     drawn = mend_views(parts["views"], {photo.name: photo.size_px for photo in photos})  # faults are told at once
     structure = parts["structure"] if "structure" in parts else solve_in_process(photos, SOLVE_BOUNDS, report)

@@ -127,6 +127,7 @@ export class Opener {
     return this.#opening(async () => {
       const model = await this.#find(id)
       if (!model) throw new PageFault(text.faults.modelGone)
+      if (model.capture) throw new PageFault(text.faults.modelOfPhotos(model.files['tree.glb']!))
       const project = await this.#readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
       const { leaf, fruit = null } = project

@@ -95,6 +95,7 @@ async function drawingOf(
 ): Promise<Drawn> {
   const json = members['strokes.json']
   const [front, side] = await Promise.all(SHEETS.map(sheet => sketchOf(members, sheet, readPicture)))
+  if (members['views.json']) throw new PageFault(text.faults.projectOfPhotos)
   if (!front && !(json && hasPhoto)) throw new PageFault(text.faults.projectIncomplete)
   return pairSketches(front ?? { strokes: strokesOf(json!) }, side ?? null)
 }

@@ -92,6 +92,10 @@ export const welcomeText = {
     modelGone: 'This tree is no longer there: it was deleted. Grow it again from its strokes.',
     draftGone: 'This drawing is no longer saved in this browser.',
     projectIncomplete: 'This project has no photo or no strokes. Save it again where you made it.',
+    projectOfPhotos:
+      'This project has many photos, which this page cannot open yet. Make its tree with the command “treestroke views”.',
+    modelOfPhotos: (glb: string) =>
+      `This tree was made of many photos, which this page cannot show yet. Its file is at ${glb}.`,
     projectUnreadable: 'This project file is damaged. Save it again where you made it.',
     sketchUnreadable:
       'This drawing cannot be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',

@@ -151,6 +151,15 @@ test('a model that is gone is a fault', async () => {
   expect(store.state.faults.photo?.text).toContain('no longer there')
 })
 
+test('a model of many photos is a fault that says where its file is, and no project is fetched', async () => {
+  const calls = service(() => Response.json(model({ capture: 'cap_1', files: { 'tree.glb': '/v1/models/mdl_1/tree.glb' } })))
+  const { store, opener } = new Studio()
+  await opener.openModel('mdl_1')
+  expect(store.state.faults.photo?.text).toContain('many photos')
+  expect(store.state.faults.photo?.text).toContain('/v1/models/mdl_1/tree.glb')
+  expect(calls.map(({ path }) => path)).toEqual(['/v1/models/mdl_1'])
+})
+
 test('a draft is opened with its history and its model', async () => {
   service(serve)
   const before = new Studio()

@@ -55,6 +55,7 @@ test.each([
   ['no ZIP', new Blob(['hello']), 'damaged'],
   ['no photo', zip({ 'strokes.json': '{}' }), 'no photo'],
   ['strokes of another form', zip({ 'photo.jpg': 'x', 'strokes.json': '{"crown": 7}' }), 'damaged'],
+  ['many photos', zip({ 'photos/0.jpg.png': 'x', 'views.json': '{}' }), 'many photos'],
   ['no JSON', zip({ 'photo.jpg': 'x', 'strokes.json': '{' }), 'damaged'],
 ])('%s is said in a sentence', async (_, file, word) => {
   await expect(opened(file)).rejects.toThrow(word)

@@ -96,9 +96,7 @@ def _found(depth: DepthMap, shot: Shot, matte: TreeMatte) -> _Found:
     row, column = np.nonzero((depth.depth_m > 0) & (depth.score >= LEAST_SCORE))
     places = np.asarray(np.stack([column, row], axis=1) + 0.5, dtype=np.float64)
     points = depth.camera.world_from_pixels(places, depth.depth_m[row, column].astype(np.float64))
-    # Where the reduced part lies in the shot's own picture.
-    corner = np.round(np.array(shot.camera.principal_px) - REDUCTION * np.array(depth.camera.principal_px))
-    left, top = corner.astype(np.int64).tolist()
+    left, top = depth.corner_px
     part = np.s_[top : top + REDUCTION * depth.camera.height, left : left + REDUCTION * depth.camera.width]
     whole = cv2.erode(matte.opacity, np.ones((3, 3), np.uint8))
     weight = (matte.opacity * (EDGE + whole))[part]

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from treestroke.core.capture import Shot, TreeMatte
 from treestroke.core.carve.tomography import DensityField
 from treestroke.core.geometry.camera import PerspectiveCamera
+from treestroke.core.geometry.plane_maps import parallax_px, plane_map
+from treestroke.core.imaging.correlation import Windows, correlation, windows_of
 from treestroke.core.types import Floats, Indices, Mask
 
 Singles = NDArray[np.float32]
@@ -38,6 +40,8 @@ class SweptShot:
     ----------
     camera
         Camera of that part at the reduced size.
+    corner_px
+        (left, top) of that part in the shot.
     brightness
         (h, w) grey of the tree, 0 to 255, over even ground.
     tree
@@ -45,6 +49,7 @@ class SweptShot:
     """
 
     camera: PerspectiveCamera
+    corner_px: tuple[int, int]
     brightness: Singles
     tree: Mask
 
@@ -55,8 +60,8 @@ class DepthMap:
 
     Attributes
     ----------
-    camera
-        The reduced shot's camera.
+    camera, corner_px
+        The reduced shot's camera, and (left, top) of its part in the shot.
     depth_m
         (h, w) depth, metres; 0 where none was found.
     score
@@ -64,6 +69,7 @@ class DepthMap:
     """
 
     camera: PerspectiveCamera
+    corner_px: tuple[int, int]
     depth_m: Singles
     score: Singles
 
@@ -89,12 +95,8 @@ def swept_shot(shot: Shot, matte: TreeMatte) -> SweptShot | None:
     )
     tree = opacity >= 0.5
     ground = min(float(grey[tree].mean() + BEHIND * grey[tree].std()), 255.0) if tree.any() else 0.0
-    cropped = shot.camera.cropped((left, top), (wide * REDUCTION, high * REDUCTION))
-    x, y = cropped.principal_px
-    camera = PerspectiveCamera(
-        wide, high, cropped.camera_from_world, cropped.focal_px / REDUCTION, (x / REDUCTION, y / REDUCTION)
-    )
-    return SweptShot(camera, np.asarray(opacity * grey + (1 - opacity) * ground, dtype=np.float32), tree)
+    camera = shot.camera.cropped((left, top), (wide * REDUCTION, high * REDUCTION)).resized(wide, high)
+    return SweptShot(camera, (left, top), np.asarray(opacity * grey + (1 - opacity) * ground, dtype=np.float32), tree)
 
 
 def depth_map(shot: SweptShot, neighbours: Sequence[SweptShot], field: DensityField) -> DepthMap:
@@ -136,8 +138,8 @@ def _scores(shot: SweptShot, neighbours: Sequence[SweptShot], depth: float, pixe
     top, left = max(int(row.min()) - half, 0), max(int(column.min()) - half, 0)
     part = shot.brightness[top : int(row.max()) + half + 1, left : int(column.max()) + half + 1]
     camera = shot.camera.cropped((left, top), (part.shape[1], part.shape[0]))
-    mine = _moments(part)
-    alike = [_alike(part, mine, other.brightness, _plane_turn(camera, other.camera, depth)) for other in neighbours]
+    mine = windows_of(part, WINDOW, FLAT)
+    alike = [_alike(mine, camera, other, depth) for other in neighbours]
     return np.asarray(_best_two(alike)[row - top, column - left])
 
 
@@ -157,40 +159,17 @@ def _planes(shot: SweptShot, neighbours: Sequence[SweptShot], field: DensityFiel
     """Depths (planes,), metres, from the hull's front to its back, evenly by the shift that they make."""
     depth = shot.camera.depth(field.corners)
     near, far = max(float(depth.min()), 0.1 * float(depth.max())), float(depth.max())
-    apart = np.median([np.linalg.norm(other.camera.centre - shot.camera.centre) for other in neighbours])
-    count = int(np.ceil(shot.camera.focal_px * apart * (1 / near - 1 / far) / STEP_PX)) + 2
+    shift = np.median([parallax_px(shot.camera, other.camera, near) for other in neighbours])
+    count = int(np.ceil(shift * (1 - near / far) / STEP_PX)) + 2
     return np.asarray(1 / np.linspace(1 / near, 1 / far, count))
 
 
-def _moments(brightness: Singles) -> tuple[Singles, Singles]:
-    """Means and standard deviations (h, w) over windows."""
-    mean = cv2.blur(brightness, (WINDOW, WINDOW))
-    spread = cv2.sqrBoxFilter(brightness, -1, (WINDOW, WINDOW)) - mean**2
-    return np.asarray(mean), np.sqrt(np.maximum(spread, FLAT**2))
-
-
-def _alike(part: Singles, mine: tuple[Singles, Singles], other: Singles, turn: Floats) -> Singles:
-    """Correlate windows (h, w) of a part of a shot, of means and spreads ``mine``, with those that a plane shows."""
-    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    size = part.shape[1], part.shape[0]
-    seen: Singles = cv2.warpPerspective(other, turn, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)  # type: ignore[assignment]
-    mean, spread = _moments(seen)
-    product = cv2.blur(part * seen, (WINDOW, WINDOW)) - mine[0] * mean
-    return np.asarray(product / (mine[1] * spread))
-
-
-def _plane_turn(camera: PerspectiveCamera, other: PerspectiveCamera, depth: float) -> Floats:
-    """Matrix (3, 3) that carries a picture's array columns and rows to another's, for a plane at a depth, metres."""
-    turn = other.camera_from_world[:, :3] @ camera.camera_from_world[:, :3].T
-    shift = other.camera_from_world[:, 3] - turn @ camera.camera_from_world[:, 3]
-    turn = turn + np.outer(shift, [0.0, 0.0, 1.0 / depth])
-    return np.asarray(_from_rays(other) @ turn @ np.linalg.inv(_from_rays(camera)))
-
-
-def _from_rays(camera: PerspectiveCamera) -> Floats:
-    """Matrix (3, 3) from rays in the camera's frame to array columns and rows, whole in pixels' middles."""
-    x, y = camera.principal_px
-    return np.array([[camera.focal_px, 0.0, x - 0.5], [0.0, camera.focal_px, y - 0.5], [0.0, 0.0, 1.0]])
+def _alike(mine: Windows, camera: PerspectiveCamera, other: SweptShot, depth: float) -> Singles:
+    """Correlate windows (h, w) of a part of a shot with those that a plane at a depth, metres, shows of another."""
+    flags, size = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, mine.picture.shape[::-1]
+    turn = plane_map(camera, other.camera, camera.ahead, depth)
+    seen = cv2.warpPerspective(other.brightness, turn, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
+    return correlation(mine, windows_of(np.asarray(seen, np.float32), WINDOW, FLAT))
 
 
 def _best(shot: SweptShot, planes: Floats, scores: Singles, total: Singles) -> DepthMap:
@@ -208,4 +187,4 @@ def _best(shot: SweptShot, planes: Floats, scores: Singles, total: Singles) -> D
     depth, score = np.zeros((2, *shot.tree.shape), dtype=np.float32)
     depth[shot.tree] = np.where(found, 1 / inverse, 0.0)
     score[shot.tree] = np.where(found, scores[best, pixels], -1.0)
-    return DepthMap(shot.camera, depth, score)
+    return DepthMap(shot.camera, shot.corner_px, depth, score)

@@ -133,7 +133,7 @@ def visual_hull(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> VisualHul
     distances = [distance for distance, trusted in zip(distances, good, strict=True) if trusted]
     place = _one_piece(_left(place, side, distances), ring / side)
     low, high = side * place.min(axis=0), side * (place.max(axis=0) + 1)
-    pixel = ring / float(np.median([shot.camera.focal_px for shot in shots]))
+    pixel = float(np.median([shot.camera.pixel_size(np.zeros((1, 3))) for shot in shots]))
     side = max(high[1] / CELLS_HIGH, FINEST_PX * pixel) * 2**SPLITS
     first = np.floor(low / side).astype(np.int64)
     place = np.indices(np.ceil(high / side).astype(np.int64) - first).reshape(3, -1).T + first

@@ -197,6 +197,11 @@ class PerspectiveCamera:
         """Where the camera stands: world point (3,), metres."""
         return np.asarray(-self.camera_from_world[:, :3].T @ self.camera_from_world[:, 3])
 
+    @property
+    def ahead(self) -> Floats:
+        """Unit world direction (3,) in which it looks."""
+        return np.asarray(self.camera_from_world[2, :3])
+
     def pixels_from_world(self, points_world: Floats) -> Floats:
         """Project world points (n, 3), metres, to picture points (n, 2), px; (-1, -1) for points behind the camera."""
         points = self._in_camera(points_world)

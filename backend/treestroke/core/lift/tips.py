@@ -61,9 +61,7 @@ def lengthened(
         at[going], last[going] = places, np.arange(count, count + len(going))
         count += len(going)
     none = np.zeros(0, dtype=np.int64)
-    return tuple(  # type: ignore[return-value]
-        np.concatenate([empty, *parts]) for empty, parts in ((np.zeros((0, 3)), added), (none, joined), (none, whose))
-    )
+    return np.concatenate([np.zeros((0, 3)), *added]), np.concatenate([none, *joined]), np.concatenate([none, *whose])
 
 
 def _directions(points: Floats, parents: Indices, ends: Indices) -> Floats:

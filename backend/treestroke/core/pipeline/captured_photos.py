@@ -6,8 +6,8 @@ import numpy as np
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.types import Picture
 
-CAPTURED_SIDE = 1600
-"""Longest side, px, at which a capture's photos are kept: features of larger ones find no better cameras."""
+CAPTURED_SIDE = 1280
+"""Longest side, px, at which a capture's photos are solved and modelled."""
 
 
 def captured_photo(name: str, photo: Picture, focal_px: float | None) -> CapturedPhoto:

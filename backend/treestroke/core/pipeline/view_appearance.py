@@ -54,7 +54,7 @@ def view_appearance(
         raise ValueError("no shot shows the tree")
     stem = _stem(skeleton)
     pairs = [_cropped(*pair) for pair in zip(shots, mattes, strict=True) if pair[1].tree.any()]
-    toward = np.stack([-shot.camera.camera_from_world[2, :3] for shot, _ in pairs])
+    toward = np.stack([-shot.camera.ahead for shot, _ in pairs])
     trees = [matte.tree & ~matte.hidden for _, matte in pairs]
     pictures = levelled([shot.picture for shot, _ in pairs], trees, np.arctan2(toward[:, 0], toward[:, 2]))
     lit = [

@@ -33,8 +33,6 @@ from treestroke.core.survey.measures import Scale, Stature
 from treestroke.core.types import Floats
 from treestroke.core.undistortion import undistorted, undistorted_points
 
-SHOT_SIDE = 1280
-"""Longest side, px, of the pictures that a tree is measured in."""
 FRAME_SIDE = 1200
 """Side, px, of the picture in which the front is drawn."""
 FRAME_FILLED = 0.85
@@ -104,8 +102,8 @@ def read_views(
     drawn = mend_views(drawn, {photo.name: photo.size_px for photo in photos})
     used = tuple(by_name[solved.name] for solved in structure.photos)
     pairs = zip(used, structure.photos, strict=True)
-    shots = tuple(undistorted(photo.picture, solved, SHOT_SIDE) for photo, solved in pairs)
-    drawn = _on_shots(drawn, used, structure, shots)
+    shots = tuple(undistorted(photo.picture, solved) for photo, solved in pairs)
+    drawn = _on_shots(drawn, used, structure)
     frame = tree_frame({shot.name: shot.camera for shot in shots}, structure.cloud, drawn, height_m)
     shots, cloud = tuple(in_frame(shot, frame) for shot in shots), cloud_in_frame(structure.cloud, frame)
     structure, shots, cloud = _of_tree(photos, structure, shots, cloud, _drawn_height(shots, drawn))
@@ -134,9 +132,7 @@ def read_views(
     )
 
 
-def _on_shots(
-    drawn: CaptureStrokes, photos: Sequence[CapturedPhoto], structure: Structure, shots: Sequence[Shot]
-) -> CaptureStrokes:
+def _on_shots(drawn: CaptureStrokes, photos: Sequence[CapturedPhoto], structure: Structure) -> CaptureStrokes:
     """Return the strokes over photos that are used, in px of their shots.
 
     Raises
@@ -145,8 +141,8 @@ def _on_shots(
         The photo with the trunk stroke, or one that the scale names, is not used.
     """
     carriers = {
-        photo.name: partial(_carried, reduction=photo.reduction, solved=solved, shot=shot)
-        for photo, solved, shot in zip(photos, structure.photos, shots, strict=True)
+        photo.name: partial(_carried, reduction=photo.reduction, solved=solved)
+        for photo, solved in zip(photos, structure.photos, strict=True)
     }
     check_used(drawn, carriers)
     by_photo = {name: _moved(strokes, carriers[name]) for name, strokes in drawn.by_photo.items() if name in carriers}
@@ -157,9 +153,9 @@ def _on_shots(
     return CaptureStrokes(by_photo, scale)
 
 
-def _carried(points_px: Floats, *, reduction: float, solved: SolvedPhoto, shot: Shot) -> Floats:
+def _carried(points_px: Floats, *, reduction: float, solved: SolvedPhoto) -> Floats:
     """Carry points (n, 2), px of the upright photo, to px of its shot."""
-    return undistorted_points(points_px * reduction, solved, shot)
+    return undistorted_points(points_px * reduction, solved)
 
 
 def _moved(strokes: Strokes, carry: Callable[[Floats], Floats]) -> Strokes:

@@ -7,6 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import PerspectiveCamera
+from treestroke.core.geometry.plane_maps import parallax_px, plane_map
+from treestroke.core.geometry.vectors import UP
+from treestroke.core.imaging.correlation import correlation, windows_of
 from treestroke.core.types import Floats, Mask, Picture
 
 Map = NDArray[np.float32]
@@ -44,7 +47,7 @@ def far_odds(
 
 def horizon(camera: PerspectiveCamera) -> float:
     """Return the row, px, of the horizon in the middle of a camera's picture, as if it stood upright."""
-    ahead = camera.camera_from_world[2, :3] * (1, 0, 1)
+    ahead = camera.ahead * (1, 0, 1)
     return float(camera.pixels_from_world((camera.centre + 1e6 * ahead)[None])[0, 1])
 
 
@@ -74,49 +77,23 @@ def _best_match(
     grey: Map, other: Map, cameras: tuple[PerspectiveCamera, PerspectiveCamera], box: tuple[slice, slice], reach: float
 ) -> Map:
     """Best correlation (h, w) of a box of one shot with another over all planes beyond the tree and the ground."""
-    patch: Map = np.ascontiguousarray(grey[box])
-    size = patch.shape[1], patch.shape[0]
-    mean, spread = _moments(patch)
-    best = np.zeros(patch.shape, dtype=np.float32)
-    shift = np.array([[1.0, 0, box[1].start], [0, 1, box[0].start], [0, 0, 1]])
-    for homography in _homographies(*cameras, reach):
-        warped = cv2.warpPerspective(
-            other, homography @ shift, size, flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, borderValue=-1.0
-        )
-        mean_there, spread_there = _moments(np.asarray(warped, np.float32))
-        product = cv2.blur(cv2.multiply(patch, warped), (WINDOW, WINDOW))
-        match = (product - mean * mean_there) / (spread * spread_there)
-        np.maximum(best, match, out=best)
+    part = cameras[0].cropped((box[1].start, box[0].start), (box[1].stop - box[1].start, box[0].stop - box[0].start))
+    mine, flags = windows_of(np.ascontiguousarray(grey[box]), WINDOW, FLAT), cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    best = np.zeros(mine.picture.shape, dtype=np.float32)
+    for plane in _planes(part, cameras[1], reach):
+        there = cv2.warpPerspective(other, plane, best.shape[::-1], flags=flags, borderValue=-1.0)
+        np.maximum(best, correlation(mine, windows_of(np.asarray(there, np.float32), WINDOW, FLAT)), out=best)
     return best
 
 
-def _moments(picture: Map) -> tuple[Map, Map]:
-    """Mean and standard deviation of the windows about each pixel, the latter `FLAT` at least."""
-    mean = np.asarray(cv2.blur(picture, (WINDOW, WINDOW)), np.float32)
-    square = cv2.blur(cv2.multiply(picture, picture), (WINDOW, WINDOW))
-    return mean, np.sqrt(np.maximum(square - mean * mean, FLAT**2))
-
-
-def _homographies(one: PerspectiveCamera, other: PerspectiveCamera, reach: float) -> Iterator[Floats]:
+def _planes(one: PerspectiveCamera, other: PerspectiveCamera, reach: float) -> Iterator[Floats]:
     """Yield the maps (3, 3) from pixels of one shot to those of another by planes beyond the tree, and the ground."""
-    rotation = other.camera_from_world[:, :3] @ one.camera_from_world[:, :3].T
-    shift = other.camera_from_world[:, 3] - rotation @ one.camera_from_world[:, 3]
-    inner, outer = _matrix(one), _matrix(other)
-    nearest = 1 / (float(one.depth(np.zeros((1, 3)))[0]) + reach)
-    steps = int(np.ceil(one.focal_px * np.linalg.norm(shift) * nearest / STEP_PX))
-    back = np.linalg.inv(inner)
-    ahead = np.array([0.0, 0.0, 1.0])
-    for inverse in np.linspace(0.0, nearest, steps + 1):
-        yield outer @ (rotation + np.outer(shift, ahead) * inverse) @ back
-    up = one.camera_from_world[:, :3] @ np.array([0.0, 1.0, 0.0])
+    nearest = float(one.depth(np.zeros((1, 3)))[0]) + reach
+    steps = int(np.ceil(parallax_px(one, other, nearest) / STEP_PX))
+    for share in np.linspace(0.0, 1.0, steps + 1):
+        yield plane_map(one, other, one.ahead, nearest / share if share else np.inf)
     for height in (-0.02, 0.0, 0.02):
-        above = float(one.centre[1]) - height * reach
-        yield outer @ (rotation - np.outer(shift, up) / above) @ back
-
-
-def _matrix(camera: PerspectiveCamera) -> Floats:
-    x, y = camera.principal_px
-    return np.array([[camera.focal_px, 0, x], [0, camera.focal_px, y], [0, 0, 1.0]])
+        yield plane_map(one, other, UP, height * reach - float(one.centre[1]))
 
 
 def _box(region: Mask) -> tuple[slice, slice]:
