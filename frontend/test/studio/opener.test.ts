@@ -152,7 +152,9 @@ test('a model that is gone is a fault', async () => {
 })
 
 test('a model of many photos is a fault that says where its file is, and no project is fetched', async () => {
-  const calls = service(() => Response.json(model({ capture: 'cap_1', files: { 'tree.glb': '/v1/models/mdl_1/tree.glb' } })))
+  const calls = service(() =>
+    Response.json(model({ capture: 'cap_1', files: { 'tree.glb': '/v1/models/mdl_1/tree.glb' } })),
+  )
   const { store, opener } = new Studio()
   await opener.openModel('mdl_1')
   expect(store.state.faults.photo?.text).toContain('many photos')

@@ -204,10 +204,14 @@ class PerspectiveCamera:
 
     def pixels_from_world(self, points_world: Floats) -> Floats:
         """Project world points (n, 3), metres, to picture points (n, 2), px; (-1, -1) for points behind the camera."""
-        points = self._in_camera(points_world)
-        ahead = points[:, 2:] > 0
-        on_plane = points[:, :2] / np.where(ahead, points[:, 2:], 1.0)
-        return np.where(ahead, self.focal_px * on_plane + np.array(self.principal_px), _OUTSIDE_PX)
+        # Row by row of (3, n): numpy is slow along short rows.
+        right, down, depth = self.camera_from_world[:, :3] @ points_world.T + self.camera_from_world[:, 3:]
+        ahead = depth > 0
+        per_metre = self.focal_px / np.where(ahead, depth, 1.0)
+        found = np.empty((len(points_world), 2))
+        for column, offset, middle in ((0, right, self.principal_px[0]), (1, down, self.principal_px[1])):
+            found[:, column] = np.where(ahead, offset * per_metre + middle, _OUTSIDE_PX)
+        return found
 
     def world_from_pixels(self, points_px: Floats, depth_m: Floats | float = 0.0) -> Floats:
         """Place picture points (n, 2), px, in the world (n, 3), metres, at depths (n,) from the camera, metres."""
@@ -218,7 +222,7 @@ class PerspectiveCamera:
 
     def depth(self, points_world: Floats) -> Floats:
         """Measure the depth (n,), metres, of world points (n, 3), metres, along the optical axis; 0 at the camera."""
-        return np.asarray(self._in_camera(points_world)[:, 2])
+        return np.asarray(points_world @ self.camera_from_world[2, :3] + self.camera_from_world[2, 3])
 
     def toward_viewer(self, points_world: Floats) -> Floats:
         """Return unit directions (n, 3) from world points (n, 3), metres, to the camera's centre."""
@@ -242,7 +246,3 @@ class PerspectiveCamera:
         scale = width / self.width
         principal_px = self.principal_px[0] * scale, self.principal_px[1] * height / self.height
         return replace(self, width=width, height=height, focal_px=self.focal_px * scale, principal_px=principal_px)
-
-    def _in_camera(self, points_world: Floats) -> Floats:
-        """Convert to points (n, 3), metres, in the camera's frame, of world points (n, 3), metres."""
-        return np.asarray(points_world @ self.camera_from_world[:, :3].T + self.camera_from_world[:, 3])
