@@ -15,8 +15,9 @@ from treestroke.core.strokes import StrokeWarning
 
 def edited_views(evidence: ViewsEvidence, edits: Sequence[BranchEdit]) -> ViewsEvidence:
     """Apply edits, which are in the structure's frame, to the visible branches; warnings tell which were left out."""
-    found = edited(evidence.seen.skeleton, evidence.seen.seen, edits_in_frame(edits, evidence.frame))
-    seen = replace(evidence.seen, skeleton=found.skeleton, seen=found.seen)
+    seen, top = evidence.seen, float(evidence.crown.bounds[1, 1])
+    found = edited(seen.skeleton, seen.seen, edits_in_frame(edits, evidence.frame), top)
+    seen = replace(seen, skeleton=found.skeleton, seen=found.seen)
     return replace(evidence, seen=seen, edited=tuple(_told(lost) for lost in found.lost))
 
 
