@@ -93,7 +93,7 @@ export function captureAnswer(changes: Partial<CaptureTraceAnswer> = {}): Captur
       [0, -1, 0, 2],
       [0, 0, -1, 0],
     ],
-    taken: null,
+    taken: TAKEN,
     warnings: [],
     ...changes,
   }
