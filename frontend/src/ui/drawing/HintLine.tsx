@@ -52,7 +52,7 @@ function kindOf(pointerType: string): PointerKind {
 }
 
 function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint }) {
-  const { strokes, captures } = useStudio()
+  const { strokes, captures, tracer } = useStudio()
   const drawnOver = useStore(photoDrawnOn)
   const elsewhere = stroke?.photo !== undefined && stroke.photo !== drawnOver ? stroke.photo : null
   const removeStroke = () => {
@@ -63,6 +63,7 @@ function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint 
     <>
       {elsewhere !== null && <Action label={text.capture.hints.show} run={() => captures.choose(elsewhere)} />}
       {stroke && <Action label={text.hints.deleteStroke} run={removeStroke} />}
+      {tone === 'fault' && !stroke && <Action label={text.grow.tryAgain} run={() => tracer.again()} />}
       {tone === 'fault' && <Action label={text.hints.undo} run={() => strokes.undo()} />}
       {deletes && <Action label={text.hints.delete} run={() => strokes.remove()} />}
     </>
