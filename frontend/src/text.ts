@@ -1,3 +1,4 @@
+import { captureText } from './text/capture'
 import { drawingText } from './text/drawing'
 import { filesText } from './text/files'
 import { scoreText } from './text/score'
@@ -12,6 +13,7 @@ export const text = {
   ...welcomeText,
   ...drawingText,
   ...treeText,
+  capture: captureText,
   sheets: sheetsText,
   settings: settingsText,
   taken: takenText,

@@ -13,3 +13,11 @@ export type PhotoFrame = Schemas['PhotoFrame']
 export type Model = Schemas['ModelInfo']
 export type Limits = Schemas['Limits']
 export type Settings = Required<Schemas['ModelSettings']>
+export type WireCaptureStrokes = Schemas['CaptureStrokes']
+export type CaptureInfo = Schemas['CaptureInfo']
+export type CaptureState = Schemas['CaptureState']
+export type CapturePhoto = Schemas['CapturePhotoInfo']
+export type CameraInfo = Schemas['CameraInfo']
+export type Cloud = Schemas['CloudInfo']
+
+export type CaptureTraceAnswer = Schemas['CaptureTraceAnswer']

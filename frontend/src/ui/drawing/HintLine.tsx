@@ -1,4 +1,5 @@
 import { useLayoutEffect, useState } from 'preact/hooks'
+import { captureOf, photoDrawnOn } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
 import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
@@ -13,6 +14,7 @@ export function HintLine() {
     pointer,
   )
   const isTracing = useStore(state => state.tracing)
+  const cameras = useStore(state => captureOf(state)?.cameras.length)
   return (
     <div class={isTracing ? 'hint-row is-tracing' : 'hint-row'}>
       <div class="hint-over">
@@ -25,7 +27,7 @@ export function HintLine() {
           <HintActions hint={hint} />
         </div>
         <p class="hint-tracing" aria-hidden="true">
-          {text.hints.tracing}
+          {cameras === undefined ? text.hints.tracing : text.capture.tracing(cameras)}
         </p>
       </div>
     </div>
@@ -50,14 +52,18 @@ function kindOf(pointerType: string): PointerKind {
 }
 
 function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint }) {
-  const { strokes } = useStudio()
+  const { strokes, captures, tracer } = useStudio()
+  const drawnOver = useStore(photoDrawnOn)
+  const elsewhere = stroke?.photo !== undefined && stroke.photo !== drawnOver ? stroke.photo : null
   const removeStroke = () => {
     strokes.select(stroke!)
     strokes.remove()
   }
   return (
     <>
+      {elsewhere !== null && <Action label={text.capture.hints.show} run={() => captures.choose(elsewhere)} />}
       {stroke && <Action label={text.hints.deleteStroke} run={removeStroke} />}
+      {tone === 'fault' && !stroke && <Action label={text.grow.tryAgain} run={() => tracer.again()} />}
       {tone === 'fault' && <Action label={text.hints.undo} run={() => strokes.undo()} />}
       {deletes && <Action label={text.hints.delete} run={() => strokes.remove()} />}
     </>

@@ -3,6 +3,7 @@ import type { History } from '../../history'
 import type { Selection, Sheet, State, Store } from '../../state'
 import { isEmpty, lineOf, type Point, type Scale, type StrokeRef, type Strokes, strokeRefs } from '../../strokes'
 import { text } from '../../text'
+import { captureProgress } from '../capture/captureStatus'
 import { strokeName } from './strokeTexts'
 
 /** Announce the tool, the sheet and the selection that are chosen, edits, and what was traced; the call ends it. */
@@ -33,6 +34,10 @@ export function announceDrawing(store: Store): () => void {
       traced => traced && text.strokes.branchesFound(tipCount(traced.answer.skeleton)),
     ),
     say(
+      state => state.solve?.status,
+      status => (status === 'solved' ? (captureProgress(store.state)?.words ?? null) : null),
+    ),
+    say(
       state => state.selection,
       (now, before) => (now && !isSame(now, before) ? text.strokes.selected(strokeName(now)) : null),
     ),
@@ -55,6 +60,8 @@ export function editText(before: History<Strokes>, now: History<Strokes>): strin
   if (now.past.at(-1) !== before.present) return null
   if (before.future[0] === now.present) return text.strokes.redone
   if (isEmpty(now.present)) return text.strokes.cleared
+  if (before.present.edits !== now.present.edits) return text.capture.edited
+  if (before.present.distance !== now.present.distance && now.present.distance) return text.capture.scaled
   const scaleText = scaleEditText(before.present.scale, now.present.scale)
   if (scaleText) return scaleText
   const [gone] = missing(before.present, now.present)
@@ -82,7 +89,7 @@ function missing(strokes: Strokes, others: Strokes): StrokeRef[] {
 }
 
 /** Count the tips of what was traced: each ends one branch. */
-function tipCount({ parents }: TracedSkeleton): number {
+function tipCount({ parents }: Pick<TracedSkeleton, 'parents'>): number {
   const bearing = new Set(parents)
   return parents.filter((_, joint) => !bearing.has(joint)).length
 }
