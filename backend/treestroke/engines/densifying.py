@@ -6,11 +6,11 @@ from itertools import combinations
 import numpy as np
 import pycolmap
 
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats
 from treestroke.engines.epipolar_matching import Rays, match_along_lines
 from treestroke.engines.features import Features
 from treestroke.engines.mapping import SEED, Matched, Pair, View, cache_of, indices_of
-from treestroke.engines.side_by_side import side_by_side
 
 _NEIGHBOURS = 4
 """Photos with each of which a photo is matched once more."""

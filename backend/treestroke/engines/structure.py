@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 from treestroke.core.capture import CapturedPhoto, PointCloud, SolvedPhoto, Structure, UnusedPhoto
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.progress import Report, silent
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Indices
 from treestroke.engines.bad_photos import (
     blurred,
@@ -35,7 +36,6 @@ from treestroke.engines.mapping import (
     view_of,
 )
 from treestroke.engines.matching import match_descriptors
-from treestroke.engines.side_by_side import side_by_side
 from treestroke.engines.upright import unit_scale, up_direction, upright_turn
 from treestroke.limits import MIN_PHOTOS
 

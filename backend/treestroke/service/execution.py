@@ -1,4 +1,4 @@
-"""How the pipeline runs: on one thread, with the seconds of each stage measured."""
+"""How the pipeline runs: its libraries on one thread, with the seconds of each stage measured."""
 
 import time
 from collections import defaultdict
@@ -42,7 +42,7 @@ class Stopwatch:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Limit BLAS, OpenMP and OpenCV to one thread: sums keep their order, and a server grows one model on each core."""
+    """Limit BLAS, OpenMP and OpenCV to one thread each: sums keep their order."""
     before = cv2.getNumThreads()
     cv2.setNumThreads(1)
     try:

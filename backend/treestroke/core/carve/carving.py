@@ -20,6 +20,7 @@ from treestroke.core.carve.tomography import (
 )
 from treestroke.core.carve.visual_hull import VisualHull, visual_hull
 from treestroke.core.progress import Report
+from treestroke.core.side_by_side import side_by_side
 
 JOINED = 2
 """Sides of the hull's cells that make one of the cells whose density is measured."""
@@ -75,7 +76,7 @@ def carved(shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report) -
     report("density", 0.0)
     grid = grid_of(hull.cells, JOINED)
     good = np.flatnonzero(hull.good).tolist()
-    lines = together([lines_of(grid, shots[index].camera, mattes[index]) for index in good])
+    lines = together(side_by_side(lambda index: lines_of(grid, shots[index].camera, mattes[index]), good))
     carving = Carving(hull, grid, lines, densities(grid, lines), leafiness(lines))
     report("density", 1.0)
     return carving

@@ -11,6 +11,7 @@ from treestroke.core.capture import PointCloud, Shot, TreeMatte
 from treestroke.core.carve.carving import Carving
 from treestroke.core.carve.plane_sweep import REDUCTION, DepthMap, SweptShot, depth_map, swept_shot
 from treestroke.core.progress import Report
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Indices, Mask
 
 SWEPT = 10
@@ -64,16 +65,17 @@ def dense_cloud(carving: Carving, shots: Sequence[Shot], mattes: Sequence[TreeMa
     """
     if len(shots) != len(mattes):
         raise ValueError(f"dense points need a matte for each shot, got {len(shots)} and {len(mattes)}")
-    swept = {
-        index: ready
-        for index in np.flatnonzero(carving.hull.good).tolist()
-        if (ready := swept_shot(shots[index], mattes[index])) is not None
-    }
+    good = np.flatnonzero(carving.hull.good).tolist()
+    made_ready = side_by_side(lambda index: swept_shot(shots[index], mattes[index]), good)
+    swept = {index: ready for index, ready in zip(good, made_ready, strict=True) if ready is not None}
     chosen = [list(swept)[place] for place in np.unique(np.linspace(0, len(swept) - 1, SWEPT).round().astype(int))]
-    depths = []
-    for done, index in enumerate(chosen):
-        report("points", done / len(chosen))
-        depths.append(depth_map(swept[index], _neighbours(index, swept, carving), carving.field))
+    field = carving.field
+
+    def sweep(index: int) -> DepthMap:
+        return depth_map(swept[index], _neighbours(index, swept, carving), field)
+
+    report("points", 0.0)
+    depths = side_by_side(sweep, chosen, lambda part: report("points", 0.9 * part))
     found = [_found(depth, shots[index], mattes[index]) for depth, index in zip(depths, chosen, strict=True)]
     height = carving.hull.height
     kept = [each.select(_borne_out(each, depths, own, AGREE * height)) for own, each in enumerate(found)]
@@ -151,8 +153,9 @@ def _means(values: Floats, weights: Floats, group: Indices) -> Floats:
 
 def _seen(points: Floats, shots: Sequence[Shot], mattes: Sequence[TreeMatte], tolerance: float) -> Mask:
     """Tell which shots see which points (n, 3), metres: those with no point before them by a tolerance: (n, shots)."""
-    seen = np.zeros((len(points), len(shots)), dtype=np.bool_)
-    for index, (shot, matte) in enumerate(zip(shots, mattes, strict=True)):
+
+    def seen_by(pair: tuple[Shot, TreeMatte]) -> Mask:
+        shot, matte = pair
         camera, (height, width) = shot.camera, matte.opacity.shape
         places, depth = camera.pixels_from_world(points), camera.depth(points)
         row, column, within = _pixels(places, (height, width))
@@ -161,5 +164,6 @@ def _seen(points: Floats, shots: Sequence[Shot], mattes: Sequence[TreeMatte], to
         nearest = np.full((height // VEIL_PX + 1) * (width // VEIL_PX + 1), np.inf)
         np.minimum.at(nearest, block[within], depth[within])
         # A surface that is not square to the line of sight is as deep as a block is wide.
-        seen[:, index] = within & (depth <= nearest[block] + tolerance + VEIL_PX * camera.pixel_size(points))
-    return seen
+        return np.asarray(within & (depth <= nearest[block] + tolerance + VEIL_PX * camera.pixel_size(points)))
+
+    return np.stack(side_by_side(seen_by, list(zip(shots, mattes, strict=True))), axis=1)

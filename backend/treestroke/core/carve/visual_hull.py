@@ -10,6 +10,7 @@ from scipy import ndimage
 from treestroke.core.capture import Shot, TreeMatte
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.clumped_crown import Cells
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Indices, Mask
 
 CELLS_HIGH = 192
@@ -123,7 +124,7 @@ def visual_hull(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> VisualHul
     """
     if len(shots) != len(mattes) or len(shots) < SHOWN_LEAST:
         raise ValueError(f"a hull needs three shots or more and a matte for each, got {len(shots)} and {len(mattes)}")
-    distances = [_distance(shot.camera, matte) for shot, matte in zip(shots, mattes, strict=True)]
+    distances = side_by_side(lambda index: _distance(shots[index].camera, mattes[index]), range(len(shots)))
     centres = np.array([shot.camera.centre for shot in shots])
     ring = float(np.median(np.hypot(centres[:, 0], centres[:, 2])))
     side = ring / COARSEST
@@ -158,8 +159,7 @@ def _distance(camera: PerspectiveCamera, matte: TreeMatte) -> MatteDistance:
 def _votes(mattes: Sequence[MatteDistance], points: Floats, radius_m: float) -> tuple[Floats, Floats]:
     """Count for points (n, 3), metres, the shots that have them in their pictures (n,) and sum their denials (n,)."""
     shown, denied = np.zeros((2, len(points)))
-    for matte in mattes:
-        within, denial = matte.look(points, radius_m)
+    for within, denial in side_by_side(lambda matte: matte.look(points, radius_m), mattes):
         shown += within
         denied += denial
     return shown, denied

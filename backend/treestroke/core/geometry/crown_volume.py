@@ -40,9 +40,11 @@ def shown_by_all(silhouettes: Iterable[Silhouette[Camera]], points_world: Floats
 
     Source: the visual hull (Laurentini 1994).
     """
-    shown = np.ones(len(points_world), dtype=np.bool_)
+    left = np.arange(len(points_world))
     for silhouette in silhouettes:
-        shown &= silhouette.shows(points_world)
+        left = left[silhouette.shows(points_world[left])]
+    shown = np.zeros(len(points_world), dtype=np.bool_)
+    shown[left] = True
     return shown
 
 

@@ -99,7 +99,9 @@ class CrownBounds:
 
     def admits(self, places: Floats) -> Mask:
         """Tell which places (n, 3), metres, new wood may stand at: (n,)."""
-        return np.asarray(self.crown.admits(places) & shown_by_all(self.silhouettes, places))
+        admitted = self.crown.admits(places)
+        admitted[admitted] = shown_by_all(self.silhouettes, places[admitted])
+        return admitted
 
 
 @dataclass(eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 from treestroke.core.lift.centre_lines import CentreLines
 from treestroke.core.lift.point_graph import PointGraph
 from treestroke.core.lift.thin_hull import ShownArea
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Indices, Mask
 
 OWN_SHARE, OWN_BARE = 0.15, 0.2
@@ -58,10 +59,10 @@ def _footprints(lines: CentreLines, graph: PointGraph, areas: Sequence[ShownArea
     """List the pixels of all shots that each path covers, path after path, and where each path begins (k + 1)."""
     places = np.concatenate(lines.paths)
     owner = np.repeat(np.arange(len(lines.paths)), [len(path) for path in lines.paths])
-    found, start = list[tuple[Indices, Indices]](), 0
-    for area in areas:
-        found.append(_footprint(graph.points[places], graph.radii[places], owner, area))
-        found[-1][1][:] += start
+    found = side_by_side(lambda area: _footprint(graph.points[places], graph.radii[places], owner, area), areas)
+    start = 0
+    for area, (_, pixels) in zip(areas, found, strict=True):
+        pixels += start
         start += area.shown.size
     owners, pixels = (np.concatenate(column) for column in zip(*found, strict=True))
     order = np.argsort(owners, kind="stable")

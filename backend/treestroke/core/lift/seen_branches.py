@@ -10,13 +10,17 @@ from treestroke.core.lift.centre_lines import centre_lines
 from treestroke.core.lift.explained import OWN_BARE, OWN_SHARE, explained
 from treestroke.core.lift.path_skeleton import path_skeleton
 from treestroke.core.lift.point_graph import FINE, FINE_BARE, point_graph
-from treestroke.core.lift.thin_hull import shown_area
+from treestroke.core.lift.thin_hull import ShownArea, shown_area
 from treestroke.core.progress import Report, silent
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Mask
 
 BARE = 0.9
 """Share of the tree's pixels that are wood from which it is bare."""
+
+WOODEN = 0.5
+"""How likely what a shot shows must be wood to be taken for it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +62,8 @@ def seen_branches(
     """
     bare = sum(float(matte.wood.sum()) for matte in mattes) > BARE * sum(float(matte.tree.sum()) for matte in mattes)
     pairs = list(zip(shots, mattes, strict=True))
-    tree = [shown_area(shot, matte.tree, matte.tree, matte.hidden) for shot, matte in pairs]
-    wood = [shown_area(shot, matte.tree, matte.tree & (matte.wood >= 0.5), matte.hidden) for shot, matte in pairs]
+    tree = side_by_side(lambda pair: _shown(*pair, 0.0), pairs)
+    wood = side_by_side(lambda pair: _shown(*pair, WOODEN), pairs)
     report("branches", 0.1)
     graph = point_graph(wood, tree, FINE_BARE if bare else FINE)
     report("branches", 0.5)
@@ -71,3 +75,8 @@ def seen_branches(
     skeleton, seen = path_skeleton(graph, lines, kept, wood, bare)
     report("branches", 1.0)
     return SeenBranches(skeleton, seen, cloud.points[~is_branch(cloud, shots, mattes)])
+
+
+def _shown(shot: Shot, matte: TreeMatte, least: float) -> ShownArea:
+    """Prepare what a shot shows of a tree: all of it that is wood so likely."""
+    return shown_area(shot, matte.tree, matte.tree & (matte.wood >= least), matte.hidden)

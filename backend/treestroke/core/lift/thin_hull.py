@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from treestroke.core.capture import Shot
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Indices, Mask, Opacity
 
 START_CELLS = 24
@@ -26,6 +27,8 @@ AROUND = 0.08
 """Side of the square about a point that tells what is by chance, as a share of the height."""
 MOST_CHANCE = 0.6
 """Greatest chance: on a trunk all places near are wood, and yet it is there."""
+AT_ONCE = 20_000
+"""Points that are looked up at once: so many, with what is found of them, fit into a processor's cache."""
 HALF_DIAGONAL = 3**0.5 / 2
 """Radius of the ball around a cube, relative to its side."""
 CHILDREN = np.indices((2, 2, 2)).reshape(3, -1).T
@@ -186,6 +189,12 @@ def thin_hull(areas: Sequence[ShownArea], share: float) -> ThinHull:
 
 def _agreed(areas: Sequence[ShownArea], points: Floats, ball: float) -> Mask:
     """Tell which points (n, 3) enough shots show within a ball, metres, and too few contradict: (n,)."""
+    parts = np.array_split(points, max(len(points) // AT_ONCE, 1))
+    return np.concatenate(side_by_side(lambda part: _agreed_of(areas, part, ball), parts))
+
+
+def _agreed_of(areas: Sequence[ShownArea], points: Floats, ball: float) -> Mask:
+    """Do the same for fewer points (n, 3)."""
     misses, told = np.zeros((2, len(points)), dtype=np.int64)
     left, needed = np.arange(len(points)), fewest(areas)
     for number, area in enumerate(areas, start=1):
@@ -203,8 +212,9 @@ def _radius(areas: Sequence[ShownArea], points: Floats) -> Floats:
     It is the second least of the shots' distances, so that one bad matte does not tell.
     """
     least, second = np.full((2, len(points)), np.inf)
-    for area in areas:
-        within = area.look_up(points)[0] - 0.5 * area.shot.camera.pixel_size(points)
+    looked_up = side_by_side(lambda area: area.look_up(points)[0], areas)
+    for area, within in zip(areas, looked_up, strict=True):
+        within = within - 0.5 * area.shot.camera.pixel_size(points)
         second = np.minimum(second, np.maximum(least, within))
         least = np.minimum(least, within)
     return np.maximum(np.where(np.isinf(second), 0.0, second), 0.0)
@@ -216,12 +226,16 @@ def _evidence(areas: Sequence[ShownArea], points: Floats, ball: float, around: f
     Amid leaves, wood is seen here and there in each shot; a place that is not wood falls onto it as often as a place
     nearby does (``around``, metres).
     """
-    told, expected, variance = np.zeros((3, len(points)))
-    for area in areas:
+
+    def counted(area: ShownArea) -> tuple[Mask, Floats]:
         pixel = area.shot.camera.pixel_size(points)
         reach_px = ball / float(np.median(pixel)) + SLACK_PX
         chance = area.chance(points, reach_px, around / float(np.median(pixel)))
-        told += area.look_up(points)[1] <= reach_px * pixel
+        return np.asarray(area.look_up(points)[1] <= reach_px * pixel), chance
+
+    told, expected, variance = np.zeros((3, len(points)))
+    for shown, chance in side_by_side(counted, areas):
+        told += shown
         expected += chance
         variance += chance * (1 - chance)
     return np.asarray((told - expected) / np.sqrt(variance + 0.5))

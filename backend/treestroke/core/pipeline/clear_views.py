@@ -7,6 +7,7 @@ import numpy as np
 from treestroke.core.appearance import Appearance, View
 from treestroke.core.imaging.light import evened, exposed
 from treestroke.core.imaging.unmix import unmixed
+from treestroke.core.side_by_side import side_by_side
 
 
 def clear_views(appearance: Appearance, light: str) -> Appearance:
@@ -14,7 +15,7 @@ def clear_views(appearance: Appearance, light: str) -> Appearance:
 
     Where the views show no leaves, only wood is read of them.
     """
-    return replace(appearance, views=tuple(_clear(view, light) for view in appearance.views))
+    return replace(appearance, views=tuple(side_by_side(lambda view: _clear(view, light), appearance.views)))
 
 
 def _clear(view: View, light: str) -> View:

@@ -13,6 +13,7 @@ from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.imaging.levelling import levelled
 from treestroke.core.imaging.sampling import sample_nearest
 from treestroke.core.pipeline.crowns import LEAFED_SHARE, closed
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import heaviest_children
 from treestroke.core.types import Floats, Indices, Mask
@@ -60,9 +61,8 @@ def view_appearance(
     lit = [
         (Shot(shot.name, picture, shot.camera), matte) for (shot, matte), picture in zip(pairs, pictures, strict=True)
     ]
-    return Appearance(
-        _bark_in_usual_light(tuple(_view(*pair, skeleton, stem, shows_leaves) for pair in lit)), shows_leaves
-    )
+    views = side_by_side(lambda pair: _view(*pair, skeleton, stem, shows_leaves), lit)
+    return Appearance(_bark_in_usual_light(tuple(views)), shows_leaves)
 
 
 def _bark_in_usual_light(views: tuple[View, ...]) -> tuple[View, ...]:

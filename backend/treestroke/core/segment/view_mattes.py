@@ -25,6 +25,7 @@ from treestroke.core.segment.view_mattes_parallax import far_odds, horizon
 from treestroke.core.segment.view_mattes_solid import Solid, lowest_height, projected, solid_around, weighed
 from treestroke.core.segment.view_mattes_trunk import StandingTrunk, around_trunk, standing_trunk, trunk_seen
 from treestroke.core.segment.view_mattes_twigs import with_twigs
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.strokes import Strokes
 from treestroke.core.types import Floats, Mask, Opacity, Picture
 
@@ -136,14 +137,14 @@ def view_mattes(
     outlines, cameras = [_outline(strokes[index]) for index in trees], [shots[index].camera for index in trees]
     solid = solid_around(outlines, cameras)
     bottom = lowest_height([strokes[index].crown.points for index in trees], cameras) - UNDER * solid.points[-1, 1]
-    views = [_view(shot, solid, trees.get(index)) for index, shot in enumerate(shots)]
+    views = side_by_side(lambda index: _view(shots[index], solid, trees.get(index)), range(len(shots)))
     drawn = _Drawn(trees, tuple(shots[index].picture for index in trees), bottom)
     found, colours, ground = _found(views, solid, drawn, cloud, report)
-    mattes = []
-    for index, (shot, known) in enumerate(zip(shots, found, strict=True)):
-        mattes.append(_tree_matte(shot, known, (colours, ground), trees.get(index)))
-        report("mattes", 0.6 + 0.4 * (index + 1) / len(shots))
-    return tuple(mattes)
+
+    def matte_of(index: int) -> TreeMatte:
+        return _tree_matte(shots[index], found[index], (colours, ground), trees.get(index))
+
+    return tuple(side_by_side(matte_of, range(len(shots)), lambda part: report("mattes", 0.6 + 0.4 * part)))
 
 
 def _found(
@@ -209,18 +210,20 @@ def _odds(views: Sequence[_View], trees: Sequence[Mask], colours: TreeColours, g
 
     Twigs of a bare tree are thinner than a reduced shot's pixels: there the likeliest pixel of the shot counts.
     """
-    tree, maps = colours.tree, []
-    for view, near in zip(views, trees, strict=True):
+    tree = colours.tree
+
+    def odds(seen: tuple[_View, Mask]) -> _Odds:
+        view, near = seen
         if colours.leaf is not None:
-            maps.append(log_odds_by_height(tree, ground, view.picture, near))
-            continue
+            return log_odds_by_height(tree, ground, view.picture, near)
         height, width = view.full.shape[:2]
         there = cv2.resize(near.astype(np.uint8), (width, height), interpolation=cv2.INTER_NEAREST) > 0
         fine = log_odds_by_height(tree, ground, view.full, there)
         side = max(1, round(width / near.shape[1]))
         likeliest = cv2.dilate(fine, np.ones((side, side), np.uint8))
-        maps.append(cv2.resize(likeliest, near.shape[::-1], interpolation=cv2.INTER_NEAREST).astype(np.float32))
-    return maps
+        return cv2.resize(likeliest, near.shape[::-1], interpolation=cv2.INTER_NEAREST).astype(np.float32)
+
+    return side_by_side(odds, list(zip(views, trees, strict=True)))
 
 
 def _judged(
@@ -234,7 +237,7 @@ def _judged(
             whole = np.maximum(view.said, whole) if view.bare else view.said
         evidence.append(np.where(view.possible, whole, NEVER).astype(np.float32))
     solid = weighed(solid, [view.camera for view in views], evidence, drawn)
-    behind = [projected(solid, view.camera, view.possible.shape) for view in views]
+    behind = side_by_side(lambda view: projected(solid, view.camera, view.possible.shape), views)
     level = _level(views, behind)
     places = [_by_place(view, there, level) for view, there in zip(views, behind, strict=True)]
     trees = [

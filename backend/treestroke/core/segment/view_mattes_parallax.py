@@ -10,6 +10,7 @@ from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.plane_maps import parallax_px, plane_map
 from treestroke.core.geometry.vectors import UP
 from treestroke.core.imaging.correlation import correlation, windows_of
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Mask, Picture
 
 Map = NDArray[np.float32]
@@ -62,15 +63,17 @@ def far_matches(
     """
     greys = [cv2.cvtColor(picture, cv2.COLOR_RGB2GRAY).astype(np.float32) for picture in pictures]
     centres = np.array([camera.centre for camera in cameras])
-    result = []
-    for index, (grey, camera, region) in enumerate(zip(greys, cameras, regions, strict=True)):
+
+    def match(index: int) -> Map:
+        grey, box = greys[index], _box(regions[index])
         best = np.zeros(grey.shape, dtype=np.float32)
-        box = _box(region)
         away = np.linalg.norm(centres - centres[index], axis=1)
-        for other in np.argsort(away, kind="stable")[1 : NEIGHBOURS + 1] if region.any() else ():
-            best[box] = np.maximum(best[box], _best_match(grey, greys[other], (camera, cameras[other]), box, reach))
-        result.append(best * region)
-    return result
+        for other in np.argsort(away, kind="stable")[1 : NEIGHBOURS + 1] if regions[index].any() else ():
+            pair = cameras[index], cameras[other]
+            best[box] = np.maximum(best[box], _best_match(grey, greys[other], pair, box, reach))
+        return np.asarray(best * regions[index], dtype=np.float32)
+
+    return side_by_side(match, range(len(pictures)))
 
 
 def _best_match(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.camera import PerspectiveCamera
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Mask
 
 Odds = NDArray[np.float32]
@@ -103,11 +104,16 @@ def weighed(
     A voxel is as likely as the few shots say that speak most against it, and as each of the ``drawn`` ones, by number,
     says, which are sure.
     """
-    seen = np.full((len(cameras), len(solid.points)), MOST, dtype=np.float32)
-    for row, camera, odds in zip(seen, cameras, evidence, strict=True):
+
+    def told(shot: tuple[PerspectiveCamera, Odds]) -> Odds:
+        camera, odds = shot
         highest = cv2.dilate(np.clip(odds, -MOST, MOST), np.ones((3, 3), np.uint8))
         index, inside = _places(solid.points, camera, odds.shape)
+        row = np.full(len(solid.points), MOST, dtype=np.float32)
         row[inside] = highest.ravel()[index]
+        return row
+
+    seen = np.stack(side_by_side(told, list(zip(cameras, evidence, strict=True))))
     veto = seen[list(drawn)].min(axis=0)
     fewest = max(1, round(DISSENT * len(cameras)))
     seen.partition(fewest - 1, axis=0)

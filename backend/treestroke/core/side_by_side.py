@@ -11,10 +11,15 @@ _THREADS = 2
 """Items that are worked on at once; OpenCV, numpy and COLMAP let other threads run meanwhile."""
 
 
-def side_by_side(work: Callable[[A], B], items: Sequence[A], advanced: Callable[[float], None]) -> list[B]:
+def untold(fraction: float) -> None:
+    """Tell nobody how far work is."""
+
+
+def side_by_side(work: Callable[[A], B], items: Sequence[A], advanced: Callable[[float], None] = untold) -> list[B]:
     """Return what ``work`` returns for each item, in their order; ``advanced(fraction)`` is told how far it is.
 
-    An exception of either ends the work.
+    Each item is worked on by one thread, so that results do not depend on how many there are. An exception of either
+    ends the work.
     """
     with ThreadPoolExecutor(_THREADS) as pool:
         futures = [pool.submit(work, item) for item in items]
