@@ -5,7 +5,7 @@ import pytest
 from tests.core.carve.walk import Ball, ball_points, matte, sees, shot, walk
 
 from treestroke.core.capture import TreeMatte
-from treestroke.core.carve.visual_hull import VisualHull, visual_hull
+from treestroke.core.carve.visual_hull import VisualHull, hull_top, visual_hull
 
 CROWN: Ball = ((0.2, 3.0, -0.1), 1.2)
 OTHER: Ball = ((0.2, 3.0, 2.3), 0.5)
@@ -29,6 +29,14 @@ def test_the_hull_holds_what_the_mattes_show_and_little_more(plain: VisualHull) 
     assert plain.inside(ball_points(CROWN, 0.99, np.random.default_rng(0))).all()
     assert 1.0 < cubic_metres / (4 / 3 * np.pi * CROWN[1] ** 3) < 1.25
     assert plain.height == pytest.approx(4.2, abs=0.15)
+
+
+@pytest.mark.parametrize("balls", [[CROWN], [CROWN, OTHER, *LIMB]])
+def test_the_top_is_that_of_the_whole_hull(balls: list[Ball]) -> None:
+    cameras = walk(12, 360)
+    top = hull_top([shot(camera) for camera in cameras], [matte(sees(camera, balls)) for camera in cameras])
+    assert top == pytest.approx(hull_of(balls).height, abs=0.05)
+    assert top == pytest.approx(4.2, abs=0.1)
 
 
 def test_a_thin_limb_stays_and_the_gap_around_it_is_empty() -> None:

@@ -9,7 +9,8 @@ from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.outline_volume import TurnedOutline, turned_outline
 from treestroke.core.pipeline.shown_kinds import odds_by_shots
-from treestroke.core.segment.kind import UNJUDGED
+from treestroke.core.pipeline.taken import ASK_BELOW
+from treestroke.core.segment.kind import UNJUDGED, likeliest
 
 BALL = ((0.0, 2.5, 0.0), 1.2)
 FRONT = {"leaves": 0.2, "needles": 0.7, "scales": 0.05, "palm": 0.03, "bare": 0.02}
@@ -37,3 +38,15 @@ def test_other_shots_are_asked_too_and_the_odds_are_a_probability() -> None:
     assert set(found) == set(UNJUDGED)
     assert sum(found.values()) == pytest.approx(1)
     assert found != pytest.approx(FRONT, abs=0.02)
+
+
+def test_a_tree_of_nothing_but_wood_is_bare_but_not_for_sure() -> None:
+    cameras = walk(6, 360)
+    masks = [sees(camera, [BALL]).astype(np.float32) for camera in cameras]
+    mattes = [TreeMatte(mask, mask, mask < 0) for mask in masks]
+    found = odds_by_shots(FRONT, [shot(camera) for camera in cameras], mattes, crown())
+    assert likeliest(found) == "bare"
+    assert found["bare"] < ASK_BELOW
+    assert sum(found.values()) == pytest.approx(1)
+    sure = {**FRONT, "needles": 0.0, "leaves": 0.0, "bare": 0.92}
+    assert odds_by_shots(sure, [shot(camera) for camera in cameras], mattes, crown()) == sure

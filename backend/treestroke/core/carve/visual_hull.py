@@ -21,6 +21,8 @@ COARSEST = 24
 """Cells of the first box from the root to the cameras."""
 SPLITS = 3
 """How often cells are split in two along each side."""
+TOP_LAYERS, TOP_SPLITS = 8, 4
+"""Layers of cells under the highest ones that are split while the top is looked for, and how often they are."""
 CORNER, FACE = 0.87, 0.5
 """Radius, in sides, of the ball around a cell and in it: coarse cells are asked for as a whole, the finest closely."""
 LEAST_OPACITY = 0.35
@@ -122,17 +124,8 @@ def visual_hull(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> VisualHul
     -----
     Laurentini 1994; Szeliski 1993, "Rapid octree construction from image sequences".
     """
-    if len(shots) != len(mattes) or len(shots) < SHOWN_LEAST:
-        raise ValueError(f"a hull needs three shots or more and a matte for each, got {len(shots)} and {len(mattes)}")
-    distances = side_by_side(lambda index: _distance(shots[index].camera, mattes[index]), range(len(shots)))
-    centres = np.array([shot.camera.centre for shot in shots])
-    ring = float(np.median(np.hypot(centres[:, 0], centres[:, 2])))
-    side = ring / COARSEST
-    box = np.indices((2 * COARSEST,) * 3).reshape(3, -1).T - COARSEST
-    place = _one_piece(_left(box, side, distances), ring / side)
-    good = _trusted(place, side, distances)
-    distances = [distance for distance, trusted in zip(distances, good, strict=True) if trusted]
-    place = _one_piece(_left(place, side, distances), ring / side)
+    place, side, distances, good = _first_cells(shots, mattes)
+    ring = COARSEST * side
     low, high = side * place.min(axis=0), side * (place.max(axis=0) + 1)
     pixel = float(np.median([shot.camera.pixel_size(np.zeros((1, 3))) for shot in shots]))
     side = max(high[1] / CELLS_HIGH, FINEST_PX * pixel) * 2**SPLITS
@@ -141,6 +134,38 @@ def visual_hull(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> VisualHul
     for _ in range(SPLITS):
         place, side = _split(_one_piece(_left(place, side, distances), ring / side)), side / 2
     return VisualHull(_cells(_left(place, side, distances, FACE), side), tuple(distances), good)
+
+
+def hull_top(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> float:
+    """Return how high, in the shots' unit, the `visual_hull` of mattes reaches above the root, without its other cells.
+
+    Raises
+    ------
+    ValueError
+        As `visual_hull` does.
+    """
+    place, side, distances, _ = _first_cells(shots, mattes)
+    for _ in range(TOP_SPLITS):
+        highest = place[place[:, 1] > place[:, 1].max() - TOP_LAYERS]
+        place, side = _left(_split(highest), side / 2, distances), side / 2
+    return side * float(_left(place, side, distances, FACE)[:, 1].max() + 1)
+
+
+def _first_cells(
+    shots: Sequence[Shot], mattes: Sequence[TreeMatte]
+) -> tuple[Indices, float, list[MatteDistance], Mask]:
+    """Return the coarse cells (n, 3) that mattes leave, their side, the good mattes, and which these are (shots,)."""
+    if len(shots) != len(mattes) or len(shots) < SHOWN_LEAST:
+        raise ValueError(f"a hull needs three shots or more and a matte for each, got {len(shots)} and {len(mattes)}")
+    distances = side_by_side(lambda index: _distance(shots[index].camera, mattes[index]), range(len(shots)))
+    centres = np.array([shot.camera.centre for shot in shots])
+    ring = float(np.median(np.hypot(centres[:, 0], centres[:, 2])))
+    side = ring / COARSEST
+    box = np.indices((2 * COARSEST,) * 3).reshape(3, -1).T - COARSEST
+    place = _one_piece(_left(box, side, distances), COARSEST)
+    good = _trusted(place, side, distances)
+    distances = [distance for distance, trusted in zip(distances, good, strict=True) if trusted]
+    return _one_piece(_left(place, side, distances), COARSEST), side, distances, good
 
 
 def _distance(camera: PerspectiveCamera, matte: TreeMatte) -> MatteDistance:

@@ -16,6 +16,9 @@ from treestroke.core.types import FOLIAGE_KINDS, Floats, Mask
 
 ASKED = 2
 """Photos that are asked besides the front, a second or two of processor time each."""
+BARE_BY_MATTES = 0.6
+"""Probability that a tree is bare whose mattes show nothing but wood, where its outline and grain say otherwise: those
+of so thin a plant are of what is seen between its branches."""
 
 
 def odds_by_shots(front: KindOdds, shots: Sequence[Shot], mattes: Sequence[TreeMatte], crown: CrownVolume) -> KindOdds:
@@ -23,6 +26,9 @@ def odds_by_shots(front: KindOdds, shots: Sequence[Shot], mattes: Sequence[TreeM
 
     A photo's cues are one sample each of the same crown, so the mean of their log odds is more often right than one.
     """
+    trees = [matte.wood[matte.tree] for matte in mattes if matte.tree.any()]
+    if trees and all((wood == 1).all() for wood in trees):
+        return _bare(front)
     found = [front]
     for index in np.unique(np.linspace(0, len(shots), ASKED + 2)[1:-1].astype(np.int64)).tolist():
         shown = _odds(shots[index], mattes[index], crown)
@@ -30,6 +36,14 @@ def odds_by_shots(front: KindOdds, shots: Sequence[Shot], mattes: Sequence[TreeM
     logs = [np.log(np.maximum([odds[kind] for kind in FOLIAGE_KINDS], 1e-9)) for odds in found]
     odds = np.exp(np.mean(logs, axis=0))
     return dict(zip(FOLIAGE_KINDS, (odds / odds.sum()).tolist(), strict=True))
+
+
+def _bare(front: KindOdds) -> KindOdds:
+    """Return the front's probabilities with that of a bare tree raised to `BARE_BY_MATTES`."""
+    if front["bare"] >= BARE_BY_MATTES:
+        return front
+    share = (1 - BARE_BY_MATTES) / (1 - front["bare"])
+    return {kind: BARE_BY_MATTES if kind == "bare" else share * value for kind, value in front.items()}
 
 
 def _odds(shot: Shot, matte: TreeMatte, crown: CrownVolume) -> KindOdds | None:

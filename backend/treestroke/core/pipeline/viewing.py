@@ -10,6 +10,7 @@ from treestroke.core.capture import CapturedPhoto, PointCloud, Shot, SolvedPhoto
 from treestroke.core.carve.carving import carved, with_points
 from treestroke.core.carve.dense_points import dense_cloud
 from treestroke.core.carve.measured import measured_crown
+from treestroke.core.carve.visual_hull import hull_top
 from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import Camera, OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
@@ -228,16 +229,13 @@ def _past_tree(name: str) -> UnusedPhoto:
 
 
 def _seen_height(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> float:
-    """Return the height of the tree's top above its root, metres: the median of what the shots show."""
-    heights = []
-    for shot, matte in zip(shots, mattes, strict=True):
-        rows, columns = np.nonzero(matte.tree)
-        if len(rows):
-            top_px = np.array([float(np.median(columns[rows == rows.min()])) + 0.5, float(rows.min())])
-            heights.append(height_above(shot.camera, np.zeros(3), top_px))
-    if not heights:
+    """Return the height of the tree's top above its root, in the shots' unit.
+
+    It is the hull's: in the pictures alone a limb that reaches toward a camera stands higher than the top.
+    """
+    if not any(matte.tree.any() for matte in mattes):
         raise StrokesError.at(("views",), "no tree was found inside the crown; draw it around the tree", "no_tree")
-    return float(np.median(heights))
+    return hull_top(shots, mattes)
 
 
 def grow_views(
