@@ -10,8 +10,6 @@ from tests.core.pipeline.walked_capture import HEIGHT, structure_of
 from tests.core.segment.walked_tree import cover, strokes_on, walk
 
 from treestroke.core.capture import CapturedPhoto
-from treestroke.core.errors import CaptureError
-from treestroke.core.pipeline.captured_photos import captured_photo, fitted
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.skeleton.branch_edits import Add, BranchEdit, Remove
 from treestroke.core.strokes import CaptureStrokes
@@ -110,30 +108,3 @@ def test_edits_change_the_branches_and_those_that_are_lost_are_told() -> None:
         ("edit_lost", "edits/1")
     ]
     assert traced()["photos"] == found["photos"]
-
-
-def photo_of(name: str, width: int, height: int, side: int = 1280) -> CapturedPhoto:
-    return captured_photo(name, np.zeros((height, width, 3), np.uint8), None, side)
-
-
-def test_cameras_are_fitted_to_smaller_photos() -> None:
-    structure = structure_of(SHOTS)
-    smaller = fitted(structure, [photo_of(name, 800, 600, 100) for name in NAMES])
-    before, after = structure.photos[3].camera, smaller.photos[3].camera
-    assert (after.width, after.height) == (100, 75)
-    points = structure.cloud.points[:5]
-    assert np.allclose(after.pixels_from_world(points), before.pixels_from_world(points) / 2)
-    assert fitted(structure, [photo_of(name, 200, 150) for name in NAMES]).photos == structure.photos
-
-
-@pytest.mark.parametrize(
-    ("photos", "fault"),
-    [
-        ([photo_of(name, 200, 150) for name in NAMES[1:]], "it names 0.jpg, which is not among the photos; put back"),
-        ([photo_of(name, 150, 200) for name in NAMES], "its 0.jpg has another shape than the photo"),
-    ],
-)
-def test_cameras_of_other_photos_are_refused(photos: list[CapturedPhoto], fault: str) -> None:
-    with pytest.raises(CaptureError, match=f"^structure: {fault}") as refused:
-        fitted(structure_of(SHOTS), photos)
-    assert refused.value.code == "structure_of_other_photos"

@@ -112,8 +112,7 @@ def read_views(
         The structure is of other photos.
     """
     report("mattes", 0.0)
-    structure = fitted(structure, photos)
-    by_name = {photo.name: photo for photo in photos}
+    structure, by_name = fitted(structure, photos), {photo.name: photo for photo in photos}
     drawn = mend_views(drawn, {photo.name: photo.size_px for photo in photos})
     shots = tuple(undistorted(by_name[solved.name].picture, solved) for solved in structure.photos)
     drawn = _on_shots(drawn, by_name, structure)
