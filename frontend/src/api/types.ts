@@ -13,3 +13,5 @@ export type PhotoFrame = Schemas['PhotoFrame']
 export type Model = Schemas['ModelInfo']
 export type Limits = Schemas['Limits']
 export type Settings = Required<Schemas['ModelSettings']>
+export type CameraInfo = Schemas['CameraInfo']
+export type CloudInfo = Schemas['CloudInfo']

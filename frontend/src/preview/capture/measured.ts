@@ -1,0 +1,40 @@
+import type { CameraInfo, CloudInfo } from '../../api/types'
+import type { Similarity } from './similarity'
+
+type Point = readonly [number, number, number]
+
+/** Visible branches in a capture's frame; `seen` is false where a joint only joins others, or was added by hand. */
+export interface VisibleBranches {
+  readonly points: readonly Point[]
+  readonly radii: readonly number[]
+  /** The joint that each one hangs on, before it in the list; -1 at a root. */
+  readonly parents: readonly number[]
+  readonly seen: readonly boolean[]
+}
+
+/** The surface of a measured crown in a capture's frame; `guessed` tells for each point whether no photo shows it. */
+export interface CrownSurface {
+  readonly points: readonly Point[]
+  readonly triangles: readonly Point[]
+  readonly guessed: readonly boolean[]
+}
+
+/** What many photos say about a tree, in the frame of their capture. */
+export interface Measured {
+  /** The cameras of the photos that are used. */
+  readonly cameras: readonly CameraInfo[]
+  readonly cloud: CloudInfo | null
+  /** The photo that the tree's front is seen in, as far as it is known. */
+  readonly front: string | null
+  /** What was found for the strokes; null before there are any. */
+  readonly tree: {
+    readonly branches: VisibleBranches
+    readonly crown: CrownSurface
+    /** Leads to the frame of trees and GLBs, metres. */
+    readonly treeFromCapture: Similarity
+  } | null
+}
+
+/** The parts of what was measured that are shown or hidden. */
+export const PARTS = ['cameras', 'cloud', 'crown', 'branches'] as const
+export type Part = (typeof PARTS)[number]
