@@ -14,7 +14,10 @@ export interface StrokeRemark {
 /** Return the service's warnings about the present strokes; none while these are not traced. */
 export function remarksOn({ traced, history }: Pick<State, 'traced' | 'history'>): StrokeRemark[] {
   if (traced?.of !== history.present) return []
-  return traced.answer.warnings.map(warning => ({ warning, stroke: strokeAt(`/${warning.stroke}`) }))
+  return traced.answer.warnings.map(warning => ({
+    warning,
+    stroke: strokeAt(`/${warning.stroke}`, history.present.views),
+  }))
 }
 
 /** Return the first doubt about the present strokes; null where there is none. */

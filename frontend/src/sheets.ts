@@ -1,5 +1,18 @@
-import type { PhotoSheet, Sheet, Sheets, State } from './state'
-import { type Line, lineOf, onSheet, type Point, type SheetName, type Side, type Strokes, strokeRefs } from './strokes'
+import type { CapturePhoto } from './api/types'
+import type { Capture, CaptureSheet, PhotoSheet, Sheet, Sheets, State } from './state'
+import {
+  type Line,
+  lineOf,
+  onPhoto,
+  onSheet,
+  type Point,
+  type SheetName,
+  type Side,
+  type Strokes,
+  strokeRefs,
+  withPhoto,
+  withSheet,
+} from './strokes'
 
 type Open = Pick<State, 'sheets'>
 
@@ -49,8 +62,37 @@ export function isPaper({ sheets }: Open, name: SheetName): boolean {
   return sheets?.source === 'sketch' || name === 'side'
 }
 
+/** Return the sheet of a photo of many. */
+export function captureSheet({ id, name, width, height, image }: CapturePhoto): CaptureSheet {
+  return { id, name, width, height, file: null, url: image }
+}
+
+/** Return the many photos that are open; null where the tree has another source. */
+export function captureOf({ sheets }: Open): Capture | null {
+  return sheets?.source === 'capture' ? sheets.capture : null
+}
+
+/** Return the name of the photo of many that is drawn on; null where the tree has another source. */
+export function photoDrawnOn({ sheets }: Open): string | null {
+  return sheets?.source === 'capture' ? sheets.front.name : null
+}
+
+/** Return what is drawn on an open sheet: on the front of many photos, over the photo that is drawn on now. */
+export function drawnOn(state: Open & Pick<State, 'history'>, name: SheetName): Strokes {
+  const photo = photoDrawnOn(state)
+  return photo === null ? onSheet(state.history.present, name) : onPhoto(state.history.present, photo)
+}
+
+/** Return all strokes with those of an open sheet replaced. */
+export function withDrawn(state: Open & Pick<State, 'history'>, name: SheetName, strokes: Strokes): Strokes {
+  const photo = photoDrawnOn(state)
+  const all = state.history.present
+  return photo === null ? withSheet(all, name, strokes) : withPhoto(all, photo, strokes)
+}
+
 /** Return the sheets with one of them replaced; a photo's front is only replaced by another photo. */
 export function replaceSheet(sheets: Sheets, name: SheetName, sheet: Sheet): Sheets {
+  if (sheets.source === 'capture') return sheets
   if (name === 'side') return { ...sheets, side: sheet }
   if (sheets.source === 'sketch') return { ...sheets, front: sheet }
   return hasPhoto(sheet) ? { ...sheets, front: sheet } : sheets

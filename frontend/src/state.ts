@@ -1,5 +1,16 @@
 import { DEFAULT_SETTINGS } from './api/defaults'
-import type { Grown, Limits, Model, Settings, TraceAnswer } from './api/types'
+import type {
+  CameraInfo,
+  CapturePhoto,
+  CaptureState,
+  CaptureTraceAnswer,
+  Cloud,
+  Grown,
+  Limits,
+  Model,
+  Settings,
+  TraceAnswer,
+} from './api/types'
 import { begin, type History } from './history'
 import { type Line, NO_STROKES, type SheetName, type StrokeRef, type Strokes } from './strokes'
 
@@ -27,10 +38,32 @@ export interface PhotoSheet extends Sheet {
   readonly url: string
 }
 
-/** The open sheets, by the tree's source: a photo with strokes, or sketches. */
+/** The photo of many that is drawn on now. */
+export interface CaptureSheet extends Sheet {
+  readonly id: string
+  /** Its name among the photos. */
+  readonly name: string
+}
+
+/** Many photos of one tree. */
+export interface Capture {
+  /** Its id on the service; null where the service no longer has it. */
+  readonly id: string | null
+  /** The photos that the service has, by name. */
+  readonly photos: readonly CapturePhoto[]
+  /** The cameras of the photos that are used; empty until they are found. */
+  readonly cameras: readonly CameraInfo[]
+  /** Points that several photos show; null until the cameras are found. */
+  readonly cloud: Cloud | null
+  /** How many photos were chosen; some may not have reached the service. */
+  readonly chosen: number
+}
+
+/** The open sheets, by the tree's source: a photo with strokes, sketches, or many photos. */
 export type Sheets =
   | { readonly source: 'photo'; readonly front: PhotoSheet; readonly side: Sheet | null }
   | { readonly source: 'sketch'; readonly front: Sheet; readonly side: Sheet | null }
+  | { readonly source: 'capture'; readonly front: CaptureSheet; readonly side: null; readonly capture: Capture }
 
 export type Source = Sheets['source']
 
@@ -41,7 +74,7 @@ export type Tool = 'crown' | 'branch' | 'scale' | 'select'
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
 /** Where a fault is shown on the page. */
-export type Place = 'photo' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
+export type Place = 'photo' | 'capture' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
 
 /** A sentence that says what is wrong and what to do. */
 export interface Fault {
@@ -63,7 +96,7 @@ export interface Notice {
 /** What was traced, and from which strokes. */
 export interface Traced {
   readonly of: Strokes
-  readonly answer: TraceAnswer
+  readonly answer: TraceAnswer | CaptureTraceAnswer
   /** The crown on each sheet, drawn or assumed, where sketches were traced; sheet px. */
   readonly crowns?: Readonly<Partial<Record<SheetName, Line>>>
 }
@@ -103,6 +136,10 @@ export interface State extends OwnPictures {
   /** Whether a photo, a sketch, a project or a model is being opened. */
   readonly opening: boolean
   readonly tracing: boolean
+  /** How far the search for the cameras of many photos is; null where none was asked for. */
+  readonly solve: CaptureState | null
+  /** Whether photos of many are being sent. */
+  readonly sending: boolean
   readonly traced: Traced | null
   /** What was corrected while pictures were read, as sentences, and the strokes that these are about. */
   readonly corrections: { readonly of: Strokes; readonly text: string } | null
@@ -141,6 +178,8 @@ export const EMPTY: State = {
   selection: null,
   opening: false,
   tracing: false,
+  solve: null,
+  sending: false,
   traced: null,
   corrections: null,
   liveTree: null,

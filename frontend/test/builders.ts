@@ -1,5 +1,15 @@
-import type { Grown, Model, SketchTraceAnswer, Taken, TraceAnswer } from '../src/api/types'
-import type { PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
+import type {
+  CameraInfo,
+  CapturePhoto,
+  CaptureTraceAnswer,
+  Grown,
+  Model,
+  SketchTraceAnswer,
+  Taken,
+  TraceAnswer,
+} from '../src/api/types'
+import { captureSheet } from '../src/sheets'
+import type { Capture, PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
 import { type Line, NO_STROKES } from '../src/strokes'
 
 /** The first bytes of a PNG: all that the page itself reads of one. */
@@ -32,6 +42,61 @@ export function photoSheets(front = photo(), side: Sheet | null = null): Sheets 
 /** Paper that is open. */
 export function sketchSheets(front: Sheet, side: Sheet | null = null): Sheets {
   return { source: 'sketch', front, side }
+}
+
+/** A photo of many as the service has it. */
+export function capturePhoto(name: string, changes: Partial<CapturePhoto> = {}): CapturePhoto {
+  const id = `cph_${name}`
+  const size = { width: 100, height: 100, focal_px: null, image: `/v1/captures/cap_1/photos/${id}/image` }
+  return { id, name, ...size, sha256: name, created: '', used: null, reason: null, ...changes }
+}
+
+/** Many photos that are open; the first is drawn on. */
+export function captureSheets(names = ['00.jpg', '01.jpg'], changes: Partial<Capture> = {}): Sheets {
+  const photos = names.map(name => capturePhoto(name))
+  const capture = { id: 'cap_1', photos, cameras: [], cloud: null, chosen: photos.length, ...changes }
+  return { source: 'capture', front: captureSheet(capture.photos[0]!), side: null, capture }
+}
+
+/** A camera 10 units before the origin that looks along +Z, up being -Y. */
+export function camera(photo: string): CameraInfo {
+  return {
+    photo,
+    camera_from_world: [
+      [1, 0, 0, 0],
+      [0, 1, 0, 0],
+      [0, 0, 1, 10],
+    ],
+    focal_px: 100,
+    principal_px: [50, 50],
+    size_px: [100, 100],
+  }
+}
+
+/** An answer about many photos: a trunk of two joints. */
+export function captureAnswer(changes: Partial<CaptureTraceAnswer> = {}): CaptureTraceAnswer {
+  return {
+    rev: null,
+    photos: [],
+    skeleton: {
+      points: [
+        [0, 2, 0],
+        [0, -2, 0],
+      ],
+      radii: [1, 0.5],
+      parents: [-1, 0],
+      seen: [true, true],
+    },
+    crown: { points: [], triangles: [], guessed: [] },
+    tree_from_capture: [
+      [1, 0, 0, 0],
+      [0, -1, 0, 2],
+      [0, 0, -1, 0],
+    ],
+    taken: null,
+    warnings: [],
+    ...changes,
+  }
 }
 
 /** A model that is shown. */

@@ -4,14 +4,17 @@ import {
   brushWidth,
   commonLevels,
   differingLevels,
+  drawnOn,
   type Extent,
   isPaper,
   type Levels,
   openSheets,
+  photoDrawnOn,
   sheetOf,
 } from '../sheets'
 import type { Selection, Sheet, State, Tool } from '../state'
-import { type Line, onSheet, type SheetName, type StrokeRef, type Strokes } from '../strokes'
+import type { Line, SheetName, StrokeRef, Strokes } from '../strokes'
+import { tracedOn } from '../tracedOn'
 
 /** The part of the page's state that one sheet shows. */
 export interface SheetView {
@@ -37,18 +40,18 @@ export interface SheetView {
 
 /** Return what one sheet shows of the state. */
 export function viewOf(state: State, name: SheetName): SheetView {
-  const { history, selection, faults, traced } = state
-  const [sheet, onPaper] = [sheetOf(state, name), isPaper(state, name)]
-  const strokes = onSheet(history.present, name)
+  const { selection, faults, traced } = state
+  const [sheet, onPaper, photo] = [sheetOf(state, name), isPaper(state, name), photoDrawnOn(state)]
+  const strokes = drawnOn(state, name)
   return {
     sheet,
     isPaper: onPaper,
     strokes,
-    selection: toSheetSelection(selection, name),
-    fault: toSheetSelection(faults.strokes?.stroke ?? doubtIn(state)?.stroke ?? null, name),
+    selection: toSheetSelection(selection, name, photo),
+    fault: toSheetSelection(faults.strokes?.stroke ?? doubtIn(state)?.stroke ?? null, name, photo),
     tool: onPaper && state.tool === 'scale' ? 'select' : state.tool,
     brush: onPaper && sheet ? brushWidth(state, sheet) : null,
-    traced: onPaper || !strokes.crown ? null : (traced?.answer ?? null),
+    traced: onPaper || !(strokes.crown || photo) ? null : tracedOn(state),
     assumedCrown: onPaper && !strokes.crown && strokes.branches.length ? (traced?.crowns?.[name] ?? null) : null,
     levels: state.sheets?.side || state.sheets?.source === 'sketch' ? commonLevels(state, name) : null,
     stray: name === 'side' ? differingLevels(state) : null,
@@ -64,14 +67,24 @@ export function extentOf(state: State, name: SheetName): Extent | null {
   return { width: Math.max(...widths), height: sheet.height }
 }
 
-/** Return what is selected on one sheet as the page's state names it. */
-export function toPageSelection<S extends Selection>(selection: S | null, sheet: SheetName): S | null {
-  return selection && sheet === 'side' && selection.kind !== 'traced' ? { ...selection, sheet } : selection
+/** Return what is selected on one sheet as the page's state names it; `photo` is the one that is drawn on, of many. */
+export function toPageSelection<S extends Selection>(
+  selection: S | null,
+  sheet: SheetName,
+  photo: string | null,
+): S | null {
+  if (!selection || selection.kind === 'traced') return selection
+  if (photo !== null) return { ...selection, photo }
+  return sheet === 'side' ? { ...selection, sheet } : selection
 }
 
-/** Return what the page's state selects as its sheet names it; null on the other sheet. */
-function toSheetSelection<S extends Selection>(selection: S | null, sheet: SheetName): S | null {
+/** Return what the page's state selects as its sheet names it; null on another sheet, or over another photo of many. */
+function toSheetSelection<S extends Selection>(
+  selection: S | null,
+  sheet: SheetName,
+  drawnOver: string | null,
+): S | null {
   if (!selection || selection.kind === 'traced') return sheet === 'front' ? selection : null
-  const { sheet: own = 'front', ...rest } = selection
-  return own === sheet ? (rest as S) : null
+  const { sheet: own = 'front', photo = null, ...rest } = selection
+  return own === sheet && photo === drawnOver ? (rest as S) : null
 }

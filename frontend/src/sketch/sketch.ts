@@ -1,7 +1,8 @@
 import type { TraceAnswer } from '../api/types'
-import type { Extent } from '../sheets'
+import { type Extent, photoDrawnOn } from '../sheets'
 import type { Selection, Sheet, State, Store } from '../state'
 import type { Line, Point, SheetName } from '../strokes'
+import { isOfPhotos } from '../tracedOn'
 import { Camera } from './camera'
 import { AT_REST, type DrawnKind, type GestureEvent, type Intent, interpret, type PointerKind } from './gesture'
 import { type KeyCommand, keyCommand, stepFrom } from './keys'
@@ -165,7 +166,7 @@ export class Sketch {
       if (sheet !== old) this.#scene.layers.invalidate('photo')
       if (sheets !== before.sheets) this.#camera.setExtent(extentOf(this.#state, this.#name)!)
     } else if (sheet !== old) {
-      this.#staleTrace = traced === before.traced ? (traced?.answer ?? null) : null
+      this.#staleTrace = traced && traced === before.traced && !isOfPhotos(traced.answer) ? traced.answer : null
       this.#openSheet()
     }
     if (sheets?.side !== before.sheets?.side) this.#scene.layers.invalidate('traced')
@@ -242,7 +243,7 @@ export class Sketch {
   }
 
   #selectAt(at: Point, tolerance: number): void {
-    this.events.selected(toPageSelection(this.#pickAt(at, tolerance), this.#name))
+    this.events.selected(toPageSelection(this.#pickAt(at, tolerance), this.#name, photoDrawnOn(this.#state)))
   }
 
   #pickAt(at: Point, tolerance: number): Selection | null {

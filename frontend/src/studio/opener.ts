@@ -187,6 +187,7 @@ export class Opener {
   /** Return a draft's sheets; if the service no longer has the photo, tracing will notice. */
   async #sheetsOf({ draft, photo: file, side: sidePicture }: DraftWithPictures): Promise<Sheets> {
     const { photo, source = 'photo' } = draft
+    if (source === 'capture') throw new PageFault(text.faults.draftGone)
     const side = draft.side
       ? { ...sheetOfSize(draft.side), file: sidePicture, url: sidePicture && URL.createObjectURL(sidePicture) }
       : null

@@ -1,4 +1,5 @@
 import { distance } from '../plane'
+import { drawnOn } from '../sheets'
 import type { State } from '../state'
 import type { Line } from '../strokes'
 
@@ -10,11 +11,11 @@ export function metresOf([from, to]: Line, state: State): number {
 }
 
 /** Return metres per px, by the measured line, else by the height setting and the strokes' height; 0 without strokes. */
-function metresPerPixel({ history, settings }: State): number {
-  const { scale, crown, branches } = history.present
+function metresPerPixel(state: State): number {
+  const { scale, crown, branches } = drawnOn(state, 'front')
   if (scale) return scale.metres / Math.max(distance(scale.points[0]!, scale.points[1]!), 1)
   const trunk = branches[0]?.points ?? []
   const heights = [...(crown ?? []), ...trunk].map(([, y]) => y)
   const pixels = Math.max(...heights) - Math.min(...heights)
-  return pixels > 0 && Number.isFinite(pixels) ? settings.height / pixels : 0
+  return pixels > 0 && Number.isFinite(pixels) ? state.settings.height / pixels : 0
 }

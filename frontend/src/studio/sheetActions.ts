@@ -19,7 +19,8 @@ export class SheetActions {
   openSide(): void {
     const { sheets } = this.store.state
     if (!sheets || sheets.side) return
-    this.store.set({ sheets: { ...sheets, side: paper(sheets.front.height) }, active: 'side', tool: 'branch' })
+    const opened = replaceSheet(sheets, 'side', paper(sheets.front.height))
+    if (opened.side) this.store.set({ sheets: opened, active: 'side', tool: 'branch' })
   }
 
   /** Close the side's sheet and remove its strokes; undoing that opens the sheet again. */

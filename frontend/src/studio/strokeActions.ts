@@ -1,23 +1,27 @@
+import type { Edit } from '../edits'
 import { advance, type History, redo, undo } from '../history'
-import { brushWidth, isDrawn, isPaper, paper, sheetOf } from '../sheets'
-import type { Selection, Store, Tool } from '../state'
+import { brushWidth, drawnOn, isDrawn, isPaper, paper, photoDrawnOn, replaceSheet, sheetOf, withDrawn } from '../sheets'
+import type { Selection, Store, Tool, Traced } from '../state'
 import {
   isEmpty,
   type Line,
   NO_STROKES,
-  onSheet,
+  type PhotoDistance,
   type SheetName,
   type StrokeKind,
+  type StrokeRef,
   type Strokes,
+  withDistance,
+  withEdit,
   withoutStroke,
   withScale,
-  withSheet,
   withStroke,
 } from '../strokes'
 import { eraseLine } from '../tracedBranch'
+import { isOfPhotos } from '../tracedOn'
 import { metresOf } from './scaling'
 
-const SCALE: Selection = { kind: 'scale', index: 0 }
+const SCALE: StrokeRef = { kind: 'scale', index: 0 }
 
 /** Edits the strokes; each edit can be undone. */
 export class StrokeActions {
@@ -29,17 +33,16 @@ export class StrokeActions {
       this.#setScale(points)
       return
     }
-    const own = onSheet(this.store.strokes, sheet)
+    const own = drawnOn(this.store.state, sheet)
     const first = kind === 'crown' && !own.crown
-    this.#advance(withSheet(this.store.strokes, sheet, withStroke(own, kind, points, this.#brush(sheet))))
+    this.#advance(withDrawn(this.store.state, sheet, withStroke(own, kind, points, this.#brush(sheet))))
     if (first && this.store.state.tool === 'crown') this.store.set({ tool: 'branch' })
   }
 
   /** Set the measured line's length, metres. */
   measure(metres: number): void {
     const { scale } = this.store.strokes
-    if (!scale || scale.metres === metres) return
-    this.#advance(withScale(this.store.strokes, scale.points, metres), SCALE)
+    if (scale && scale.metres !== metres) this.#advanceScale(scale.points, metres)
   }
 
   select(selection: Selection | null): void {
@@ -56,7 +59,17 @@ export class StrokeActions {
     const { selection, traced } = this.store.state
     if (!selection) return
     if (selection.kind !== 'traced') this.#advance(withoutStroke(this.store.strokes, selection))
-    else if (traced) this.draw('erase', eraseLine(traced.answer.skeleton, selection.joint))
+    else if (traced) this.#removeTraced(traced.answer, selection.joint)
+  }
+
+  /** Edit the branches that many photos show. */
+  edit(edit: Edit): void {
+    this.#advance(withEdit(this.store.strokes, edit))
+  }
+
+  /** Set how far apart two photos of many were taken, which gives the tree its scale; null: its height does. */
+  setDistance(distance: PhotoDistance | null): void {
+    this.#advance(withDistance(this.store.strokes, distance))
   }
 
   clear(): void {
@@ -78,12 +91,25 @@ export class StrokeActions {
     return drawnOn && isPaper(state, sheet) ? brushWidth(state, drawnOn) : null
   }
 
+  /** Remove a traced branch by its first joint: of a photo by an erase stroke across it, of many by an edit. */
+  #removeTraced(answer: Traced['answer'], joint: number): void {
+    if (!isOfPhotos(answer)) this.draw('erase', eraseLine(answer.skeleton, joint))
+    else this.edit({ do: 'remove', at: answer.skeleton.points[joint]! })
+  }
+
   /** Set the measured line; it keeps its length where one end was moved, otherwise the length is guessed. */
   #setScale(points: Line): void {
     const { scale } = this.store.strokes
     const moved = scale?.points.some(end => points.includes(end))
     const metres = scale && moved ? scale.metres : metresOf(points, this.store.state)
-    this.#advance(withScale(this.store.strokes, points, metres), SCALE)
+    this.#advanceScale(points, metres)
+  }
+
+  #advanceScale(points: Line, metres: number): void {
+    const { state } = this.store
+    const photo = photoDrawnOn(state)
+    const drawn = withScale(drawnOn(state, 'front'), points, metres)
+    this.#advance(withDrawn(state, 'front', drawn), { ...SCALE, ...(photo !== null && { photo }) })
   }
 
   #advance(strokes: Strokes, selection: Selection | null = null): void {
@@ -94,8 +120,8 @@ export class StrokeActions {
     const { sheets } = this.store.state
     // Strokes of the side that come back need their sheet, which was closed.
     const reopened = sheets && !sheets.side && isDrawn(history.present, 'side')
-    const side = reopened ? paper(sheets.front.height) : null
-    this.store.set({ history, selection, ...(side && { sheets: { ...sheets!, side } }) })
+    const opened = reopened ? replaceSheet(sheets, 'side', paper(sheets.front.height)) : null
+    this.store.set({ history, selection, ...(opened && { sheets: opened }) })
     this.store.fault('strokes', null)
   }
 }

@@ -1,6 +1,6 @@
 import { type Client, Refused, Unreachable } from '../api/client'
 import type { Grown } from '../api/types'
-import { hasPhoto } from '../sheets'
+import { hasPhoto, replaceSheet } from '../sheets'
 import type { PhotoSheet, Sheet, Store, Traced } from '../state'
 import type { Strokes } from '../strokes'
 import { faultOf } from './faultText'
@@ -129,7 +129,7 @@ export class Tracer {
     try {
       const { id } = await this.client.addPhoto(photo.file)
       const { sheets } = this.store.state
-      if (sheets?.front.id === photo.id) this.store.set({ sheets: { ...sheets, front: { ...photo, id } } })
+      if (sheets?.front.id === photo.id) this.store.set({ sheets: replaceSheet(sheets, 'front', { ...photo, id }) })
     } catch (error) {
       if (!(error instanceof Unreachable)) throw error
       await this.wait(RETRY_MS)

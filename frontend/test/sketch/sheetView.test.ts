@@ -4,7 +4,7 @@ import { paper, sheetOfSize } from '../../src/sheets'
 import { extentOf, toPageSelection, viewOf } from '../../src/sketch/sheetView'
 import { EMPTY, type Sheet, type State } from '../../src/state'
 import { NO_STROKES, withSheet, withStroke } from '../../src/strokes'
-import { answer, CROWN, LIMB, photoSheets, sketchSheets, TRUNK } from '../builders'
+import { answer, CROWN, captureSheets, LIMB, photoSheets, sketchSheets, TRUNK } from '../builders'
 
 const front = withStroke(NO_STROKES, 'branch', TRUNK)
 const both = withSheet(front, 'side', withStroke(NO_STROKES, 'branch', LIMB))
@@ -55,6 +55,21 @@ test('the widest sheet sets the extent of all', () => {
 })
 
 test('what is selected on the side keeps its sheet’s name in the page’s state', () => {
-  expect(toPageSelection({ kind: 'branch', index: 2 }, 'side')).toEqual({ kind: 'branch', index: 2, sheet: 'side' })
-  expect(toPageSelection({ kind: 'branch', index: 2 }, 'front')).toEqual({ kind: 'branch', index: 2 })
+  expect(toPageSelection({ kind: 'branch', index: 2 }, 'side', null)).toEqual({
+    kind: 'branch',
+    index: 2,
+    sheet: 'side',
+  })
+  expect(toPageSelection({ kind: 'branch', index: 2 }, 'front', null)).toEqual({ kind: 'branch', index: 2 })
+})
+
+test('what is selected over one photo of many keeps its photo in the page’s state', () => {
+  const selected = toPageSelection({ kind: 'crown', index: 0 }, 'front', '03.jpg')
+  expect(selected).toEqual({ kind: 'crown', index: 0, photo: '03.jpg' })
+  const state = { ...EMPTY, sheets: captureSheets(), selection: selected }
+  expect(viewOf(state, 'front').selection).toBeNull()
+  expect(viewOf({ ...state, sheets: captureSheets(['03.jpg']) }, 'front').selection).toEqual({
+    kind: 'crown',
+    index: 0,
+  })
 })

@@ -1,4 +1,4 @@
-import type { CameraInfo, CloudInfo } from '../../api/types'
+import type { CameraInfo, Cloud } from '../../api/types'
 import type { Similarity } from './similarity'
 
 type Point = readonly [number, number, number]
@@ -23,7 +23,7 @@ export interface CrownSurface {
 export interface Measured {
   /** The cameras of the photos that are used. */
   readonly cameras: readonly CameraInfo[]
-  readonly cloud: CloudInfo | null
+  readonly cloud: Cloud | null
   /** The photo that the tree's front is seen in, as far as it is known. */
   readonly front: string | null
   /** What was found for the strokes; null before there are any. */

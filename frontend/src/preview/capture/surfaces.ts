@@ -9,7 +9,7 @@ import {
   PointsMaterial,
   SRGBColorSpace,
 } from 'three'
-import type { CloudInfo } from '../../api/types'
+import type { Cloud } from '../../api/types'
 import type { Vec3 } from '../camera'
 import { tubes } from '../tubes'
 import type { CrownSurface, VisibleBranches } from './measured'
@@ -26,7 +26,7 @@ const JOINING = new Color('#e0a13c')
 const THINNEST = 0.0016
 
 /** Return the points of a cloud that lie no further than `reach` from a point, in their colours. */
-export function cloudPoints({ points, colours }: CloudInfo, about: Vec3, reach: number): Points {
+export function cloudPoints({ points, colours }: Cloud, about: Vec3, reach: number): Points {
   const near = points.flatMap((point, at) => (distance(point, about) <= reach ? [at] : []))
   const colour = new Color()
   const shown = new Float32Array(near.length * 3)

@@ -82,7 +82,7 @@ function missing(strokes: Strokes, others: Strokes): StrokeRef[] {
 }
 
 /** Count the tips of what was traced: each ends one branch. */
-function tipCount({ parents }: TracedSkeleton): number {
+function tipCount({ parents }: Pick<TracedSkeleton, 'parents'>): number {
   const bearing = new Set(parents)
   return parents.filter((_, joint) => !bearing.has(joint)).length
 }
