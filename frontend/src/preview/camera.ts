@@ -119,7 +119,12 @@ export function projected(pose: Pose, point: Vec3, { width, height }: Viewport):
 }
 
 /** Return the world point that the camera shows at a place (CSS px) and lies `depth` world units before the camera. */
-export function unprojected(pose: Pose, [x, y]: readonly [number, number], depth: number, { width, height }: Viewport): Vec3 {
+export function unprojected(
+  pose: Pose,
+  [x, y]: readonly [number, number],
+  depth: number,
+  { width, height }: Viewport,
+): Vec3 {
   const { right, up, back } = rolledAxes(pose)
   const [across, down] = pose.shift ?? [0, 0]
   const distance = distanceOf(pose)

@@ -1,6 +1,7 @@
 import './preview.css'
 import type { Grown } from '../api/types'
 import type { Measured, Part } from './capture/measured'
+import type { EditEvents, Editing } from './edit/editLayer'
 import { pressKey } from './keys'
 import { probeWebgl } from './software'
 import { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
@@ -13,6 +14,8 @@ export interface PreviewOptions {
   onStatus: (status: PreviewStatus) => void
   /** Called with the name of the photo whose camera was clicked on, where a tree was measured from many. */
   onPhoto: (photo: string) => void
+  /** Called as branches are edited. */
+  edits: EditEvents
   /** Whether the processor draws WebGL; found out where absent. */
   software?: boolean
 }
@@ -59,6 +62,11 @@ export class Preview {
   /** Show or hide a part of what many photos say. */
   setPart(part: Part, shown: boolean): void {
     this.viewer?.setPart(part, shown)
+  }
+
+  /** Edit branches in place of the tree; null ends that. */
+  setEditing(editing: Editing | null): void {
+    this.viewer?.setEditing(editing)
   }
 
   /** Show the live tree; the camera stays where it is, but the first tree of all is shown from the side. */

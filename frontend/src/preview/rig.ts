@@ -68,7 +68,15 @@ export class Rig {
     const offset = new Spherical().setFromVector3(new Vector3().subVectors(this.camera.position, target))
     const { slope, roll, shift } = this
     const size = 2 * offset.radius * slope
-    return { target: [target.x, target.y, target.z], azimuth: offset.theta, polar: offset.phi, size, slope, roll, shift }
+    return {
+      target: [target.x, target.y, target.z],
+      azimuth: offset.theta,
+      polar: offset.phi,
+      size,
+      slope,
+      roll,
+      shift,
+    }
   }
 
   /** The pose that the camera flies to, or its pose now. */

@@ -1,8 +1,8 @@
 import { DirectionalLight, HemisphereLight, NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three'
 import { Backdrop, DARK, Ground, LIGHT, type Scheme } from './backdrop'
 import { type Box, horizonOf, VIEW_SLOPE, type Viewport } from './camera'
-import { type Content, groundUnder, shadowOf } from './content'
 import type { CaptureLayer } from './capture/layer'
+import { type Content, groundUnder, shadowOf } from './content'
 import type { Rig } from './rig'
 import type { TreeUniforms } from './shading'
 import { SUN } from './sun'
@@ -28,6 +28,7 @@ export class Stage {
   private readonly backdrop = new Backdrop()
   private readonly ground = new Ground()
   private content: Content | null = null
+  private treeShown = true
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -80,9 +81,18 @@ export class Stage {
     this.content = content
     if (content) {
       this.scene.add(content.group)
+      content.group.visible = this.treeShown
       this.fitSun(content.box)
       this.ground.place(groundUnder(content.box))
     }
+    this.updateShadow()
+  }
+
+  /** Show the tree, or only its ground. */
+  setTreeShown(on: boolean): void {
+    if (on === this.treeShown) return
+    this.treeShown = on
+    if (this.content) this.content.group.visible = on
     this.updateShadow()
   }
 

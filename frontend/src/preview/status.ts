@@ -31,5 +31,5 @@ export const NOTHING_SHOWN: PreviewStatus = {
   winds: [],
   wind: null,
   parts: null,
-  hasPhotoView: false,
+  hasPhotoView: true,
 }

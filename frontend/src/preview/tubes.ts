@@ -59,7 +59,11 @@ function ringCount({ parents }: Branches, continuations: Int32Array): number {
 }
 
 /** Return the indices of the edges from ring `starts[joint]` to ring `joint`, in the order of birth. */
-function edgeIndices({ parents, born }: Branches, starts: Uint32Array, sides: number): Pick<Tubes, 'indices' | 'counts'> {
+function edgeIndices(
+  { parents, born }: Branches,
+  starts: Uint32Array,
+  sides: number,
+): Pick<Tubes, 'indices' | 'counts'> {
   const counts = indexCounts(parents, born, sides * 6)
   const indices = new Uint32Array(counts[counts.length - 1]!)
   const next = new Uint32Array(counts.length)

@@ -3,6 +3,7 @@ import { CaptureLayer } from './capture/layer'
 import type { Measured, Part } from './capture/measured'
 import { listenToClicks } from './clicks'
 import type { Content } from './content'
+import { type EditEvents, type Editing, EditLayer } from './edit/editLayer'
 import { GrowthAnimation } from './growthAnimation'
 import { liveTreeContent } from './liveTree'
 import { Look } from './look'
@@ -24,6 +25,7 @@ export interface ViewerOptions {
   onStatus: (status: PreviewStatus) => void
   /** Called with the name of the photo whose camera was clicked on. */
   onPhoto: (photo: string) => void
+  edits: EditEvents
 }
 
 /** Durations in seconds: the growth of branches, that of leaves. */
@@ -47,6 +49,7 @@ export class Viewer {
   private readonly capture = new CaptureLayer(() => this.requestFrame())
   private readonly look: Look
   private readonly wipe: Wipe
+  private readonly edit: EditLayer
   private readonly darkScheme = matchMedia('(prefers-color-scheme: dark)')
   private readonly resizing = new ResizeObserver(() => this.onResize())
   private content: Content | null = null
@@ -81,6 +84,7 @@ export class Viewer {
     })
     this.look = new Look(this.rig, this.capture, () => this.onLook())
     this.wipe = new Wipe(host, options.label)
+    this.edit = new EditLayer(host, canvas, options.edits, () => this.requestFrame())
     listenToClicks(canvas, place => this.onClick(place))
     // Before the rig's own listener, which would move the camera away from the photo's.
     host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false })
@@ -120,6 +124,15 @@ export class Viewer {
   setPart(part: Part, shown: boolean): void {
     this.capture.setPart(part, shown)
     this.onLook()
+  }
+
+  /** Edit branches in place of the tree, or over the whole photo that one looks from; null shows the tree again. */
+  setEditing(editing: Editing | null): void {
+    if (editing && !this.edit.isOn) this.wipe.set(0)
+    this.edit.set(editing)
+    this.stage.setTreeShown(editing === null)
+    this.capture.setEdited(editing !== null)
+    this.requestFrame()
   }
 
   showLive(grown: Grown): void {
@@ -259,8 +272,9 @@ export class Viewer {
   }
 
   private onClick(place: readonly [number, number]): void {
-    const photo = this.capture.photoAt(place, this.rig.pose, this.look.viewport)
-    if (photo) this.options.onPhoto(photo)
+    const photo = this.edit.isOn ? null : this.capture.photoAt(place, this.rig.pose, this.look.viewport)
+    if (this.edit.isOn) this.edit.click(place)
+    else if (photo) this.options.onPhoto(photo)
   }
 
   private onWheel(event: WheelEvent): void {
@@ -308,6 +322,9 @@ export class Viewer {
     if (!this.software && this.content && this.timedFrames++ < TIMED_FRAMES) this.detectSoftware(start)
     this.frames++
     Object.assign(this.host.dataset, { calls: String(calls), frames: String(this.frames) })
+    this.edit.draw(this.rig.pose, this.look.viewport, this.capture.toWorld)
+    // Over a photo, a pointer that misses a joint must not turn the branches away from it.
+    this.rig.grabbable = !(this.edit.isOn && this.rig.holds)
     this.wipe.place(this.look.photoRect(), this.look.viewport)
     clearTimeout(this.restTimer)
     if (moving && this.software) this.restTimer = setTimeout(() => this.requestFrame(), REST)

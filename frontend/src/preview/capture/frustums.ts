@@ -12,7 +12,7 @@ import {
   TextureLoader,
 } from 'three'
 import type { CameraInfo } from '../../api/types'
-import { projected, type Pose, type Vec3, type Viewport } from '../camera'
+import { type Pose, projected, type Vec3, type Viewport } from '../camera'
 import { pictureCorners, standpoint } from './photoCamera'
 import { IDENTITY, moved, type Similarity } from './similarity'
 

@@ -1,8 +1,8 @@
-import { Group, type Mesh, type Material, type Points } from 'three'
+import { Group, type Material, type Mesh, type Points } from 'three'
 import type { CameraInfo } from '../../api/types'
 import type { Box, Pose, Rect, Vec3, Viewport } from '../camera'
-import type { Content } from '../content'
 import { unitsPerMetre } from '../camera'
+import type { Content } from '../content'
 import { Frustums } from './frustums'
 import { type Measured, PARTS, type Part } from './measured'
 import { cameraPose, pictureRect } from './photoCamera'
@@ -34,6 +34,7 @@ export class CaptureLayer {
   private readonly wanted: Partial<Record<Part, boolean>> = {}
   private world: Similarity = IDENTITY
   private content: Content | null = null
+  private edited = false
 
   /** `changed` is called when a picture has arrived. */
   constructor(changed: () => void) {
@@ -59,7 +60,8 @@ export class CaptureLayer {
     const unit = this.measured ? heightInPhotos(this.measured.cameras) : 1
     if (measured?.cameras !== before?.cameras) this.frustums.show(this.measured?.cameras ?? [], unit)
     const { cloud, tree, cameras } = this.measured ?? { cloud: null, tree: null, cameras: [] }
-    if (cloud !== (before?.cloud ?? null)) this.replace('cloud', cloud && cloudPoints(cloud, lookedAt(cameras), CLOUD_REACH * unit))
+    if (cloud !== (before?.cloud ?? null))
+      this.replace('cloud', cloud && cloudPoints(cloud, lookedAt(cameras), CLOUD_REACH * unit))
     if (tree?.crown !== before?.tree?.crown) this.replace('crown', tree && crownMesh(tree.crown))
     if (tree?.branches !== before?.tree?.branches) this.replace('branches', tree && branchMesh(tree.branches, unit))
     this.place(this.content)
@@ -97,6 +99,12 @@ export class CaptureLayer {
     if (!this.measured) return null
     const there = PARTS.filter(part => part === 'cameras' || this.parts[part])
     return Object.fromEntries(there.map(part => [part, this.isShown(part)]))
+  }
+
+  /** Leave the branches out while they are edited: they are drawn over everything then. */
+  setEdited(on: boolean): void {
+    this.edited = on
+    this.applyParts()
   }
 
   /** Show the cameras or not, whatever the user chose: from where one stands it would hide the tree. */
@@ -153,6 +161,7 @@ export class CaptureLayer {
   private applyParts(): void {
     this.frustums.group.visible = this.isShown('cameras')
     for (const part of PARTS) if (this.parts[part]) this.parts[part].visible = this.isShown(part)
+    if (this.parts.branches && this.edited) this.parts.branches.visible = false
   }
 
   private replace(part: Part, next: Mesh | Points | null): void {

@@ -1,16 +1,8 @@
 import type { CameraInfo, Cloud } from '../../api/types'
+import type { Branches } from '../../branches'
 import type { Similarity } from './similarity'
 
 type Point = readonly [number, number, number]
-
-/** Visible branches in a capture's frame; `seen` is false where a joint only joins others, or was added by hand. */
-export interface VisibleBranches {
-  readonly points: readonly Point[]
-  readonly radii: readonly number[]
-  /** The joint that each one hangs on, before it in the list; -1 at a root. */
-  readonly parents: readonly number[]
-  readonly seen: readonly boolean[]
-}
 
 /** The surface of a measured crown in a capture's frame; `guessed` tells for each point whether no photo shows it. */
 export interface CrownSurface {
@@ -28,7 +20,7 @@ export interface Measured {
   readonly front: string | null
   /** What was found for the strokes; null before there are any. */
   readonly tree: {
-    readonly branches: VisibleBranches
+    readonly branches: Branches
     readonly crown: CrownSurface
     /** Leads to the frame of trees and GLBs, metres. */
     readonly treeFromCapture: Similarity

@@ -11,7 +11,10 @@ export interface Standpoint {
 }
 
 /** Return a photo's camera in another frame than that of `camera_from_world`. */
-export function standpoint({ camera_from_world: rows }: Pick<CameraInfo, 'camera_from_world'>, to: Similarity): Standpoint {
+export function standpoint(
+  { camera_from_world: rows }: Pick<CameraInfo, 'camera_from_world'>,
+  to: Similarity,
+): Standpoint {
   const axis = (row: 0 | 1 | 2): Vec3 => [rows[row][0], rows[row][1], rows[row][2]]
   const centreOn = (column: 0 | 1 | 2) =>
     -(rows[0][column] * rows[0][3] + rows[1][column] * rows[1][3] + rows[2][column] * rows[2][3])
@@ -74,7 +77,11 @@ export function pictureRect(camera: CameraInfo, { slope, shift = [0, 0] }: Pose,
 }
 
 /** Return the corners of a camera's picture, `depth` before it: top left, top right, bottom right, bottom left. */
-export function pictureCorners(camera: CameraInfo, { centre, right, down, forward }: Standpoint, depth: number): Vec3[] {
+export function pictureCorners(
+  camera: CameraInfo,
+  { centre, right, down, forward }: Standpoint,
+  depth: number,
+): Vec3[] {
   const [width, height] = camera.size_px
   return [
     [0, 0],
@@ -82,7 +89,10 @@ export function pictureCorners(camera: CameraInfo, { centre, right, down, forwar
     [width, height],
     [0, height],
   ].map(([x, y]) => {
-    const [across, below] = [(x! - camera.principal_px[0]) / camera.focal_px, (y! - camera.principal_px[1]) / camera.focal_px]
+    const [across, below] = [
+      (x! - camera.principal_px[0]) / camera.focal_px,
+      (y! - camera.principal_px[1]) / camera.focal_px,
+    ]
     const on = (axis: 0 | 1 | 2) => centre[axis] + depth * (forward[axis] + across * right[axis] + below * down[axis])
     return [on(0), on(1), on(2)]
   })

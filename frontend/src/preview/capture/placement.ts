@@ -39,9 +39,7 @@ function solved(one: Vec3, two: Vec3, three: Vec3, right: Vec3): Vec3 {
 }
 
 function determinant(a: Vec3, b: Vec3, c: Vec3): number {
-  return (
-    a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
-  )
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
 /** Return the angle of a direction about +Y, radians: 0 along +Z, turning to +X. */
@@ -55,7 +53,11 @@ export function azimuthOf([x, , z]: Vec3): number {
  */
 export function placeUntraced(cameras: readonly CameraInfo[], front: string | null): Similarity {
   const middle = lookedAt(cameras)
-  const away = ({ centre }: { centre: Vec3 }): Vec3 => [centre[0] - middle[0], centre[1] - middle[1], centre[2] - middle[2]]
+  const away = ({ centre }: { centre: Vec3 }): Vec3 => [
+    centre[0] - middle[0],
+    centre[1] - middle[1],
+    centre[2] - middle[2],
+  ]
   const first = cameras.find(({ photo }) => photo === front) ?? cameras[0]!
   const turn = -azimuthOf(away(standpoint(first, IDENTITY)))
   const scale = 1 / heightInPhotos(cameras)

@@ -10,9 +10,10 @@ import {
   SRGBColorSpace,
 } from 'three'
 import type { Cloud } from '../../api/types'
+import type { Branches } from '../../branches'
 import type { Vec3 } from '../camera'
 import { tubes } from '../tubes'
-import type { CrownSurface, VisibleBranches } from './measured'
+import type { CrownSurface } from './measured'
 
 /** Size of a point, CSS px. */
 const POINT_PX = 2.5
@@ -60,7 +61,7 @@ export function crownMesh({ points, triangles, guessed }: CrownSurface): Mesh {
 }
 
 /** Return branches as tubes; those that only join others have a colour of their own. */
-export function branchMesh({ points, radii, parents, seen }: VisibleBranches, unit: number): Mesh {
+export function branchMesh({ points, radii, parents, seen }: Branches, unit: number): Mesh {
   const tube = tubes({ points, radii, parents, born: parents.map(() => 0) }, 5, THINNEST * unit)
   const colours = new Float32Array(tube.joints.length * 3)
   tube.joints.forEach((joint, vertex) => {
