@@ -1,4 +1,4 @@
-import type { Texture } from 'three'
+import type { Mesh } from 'three'
 import { afterEach, expect, test, vi } from 'vitest'
 import { screenOf, treePose } from '../../../src/preview/camera'
 import { Frustums } from '../../../src/preview/capture/frustums'
@@ -35,8 +35,7 @@ test('a click on a photo’s picture finds the photo, one beside all of them non
 test('what is shown anew, or no longer, is disposed of', () => {
   const frustums = shown()
   const gone = vi.fn()
-  for (const part of frustums.group.children)
-    (part as Mesh).geometry.addEventListener('dispose', gone)
+  for (const part of frustums.group.children) (part as Mesh).geometry.addEventListener('dispose', gone)
   const count = frustums.group.children.length
   frustums.choose('3.jpg')
   expect(gone).toHaveBeenCalledTimes(count)
