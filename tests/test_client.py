@@ -17,7 +17,7 @@ import pytest
 from tests.api import drawn, sketched
 from tests.running import BACKEND, serving
 
-from treestroke import client as client_module
+from treestroke import client_connection
 from treestroke.client import Client, ServiceError
 from treestroke.schemas import ModelInfo, PhotoInfo
 from treestroke.wire_strokes import Sketch, Strokes
@@ -290,7 +290,7 @@ def test_waiting_ends_in_time(client: Client, photo: PhotoInfo) -> None:
 
 
 def test_a_service_that_is_not_there_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(client_module, "_PAUSES_S", (0.01, 0.01))
+    monkeypatch.setattr(client_connection, "_PAUSES_S", (0.01, 0.01))
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
     with Client(f"http://127.0.0.1:{port}") as client, pytest.raises(ServiceError, match="treestroke serve") as caught:
@@ -320,7 +320,7 @@ def test_another_server_is_told_from_ours(status: int) -> None:
 
 
 def test_a_damaged_file_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(client_module, "_PAUSES_S", (0.01,))
+    monkeypatch.setattr(client_connection, "_PAUSES_S", (0.01,))
     wrong = {"ETag": f'"{hashlib.sha256(b"right").hexdigest()}"'}
     with saying((200, wrong, b"wrong")) as place, Client(place) as client, pytest.raises(ServiceError, match="damaged"):
         client.download("mdl_1", tmp_path / "elm.glb")

@@ -26,3 +26,9 @@ MAX_REV = 2**53 - 1
 """Largest whole number that every JSON reader keeps exactly."""
 MAX_CLOUD_POINTS = 5000
 """Most points of a capture's cloud that a response holds."""
+MAX_EDITS = 500
+"""Most edits of a capture's visible branches."""
+MAX_EDIT_POINTS = 1000
+"""Most points of a branch that an edit adds."""
+MAX_COORDINATE = 1e9
+"""Greatest coordinate of an edit, in the capture's frame."""

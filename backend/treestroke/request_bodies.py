@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from treestroke.schemas import PhotoInfo
-from treestroke.wire_strokes import Sketch, Strokes
+from treestroke.wire_strokes import CaptureStrokes, Sketch, Strokes
 
 StrokesLike = Strokes | Mapping[str, Any] | str | os.PathLike[str]
 """Strokes, the same as a plain mapping, or the path of their JSON file."""
+ViewsLike = CaptureStrokes | Mapping[str, Any] | str | os.PathLike[str]
+"""Strokes over photos of a capture, the same as a plain mapping, or the path of their JSON file."""
 PictureLike = str | os.PathLike[str] | bytes
 """The path of a picture, or its bytes."""
 SketchLike = Sketch | Mapping[str, Any] | str | os.PathLike[str]
@@ -54,9 +56,9 @@ class SketchOptions(TreeOptions, total=False):
     photo: PhotoInfo | str | None
 
 
-def plain_strokes(strokes: StrokesLike) -> dict[str, Any]:
-    """Return strokes as plain values."""
-    if isinstance(strokes, Strokes):
+def plain_strokes(strokes: StrokesLike | ViewsLike) -> dict[str, Any]:
+    """Return strokes over a photo, or over those of a capture, as plain values."""
+    if isinstance(strokes, Strokes | CaptureStrokes):
         return strokes.model_dump(mode="json", exclude_none=True)
     if isinstance(strokes, Mapping):
         return dict(strokes)

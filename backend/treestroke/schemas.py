@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from treestroke.wire_strokes import Wire
 
 Point = tuple[float, float]
+Place = tuple[float, float, float]
 Pose = tuple[float, float, float, float]
 Status = Literal["queued", "running", "succeeded", "failed", "canceled"]
 CaptureStatus = Literal["unsolved", "queued", "running", "solved", "failed"]
@@ -42,7 +43,7 @@ class TracedSkeleton(Wire):
 class GrownSkeleton(Wire):
     """The whole tree's skeleton, in metres; ``born`` is the iteration in which a joint appeared, 0 for the visible."""
 
-    points: list[tuple[float, float, float]]
+    points: list[Place]
     radii: list[float]
     parents: list[int]
     born: list[int]
@@ -249,7 +250,7 @@ class CameraInfo(Wire):
 class CloudInfo(Wire):
     """Points that several photos show; evenly chosen ones where there are many."""
 
-    points: list[tuple[float, float, float]]
+    points: list[Place]
     colours: list[tuple[int, int, int]] = Field(description="sRGB, 0 to 255")
 
 
@@ -316,6 +317,46 @@ class CapturePage(Wire):
     next: str | None
 
 
+class TracedView(Wire):
+    """Where a photo of a capture shows the tree: closed rings by the even-odd rule, pixels of the upright photo."""
+
+    photo: str = Field(description="the photo's name")
+    foliage: list[list[Point]]
+
+
+class SeenSkeleton(Wire):
+    """The visible branches of a capture's tree after edits, in the capture's frame."""
+
+    points: list[Place]
+    radii: list[float]
+    parents: list[int]
+    seen: list[bool] = Field(description="false where a joint only joins what is seen, or was added by an edit")
+
+
+class CrownSurface(Wire):
+    """The surface of a crown that was measured, in the capture's frame."""
+
+    points: list[Place]
+    triangles: list[tuple[int, int, int]] = Field(description="indices of points, counterclockwise from outside")
+    guessed: list[bool] = Field(description="whether a point lies on a side that no photo was taken from")
+
+
+class CaptureTraceAnswer(Wire):
+    """What the photos of a capture show of its tree."""
+
+    rev: int | None
+    photos: list[TracedView] = Field(description="those that are used")
+    skeleton: SeenSkeleton
+    crown: CrownSurface
+    tree_from_capture: tuple[Pose, Pose, Pose] = Field(
+        description="3 x 4, by rows: from a point of the capture's frame to the GLB's, metres"
+    )
+    taken: Taken
+    warnings: list[StrokeWarning]
+    grown: GrownSkeleton | None = Field(default=None, description="with ``grow``; in the GLB's frame")
+    photo: PhotoFrame | None = Field(default=None, description="of the front, with ``grown``")
+
+
 class Fault(Wire):
     """One field that is at fault: a JSON pointer into the request, a code, and what is wrong."""
 
@@ -374,6 +415,9 @@ class Limits(Wire):
     leaf_bytes: int = Field(description="of the picture of a leaf or a fruit")
     sketch_bytes: int = Field(description="of the picture of a sketch")
     trace_seconds: float
+    capture_trace_seconds: float
+    edits: int
+    edit_points: int = Field(description="of a branch that an edit adds")
     model_seconds: float
     capture_photos_min: int = Field(description="photos of a capture whose cameras can be looked for")
     capture_photos_max: int

@@ -10,6 +10,7 @@ from pydantic.json_schema import SkipJsonSchema
 from treestroke.core.pipeline import settings as table
 from treestroke.core.pipeline.settings import MAX_SEED, Choice, Several, Span, Toggle
 from treestroke.limits import MAX_ID, MAX_LEAF_BYTES, MAX_NAME, MAX_REV
+from treestroke.wire_edits import EDITS_EXAMPLE, EditList
 from treestroke.wire_strokes import (
     STROKES_EXAMPLE,
     CaptureStrokes,
@@ -34,6 +35,7 @@ MODEL_EXAMPLE: dict[str, JsonValue] = {
     "seed": 1,
     "name": "The old oak",
 }
+VIEWS_EXAMPLE: dict[str, JsonValue] = {"views": [{"photo": "IMG_03.jpg", **STROKES_EXAMPLE}]}
 _HOW_TO_TRACE: dict[str, JsonValue] = {"rev": 7, "grow": False}
 
 
@@ -117,6 +119,17 @@ class SketchTraceRequest(RequestPart):
     grow: Annotated[bool, Strict()] = Field(default=False, description="grow the whole skeleton too, without leaves")
 
 
+class CaptureTraceRequest(CaptureStrokes):
+    """Strokes over some of a solved capture's photos to trace, and edits of the branches that are found."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {**VIEWS_EXAMPLE, "edits": EDITS_EXAMPLE, **_HOW_TO_TRACE}})
+
+    edits: EditList = Field(default_factory=list, description="applied in this order to the visible branches")
+    rev: Rev | None = Field(default=None, description="comes back with the answer")
+    grow: Annotated[bool, Strict()] = Field(default=False, description="grow the whole skeleton too, without leaves")
+    settings: ModelSettings = Field(default_factory=ModelSettings, description="what the grown skeleton grows by")
+
+
 class TreeRequest(RequestPart):
     """What a request for a model holds both as JSON and as a form."""
 
@@ -146,6 +159,7 @@ class ModelRequest(TreeRequest):
     views: CaptureStrokes | SkipJsonSchema[None] = Field(
         default=None, description="with a capture", json_schema_extra=no_default
     )
+    edits: EditList = Field(default_factory=list, description="of the branches that a capture shows; with views")
     leaf: EncodedPng | SkipJsonSchema[None] = Field(
         default=None, description="PNG of a leaf cut out, base64", json_schema_extra=no_default
     )
@@ -196,7 +210,7 @@ class FormRequest(TreeRequest):
 
 
 class Rename(RequestPart):
-    """A model's new name."""
+    """The new name of a model or a capture."""
 
     name: Name = Field(json_schema_extra={"example": "The old oak"})
 

@@ -65,14 +65,15 @@ class RequestPart(Wire):
     def _check_keys(cls, value: object) -> object:
         if isinstance(value, cls):
             return value
-        allowed = ", ".join(cls.model_fields)
+        fields = {field.alias or name: field for name, field in cls.model_fields.items()}
+        allowed = ", ".join(fields)
         if not isinstance(value, Mapping):
             raise PydanticCustomError("no_object", "an object with {allowed} is needed", {"allowed": allowed})
         for key, item in value.items():
             # The key is wrapped in a list: pydantic writes a bare one into its message, which a lone surrogate breaks.
-            if key not in cls.model_fields:
+            if key not in fields:
                 raise PydanticCustomError("unknown_key", "unknown key", {"key": [key], "allowed": allowed})
-            if item is None and NoneType not in get_args(cls.model_fields[key].annotation):
+            if item is None and NoneType not in get_args(fields[key].annotation):
                 raise PydanticCustomError("null", "null", {"key": [key]})
         return value
 

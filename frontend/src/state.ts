@@ -86,6 +86,15 @@ export interface Fault {
   readonly stroke?: StrokeRef
 }
 
+/** Photos that were chosen together. */
+export interface Offer {
+  readonly photos: readonly File[]
+  /** The names of other files among them. */
+  readonly others: readonly string[]
+  /** The name of their folder; empty where they come from none. */
+  readonly name: string
+}
+
 /** A message that has no place of its own on the page; it disappears after a while unless it `stays`. */
 export interface Notice {
   readonly text: string
@@ -156,7 +165,9 @@ export interface State extends OwnPictures {
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
   /** The dialog that is open. */
-  readonly dialog: 'gallery' | 'shortcuts' | null
+  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | null
+  /** Photos that were chosen together, while it is asked what becomes of them. */
+  readonly offer: Offer | null
   /** The service's limits, once it has told them. */
   readonly limits: Limits | null
   /** False while the browser cannot save the drawing. */
@@ -193,6 +204,7 @@ export const EMPTY: State = {
   model: null,
   shows: 'live',
   dialog: null,
+  offer: null,
   limits: null,
   kept: true,
   online: true,

@@ -1,3 +1,4 @@
+import { captureText } from './text/capture'
 import { drawingText } from './text/drawing'
 import { filesText } from './text/files'
 import { measuredText } from './text/measured'
@@ -13,6 +14,7 @@ export const text = {
   ...welcomeText,
   ...drawingText,
   ...treeText,
+  capture: captureText,
   sheets: sheetsText,
   settings: settingsText,
   taken: takenText,

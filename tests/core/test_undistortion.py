@@ -4,7 +4,7 @@ import pytest
 
 from treestroke.core.capture import SolvedPhoto
 from treestroke.core.geometry.camera import PerspectiveCamera
-from treestroke.core.undistortion import undistorted, undistorted_points
+from treestroke.core.undistortion import distorted_points, undistorted, undistorted_points
 
 CAMERA = PerspectiveCamera(400, 300, np.column_stack([np.eye(3), np.zeros(3)]), 320.0, (200.0, 150.0))
 PHOTO = SolvedPhoto("a.jpg", CAMERA, -0.15)
@@ -22,6 +22,12 @@ def test_drawn_points_go_where_the_shot_sees_them() -> None:
     shot = undistorted(np.zeros((300, 400, 3), np.uint8), PHOTO)
     found = undistorted_points(seen(), PHOTO)
     np.testing.assert_allclose(found, shot.camera.pixels_from_world(POINTS), atol=0.01)
+
+
+def test_points_of_a_shot_go_back_to_where_the_lens_shows_them() -> None:
+    shot = undistorted(np.zeros((300, 400, 3), np.uint8), PHOTO)
+    np.testing.assert_allclose(distorted_points(shot.camera.pixels_from_world(POINTS), PHOTO), seen(), atol=1e-9)
+    np.testing.assert_allclose(distorted_points(undistorted_points(seen(), PHOTO), PHOTO), seen(), atol=0.01)
 
 
 def test_the_picture_is_unbent_as_its_points() -> None:

@@ -44,7 +44,7 @@ def main() -> None:
     start_logging()
     stop_with_parent()
     listener = socket.socket(fileno=int(os.environ.pop(LISTENER)))
-    limit = max_connections(settings.tracers)
+    limit = max_connections(settings.tracers + 1)  # one traces captures
     config = uvicorn.Config(
         make_app(settings, places=limit // 2),
         http=partial(Connection, limit=limit),  # type: ignore[arg-type]

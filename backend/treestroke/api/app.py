@@ -30,15 +30,35 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
-from treestroke.wire_requests import CaptureRequest, ModelRequest, Rename, SketchTraceRequest, TraceRequest
+from treestroke.wire_edits import Edits
+from treestroke.wire_requests import (
+    CaptureRequest,
+    CaptureTraceRequest,
+    ModelRequest,
+    Rename,
+    SketchTraceRequest,
+    TraceRequest,
+)
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
+CAPTURES_WAITING = 4
+"""Captures that are traced or wait for it: one by one, in a process of their own, so that none holds up photos."""
+_CAPTURE_TRACER = ("treestroke.service.capture_tracer", "treestroke.service.capture_trace")
 _FORM_BYTES = 100_000
 """Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
-_BODIES = (TraceRequest, SketchTraceRequest, ModelRequest, Rename, CaptureRequest, Problem)
+_BODIES = (
+    TraceRequest,
+    SketchTraceRequest,
+    CaptureTraceRequest,
+    ModelRequest,
+    Edits,
+    Rename,
+    CaptureRequest,
+    Problem,
+)
 """What bodies hold that FastAPI does not read."""
 _REF = "#/components/schemas/{model}"
 
@@ -79,9 +99,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     database, blobs = Database(settings.folder), Blobs(settings.folder)
     database.migrate()
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
+    capture_tracers = TracingPool(
+        1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING, _CAPTURE_TRACER
+    )
     dispatcher = Dispatcher(database, blobs, partial(send_job_message, make_queue(settings)), settings.keep_days)
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
-    app.state.resources = Resources(database, blobs, tracers, *limits)
+    app.state.resources = Resources(database, blobs, tracers, capture_tracers, *limits)
     app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
     tracers.start()
@@ -93,6 +116,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         dispatcher.stop()
         app.state.projects.close()
         tracers.close()
+        capture_tracers.close()
         database.close()
 
 

@@ -17,6 +17,18 @@ from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 
 MAX_PAGE = 100
+RENAME_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/Rename"},
+                "example": {"name": "The old oak"},
+            }
+        },
+    }
+}
+"""What a new name is sent as, for the API's document."""
 
 
 def _settings(request: Request) -> Settings:

@@ -18,7 +18,7 @@ from treestroke.limits import (
 )
 
 Content = TypeVar("Content", covariant=True)
-PartKind = Literal["photo", "strokes", "views", "structure", "sketch", "cutout"]
+PartKind = Literal["photo", "strokes", "views", "edits", "structure", "sketch", "cutout"]
 SourceName = Literal["photo", "views", "sketches"]
 
 BEGINNING = 128
@@ -63,7 +63,7 @@ class Part:
     title
         Its name in messages.
     kind
-        How it is decoded. Strokes and sketches are what the person drew.
+        How it is decoded. Strokes, edits and sketches are what the person drew.
     formats
         Those its file may have.
     refusal
@@ -90,7 +90,7 @@ class Part:
     @property
     def drawn(self) -> bool:
         """Whether the person drew it."""
-        return self.kind in ("strokes", "views", "sketch")
+        return self.kind in ("strokes", "views", "edits", "sketch")
 
     def format_of(self, beginning: bytes) -> Format:
         """Return the format of a file by its first `BEGINNING` bytes."""
@@ -115,6 +115,7 @@ PARTS: Mapping[str, Part] = {
         Part("strokes", "strokes", "strokes", (TEXT,), StrokesError, "stroke JSON; needed with a photo"),
         Part("photos", "photos", "photo", _PHOTOS, PhotoError, f"two photos or more, {ACCEPTED_FORMATS}", many=True),
         Part("views", "strokes over photos", "views", (TEXT,), StrokesError, "stroke JSON for some of the photos"),
+        Part("edits", "edits of branches", "edits", (TEXT,), StrokesError, "edits of the branches that photos show"),
         Part(
             "structure",
             "the photos' cameras",
@@ -197,7 +198,7 @@ SOURCES: Mapping[SourceName, Source] = {
             "several photos and strokes over some of them",
             "views",
             ("photos", "views"),
-            ("structure", *CUTOUTS),
+            ("structure", "edits", *CUTOUTS),
             "photos",
         ),
         Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *CUTOUTS), "side"),

@@ -31,8 +31,12 @@ _CANVAS = Rule(
     "canvas_invalid",
     f"it must be [width, height], whole numbers from {MIN_CANVAS} to {MAX_CANVAS}; give the drawing's size, px",
 )
+_PLACE = Rule("wrong_type", "it must be a place [X, Y, Z] in the capture's frame; give three numbers")
+_NO_EDIT = Rule("edit_unknown", 'it must be an edit with "do" one of {expected_tags}; give one')
 _NOT_PNG = Rule("wrong_type", f"it must be base64 of a PNG of at most {MAX_LEAF_BYTES // 10**6} MB; encode it again")
 
+_PLACES = ("at", "from", "to")
+"""Keys of an edit that hold a place."""
 _BY_KEY_AND_TYPE = {
     ("crown", "missing"): Rule("crown_missing", "it is missing; draw one stroke around the foliage"),
     ("points", "missing"): Rule("missing_key", "it has no points; give [[x, y], ...]", 1),
@@ -59,6 +63,13 @@ _BY_KEY_AND_TYPE = {
     ),
     ("picture", "string_type"): Rule("wrong_type", "it must be a PNG in base64, not {kind}; encode it again"),
     ("name", "missing"): Rule("missing_key", "it is missing; send it"),
+    **{(key, "missing"): Rule("missing_key", "it is missing; give a place [X, Y, Z]") for key in _PLACES},
+    ("edits", "too_long"): Rule("too_many_edits", "there are {count}, at most {max_length} are allowed; drop some"),
+    ("added points", "missing"): Rule("missing_key", "it has no points; give [[X, Y, Z], ...]", 1),
+    ("added points", "too_long"): Rule(
+        "too_many_points", "it has {count} points, at most {max_length} are allowed; thin them out", 1
+    ),
+    ("added points", "too_short"): Rule("stroke_too_short", "it has no points; draw it longer", 1),
 }
 """By the key at fault (`point`: one of ``points``) and pydantic's type of error."""
 
@@ -70,6 +81,9 @@ _BY_KEY = {
     "seed": Rule("seed_invalid", f"{{value}} is not allowed; give a whole number from 0 to {MAX_SEED}"),
     "photo": Rule("wrong_type", "it must be a photo's id; upload the photo first"),
     "capture": Rule("wrong_type", "it must be a capture's id; make a capture first"),
+    **dict.fromkeys(_PLACES, _PLACE),
+    "added point": _PLACE,
+    "radius": Rule("radius_invalid", "{value} is not a radius; give a length above 0 in the capture's frame"),
     "leaf": _NOT_PNG,
     "fruit": _NOT_PNG,
     "rev": Rule("wrong_type", f"it must be a whole number, at most {MAX_REV}; send one or leave it out"),
@@ -82,6 +96,8 @@ _BY_TYPE = {
     "null": Rule("wrong_type", "it must not be null; leave it out or give a value"),
     "list_type": Rule("wrong_type", "it must be a list, not {kind}; give one"),
     "float_type": Rule("wrong_type", "a number is needed, not {kind}; give one"),
+    "union_tag_invalid": _NO_EDIT,
+    "union_tag_not_found": Rule("edit_unknown", 'it says nothing to "do"; give remove, add, move, radius or join'),
     "finite_number": Rule("non_finite_number", "{value} is not finite; give a number that is"),
 }
 _OTHER = Rule("wrong_type", "{problem}; correct it")
@@ -162,9 +178,14 @@ def _key_at(place: Place) -> tuple[str, Place]:
         return "canvas", place[: place.index("canvas") + 1]
     if "points" in place:
         at = place.index("points")
+        added = "added " if "edits" in place else ""
         if len(place) > at + 1:
-            return "point", place[: at + 2]
+            return f"{added}point", place[: at + 2]
+        if added:
+            return "added points", place
         return ("scale/points" if place[:at] == ("scale",) else "points"), place
+    if len(place) > 1 and place[-2] in _PLACES:
+        return str(place[-2]), place[:-1]
     return (place[-1] if place and isinstance(place[-1], str) else ""), place
 
 

@@ -41,6 +41,14 @@ def undistorted_points(points_px: Floats, photo: SolvedPhoto) -> Floats:
     return np.asarray(on_plane * camera.focal_px + np.array(camera.principal_px))
 
 
+def distorted_points(points_px: Floats, photo: SolvedPhoto) -> Floats:
+    """Carry points (n, 2), px, of an undistorted shot to where the captured picture shows the same, px."""
+    camera = photo.camera
+    on_plane = (points_px - np.array(camera.principal_px)) / camera.focal_px
+    bent = on_plane * (1 + photo.radial * (on_plane**2).sum(axis=1, keepdims=True))
+    return np.asarray(bent * camera.focal_px + np.array(camera.principal_px))
+
+
 def _matrix(focal_px: float, principal_px: tuple[float, float]) -> Floats:
     """Return OpenCV's camera matrix (3, 3)."""
     x, y = principal_px

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Generic, Self
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
@@ -51,11 +51,12 @@ class AttemptLost(Exception):
     """A process that the work needs died; another attempt may do better."""
 
 
-class Heartbeat:
+class Heartbeat(Generic[JobRow]):
     """Renews a job's lease from a thread of its own, records its progress, and notices when it is to stop."""
 
-    def __init__(self, database: Database, job: AnyJob, estimate: ProgressEstimate, seconds: float) -> None:
-        self._database, self._job, self._estimate = database, job, estimate
+    def __init__(self, database: Database, job: JobRow, estimate: ProgressEstimate, seconds: float) -> None:
+        self._database, self._estimate = database, estimate
+        self._job: JobRow = job
         self._deadline = time.monotonic() + seconds
         self._state: tuple[str | None, float, float] = (None, 0.0, 0.0)
         self._stop_by: type[Exception] | None = None
@@ -101,7 +102,7 @@ class Heartbeat:
     def _is_to_stop(self) -> bool:
         """Return whether the row says that this attempt must stop."""
         with suppress(SQLAlchemyError), self._database.reading() as session:
-            row: AnyJob | None = session.get(type(self._job), self._job.number)  # type: ignore[assignment]
+            row = session.get(type(self._job), self._job.number)
             return row is None or row.cancel or row.attempt != self._job.attempt or row.status != "running"
         return False
 
@@ -153,10 +154,10 @@ def publish(database: Database, job: AnyJob, succeed: Callable[[Session], bool])
     log.info("job_succeeded" if published else "job_canceled" if canceled else "job_superseded")
 
 
-def _take_back(database: Database, job: AnyJob) -> None:
+def _take_back(database: Database, job: JobRow) -> None:
     """Queue a job again, or end it where it has used up its attempts."""
     with database.writing() as session:
-        now: AnyJob | None = session.get(type(job), job.number)  # type: ignore[assignment]
+        now = session.get(type(job), job.number)
         if now is not None and now.attempt == job.attempt:
             take_back(session, now, problem_of("worker_lost"))
 

@@ -18,7 +18,7 @@ from treestroke.codec.structure import decode_structure
 from treestroke.core.capture import Structure
 from treestroke.core.errors import CaptureError, TreestrokeError
 from treestroke.limits import MAX_NAME, MAX_PHOTOS, MIN_PHOTOS
-from treestroke.service import tracer
+from treestroke.service import capture_tracer, tracer
 from treestroke.service.engine_version import engine_version
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import read_body
@@ -141,6 +141,35 @@ def delete(database: Database, id: str) -> None:
         session.execute(update(CaptureRow).where(CaptureRow.id == id).values(deleted=time.time(), seen=None))
 
 
+def rename(database: Database, id: str, name: str) -> StoredCapture:
+    """Name a capture.
+
+    Raises
+    ------
+    NotFound
+        There is no such capture.
+    """
+    with database.writing() as session:
+        _row(session, id)
+        session.execute(update(CaptureRow).where(CaptureRow.id == id).values(name=name, seq=CaptureRow.seq + 1))
+    return find_capture(database, id)
+
+
+def restore(database: Database, id: str) -> StoredCapture:
+    """Undo a capture's deletion.
+
+    Raises
+    ------
+    NotFound
+        There is no such capture, or it was removed for good.
+    """
+    with database.writing() as session:
+        row = _row(session, id, deleted=True)
+        if row.deleted is not None:
+            row.deleted = row.seen = None
+    return find_capture(database, id)
+
+
 def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple[CapturePhoto, bool]:
     """Add a photo that was sent by a ``name`` to a capture; return it, and whether it is new there.
 
@@ -252,6 +281,43 @@ def structure_of(blobs: Blobs, capture: StoredCapture) -> Structure | None:
     if capture.solve is None or capture.solve.structure is None:
         return None
     return decode_structure(blobs.get(capture.solve.structure))
+
+
+def solved_structure(capture: StoredCapture) -> str:
+    """Return the blob of what was found of a capture's photos.
+
+    Raises
+    ------
+    CaptureError
+        The capture is not solved.
+    """
+    structure = None if capture.solve is None else capture.solve.structure
+    if structure is None:
+        fault = f"its cameras are not known, it is {capture.status}; solve it first"
+        raise CaptureError.at(("capture",), fault, "capture_unsolved")
+    return structure
+
+
+def trace(resources: Resources, id: str, body: bytes) -> bytes:
+    """Trace a solved capture by the body of a request; return the response's JSON.
+
+    Raises
+    ------
+    NotFound, CaptureError, StrokesError, SettingsError
+        There is no such capture, it is not solved, or the body cannot be used.
+    Damaged
+        The file of its cameras is damaged.
+    Overloaded, Crashed
+        Too many captures are being traced, or the process died over this request.
+    """
+    capture = find_capture(resources.database, id)
+    structure = resources.blobs.path(solved_structure(capture))
+    photos = [
+        capture_tracer.StoredPhoto(photo.name, (photo.width, photo.height), resources.blobs.path(photo.blob))
+        for photo in capture.photos
+    ]
+    mended = warnings_of(capture.photos)
+    return resources.capture_tracers("", capture_tracer.trace_answer, structure, photos, body, mended)
 
 
 def warnings_of(photos: Sequence[CapturePhoto]) -> list[dict[str, Any]]:

@@ -41,7 +41,7 @@ def grow_model(database: Database, blobs: Blobs, assignment: Assignment) -> None
 
 
 def _make(
-    database: Database, blobs: Blobs, job: ModelRow, inputs: Inputs[ModelPart], heartbeat: Heartbeat
+    database: Database, blobs: Blobs, job: ModelRow, inputs: Inputs[ModelPart], heartbeat: Heartbeat[ModelRow]
 ) -> tuple[dict[str, Any], dict[str, tuple[str, int]]]:
     """Make the tree and store its files, which are seen only once they are published; return report and files."""
     contents = _contents(blobs, inputs, heartbeat.report)

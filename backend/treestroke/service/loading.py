@@ -8,6 +8,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from treestroke.codec.branch_edits import edits_from, parse_edits
 from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
 from treestroke.codec.exif import exif_focal_px
 from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, decode_stored, ignore_warning
@@ -18,9 +19,10 @@ from treestroke.codec.strokes import parse_strokes, strokes_from
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.imaging.opacity import over_white
-from treestroke.core.pipeline.captured_photos import captured_photo
+from treestroke.core.pipeline.captured_photos import CAPTURED_SIDE, captured_photo
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
+from treestroke.core.skeleton.branch_edits import BranchEdit
 from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
 from treestroke.core.types import Picture
 
@@ -30,7 +32,10 @@ PhotoLike = FileLike | Picture
 StrokesLike = FileLike | Mapping[str, Any] | Strokes
 SketchLike = FileLike | Mapping[str, Any] | Sketch
 ViewsLike = FileLike | Mapping[str, Any] | CaptureStrokes
-PartLike = FileLike | Mapping[str, Any] | Picture | CapturedPhoto | Strokes | CaptureStrokes | Sketch
+EditsLike = FileLike | Mapping[str, Any] | tuple[BranchEdit, ...]
+PartLike = (
+    FileLike | Mapping[str, Any] | Picture | CapturedPhoto | Strokes | CaptureStrokes | tuple[BranchEdit, ...] | Sketch
+)
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
@@ -121,12 +126,29 @@ def load_views(views: ViewsLike) -> CaptureStrokes:
     return parse_capture_strokes(*read_part("views", views))
 
 
-def load_stored_capture(name: str, stored: bytes, focal_px: float | None = None) -> CapturedPhoto:
-    """Decode one photo of a capture that the service keeps, at no more than `CAPTURED_SIDE` px.
+def load_edits(edits: EditsLike) -> tuple[BranchEdit, ...]:
+    """Read edits of visible branches (path, JSON bytes, plain mapping or values).
+
+    Raises
+    ------
+    StrokesError
+        As `parse_edits`; or the file cannot be read.
+    """
+    if isinstance(edits, tuple):
+        return edits
+    if isinstance(edits, Mapping):
+        return edits_from(edits)
+    return parse_edits(*read_part("edits", edits))
+
+
+def load_stored_capture(
+    name: str, stored: bytes, focal_px: float | None = None, side: int = CAPTURED_SIDE
+) -> CapturedPhoto:
+    """Decode one photo of a capture that the service keeps, at no more than ``side`` px.
 
     ``focal_px`` is its focal length, px of the photo, where that is known.
     """
-    return captured_photo(name, over_white(decode_stored(stored)), focal_px)
+    return captured_photo(name, over_white(decode_stored(stored)), focal_px, side)
 
 
 def load_captured(
@@ -200,6 +222,8 @@ def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore
                 return load_photo(inputs.parts[name], report, warn)
             case "views":
                 return load_views(inputs.parts[name])
+            case "edits":
+                return load_edits(inputs.parts[name])
             case "structure":
                 from treestroke.codec.structure import decode_structure  # with pydantic, and few trees have one
 

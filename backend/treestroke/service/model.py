@@ -26,6 +26,7 @@ from treestroke.engines.solving import SolveBounds, solve_in_process
 from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import Bundle, check_files, tree_files
 from treestroke.service.loading import (
+    EditsLike,
     FileLike,
     PartLike,
     PhotoLike,
@@ -160,6 +161,7 @@ def model_views(
     report: Report = silent,
     on_grown: OnGrown = ignore_grown,
     *,
+    edits: EditsLike | None = None,
     leaf: FileLike | None = None,
     fruit: FileLike | None = None,
     name: str = "tree",
@@ -174,6 +176,9 @@ def model_views(
         Paths, or photos by the names that strokes call them, each as `model` takes it.
     views
         A path, JSON bytes, a plain mapping or values.
+    edits
+        Edits of the branches that the photos show, in the frame in which their cameras are found: a path, JSON bytes, a
+        plain mapping or values.
 
     Raises
     ------
@@ -184,7 +189,7 @@ def model_views(
     """
     named = photos if isinstance(photos, Mapping) else {os.path.basename(photo): photo for photo in photos}
     several = {f"photos/{photo}": content for photo, content in named.items()}
-    parts = {**several, "views": views, "leaf": leaf, "fruit": fruit}
+    parts = {**several, "views": views, "edits": edits, "leaf": leaf, "fruit": fruit}
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
@@ -258,12 +263,16 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
-    from treestroke.core.pipeline.viewing import grow_views, read_views  # with scipy, slow, and of no use for one photo
+    # With scipy, slow, and of no use for one photo.
+    from treestroke.core.pipeline.edited_views import edited_views
+    from treestroke.core.pipeline.viewing import grow_views, read_views
 
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
     drawn = mend_views(parts["views"], {photo.name: photo.size_px for photo in photos})  # faults are told at once
     structure = parts["structure"] if "structure" in parts else solve_in_process(photos, SOLVE_BOUNDS, report)
     evidence = read_views(photos, structure, drawn, settings.height, report)
+    if "edits" in parts:
+        evidence = edited_views(evidence, parts["edits"])
     return lambda rng: grow_views(evidence, settings, rng, report)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from treestroke.codec.branch_edits import edits_of, encode_edits
 from treestroke.codec.capture_strokes import capture_strokes_of, encode_capture_strokes
 from treestroke.codec.image import decode_cutout
 from treestroke.codec.inputs import SIDES, check_parts, part_of
@@ -43,7 +44,7 @@ class ModelOrder:
     photo, capture
         The id of a stored photo, or of a capture; None where the request names none.
     parts
-        What else the tree is made of, as files: strokes, views, front, side, leaf, fruit.
+        What else the tree is made of, as files: strokes, views, edits, front, side, leaf, fruit.
     drawing
         The strokes and sketches among them as values, to be checked against the photo or the capture.
     settings
@@ -119,8 +120,10 @@ def read_body(body: bytes) -> Any:
 def _check_source(request: ModelRequest, sent: set[str], within: Place) -> None:
     """Check that what was sent makes a tree: a capture's photos come by its id."""
     if request.capture is None:
-        if request.views is not None:
-            raise TreestrokeError.at(("capture",), "missing: views need a capture; send its id too", "missing_key")
+        for key in ("views", "edits"):
+            if key in request.model_fields_set:
+                fault = f"missing: {key} need a capture; send its id too"
+                raise TreestrokeError.at(("capture",), fault, "missing_key")
         check_parts(sent, within)
         return
     other = next((key for key in ("photo", "strokes", "sketches") if key in request.model_fields_set), None)
@@ -146,6 +149,8 @@ def _order(request: ModelRequest | FormRequest, sketches: Sketches | FormRequest
         photo, capture, views = request.photo, request.capture, _views(request)
     if views is not None:
         parts["views"] = encode_capture_strokes(views).encode()
+    if isinstance(request, ModelRequest) and request.edits:
+        parts["edits"] = encode_edits(edits_of(request.edits)).encode()
     if request.strokes is not None:
         strokes = _strokes(request)
         parts["strokes"] = encode_strokes(strokes).encode()

@@ -29,11 +29,12 @@ class NotFound(Exception):
 
 @dataclass(frozen=True)
 class Resources:
-    """The service's storage (rows and blobs), and the processes that decode and trace."""
+    """The service's storage (rows and blobs), the processes that decode and trace, and the one that traces captures."""
 
     database: Database
     blobs: Blobs
     tracers: TracingPool
+    capture_tracers: TracingPool
     photo_bytes: int = PHOTO_MB * 10**6
     """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6

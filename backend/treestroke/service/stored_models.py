@@ -11,7 +11,6 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
-from treestroke.core.errors import CaptureError
 from treestroke.service import captures, tracer
 from treestroke.service.engine_version import engine_version
 from treestroke.service.fingerprints import digest
@@ -243,10 +242,7 @@ def _drawn_over_capture(resources: Resources, order: ModelOrder) -> _Base:
     assert order.capture is not None
     assert order.drawing.views is not None
     capture = captures.find_capture(resources.database, order.capture)
-    structure = None if capture.solve is None else capture.solve.structure
-    if structure is None:
-        fault = f"its cameras are not known, it is {capture.status}; solve it first"
-        raise CaptureError.at(("capture",), fault, "capture_unsolved")
+    structure = captures.solved_structure(capture)
     sizes = {photo.name: (photo.width, photo.height) for photo in capture.photos}
     path = resources.blobs.check(structure)
     resources.tracers(structure, tracer.check_views, path, order.drawing.views, sizes)

@@ -94,7 +94,7 @@ def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] =
     known = _recall(photo)
     known.last = trace(known.picture, strokes, known.last, request.grow, side=side, settings=settings)
     answer = known.last.as_dict()
-    return _answer(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
+    return answer_of(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
 
 
 def sketch_answer(body: bytes) -> bytes:
@@ -108,7 +108,7 @@ def sketch_answer(body: bytes) -> bytes:
     request = checked(SketchTraceRequest, read_body(body), StrokesError)
     front = _within(("front",), sketch_of, request.front)
     side = None if request.side is None else _within(("side",), sketch_of, request.side)
-    return _answer(request.rev, trace_sketches(front, side, request.grow).as_dict())
+    return answer_of(request.rev, trace_sketches(front, side, request.grow).as_dict())
 
 
 def check_drawing(photo: Path | None, drawing: Drawing, within: Place = ()) -> None:
@@ -155,7 +155,8 @@ def _recall(photo: Path) -> Known:
     return known
 
 
-def _answer(rev: int | None, answer: Mapping[str, Any]) -> bytes:
+def answer_of(rev: int | None, answer: Mapping[str, Any]) -> bytes:
+    """Return an answer, and the number that its request had, as JSON."""
     return json.dumps({"rev": rev, **answer}, separators=(",", ":")).encode()
 
 

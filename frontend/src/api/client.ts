@@ -1,6 +1,15 @@
-import { type Strokes, toWire } from '../strokes'
+import { type Strokes, toWire, viewsToWire } from '../strokes'
 import type { components } from './schema'
-import type { Limits, Model, Settings, SketchTraceAnswer, TraceAnswer } from './types'
+import type {
+  CaptureInfo,
+  CapturePhoto,
+  CaptureTraceAnswer,
+  Limits,
+  Model,
+  Settings,
+  SketchTraceAnswer,
+  TraceAnswer,
+} from './types'
 
 type Schemas = components['schemas']
 
@@ -24,9 +33,10 @@ export class Unreachable extends Error {}
 
 type Sketches = Schemas['Sketches']
 
-/** What a tree is made of: strokes over a photo, sketches, or both. */
+/** What a tree is made of: strokes over a photo, sketches, or both; or strokes over the photos of a capture. */
 export interface Inputs {
   readonly photo?: string
+  readonly capture?: string
   readonly strokes?: Strokes
   readonly sketches?: Sketches
 }
@@ -77,6 +87,39 @@ export class Client {
     return request('POST', `/v1/photos/${photo}/trace`, json({ ...toWire(strokes), ...asked }))
   }
 
+  makeCapture(name: string): Promise<CaptureInfo> {
+    return request('POST', '/v1/captures', json({ name }))
+  }
+
+  getCapture(id: string): Promise<CaptureInfo> {
+    return request('GET', `/v1/captures/${id}`)
+  }
+
+  /** Add a photo to a capture; the same bytes by the same name are one photo, however often they are sent. */
+  addCapturePhoto(id: string, file: Blob, name: string): Promise<CapturePhoto> {
+    const form = new FormData()
+    form.append('file', file, name)
+    return request('POST', `/v1/captures/${id}/photos`, { body: form })
+  }
+
+  removeCapturePhoto(id: string, photo: string): Promise<void> {
+    return request('DELETE', `/v1/captures/${id}/photos/${photo}`)
+  }
+
+  /** Have the cameras of a capture's photos found; at once where they were found before. */
+  solveCapture(id: string): Promise<CaptureInfo> {
+    return request('POST', `/v1/captures/${id}/solve`)
+  }
+
+  cancelSolve(id: string): Promise<CaptureInfo> {
+    return request('POST', `/v1/captures/${id}/cancel`)
+  }
+
+  /** Find the tree in all photos of a solved capture, and grow the live tree where it is asked for. */
+  traceCapture(id: string, strokes: Strokes, asked: Omit<TraceRequest, 'side'>): Promise<CaptureTraceAnswer> {
+    return request('POST', `/v1/captures/${id}/trace`, json({ ...viewsToWire(strokes), ...editsIn(strokes), ...asked }))
+  }
+
   /** Trace sketches; with `grow` the live tree too. */
   traceSketches(sketches: Sketches, grow: boolean): Promise<SketchTraceAnswer> {
     return request('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
@@ -88,8 +131,8 @@ export class Client {
   }
 
   /** Request a model; requests with the same `key` lead to one model. */
-  async grow({ inputs: { strokes, ...inputs }, leaf, fruit, ...rest }: ModelRequest, key: string): Promise<Model> {
-    const wireInputs = { ...inputs, ...(strokes && { strokes: toWire(strokes) }) }
+  async grow({ inputs, leaf, fruit, ...rest }: ModelRequest, key: string): Promise<Model> {
+    const wireInputs = { ...inputs, ...drawnIn(inputs) }
     const pictures = { ...(leaf && { leaf: await base64(leaf) }), ...(fruit && { fruit: await base64(fruit) }) }
     return request('POST', '/v1/models', json({ ...wireInputs, ...rest, ...pictures }, { 'Idempotency-Key': key }))
   }
@@ -122,6 +165,18 @@ export class Client {
   async getFile(url: string): Promise<Blob> {
     return (await send('GET', url)).blob()
   }
+}
+
+/** Return the strokes of a request for a model, in its form. */
+function drawnIn({ strokes, capture }: Inputs) {
+  if (!strokes) return {}
+  return capture
+    ? { strokes: undefined, views: viewsToWire(strokes), ...editsIn(strokes) }
+    : { strokes: toWire(strokes) }
+}
+
+function editsIn({ edits }: Strokes) {
+  return edits?.length ? { edits } : {}
 }
 
 async function request<T>(method: string, url: string, init: RequestInit = {}): Promise<T> {

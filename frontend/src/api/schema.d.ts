@@ -152,9 +152,33 @@ export interface paths {
         post?: never;
         /**
          * Delete Capture
-         * @description Delete a capture with its photos.
+         * @description Delete a capture with its photos, which go after 24 hours; until then it can be restored.
          */
         delete: operations["delete_capture"];
+        options?: never;
+        head?: never;
+        /**
+         * Rename Capture
+         * @description Name a capture.
+         */
+        patch: operations["rename_capture"];
+        trace?: never;
+    };
+    "/v1/captures/{id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore Capture
+         * @description Undo a deletion.
+         */
+        post: operations["restore_capture"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -258,6 +282,28 @@ export interface paths {
          * @description Stop looking for a capture's cameras; what was found stays as it is.
          */
         post: operations["cancel_solve"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/captures/{id}/trace": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Trace Capture
+         * @description Find the tree in all photos of a solved capture, its crown and its visible branches, to which edits are applied.
+         *
+         *     With ``grow`` the whole tree's skeleton too. Strokes are read once: edits and settings are answered soon after.
+         */
+        post: operations["trace_capture"];
         delete?: never;
         options?: never;
         head?: never;
@@ -473,6 +519,26 @@ export interface paths {
          * @description Download the strokes over the photos of a capture that the tree was made of.
          */
         get: operations["get_views"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/models/{id}/edits.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Edits
+         * @description Download the edits of the visible branches of a capture that the tree was made of.
+         */
+        get: operations["get_edits"];
         put?: never;
         post?: never;
         delete?: never;
@@ -848,6 +914,52 @@ export interface components {
             finished: string | null;
         };
         /**
+         * CaptureTraceAnswer
+         * @description What the photos of a capture show of its tree.
+         */
+        CaptureTraceAnswer: {
+            /** Rev */
+            rev: number | null;
+            /**
+             * Photos
+             * @description those that are used
+             */
+            photos: components["schemas"]["TracedView"][];
+            skeleton: components["schemas"]["SeenSkeleton"];
+            crown: components["schemas"]["CrownSurface"];
+            /**
+             * Tree From Capture
+             * @description 3 x 4, by rows: from a point of the capture's frame to the GLB's, metres
+             */
+            tree_from_capture: [
+                [
+                    number,
+                    number,
+                    number,
+                    number
+                ],
+                [
+                    number,
+                    number,
+                    number,
+                    number
+                ],
+                [
+                    number,
+                    number,
+                    number,
+                    number
+                ]
+            ];
+            taken: components["schemas"]["Taken"];
+            /** Warnings */
+            warnings: components["schemas"]["StrokeWarning"][];
+            /** @description with ``grow``; in the GLB's frame */
+            grown?: components["schemas"]["GrownSkeleton"] | null;
+            /** @description of the front, with ``grown`` */
+            photo?: components["schemas"]["PhotoFrame"] | null;
+        };
+        /**
          * CloudInfo
          * @description Points that several photos show; evenly chosen ones where there are many.
          */
@@ -867,6 +979,32 @@ export interface components {
                 number,
                 number
             ][];
+        };
+        /**
+         * CrownSurface
+         * @description The surface of a crown that was measured, in the capture's frame.
+         */
+        CrownSurface: {
+            /** Points */
+            points: [
+                number,
+                number,
+                number
+            ][];
+            /**
+             * Triangles
+             * @description indices of points, counterclockwise from outside
+             */
+            triangles: [
+                number,
+                number,
+                number
+            ][];
+            /**
+             * Guessed
+             * @description whether a point lies on a side that no photo was taken from
+             */
+            guessed: boolean[];
         };
         /**
          * Failure
@@ -959,6 +1097,15 @@ export interface components {
             sketch_bytes: number;
             /** Trace Seconds */
             trace_seconds: number;
+            /** Capture Trace Seconds */
+            capture_trace_seconds: number;
+            /** Edits */
+            edits: number;
+            /**
+             * Edit Points
+             * @description of a branch that an edit adds
+             */
+            edit_points: number;
             /** Model Seconds */
             model_seconds: number;
             /**
@@ -1144,6 +1291,27 @@ export interface components {
             detail: string;
         };
         /**
+         * SeenSkeleton
+         * @description The visible branches of a capture's tree after edits, in the capture's frame.
+         */
+        SeenSkeleton: {
+            /** Points */
+            points: [
+                number,
+                number,
+                number
+            ][];
+            /** Radii */
+            radii: number[];
+            /** Parents */
+            parents: number[];
+            /**
+             * Seen
+             * @description false where a joint only joins what is seen, or was added by an edit
+             */
+            seen: boolean[];
+        };
+        /**
          * SketchTraceAnswer
          * @description What sketches show.
          */
@@ -1275,6 +1443,22 @@ export interface components {
             ];
         };
         /**
+         * TracedView
+         * @description Where a photo of a capture shows the tree: closed rings by the even-odd rule, pixels of the upright photo.
+         */
+        TracedView: {
+            /**
+             * Photo
+             * @description the photo's name
+             */
+            photo: string;
+            /** Foliage */
+            foliage: [
+                number,
+                number
+            ][][];
+        };
+        /**
          * Version
          * @description Which treestroke this is.
          */
@@ -1285,6 +1469,34 @@ export interface components {
             engine: string;
             /** Api */
             api: string;
+        };
+        /**
+         * AddEdit
+         * @description Adds a branch from the joint nearest ``from`` through points; without a radius it is thinner than its parent.
+         */
+        AddEdit: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            do: "add";
+            /** From */
+            from: [
+                number,
+                number,
+                number
+            ];
+            /** Points */
+            points: [
+                number,
+                number,
+                number
+            ][];
+            /**
+             * Radius
+             * @description where it starts
+             */
+            radius?: number;
         };
         /**
          * BranchStroke
@@ -1340,6 +1552,38 @@ export interface components {
             scale?: components["schemas"]["LengthInPhoto"] | components["schemas"]["CameraDistance"];
         };
         /**
+         * CaptureTraceRequest
+         * @description Strokes over some of a solved capture's photos to trace, and edits of the branches that are found.
+         */
+        CaptureTraceRequest: {
+            /** Views */
+            views: components["schemas"]["ViewStrokes"][];
+            /**
+             * Scale
+             * @description sets the tree's scale in place of its height
+             */
+            scale?: components["schemas"]["LengthInPhoto"] | components["schemas"]["CameraDistance"];
+            /**
+             * Edits
+             * @description applied in this order to the visible branches
+             */
+            edits?: (components["schemas"]["RemoveEdit"] | components["schemas"]["AddEdit"] | components["schemas"]["MoveEdit"] | components["schemas"]["RadiusEdit"] | components["schemas"]["JoinEdit"])[];
+            /**
+             * Rev
+             * @description comes back with the answer
+             * @default null
+             */
+            rev: number | null;
+            /**
+             * Grow
+             * @description grow the whole skeleton too, without leaves
+             * @default false
+             */
+            grow: boolean;
+            /** @description what the grown skeleton grows by */
+            settings?: components["schemas"]["ModelSettings"];
+        };
+        /**
          * CrownStroke
          * @description A stroke around the foliage; its last point is joined to its first.
          */
@@ -1352,6 +1596,14 @@ export interface components {
                 number,
                 number
             ][];
+        };
+        /**
+         * Edits
+         * @description Edits of the visible branches of a capture's tree, in the order in which they are applied.
+         */
+        Edits: {
+            /** Edits */
+            edits: (components["schemas"]["RemoveEdit"] | components["schemas"]["AddEdit"] | components["schemas"]["MoveEdit"] | components["schemas"]["RadiusEdit"] | components["schemas"]["JoinEdit"])[];
         };
         /**
          * EraseStroke
@@ -1375,6 +1627,29 @@ export interface components {
             code: string;
             /** Detail */
             detail: string;
+        };
+        /**
+         * JoinEdit
+         * @description Hangs the piece that the joint nearest ``at`` belongs to onto the joint nearest ``to``.
+         */
+        JoinEdit: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            do: "join";
+            /** At */
+            at: [
+                number,
+                number,
+                number
+            ];
+            /** To */
+            to: [
+                number,
+                number,
+                number
+            ];
         };
         /**
          * KnownLength
@@ -1444,6 +1719,11 @@ export interface components {
              * @description with a capture
              */
             views?: components["schemas"]["CaptureStrokes"];
+            /**
+             * Edits
+             * @description of the branches that a capture shows; with views
+             */
+            edits?: (components["schemas"]["RemoveEdit"] | components["schemas"]["AddEdit"] | components["schemas"]["MoveEdit"] | components["schemas"]["RadiusEdit"] | components["schemas"]["JoinEdit"])[];
             /**
              * Leaf
              * @description PNG of a leaf cut out, base64
@@ -1567,6 +1847,29 @@ export interface components {
             files: ("gltf" | "obj" | "usdz" | "ply" | "instanced" | "collision" | "json" | "swc" | "csv")[];
         };
         /**
+         * MoveEdit
+         * @description Moves the joint nearest ``at``; what is beyond it goes with it, the stretch back to the last fork bends along.
+         */
+        MoveEdit: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            do: "move";
+            /** At */
+            at: [
+                number,
+                number,
+                number
+            ];
+            /** To */
+            to: [
+                number,
+                number,
+                number
+            ];
+        };
+        /**
          * PictureSketch
          * @description One side of a tree as a picture: dark or opaque strokes, the crown as a closed line of pure red.
          */
@@ -1596,8 +1899,44 @@ export interface components {
             errors?: components["schemas"]["Fault"][];
         };
         /**
+         * RadiusEdit
+         * @description Gives the joint nearest ``at`` a radius; beyond it all radii are scaled alike, back to the last fork less.
+         */
+        RadiusEdit: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            do: "radius";
+            /** At */
+            at: [
+                number,
+                number,
+                number
+            ];
+            /** Radius */
+            radius: number;
+        };
+        /**
+         * RemoveEdit
+         * @description Removes the branch from the joint nearest ``at`` on, with all that leaves it.
+         */
+        RemoveEdit: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            do: "remove";
+            /** At */
+            at: [
+                number,
+                number,
+                number
+            ];
+        };
+        /**
          * Rename
-         * @description A model's new name.
+         * @description The new name of a model or a capture.
          */
         Rename: {
             /** Name */
@@ -2640,6 +2979,193 @@ export interface operations {
             };
         };
     };
+    rename_capture: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Rename"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CaptureInfo"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Timeout */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restore_capture: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CaptureInfo"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     add_capture_photo: {
         parameters: {
             query?: {
@@ -3159,6 +3685,124 @@ export interface operations {
             /** @description Insufficient Storage */
             507: {
                 headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    trace_capture: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CaptureTraceRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CaptureTraceAnswer"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Timeout */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -4237,6 +4881,101 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["CaptureStrokes"];
+                };
+            };
+            /** @description The part that Range requests */
+            206: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": string;
+                };
+            };
+            /** @description If-None-Match has this file's ETag */
+            304: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Requested Range Not Satisfiable */
+            416: {
+                headers: {
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_edits: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Edits"];
                 };
             };
             /** @description The part that Range requests */

@@ -1,10 +1,13 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb'
 import type { Settings } from '../api/types'
 import type { History } from '../history'
-import type { Extent } from '../sheets'
-import type { Sheets, Source, State, Store } from '../state'
+import { captureOf, type Extent } from '../sheets'
+import type { Capture, Sheets, Source, State, Store } from '../state'
 import { isEmpty, type Strokes } from '../strokes'
 import { Rounds } from './rounds'
+
+/** Many photos as the browser keeps them. */
+type DraftCapture = Pick<Capture, 'id' | 'photos' | 'chosen'>
 
 /** A drawing as the browser keeps it. */
 export interface Draft {
@@ -18,6 +21,8 @@ export interface Draft {
   readonly photo: Extent & { readonly id: string | null }
   /** The side's sheet, sheet px, where it is open. */
   readonly side?: Extent | null
+  /** Many photos, of which `photo` is the one that was drawn on. */
+  readonly capture?: DraftCapture
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
@@ -89,11 +94,23 @@ export class DraftStore {
     const stored = PICTURES.map(async what => [what, (await database.get('photos', keyOf(id, what))) ?? null] as const)
     const [draft, ...pictures] = await Promise.all([database.get('drafts', id), ...stored])
     const found = Object.fromEntries(pictures) as Pictures
-    return draft && (found.photo || draft.source === 'sketch') ? { draft, ...found } : null
+    return draft && (found.photo || draft.source === 'sketch' || draft.capture) ? { draft, ...found } : null
   }
 
   async remove(id: string): Promise<void> {
     await removeAll(await this.database, [id])
+  }
+
+  /** Return the thumbnail of a photo of many, which belongs to a draft; null where none is kept. */
+  async thumbnail(photo: string, draft = this.#id): Promise<Blob | null> {
+    const database = await this.database
+    return (draft && (await database.get('photos', thumbnailKey(draft, photo)))) || null
+  }
+
+  /** Keep the thumbnail of a photo of many with the open draft; without one it is dropped. */
+  async keepThumbnail(photo: string, thumbnail: Blob): Promise<void> {
+    if (!this.#id) return
+    await (await this.database).put('photos', thumbnail, thumbnailKey(this.#id, photo))
   }
 
   /** Store a removed draft again. */
@@ -129,10 +146,12 @@ export class DraftStore {
 function draftOf(state: State & { readonly sheets: Sheets }, id: string): Draft {
   const { name, history, settings, seed, model } = state
   const { source, front, side } = state.sheets
+  const capture = captureOf(state)
   return {
     ...{ id, saved: Date.now(), source, name, history, settings, seed },
     photo: { id: front.id, width: front.width, height: front.height },
     side: side && { width: side.width, height: side.height },
+    ...(capture && { capture: { id: capture.id, photos: capture.photos, chosen: capture.chosen } }),
     model: model?.info.id ?? null,
     modelOf: model?.strokes ?? null,
     modelHadOtherLeaf: (model?.leaf ?? null) !== state.leaf,
@@ -143,6 +162,10 @@ function draftOf(state: State & { readonly sheets: Sheets }, id: string): Draft 
 /** Return the key under which a draft's picture is stored. */
 function keyOf(id: string, what: keyof Pictures): string {
   return what === 'photo' ? id : `${id}/${what}`
+}
+
+function thumbnailKey(draft: string, photo: string): string {
+  return `${draft}/${photo}`
 }
 
 /** Store the pictures that differ from those before; null before the first time. */
@@ -180,7 +203,8 @@ async function removeAll(database: IDBPDatabase<DraftDatabase>, ids: readonly st
   const change = database.transaction(['drafts', 'photos'], 'readwrite')
   for (const id of ids) {
     change.objectStore('drafts').delete(id)
-    for (const what of PICTURES) change.objectStore('photos').delete(keyOf(id, what))
+    change.objectStore('photos').delete(id)
+    change.objectStore('photos').delete(IDBKeyRange.bound(`${id}/`, `${id}/\uffff`))
   }
   await change.done
 }

@@ -19,6 +19,33 @@ export const EXAMPLES: readonly Example[] = Object.entries(photos).map(([path, p
   return { name: stem.split('/').at(-1)!, photo, strokes: strokes[`${stem}.strokes.json`]! }
 })
 
+const manyPhotos = import.meta.glob<string>('../../../examples/*/[0-9]*.jpg', {
+  query: '?url',
+  import: 'default',
+  eager: true,
+})
+const manyStrokes = import.meta.glob<string>('../../../examples/*/strokes.json', {
+  query: '?url',
+  import: 'default',
+  eager: true,
+})
+
+/** An example of many photos with the strokes over some of them; `name` is that of its folder. */
+export interface PhotosExample {
+  readonly name: string
+  readonly photos: readonly { readonly name: string; readonly url: string }[]
+  /** The address of the strokes. */
+  readonly strokes: string
+}
+
+export const PHOTOS_EXAMPLES: readonly PhotosExample[] = Object.entries(manyStrokes).map(([path, strokes]) => {
+  const folder = path.replace(/strokes\.json$/, '')
+  const photos = Object.entries(manyPhotos)
+    .filter(([photo]) => photo.startsWith(folder))
+    .map(([photo, url]) => ({ name: photo.slice(folder.length), url }))
+  return { name: folder.split('/').at(-2)!, photos, strokes }
+})
+
 const sketches = import.meta.glob<string>('../../../examples/sketches/*.{front,side}.{json,png}', {
   query: '?url',
   import: 'default',

@@ -1,17 +1,17 @@
 import { Refused, Unreachable } from '../api/client'
 import type { Fault } from '../state'
-import { strokeAt } from '../strokes'
+import { type PhotoStrokes, strokeAt } from '../strokes'
 import { text } from '../text'
 
 /** A fault that the page itself finds; its message is a sentence for the user. */
 export class PageFault extends Error {}
 
-/** Return an error as a sentence for the user; any unexpected error is thrown again. */
-export function faultOf(error: unknown): Fault {
+/** Return an error as a sentence for the user, perhaps about a stroke over one of many photos; any unexpected error is thrown again. */
+export function faultOf(error: unknown, views: readonly PhotoStrokes[] = []): Fault {
   if (error instanceof Unreachable) return { text: text.faults.unreachable }
   if (error instanceof PageFault) return { text: error.message }
   if (!(error instanceof Refused)) throw error
-  const stroke = strokeAt(error.pointer)
+  const stroke = strokeAt(error.pointer, views)
   return { text: textFor(error.code) ?? sentenceOf(error.message), ...(stroke && { stroke }) }
 }
 

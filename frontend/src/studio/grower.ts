@@ -35,7 +35,7 @@ export class Grower {
       const order = { inputs, settings, seed, name, leaf, fruit }
       this.show(await retrying(key => this.client.grow(order, key)), strokes, { leaf, fruit })
     } catch (error) {
-      this.store.fault('grow', faultOf(error))
+      this.store.fault('grow', faultOf(error, strokes.views))
     } finally {
       this.store.set({ asking: false })
     }

@@ -2,7 +2,7 @@ import type { Client, Inputs } from '../api/client'
 import type { Settings, StrokeSketch } from '../api/types'
 import { hasPhoto } from '../sheets'
 import type { State, Traced } from '../state'
-import { onSheet } from '../strokes'
+import { onSheet, type Strokes } from '../strokes'
 import { sketchToWire } from './sketches'
 
 type Drawn = Pick<State, 'sheets' | 'history'>
@@ -14,25 +14,37 @@ type LiveSettings = Pick<Settings, (typeof LIVE_SETTINGS)[number]>
 /** Return the inputs for a model; null where too little is drawn. */
 export function inputsOf({ sheets, history }: Drawn): Inputs | null {
   const strokes = history.present
-  if (!sheets || !strokes.branches.length) return null
+  if (!sheets || !hasTrunk(strokes)) return null
   const side = sideSketch({ sheets, history })
   if (sheets.source === 'sketch') {
     const sketches = { front: sketchToWire(strokes, 'front', sheets.front), ...(side && { side }) }
     return { sketches, ...(hasPhoto(sheets.front) && { photo: sheets.front.id }) }
   }
+  if (sheets.source === 'capture')
+    return canTrace({ sheets, history }) ? { capture: sheets.capture.id!, strokes } : null
   const drawn = onSheet(strokes, 'front')
   return drawn.crown && { photo: sheets.front.id, strokes: drawn, ...(side && { sketches: { side } }) }
 }
 
-/** Return whether enough is drawn to be traced: a crown over a photo, or a first branch on paper. */
+/** Return whether a branch is drawn on the front; the first is the trunk. Of many photos, on one with a crown. */
+export function hasTrunk({ branches, views = [] }: Strokes): boolean {
+  return branches.length > 0 || views.some(view => view.crown && view.branches.length > 0)
+}
+
+/**
+ * Return whether enough is there to be traced: a crown over a photo, a first branch on paper, or the cameras of many photos
+ * and a crown and a trunk over one of them.
+ */
 export function canTrace({ sheets, history }: Drawn): boolean {
+  if (sheets?.source === 'capture')
+    return sheets.capture.id !== null && sheets.capture.cameras.length > 0 && hasTrunk(history.present)
   const { crown, branches } = history.present
   return sheets?.source === 'sketch' ? branches.length > 0 : sheets !== null && crown !== null
 }
 
 /** Return the settings that the live tree grows by; null where it is sketched: it grows by defaults then. */
 export function liveSettings({ sheets, settings }: Pick<State, 'sheets' | 'settings'>): LiveSettings | null {
-  if (sheets?.source !== 'photo') return null
+  if (!sheets || sheets.source === 'sketch') return null
   return Object.fromEntries(LIVE_SETTINGS.map(name => [name, settings[name]])) as unknown as LiveSettings
 }
 
@@ -43,8 +55,12 @@ export async function traced(
   grow: boolean,
 ): Promise<Omit<Traced, 'of'>> {
   const side = sideSketch({ sheets, history })
+  const chosen = grow ? liveSettings({ sheets, settings }) : null
+  if (sheets!.source === 'capture') {
+    const asked = { grow, ...(chosen && { settings: chosen }) }
+    return { answer: await client.traceCapture(sheets!.capture.id!, history.present, asked) }
+  }
   if (sheets!.source === 'photo') {
-    const chosen = grow ? liveSettings({ sheets, settings }) : null
     const asked = { grow, ...(chosen && { settings: chosen }), ...(side && { side }) }
     return { answer: await client.trace(sheets!.front.id!, onSheet(history.present, 'front'), asked) }
   }

@@ -1,13 +1,14 @@
 import { type Client, Refused } from '../api/client'
 import { DEFAULT_SETTINGS } from '../api/defaults'
-import type { Model } from '../api/types'
+import type { CaptureInfo, Model } from '../api/types'
 import { begin, type History } from '../history'
-import { fittedTo, paper, sheetOf, sheetOfSize } from '../sheets'
+import { captureSheet, drawnOn, fittedTo, paper, sheetOf, sheetOfSize } from '../sheets'
 import { closed, type PhotoSheet, type Sheet, type Sheets, type State, type Store } from '../state'
-import { fromWire, NO_STROKES, onSheet, type SheetName, type Strokes, withSheet } from '../strokes'
+import { fromWire, NO_STROKES, onSheet, type SheetName, type Strokes, viewsFromWire, withSheet } from '../strokes'
 import { text } from '../text'
-import type { DraftStore, DraftWithPictures } from './draftStore'
-import type { Example, SketchExample } from './examples'
+import type { Captures } from './captures'
+import type { Draft, DraftStore, DraftWithPictures } from './draftStore'
+import type { Example, PhotosExample, SketchExample } from './examples'
 import { faultOf, PageFault } from './faultText'
 import type { Grower } from './grower'
 import { pictureOf, upload } from './photos'
@@ -25,6 +26,12 @@ interface Drawing extends Partial<Pick<State, 'settings' | 'seed' | 'leaf' | 'fr
   readonly corrections?: string | undefined
 }
 
+/** The sheets of a draft, and how far the search for their cameras is, of many photos. */
+interface Kept {
+  readonly sheets: Sheets
+  readonly solve?: CaptureInfo
+}
+
 /** Stands for a model's picture that was not kept: it differs from any other. */
 const UNKNOWN_PICTURE = new Blob([])
 
@@ -38,6 +45,7 @@ export class Opener {
     private readonly client: Client,
     private readonly drafts: DraftStore,
     private readonly grower: Grower,
+    private readonly captures: Captures,
   ) {}
 
   /** Open a photo or a project that was chosen, dropped or pasted. */
@@ -46,6 +54,20 @@ export class Opener {
       if (isProject(file)) return this.#openProject(await this.#readProject(file), stem(file.name))
       const sheets = onPhoto(await this.#upload(file))
       return () => this.#show({ sheets, name: stem(file.name), history: begin(NO_STROKES) })
+    })
+  }
+
+  /** Open many photos of one tree; they are sent and their cameras are found while it is drawn. */
+  openPhotos(files: readonly File[], name: string): Promise<void> {
+    return this.#opening(() => this.#readPhotos(files, { name, history: begin(NO_STROKES) }))
+  }
+
+  /** Open an example of many photos. */
+  openPhotosExample({ name, photos, strokes }: PhotosExample): Promise<void> {
+    return this.#opening(async () => {
+      const fetched = photos.map(async photo => new File([await this.client.getFile(photo.url)], photo.name))
+      const history = begin(viewsFromWire(await jsonOf(await this.client.getFile(strokes))))
+      return this.#readPhotos(await Promise.all(fetched), { name: text.examples[name] ?? name, history })
     })
   }
 
@@ -109,13 +131,16 @@ export class Opener {
       if (!found) throw new PageFault(text.faults.draftGone)
       const { draft, leaf, fruit } = found
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
-      const sheets = await this.#sheetsOf(found)
+      const { sheets, solve } = draft.capture
+        ? await this.#captureOf(draft, draft.capture)
+        : await this.#sheetsOf(found)
       const own = {
         leaf: draft.modelHadOtherLeaf ? UNKNOWN_PICTURE : leaf,
         fruit: draft.modelHadOtherFruit ? UNKNOWN_PICTURE : fruit,
       }
       return async () => {
         this.#show({ name: draft.name, history: draft.history, seed: draft.seed, sheets, settings, leaf, fruit }, id)
+        if (solve) this.captures.goOn(solve)
         const model = draft.model && (await this.#find(draft.model))
         if (model && draft.modelOf && this.drafts.id === id) this.grower.show(model, draft.modelOf, own)
       }
@@ -127,7 +152,7 @@ export class Opener {
     return this.#opening(async () => {
       const model = await this.#find(id)
       if (!model) throw new PageFault(text.faults.modelGone)
-      if (model.capture) throw new PageFault(text.faults.modelOfPhotos(model.files['tree.glb']!))
+      if (model.capture) return this.#readCaptureModel(model, model.capture)
       const project = await this.#readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
       const { leaf, fruit = null } = project
@@ -142,6 +167,7 @@ export class Opener {
   /** Close the drawing, whose draft is kept, and show the start again. */
   close(): void {
     this.grower.stopFollowing()
+    this.captures.stop()
     this.drafts.begin(null)
     this.store.set(closed(this.store.state))
   }
@@ -166,8 +192,38 @@ export class Opener {
     }
   }
 
+  /** Send the first of many photos; return what opens them with a drawing, and sends the others. */
+  async #readPhotos(files: readonly File[], drawing: Omit<Drawing, 'sheets'>): Promise<() => void> {
+    const { sheets, rest } = await this.captures.begin(drawing.name, files)
+    return () => {
+      this.#show({ ...drawing, sheets })
+      void this.captures.send(rest)
+    }
+  }
+
+  /** Read a model of many photos; where the service no longer has these, they come from its project and are solved again. */
+  async #readCaptureModel(model: Model, id: string): Promise<() => void> {
+    const info = await this.#orNull(this.client.getCapture(id))
+    const named = { name: model.name, settings: { ...DEFAULT_SETTINGS, ...model.settings }, seed: model.seed }
+    const project = await this.#readProject(await this.client.getFile(model.files.project!))
+    const { strokes, photos = [], leaf, fruit = null } = project
+    const drawing = { ...named, history: begin(strokes), leaf, fruit }
+    const sheets = info && this.captures.opened(info, strokes.views?.[0]?.photo ?? null)
+    const open = sheets
+      ? () => {
+          this.#show({ ...drawing, sheets })
+          this.captures.goOn(info)
+        }
+      : await this.#readPhotos(photos, drawing)
+    return () => {
+      open()
+      this.grower.show(model, strokes, { leaf, fruit })
+    }
+  }
+
   async #openProject(project: Project, name: string): Promise<() => void> {
-    const { settings, seed, leaf, fruit = null } = project
+    const { settings, seed, leaf, fruit = null, photos, strokes } = project
+    if (photos) return this.#readPhotos(photos, { name, history: begin(strokes), settings, seed, leaf, fruit })
     const drawn = await this.#onSheets(project)
     return () => this.#show({ ...drawn, name, settings, seed, leaf, fruit })
   }
@@ -185,16 +241,25 @@ export class Opener {
   }
 
   /** Return a draft's sheets; if the service no longer has the photo, tracing will notice. */
-  async #sheetsOf({ draft, photo: file, side: sidePicture }: DraftWithPictures): Promise<Sheets> {
-    const { photo, source = 'photo' } = draft
-    if (source === 'capture') throw new PageFault(text.faults.draftGone)
+  async #sheetsOf({ draft, photo: file, side: sidePicture }: DraftWithPictures): Promise<Kept> {
+    const { photo, source } = draft
     const side = draft.side
       ? { ...sheetOfSize(draft.side), file: sidePicture, url: sidePicture && URL.createObjectURL(sidePicture) }
       : null
-    if (!file) return { source: 'sketch', front: sheetOfSize(photo), side }
-    if (source === 'sketch') return { source, front: await this.#photoOf(photo.id, file), side }
+    if (!file) return { sheets: { source: 'sketch', front: sheetOfSize(photo), side } }
+    if (source === 'sketch') return { sheets: { source, front: await this.#photoOf(photo.id, file), side } }
     const url = await pictureOf(file, photo, `/v1/photos/${photo.id}/image`)
-    return { source, front: { ...photo, id: photo.id!, file, url }, side }
+    return { sheets: onPhoto({ ...photo, id: photo.id!, file, url }, side) }
+  }
+
+  /** Return a draft's many photos as the service has them; where it has lost them, as the draft does. */
+  async #captureOf({ photo }: Draft, { id, photos, chosen }: NonNullable<Draft['capture']>): Promise<Kept> {
+    const front = photos.find(other => other.id === photo.id) ?? photos[0]!
+    const info = id && (await this.#orNull(this.client.getCapture(id)))
+    const sheets = info && this.captures.opened(info, front.name, chosen)
+    if (sheets) return { sheets, solve: info }
+    const capture = { id: null, photos, chosen, cameras: [], cloud: null }
+    return { sheets: { source: 'capture', front: captureSheet(front), side: null, capture } }
   }
 
   /** Return the sheet of a photo that the service has by this id; without one, or if it is gone, the file is sent. */
@@ -210,9 +275,14 @@ export class Opener {
   }
 
   /** Return a model; null where the service no longer has it. */
-  async #find(id: string): Promise<Model | null> {
+  #find(id: string): Promise<Model | null> {
+    return this.#orNull(this.client.getModel(id))
+  }
+
+  /** Return what is asked for; null where the service refuses it. */
+  async #orNull<T>(asked: Promise<T>): Promise<T | null> {
     try {
-      return await this.client.getModel(id)
+      return await asked
     } catch (error) {
       if (error instanceof Refused) return null
       throw error
@@ -229,8 +299,9 @@ export class Opener {
     const { sheets, name, history } = drawing
     const { settings = DEFAULT_SETTINGS, seed = 0, leaf = null, fruit = null } = drawing
     this.grower.stopFollowing()
+    this.captures.stop()
     this.drafts.begin(draft)
-    const tool = history.present.crown || sheets.source === 'sketch' ? 'branch' : 'crown'
+    const tool = drawnOn({ sheets, history }, 'front').crown || sheets.source === 'sketch' ? 'branch' : 'crown'
     const opened = { sheets, name, history, settings, seed, leaf, fruit, tool } as const
     this.store.set({ ...closed(this.store.state), opening: true, ...opened })
     this.#showCorrections(drawing.corrections ?? sheets.front.corrections)

@@ -1,8 +1,9 @@
-import { strFromU8, strToU8, unzipSync, zipSync } from 'fflate'
+import { strFromU8, strToU8, unzipSync, type Zippable, zipSync } from 'fflate'
 import { DEFAULT_SETTINGS } from '../api/defaults'
 import type { Settings } from '../api/types'
+import type { Edit } from '../edits'
 import { isDrawn } from '../sheets'
-import { fromWire, onSheet, type SheetName, type Strokes, toWire } from '../strokes'
+import { fromWire, onSheet, type SheetName, type Strokes, toWire, viewsFromWire, viewsToWire } from '../strokes'
 import { text } from '../text'
 import { PageFault } from './faultText'
 import { TYPES } from './photos'
@@ -12,6 +13,8 @@ import { type Drawn, pairSketches, type SketchFile, sketchFrom, sketchToWire } f
 export interface Project extends Drawn {
   /** Null for sketches on paper. */
   readonly photo: Blob | null
+  /** Many photos of one tree, in place of one. */
+  readonly photos?: readonly File[]
   readonly settings: Settings
   readonly seed: number
   /** The own pictures of a leaf and a fruit. */
@@ -39,14 +42,14 @@ export function fileName(name: string, ending: string): string {
 }
 
 /** Return a project file as the command line and the service write it: a ZIP of pictures, strokes and settings.json. */
-export async function writeProject({ photo, strokes, sizes = {}, settings, seed, ...own }: Project): Promise<Blob> {
+export async function writeProject(project: Project): Promise<Blob> {
+  const { photo, photos, strokes, sizes = {}, settings, seed, ...own } = project
   const ending = Object.keys(TYPES).find(key => TYPES[key] === photo?.type) ?? 'jpg'
   const archive = zipSync({
     ...(await member(`photo.${ending}`, photo)),
     ...(await member(PICTURES.leaf, own.leaf)),
     ...(await member(PICTURES.fruit, own.fruit ?? null)),
-    ...(sizes.front ? {} : { 'strokes.json': jsonBytes(toWire(onSheet(strokes, 'front'))) }),
-    ...sketches(strokes, sizes),
+    ...(photos ? await photosWithStrokes(photos, strokes) : drawings(strokes, sizes)),
     'settings.json': strToU8(JSON.stringify({ ...settings, seed }, null, 2)),
   })
   return new Blob([archive], { type: 'application/zip' })
@@ -55,6 +58,27 @@ export async function writeProject({ photo, strokes, sizes = {}, settings, seed,
 /** Return a picture as an uncompressed member of the archive. */
 async function member(name: string, picture: Blob | null): Promise<Record<string, [Uint8Array, { level: 0 }]>> {
   return picture ? { [name]: [new Uint8Array(await picture.arrayBuffer()), { level: 0 }] } : {}
+}
+
+/** Return many photos as members, with the strokes over them and the edits of what they show. */
+async function photosWithStrokes(photos: readonly File[], strokes: Strokes): Promise<Zippable> {
+  const members = await Promise.all(photos.map(photo => member(memberOf(photo), photo)))
+  const { edits } = strokes
+  return {
+    ...Object.assign({}, ...members),
+    'views.json': jsonBytes(viewsToWire(strokes)),
+    ...(edits?.length && { 'edits.json': jsonBytes({ edits }) }),
+  }
+}
+
+/** Return the name of a photo's member: the service's pictures are PNGs, whatever the photo was. */
+function memberOf({ name, type }: File): string {
+  return `photos/${name}${type === 'image/png' && !/\.png$/i.test(name) ? '.png' : ''}`
+}
+
+function drawings(strokes: Strokes, sizes: NonNullable<Project['sizes']>): Record<string, Uint8Array> {
+  const own = { 'strokes.json': jsonBytes(toWire(onSheet(strokes, 'front'))) }
+  return { ...(sizes.front ? {} : own), ...sketches(strokes, sizes) }
 }
 
 function sketches(strokes: Strokes, sizes: NonNullable<Project['sizes']>): Record<string, Uint8Array> {
@@ -79,12 +103,37 @@ export async function readProject(file: Blob, readPicture: ReadPicture): Promise
   const { seed, ...settings } = settingsOf(members['settings.json'])
   return {
     photo: photo ? picture(members[photo], TYPES[photo.split('.')[1]!]) : null,
-    ...(await drawingOf(members, photo !== undefined, readPicture)),
+    ...(members['views.json']
+      ? { photos: photosIn(members), strokes: viewsIn(members) }
+      : await drawingOf(members, photo !== undefined, readPicture)),
     settings: { ...DEFAULT_SETTINGS, ...settings },
     seed: seed ?? 0,
     leaf: picture(members[PICTURES.leaf]),
     fruit: picture(members[PICTURES.fruit]),
   }
+}
+
+/** Return the many photos in a project by their own names, of which the service's pictures have one ending more. */
+function photosIn(members: Record<string, Uint8Array>): File[] {
+  return Object.keys(members).flatMap(member => {
+    const [, name, own] = member.match(/^photos\/((.+\.\w+?)(?:\.png)?)$/) ?? []
+    if (!name) return []
+    const known = own && TYPES[own.split('.').at(-1)!.toLowerCase()]
+    const type = TYPES[name.split('.').at(-1)!.toLowerCase()] ?? ''
+    return [new File([new Uint8Array(members[member]!)], known ? own : name, { type })]
+  })
+}
+
+function viewsIn(members: Record<string, Uint8Array>): Strokes {
+  const strokes = parsed(members['views.json']!, viewsFromWire)
+  const edits = members['edits.json'] && parsed(members['edits.json'], editsFrom)
+  return { ...strokes, ...(edits?.length && { edits }) }
+}
+
+function editsFrom(value: unknown): readonly Edit[] {
+  const { edits } = value as { readonly edits?: unknown }
+  if (!Array.isArray(edits)) throw new TypeError('no list of edits')
+  return edits as Edit[] // the service checks them, as it does settings
 }
 
 /** Return the drawing in a project: strokes over a photo, or sketches. */
@@ -95,7 +144,6 @@ async function drawingOf(
 ): Promise<Drawn> {
   const json = members['strokes.json']
   const [front, side] = await Promise.all(SHEETS.map(sheet => sketchOf(members, sheet, readPicture)))
-  if (members['views.json']) throw new PageFault(text.faults.projectOfPhotos)
   if (!front && !(json && hasPhoto)) throw new PageFault(text.faults.projectIncomplete)
   return pairSketches(front ?? { strokes: strokesOf(json!) }, side ?? null)
 }

@@ -1,5 +1,6 @@
 import { Client } from '../api/client'
 import { Store } from '../state'
+import { Captures } from './captures'
 import { DraftStore } from './draftStore'
 import { BranchEdits } from './edits'
 import { Grower } from './grower'
@@ -8,6 +9,7 @@ import { OwnPictureActions } from './ownPictures'
 import { SheetActions } from './sheetActions'
 import { StrokeActions } from './strokeActions'
 import { TakenActions } from './takenActions'
+import { Thumbnails } from './thumbnails'
 import { Tracer } from './tracer'
 
 /** Everything that can be done on the page, apart from how it looks. */
@@ -21,6 +23,8 @@ export class Studio {
   readonly ownPictures = new OwnPictureActions(this.store)
   readonly grower = new Grower(this.store, this.client)
   readonly taken = new TakenActions(this.store, this.grower)
-  readonly opener = new Opener(this.store, this.client, this.drafts, this.grower)
+  readonly thumbnails = new Thumbnails(this.client, this.drafts)
+  readonly captures = new Captures(this.store, this.client, this.thumbnails)
+  readonly opener = new Opener(this.store, this.client, this.drafts, this.grower, this.captures)
   readonly tracer = new Tracer(this.store, this.client)
 }

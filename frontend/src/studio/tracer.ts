@@ -1,10 +1,10 @@
 import { type Client, Refused, Unreachable } from '../api/client'
 import type { Grown } from '../api/types'
-import { hasPhoto, replaceSheet } from '../sheets'
-import type { PhotoSheet, Sheet, Store, Traced } from '../state'
+import { captureOf, hasPhoto, replaceSheet } from '../sheets'
+import type { PhotoSheet, Sheets, Store, Traced } from '../state'
 import type { Strokes } from '../strokes'
 import { faultOf } from './faultText'
-import { canTrace, liveSettings, traced } from './inputs'
+import { canTrace, hasTrunk, liveSettings, traced } from './inputs'
 import { Rounds } from './rounds'
 
 const RETRY_MS = 1500
@@ -42,6 +42,10 @@ export class Tracer {
       () => this.#rounds.ask(),
     )
     store.watch(
+      state => captureOf(state)?.cameras,
+      () => this.#rounds.ask(),
+    )
+    store.watch(
       state => state.settings,
       () => this.#rounds.ask(),
     )
@@ -60,18 +64,18 @@ export class Tracer {
     const { sheets, traced: found, liveTree } = this.store.state
     const basis = this.#basis()
     const { strokes } = basis
-    if (!strokes.branches.length && liveTree) this.store.set({ liveTree: null })
-    if (!strokes.branches.length) this.#grownOf = null
+    if (!hasTrunk(strokes) && liveTree) this.store.set({ liveTree: null })
+    if (!hasTrunk(strokes) || !found) this.#grownOf = null
     if (!isSame(basis, this.#refused)) this.#refused = null
     const traceable = canTrace(this.store.state)
     if (!traceable && found) this.store.set({ traced: null, liveTree: null })
     if (!sheets || !traceable || this.#refused) return false
     const isTraced = found?.of === strokes
-    if (isTraced && (!strokes.branches.length || isSame(basis, this.#grownOf))) return false
+    if (isTraced && (!hasTrunk(strokes) || isSame(basis, this.#grownOf))) return false
     try {
-      await this.#request(sheets.front, basis, isTraced)
+      await this.#request(sheets, basis, isTraced)
     } catch (error) {
-      await this.#recover(error, sheets.front, basis)
+      await this.#recover(error, sheets, basis)
     }
     return true
   }
@@ -81,11 +85,11 @@ export class Tracer {
   }
 
   /** Trace the strokes, or with `grow` request their live tree, and put the answer into the state. */
-  async #request(front: Sheet, basis: Basis, grow: boolean): Promise<void> {
+  async #request(sheets: Sheets, basis: Basis, grow: boolean): Promise<void> {
     if (!grow) this.store.set({ tracing: true })
     const found = await traced(this.client, this.store.state, grow)
     this.store.set({ online: true })
-    if (this.#isStale(front, basis.strokes)) return
+    if (this.#isStale(sheets, basis.strokes)) return
     this.store.fault('strokes', null)
     if (!grow) return this.#show({ of: basis.strokes, ...found })
     this.#showLive(basis, found.answer.grown ?? null)
@@ -106,21 +110,29 @@ export class Tracer {
     this.store.set({ traced, tracing: false, selection: selection?.kind === 'traced' ? null : selection })
   }
 
-  /** Return whether the photo or the strokes have changed since. */
-  #isStale(front: Sheet, strokes: Strokes): boolean {
-    return this.store.state.sheets?.front.id !== front.id || this.store.strokes !== strokes
+  /** Return whether the photo, the cameras or the strokes have changed since. */
+  #isStale(sheets: Sheets, strokes: Strokes): boolean {
+    const { sheets: now } = this.store.state
+    const isOther =
+      sheets.source === 'capture'
+        ? captureOf({ sheets: now })?.cameras !== sheets.capture.cameras
+        : now?.front.id !== sheets.front.id
+    return isOther || this.store.strokes !== strokes
   }
 
   /** Wait where the service cannot be reached, send a lost photo again, or show a fault. */
-  async #recover(error: unknown, front: Sheet, basis: Basis): Promise<void> {
+  async #recover(error: unknown, sheets: Sheets, basis: Basis): Promise<void> {
+    const isGone = error instanceof Refused && error.status === 404
     if (error instanceof Unreachable) {
       this.store.set({ online: false })
       await this.wait(RETRY_MS)
-    } else if (error instanceof Refused && error.status === 404 && hasPhoto(front)) {
-      await this.#uploadAgain(front)
+    } else if (isGone && hasPhoto(sheets.front)) {
+      await this.#uploadAgain(sheets.front)
+    } else if (isGone && sheets.source === 'capture') {
+      if (!this.#isStale(sheets, basis.strokes)) this.store.set({ sheets: withoutCapture(sheets), solve: null })
     } else {
       this.#refused = basis
-      if (!this.#isStale(front, basis.strokes)) this.store.fault('strokes', faultOf(error))
+      if (!this.#isStale(sheets, basis.strokes)) this.store.fault('strokes', faultOf(error, basis.strokes.views))
     }
   }
 
@@ -135,6 +147,11 @@ export class Tracer {
       await this.wait(RETRY_MS)
     }
   }
+}
+
+/** Return the sheets of many photos that the service no longer has. */
+function withoutCapture(sheets: Sheets & { readonly source: 'capture' }): Sheets {
+  return { ...sheets, capture: { ...sheets.capture, id: null } }
 }
 
 function isSame(one: Basis, other: Basis | null): boolean {

@@ -22,6 +22,7 @@ export const settingsText = {
   seed: 'Seed',
   seedWhy: 'The same seed gives the same tree. Another seed gives another tree.',
   heightMeasured: (length: string) => `The measured line (${length}) sets the tree’s size instead.`,
+  heightByDistance: (length: string) => `The distance of two photos (${length}) sets the tree’s size instead.`,
   range: (low: string, high: string) => `Enter a number from ${low} to ${high}.`,
   wholeRange: (low: string, high: string) => `Enter a whole number from ${low} to ${high}.`,
   ownPictures: {

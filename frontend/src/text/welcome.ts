@@ -11,7 +11,7 @@ export const welcomeText = {
     lead: 'Draw a loose line {leaves} and one {trunk}. treestroke finds the branches and grows the tree in 3D.',
     leadStrokes: { leaves: 'around the leaves', trunk: 'up the trunk' },
     choose: 'Choose a photo',
-    otherWays: 'Or drop one on the page, or paste it.',
+    otherWays: 'Or drop it on the page, or paste it. Many photos of one tree: drop them all.',
     formats: 'JPEG, PNG, WebP, HEIC, AVIF or TIFF, or a .treestroke project. Your files stay on this server.',
     illustration: 'A tree with a line around its leaves and a line up its trunk',
     examples: 'Or start with an example',
@@ -56,6 +56,7 @@ export const welcomeText = {
     pear: 'Pear tree',
     pine: 'Pine',
     vine: 'Vine',
+    young_ash: 'Young ash',
     imagined: 'Imagined tree',
   } as Readonly<Record<string, string>>,
   /** Author and licence of the examples. */
@@ -92,10 +93,6 @@ export const welcomeText = {
     modelGone: 'This tree is no longer there: it was deleted. Grow it again from its strokes.',
     draftGone: 'This drawing is no longer saved in this browser.',
     projectIncomplete: 'This project has no photo or no strokes. Save it again where you made it.',
-    projectOfPhotos:
-      'This project has many photos, which this page cannot open yet. Make its tree with the command “treestroke views”.',
-    modelOfPhotos: (glb: string) =>
-      `This tree was made of many photos, which this page cannot show yet. Its file is at ${glb}.`,
     projectUnreadable: 'This project file is damaged. Save it again where you made it.',
     sketchUnreadable:
       'This drawing cannot be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',

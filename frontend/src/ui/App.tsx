@@ -4,11 +4,13 @@ import type { Studio } from '../studio/studio'
 import { text } from '../text'
 import { ShortcutsDialog } from './drawing/ShortcutsDialog'
 import { StudioProvider, useStore, useStudio } from './parts/useStore'
+import { AdviceDialog } from './start/AdviceDialog'
 import { Dialog } from './start/Dialog'
 import { DropArea } from './start/DropArea'
 import { GalleryDialog } from './start/GalleryDialog'
 import { Header } from './start/Header'
 import { Notices } from './start/Notices'
+import { PhotosDialog } from './start/PhotosDialog'
 import { followSession, hasSession, resume } from './start/session'
 import { Welcome } from './start/Welcome'
 import './app.css'
@@ -101,6 +103,8 @@ function LiveRegion() {
 function Dialogs() {
   const dialog = useStore(state => state.dialog)
   if (dialog === 'gallery') return <GalleryDialog />
+  if (dialog === 'photos') return <PhotosDialog />
+  if (dialog === 'advice') return <AdviceDialog />
   if (dialog === null) return <Notices />
   return (
     <Dialog title={text.shortcuts.title}>

@@ -9,6 +9,7 @@ from fastapi.responses import FileResponse
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from treestroke.api.deps import (
+    RENAME_BODY,
     CaptureId,
     CapturePhotoId,
     Cursor,
@@ -25,10 +26,13 @@ from treestroke.api.sending import file_responses, send_blob
 from treestroke.api.uploads import UPLOAD_BODY, UploadOf
 from treestroke.api.views import capture_photo_view, capture_state, capture_view
 from treestroke.limits import MAX_NAME
-from treestroke.schemas import CaptureInfo, CapturePage, CapturePhotoInfo
+from treestroke.schemas import CaptureInfo, CapturePage, CapturePhotoInfo, CaptureTraceAnswer
 from treestroke.service import captures
 from treestroke.service.captures import SETTLED, StoredCapture
+from treestroke.service.model_request import read_name
 from treestroke.service.photos import Resources
+from treestroke.wire_edits import EDITS_EXAMPLE
+from treestroke.wire_requests import VIEWS_EXAMPLE
 
 router = APIRouter(prefix="/v1/captures", tags=["captures"])
 _RETRY_MS = 2000
@@ -38,6 +42,17 @@ _NEW: dict[str, Any] = {
             "application/json": {
                 "schema": {"$ref": "#/components/schemas/CaptureRequest"},
                 "example": {"name": "The old oak, all around"},
+            }
+        },
+    }
+}
+_TRACE: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/CaptureTraceRequest"},
+                "example": {**VIEWS_EXAMPLE, "edits": EDITS_EXAMPLE, "rev": 7, "grow": False},
             }
         },
     }
@@ -52,7 +67,15 @@ _PHOTO_LOCATION = {
     "description": "the photo",
 }
 _LINKS = leads_to(
-    "get_capture", "add_capture_photo", "solve_capture", "follow_capture", "cancel_solve", "delete_capture"
+    "get_capture",
+    "add_capture_photo",
+    "solve_capture",
+    "follow_capture",
+    "cancel_solve",
+    "trace_capture",
+    "rename_capture",
+    "delete_capture",
+    "restore_capture",
 )
 _OF_PHOTO = {"id": "$request.path.id", "photo": "$response.body#/id"}
 _PHOTO_LINKS = {
@@ -103,9 +126,21 @@ def get_capture(resources: ResourcesOf, id: CaptureId) -> CaptureInfo:
     return _view(resources, captures.find_capture(resources.database, id))
 
 
+@router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=RENAME_BODY)
+def rename_capture(resources: ResourcesOf, id: CaptureId, body: JsonBody) -> CaptureInfo:
+    """Name a capture."""
+    return _view(resources, captures.rename(resources.database, id, read_name(body)))
+
+
+@router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
+def restore_capture(resources: ResourcesOf, id: CaptureId) -> CaptureInfo:
+    """Undo a deletion."""
+    return _view(resources, captures.restore(resources.database, id))
+
+
 @router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
 def delete_capture(resources: ResourcesOf, id: CaptureId) -> None:
-    """Delete a capture with its photos."""
+    """Delete a capture with its photos, which go after 24 hours; until then it can be restored."""
     captures.delete(resources.database, id)
 
 
@@ -174,6 +209,20 @@ def solve_capture(resources: ResourcesOf, dispatcher: DispatcherOf, id: CaptureI
 def cancel_solve(resources: ResourcesOf, id: CaptureId) -> CaptureInfo:
     """Stop looking for a capture's cameras; what was found stays as it is."""
     return _view(resources, captures.cancel(resources.database, id))
+
+
+@router.post(
+    "/{id}/trace",
+    response_model=CaptureTraceAnswer,
+    responses=documented(*BODY, "not_found", "capture_unsolved"),
+    openapi_extra=_TRACE,
+)
+def trace_capture(resources: ResourcesOf, id: CaptureId, body: JsonBody) -> Response:
+    """Find the tree in all photos of a solved capture, its crown and its visible branches, to which edits are applied.
+
+    With ``grow`` the whole tree's skeleton too. Strokes are read once: edits and settings are answered soon after.
+    """
+    return Response(captures.trace(resources, id, body), media_type="application/json")
 
 
 def _capture(resources: ResourcesOf, id: CaptureId) -> StoredCapture:

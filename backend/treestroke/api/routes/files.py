@@ -77,6 +77,12 @@ def get_views(request: Request, resources: ResourcesOf, id: ModelId) -> Response
     return _drawing(request, resources, id, "views.json")
 
 
+@router.get("/edits.json", response_class=FileResponse, responses=file_responses(_JSON, "Edits"))
+def get_edits(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
+    """Download the edits of the visible branches of a capture that the tree was made of."""
+    return _drawing(request, resources, id, "edits.json")
+
+
 @router.get(
     "/project",
     response_class=FileResponse,

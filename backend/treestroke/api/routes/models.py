@@ -14,6 +14,7 @@ from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
 from treestroke.api.deps import (
+    RENAME_BODY,
     Cursor,
     DispatcherOf,
     JsonBody,
@@ -48,7 +49,16 @@ _LOCATION = {
     "Location": {"schema": {"type": "string", "pattern": "^/v1/models/mdl_[0-9a-f]{24}$"}, "description": "the model"},
     "Preference-Applied": {"schema": {"type": "string"}, "description": "the wait that Prefer asked for"},
 }
-_FILES = ("get_tree", "get_preview", "get_strokes", "get_views", "get_sketch", "get_project", "get_tree_file")
+_FILES = (
+    "get_tree",
+    "get_preview",
+    "get_strokes",
+    "get_views",
+    "get_edits",
+    "get_sketch",
+    "get_project",
+    "get_tree_file",
+)
 _CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
@@ -73,17 +83,6 @@ _REQUEST_BODY: dict[str, Any] = {
                     "name": "The old oak",
                 },
             },
-        },
-    }
-}
-_RENAME: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "application/json": {
-                "schema": {"$ref": "#/components/schemas/Rename"},
-                "example": {"name": "The old oak"},
-            }
         },
     }
 }
@@ -185,7 +184,7 @@ def get_model(resources: ResourcesOf, id: ModelId) -> ModelInfo:
     return model_view(stored_models.find_model(resources.database, id))
 
 
-@router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=_RENAME)
+@router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=RENAME_BODY)
 def rename_model(resources: ResourcesOf, id: ModelId, body: JsonBody) -> ModelInfo:
     """Name a model."""
     return model_view(stored_models.rename(resources.database, id, read_name(body)))

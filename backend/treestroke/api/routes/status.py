@@ -12,6 +12,8 @@ from treestroke.codec.image import MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
 from treestroke.limits import (
+    MAX_EDIT_POINTS,
+    MAX_EDITS,
     MAX_LEAF_BYTES,
     MAX_NAME,
     MAX_PHOTO_BYTES,
@@ -63,6 +65,9 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
         leaf_bytes=MAX_LEAF_BYTES,
         sketch_bytes=MAX_SKETCH_BYTES,
         trace_seconds=settings.trace_seconds,
+        capture_trace_seconds=settings.capture_trace_seconds,
+        edits=MAX_EDITS,
+        edit_points=MAX_EDIT_POINTS,
         model_seconds=settings.model_seconds,
         capture_photos_min=MIN_PHOTOS,
         capture_photos_max=MAX_PHOTOS,

@@ -1,6 +1,6 @@
 """A crown volume that was measured from all sides: cells with the density of what fills them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -58,6 +58,11 @@ class MeasuredCrown:
         """(2, 3) least and greatest corner of the box around the filled cells, metres."""
         low, high = self._places.min(axis=0), self._places.max(axis=0) + 1
         return np.asarray(self.cells.corner + self.cells.side * np.stack([low, high]))
+
+    def scaled(self, factor: float) -> "MeasuredCrown":
+        """Return the same crown at another scale: all lengths, from the origin, times ``factor``."""
+        cells = Cells(self.cells.filled, factor * self.cells.corner, factor * self.cells.side)
+        return replace(self, cells=cells, density=(self.density / factor).astype(np.float32))
 
     @property
     def widest(self) -> float:

@@ -34,6 +34,22 @@ class Similarity:
         """Carry points (n, 3) of the old frame into the new one."""
         return np.asarray(self.scale * (points - self.origin) @ self.turn.T)
 
+    @property
+    def matrix(self) -> Floats:
+        """(3, 4) what carries a point of the old frame, followed by a 1, into the new one."""
+        turned = self.scale * self.turn
+        return np.column_stack([turned, -turned @ self.origin])
+
+    @property
+    def inverse(self) -> "Similarity":
+        """The way back: from the new frame to the old one."""
+        return Similarity(-self.scale * self.turn @ self.origin, self.turn.T, 1 / self.scale)
+
+    def then(self, other: "Similarity") -> "Similarity":
+        """Return this change followed by another one."""
+        origin = self.origin + self.turn.T @ other.origin / self.scale
+        return Similarity(origin, other.turn @ self.turn, self.scale * other.scale)
+
     def camera(self, camera: PerspectiveCamera) -> PerspectiveCamera:
         """Return the same camera in the new frame: its picture shows the same."""
         turn, shift = camera.camera_from_world[:, :3], camera.camera_from_world[:, 3]

@@ -15,12 +15,14 @@ from treestroke.core.geometry.camera import Camera, OrthographicCamera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.measured_crown import MeasuredCrown
 from treestroke.core.geometry.similarity import Similarity
+from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.replication import CrownBounds, ReplicationParams, grow_hidden
 from treestroke.core.lift.seen_branches import SeenBranches, seen_branches
+from treestroke.core.pipeline.captured_photos import fitted
 from treestroke.core.pipeline.drawn_views import check_used, mend_views
 from treestroke.core.pipeline.evidence import PhotoEvidence, read_photo
 from treestroke.core.pipeline.growing import DOUBTFUL
-from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, Reading
+from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.shown_kinds import odds_by_shots
 from treestroke.core.pipeline.taken import Taken
@@ -62,6 +64,12 @@ class ViewsEvidence:
         The shot that the tree's front is, and what it shows by itself.
     known
         Whether a length that was drawn, or a distance, sets the scale.
+    height_m
+        The height, metres, of a tree without a scale.
+    frame
+        The change from the structure's frame to the tree's.
+    edited
+        What became of edits that could not be applied.
     """
 
     photos: tuple[CapturedPhoto, ...]
@@ -73,12 +81,15 @@ class ViewsEvidence:
     seen: SeenBranches
     front: PhotoEvidence
     known: bool
+    height_m: float
+    frame: Similarity
+    edited: tuple[StrokeWarning, ...] = ()
 
     @property
     def warnings(self) -> tuple[StrokeWarning, ...]:
         """What was mended, and which photos are not used."""
         unused = (StrokeWarning(photo.code, f"photos/{photo.name}", photo.detail) for photo in self.structure.unused)
-        return (*self.front.warnings, *unused)
+        return (*self.front.warnings, *unused, *self.edited)
 
 
 def read_views(
@@ -96,8 +107,11 @@ def read_views(
     ------
     StrokesError
         The strokes do not describe a tree, or lie on a photo that is not there or not used.
+    CaptureError
+        The structure is of other photos.
     """
     report("mattes", 0.0)
+    structure = fitted(structure, photos)
     by_name = {photo.name: photo for photo in photos}
     drawn = mend_views(drawn, {photo.name: photo.size_px for photo in photos})
     used = tuple(by_name[solved.name] for solved in structure.photos)
@@ -114,6 +128,7 @@ def read_views(
     if drawn.scale is None:
         larger = Similarity(np.zeros(3), np.eye(3), height_m / _seen_height(shots, mattes))
         shots, cloud = tuple(in_frame(shot, larger) for shot in shots), cloud_in_frame(cloud, larger)
+        frame = frame.then(larger)
     carving = carved(shots, mattes, report)
     cloud = dense_cloud(carving, shots, mattes, report)
     crown = measured_crown(with_points(carving, shots, cloud), shots)
@@ -129,6 +144,8 @@ def read_views(
         seen=seen,
         front=replace(front, odds=odds_by_shots(front.odds, shots, mattes, crown)),
         known=drawn.scale is not None,
+        height_m=height_m,
+        frame=frame,
     )
 
 
@@ -222,14 +239,8 @@ def grow_views(
     evidence: ViewsEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report = silent
 ) -> GrownTree:
     """Let the branches that no photo shows fill the measured crown, and gather what the tree looks like."""
-    report("grow", 0.0)
     taken, shots, mattes = evidence.front.taken(settings), evidence.shots, evidence.mattes
-    silhouettes = tuple(
-        Silhouette[Camera](matte.tree | matte.hidden, shot.camera) for shot, matte in zip(shots, mattes, strict=True)
-    )
-    bounds = CrownBounds(evidence.crown, silhouettes, evidence.seen.leaf_points, float(evidence.crown.bounds[1, 1]))
-    params = ReplicationParams(settings.iterations)
-    grown = grow_hidden(evidence.seen.skeleton, bounds, params, rng, report)
+    grown = _with_hidden(evidence, settings, rng, report)
     appearance = view_appearance(shots, mattes, grown.skeleton, taken.foliage != "bare")
     camera = _front_camera(evidence.crown)
     scale = Scale(float(camera.metres_from_pixels(1.0)), evidence.known, 0.0)
@@ -247,6 +258,23 @@ def grow_views(
         warnings=evidence.warnings,
         captured=_captured(evidence),
     )
+
+
+def live_views(evidence: ViewsEvidence, settings: ModelSettings, rng: np.random.Generator) -> LiveTree:
+    """Let the tree grow as `grow_views` does, without what it looks like."""
+    grown = _with_hidden(evidence, settings, rng, silent)
+    return LiveTree(grown.skeleton, grown.born, _front_camera(evidence.crown))
+
+
+def _with_hidden(evidence: ViewsEvidence, settings: ModelSettings, rng: np.random.Generator, report: Report) -> Grown:
+    """Return the visible branches with those that no photo shows."""
+    report("grow", 0.0)
+    silhouettes = tuple(
+        Silhouette[Camera](matte.tree | matte.hidden, shot.camera)
+        for shot, matte in zip(evidence.shots, evidence.mattes, strict=True)
+    )
+    bounds = CrownBounds(evidence.crown, silhouettes, evidence.seen.leaf_points, float(evidence.crown.bounds[1, 1]))
+    return grow_hidden(evidence.seen.skeleton, bounds, ReplicationParams(settings.iterations), rng, report)
 
 
 def _front_camera(crown: MeasuredCrown) -> OrthographicCamera:

@@ -1,4 +1,5 @@
 import { useLayoutEffect, useMemo, useRef, useState } from 'preact/hooks'
+import { PhotoStrip } from '../capture/PhotoStrip'
 import { useStore, useStudio } from '../parts/useStore'
 import { DrawingFoot, ZoomBar } from './DrawingFoot'
 import { HintLine } from './HintLine'
@@ -31,9 +32,12 @@ export function DrawingPane() {
     <>
       <Toolbar />
       <HintLine />
-      <Sheets sketches={sketches} views={views} />
-      <DrawingFoot />
-      <ZoomBar zoom={sketches} scale={views[active]?.scale ?? 1} />
+      <div class="drawing-stage">
+        <Sheets sketches={sketches} views={views} />
+        <DrawingFoot />
+        <ZoomBar zoom={sketches} scale={views[active]?.scale ?? 1} />
+      </div>
+      <PhotoStrip />
     </>
   )
 }

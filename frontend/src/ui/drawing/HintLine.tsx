@@ -1,4 +1,5 @@
 import { useLayoutEffect, useState } from 'preact/hooks'
+import { captureOf } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
 import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
@@ -13,6 +14,7 @@ export function HintLine() {
     pointer,
   )
   const isTracing = useStore(state => state.tracing)
+  const cameras = useStore(state => captureOf(state)?.cameras.length)
   return (
     <div class={isTracing ? 'hint-row is-tracing' : 'hint-row'}>
       <div class="hint-over">
@@ -25,7 +27,7 @@ export function HintLine() {
           <HintActions hint={hint} />
         </div>
         <p class="hint-tracing" aria-hidden="true">
-          {text.hints.tracing}
+          {cameras === undefined ? text.hints.tracing : text.capture.tracing(cameras)}
         </p>
       </div>
     </div>

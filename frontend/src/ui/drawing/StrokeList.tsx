@@ -46,7 +46,7 @@ function StrokeRows({ refs }: { readonly refs: readonly StrokeRef[] }) {
 }
 
 function StrokeRow({ stroke }: { readonly stroke: StrokeRef }) {
-  const { strokes } = useStudio()
+  const { strokes, captures } = useStudio()
   const history = useStore(state => state.history)
   const traced = useStore(state => state.traced)
   const selection = useStore(state => state.selection)
@@ -54,18 +54,17 @@ function StrokeRow({ stroke }: { readonly stroke: StrokeRef }) {
   const remarks = remarksOn({ history, traced }).filter(remark => remark.stroke && isSame(remark.stroke, stroke))
   const isChosen = selection !== null && selection.kind !== 'traced' && isSame(selection, stroke)
   const { scale } = history.present
+  const choose = () => {
+    if (stroke.photo !== undefined) captures.choose(stroke.photo)
+    strokes.select(isChosen ? null : stroke)
+  }
   const remove = () => {
     strokes.select(stroke)
     strokes.remove()
   }
   return (
     <li class="stroke-row" data-kind={stroke.kind}>
-      <button
-        type="button"
-        class="button stroke-name"
-        aria-pressed={isChosen}
-        onClick={() => strokes.select(isChosen ? null : stroke)}
-      >
+      <button type="button" class="button stroke-name" aria-pressed={isChosen} onClick={choose}>
         {stroke.kind === 'scale' && scale ? text.strokes.scaleOf(text.metres(scale.metres)) : name}
       </button>
       <IconButton label={text.strokes.delete(name)} icon={ICONS.remove} onClick={remove} />
@@ -79,5 +78,5 @@ function StrokeRow({ stroke }: { readonly stroke: StrokeRef }) {
 }
 
 function isSame(one: StrokeRef, other: StrokeRef): boolean {
-  return one.kind === other.kind && one.index === other.index && one.sheet === other.sheet
+  return one.kind === other.kind && one.index === other.index && one.sheet === other.sheet && one.photo === other.photo
 }

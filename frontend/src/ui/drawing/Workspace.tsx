@@ -1,5 +1,6 @@
 import type { RefObject } from 'preact'
 import { useLayoutEffect, useRef, useState } from 'preact/hooks'
+import { captureOf } from '../../sheets'
 import type { SheetName } from '../../strokes'
 import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
@@ -30,7 +31,8 @@ export function Workspace() {
   const { store } = useStudio()
   const isOpen = useStore(({ sheets }) => sheets !== null)
   const hasSide = useStore(({ sheets }) => Boolean(sheets?.side))
-  const [shown, show] = useShown(hasSide)
+  const isCapture = useStore(state => captureOf(state) !== null)
+  const [shown, show] = useShown(hasSide || isCapture)
   const [split, setSplit] = useState<number | null>(null)
   const element = useRef<HTMLDivElement>(null)
   useLayoutEffect(() => announceDrawing(store), [store])
@@ -55,11 +57,11 @@ export function Workspace() {
   )
 }
 
-/** Return what a phone shows, and how to set it: two sheets leave no room for the tree until one is grown. */
-function useShown(hasSide: boolean): [Shown, (shown: Shown) => void] {
+/** Return what a phone shows, and how to set it: two sheets, or a strip of photos, leave no room for the tree until one is grown. */
+function useShown(isFull: boolean): [Shown, (shown: Shown) => void] {
   const [shown, show] = useState<Shown>('both')
-  const isAsked = useStore(({ asking }) => asking) && hasSide
-  useLayoutEffect(() => show(hasSide ? 'drawing' : 'both'), [hasSide])
+  const isAsked = useStore(({ asking }) => asking) && isFull
+  useLayoutEffect(() => show(isFull ? 'drawing' : 'both'), [isFull])
   useLayoutEffect(() => {
     if (isAsked) show('tree')
   }, [isAsked])

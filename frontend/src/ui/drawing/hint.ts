@@ -1,9 +1,10 @@
-import { isFinished } from '../../api/follow'
+import { isFinished, isSolving } from '../../api/follow'
 import { doubtIn, remarksOn, type StrokeRemark } from '../../doubts'
-import { isPaper } from '../../sheets'
+import { captureOf, drawnOn, isPaper, photoDrawnOn } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
 import type { State } from '../../state'
 import { lineOf, type StrokeRef } from '../../strokes'
+import { hasTrunk } from '../../studio/inputs'
 import { text } from '../../text'
 import { remarkText, strokeName } from './strokeTexts'
 
@@ -45,17 +46,32 @@ function newRemark(state: State): StrokeRemark | undefined {
 }
 
 function step(state: State, pointer: PointerKind): Hint {
-  const { tool, selection, history } = state
-  const { crown, branches } = history.present
+  const { tool, selection } = state
+  const { crown, branches } = drawnOn(state, 'front')
   const how = text.hints.how[pointer]
   if (selection?.kind === 'scale') return stepTo(text.hints.measured)
   if (selection) return { tone: 'step', text: text.hints.selected(strokeName(selection)), deletes: true }
   if (tool === 'scale') return stepTo(text.hints.measure, text.hints.measureNear)
   if (isPaper(state, state.active)) return sketchStep(state, pointer) ?? laterStep(state, pointer)
+  if (hasTrunk(state.history.present) && captureOf(state)) return captureStep(state, pointer)
   if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.chooseCrown)
   if (!branches.length)
     return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.chooseBranch)
   return laterStep(state, pointer)
+}
+
+/** Return the next step once one of many photos has its crown and its trunk. */
+function captureStep(state: State, pointer: PointerKind): Hint {
+  const { hints } = text.capture
+  const capture = captureOf(state)!
+  const { crown, branches, erase } = drawnOn(state, 'front')
+  const photo = capture.photos.find(({ name }) => name === photoDrawnOn(state))
+  if (!crown && branches.length + erase.length > 0) return stepTo(hints.crownMissing)
+  if (photo?.used === false) return stepTo(hints.notUsed)
+  if (!capture.cameras.length) return stepTo(state.sending || isSolving(state.solve) ? hints.waiting : hints.unsolved)
+  if (!state.traced) return stepTo(hints.reading)
+  const later = laterStep(state, pointer)
+  return later.text === text.hints.refine ? stepTo(hints.refine) : later
 }
 
 /** Return the next step on paper; null once trunk and branches are drawn. */

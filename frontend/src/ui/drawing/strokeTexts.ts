@@ -4,6 +4,10 @@ import { text } from '../../text'
 
 /** Return the name of a stroke; the first branch is the trunk. */
 export function strokeName(selection: Selection): string {
+  if ('photo' in selection && selection.photo !== undefined) {
+    const { kind, index, photo } = selection
+    return text.capture.on(strokeName({ kind, index }), photo)
+  }
   if ('sheet' in selection) return text.sheets.on(strokeName({ kind: selection.kind, index: selection.index }))
   const { kind } = selection
   if (kind === 'crown') return text.strokes.crown

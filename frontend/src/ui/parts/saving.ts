@@ -22,12 +22,13 @@ export async function copyText(text: string): Promise<boolean> {
 }
 
 /** Save the drawing as a project file among the browser's downloads. */
-export async function saveProject({ store }: Studio): Promise<void> {
+export async function saveProject({ store, captures }: Studio): Promise<void> {
   const { sheets, name, settings, seed, leaf, fruit } = store.state
   if (!sheets) return
   const { source, front, side } = sheets
   const sizes = { ...(source === 'sketch' && { front }), ...(side && { side }) }
-  const project = { photo: front.file, strokes: store.strokes, sizes, settings, seed, leaf, fruit }
+  const pictures = source === 'capture' ? { photo: null, photos: await captures.files() } : { photo: front.file }
+  const project = { ...pictures, strokes: store.strokes, sizes, settings, seed, leaf, fruit }
   const file = projectName(name)
   saveFile(await writeProject(project), file)
   store.notify({ text: text.header.saved(file) })

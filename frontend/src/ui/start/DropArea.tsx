@@ -2,10 +2,10 @@ import { useEffect, useState } from 'preact/hooks'
 import { isPaper } from '../../sheets'
 import type { SheetName } from '../../strokes'
 import { isPicture, typeOf } from '../../studio/photos'
-import { isProject } from '../../studio/project'
 import type { Studio } from '../../studio/studio'
 import { text } from '../../text'
-import { openFile, openSketch } from '../parts/files'
+import { droppedIn } from '../parts/dropped'
+import { openFile, openFiles, openSketch } from '../parts/files'
 import { useStudio } from '../parts/useStore'
 import './dropArea.css'
 
@@ -69,18 +69,19 @@ type Show = (target: Target | null) => void
 function dragged(studio: Studio, event: DragEvent, show: Show): void {
   if (!event.dataTransfer?.types.includes('Files')) return
   event.preventDefault()
-  const types = [...event.dataTransfer.items].map(({ type }) => type)
+  const types = [...event.dataTransfer.items].map(({ type }) => type) // a folder's is empty
   show(targetOf(studio, event, types))
 }
 
 function dropped(studio: Studio, event: DragEvent, show: Show): void {
   event.preventDefault()
   show(null)
-  const files = [...(event.dataTransfer?.files ?? [])]
+  if (!event.dataTransfer) return
+  const files = [...event.dataTransfer.files]
   const picture = files.find(file => isPicture(file) || file.type === 'application/json')
   const { chosen } = targetOf(studio, event, files.map(typeOf))
   if (picture && chosen?.take) chosen.take(picture)
-  else openOne(studio, files)
+  else void droppedIn(event.dataTransfer).then(dropped => openFiles(studio, dropped.files, dropped.folder))
 }
 
 function pasted(studio: Studio, event: ClipboardEvent): void {
@@ -91,8 +92,9 @@ function pasted(studio: Studio, event: ClipboardEvent): void {
 function targetOf(studio: Studio, event: DragEvent, types: readonly string[]): Target {
   const part = event.target instanceof Element ? event.target.closest<HTMLElement>('[data-of]') : null
   const sheet = part?.dataset.of as SheetName | undefined
+  const areMany = types.filter(type => type.startsWith('image/')).length > 1
   const [over, uses] =
-    part && sheet && isPaper(studio.store.state, sheet)
+    part && sheet && !areMany && isPaper(studio.store.state, sheet)
       ? [part, usesOnSheet(studio, sheet, types)]
       : [null, usesOnPage(studio, types)]
   const place = over?.getBoundingClientRect() ?? new DOMRect(0, 0, innerWidth, innerHeight)
@@ -103,6 +105,8 @@ function targetOf(studio: Studio, event: DragEvent, types: readonly string[]): T
 /** What can be done with files dropped on the page, by their types: a PNG may be a photo or a drawing, which only the user knows. */
 function usesOnPage(studio: Studio, types: readonly string[]): readonly Use[] {
   const { drop } = text.sheets
+  const images = types.filter(type => type.startsWith('image/')).length
+  if (images > 1) return [{ words: [text.capture.offer.drop] }]
   const photo: Use = { words: drop.photo, take: file => openFile(studio, file) }
   const drawing: Use = { words: drop.drawing, take: file => openSketch(studio, file) }
   return usesOf(types, photo, drawing) ?? [{ words: [text.welcome.drop] }]
@@ -120,12 +124,6 @@ function usesOnSheet({ sheets, opener }: Studio, sheet: SheetName, types: readon
 function usesOf(types: readonly string[], photo: Use, drawing: Use): readonly Use[] | null {
   if (types.includes('image/png')) return [photo, drawing]
   return types.includes('application/json') ? [drawing] : null
-}
-
-function openOne(studio: Studio, files: readonly File[]): void {
-  const file = files.find(one => isPicture(one) || isProject(one))
-  if (file) openFile(studio, file)
-  else if (files.length) studio.store.fault('photo', { text: text.welcome.unknownFile })
 }
 
 function named(picture: File): File {

@@ -11,6 +11,7 @@ import { useStore, useStudio } from '../parts/useStore'
 import { DraftCard } from './DraftCard'
 import { ExampleCard, SketchCard } from './ExampleCards'
 import { Illustration } from './Illustration'
+import { ManyPhotos } from './ManyPhotos'
 import './welcome.css'
 
 /** How many of the latest trees are shown. */
@@ -38,6 +39,9 @@ export function Welcome({ late }: { readonly late: boolean }) {
             <SketchCard key={example.name} example={example} />
           ))}
         </ul>
+      </Section>
+      <Section id="many" title={text.capture.welcome.title} hint={text.capture.welcome.hint}>
+        <ManyPhotos />
       </Section>
       <GrownTrees closed={closed} />
     </div>

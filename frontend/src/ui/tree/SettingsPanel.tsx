@@ -102,8 +102,16 @@ function SettingField({ name, allowed }: FieldProps) {
 /** The field for the height; a measured line takes its place. */
 function HeightField(props: ComponentProps<typeof NumberField>) {
   const scale = useStore(state => state.history.present.scale)
-  const note = scale ? text.settings.heightMeasured(text.metres(scale.metres)) : ''
-  return <NumberField {...props} disabled={scale !== null} note={note} />
+  const distance = useStore(state => state.history.present.distance)
+  const measured = scale ?? distance
+  const note = measured ? noteOn(measured.metres, !scale) : ''
+  return <NumberField {...props} disabled={measured !== undefined} note={note} />
+}
+
+/** Return what takes the height's place: a measured line, or the distance between two photos. */
+function noteOn(metres: number, isDistance: boolean): string {
+  const { heightMeasured, heightByDistance } = text.settings
+  return (isDistance ? heightByDistance : heightMeasured)(text.metres(metres))
 }
 
 function SeedField() {

@@ -1,5 +1,7 @@
 import { isFinished } from '../../api/follow'
-import type { ShownModel, State } from '../../state'
+import type { Sheets, ShownModel, State } from '../../state'
+import type { Strokes } from '../../strokes'
+import { hasTrunk } from '../../studio/inputs'
 import { isOfFile, sameValue } from './settingGroups'
 
 /** Where growing stands, as the page says it. */
@@ -8,6 +10,7 @@ export type GrowthStatus =
   | 'noCrown'
   | 'noTrunk'
   | 'noFront'
+  | 'noCameras'
   | 'badStroke'
   | 'ready'
   | 'asking'
@@ -22,7 +25,7 @@ export type GrowthStatus =
   | 'canceled'
 
 const BUSY: readonly GrowthStatus[] = ['asking', 'queued', 'growing']
-const INCOMPLETE: readonly GrowthStatus[] = ['noPhoto', 'noCrown', 'noTrunk', 'noFront', 'badStroke']
+const INCOMPLETE: readonly GrowthStatus[] = ['noPhoto', 'noCrown', 'noTrunk', 'noFront', 'noCameras', 'badStroke']
 
 /** Return where growing stands. */
 export function growthStatusOf(state: State): GrowthStatus {
@@ -30,12 +33,19 @@ export function growthStatusOf(state: State): GrowthStatus {
   if (asking) return 'asking'
   if (model && !isFinished(model.info)) return model.info.status === 'queued' ? 'queued' : 'growing'
   if (!sheets) return 'noPhoto'
-  const { crown, branches } = state.history.present
-  if (sheets.source === 'sketch' && !branches.length) return 'noFront'
-  if (sheets.source === 'photo' && !crown) return 'noCrown'
-  if (!branches.length) return 'noTrunk'
+  const lack = lackOf(sheets, state.history.present)
+  if (lack) return lack
   if (faults.strokes?.stroke) return 'badStroke'
   return model ? statusOfEnded(state, model) : 'ready'
+}
+
+/** Return what a tree cannot be grown without; null where all of it is there. */
+function lackOf(sheets: Sheets, strokes: Strokes): GrowthStatus | null {
+  const { crown, views = [] } = strokes
+  if (sheets.source === 'sketch') return hasTrunk(strokes) ? null : 'noFront'
+  if (!crown && !views.some(view => view.crown)) return 'noCrown'
+  if (!hasTrunk(strokes)) return 'noTrunk'
+  return sheets.source === 'capture' && !sheets.capture.cameras.length ? 'noCameras' : null
 }
 
 /** Whether a tree is being made, so that no other can be asked for. */
