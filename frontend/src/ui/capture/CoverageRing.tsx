@@ -4,7 +4,7 @@ import type { Similarity } from '../../preview/capture/similarity'
 import { captureOf, photoDrawnOn } from '../../sheets'
 import { text } from '../../text'
 import { tracedInSpace } from '../../tracedOn'
-import { useStore } from '../parts/useStore'
+import { useStore, useStudio } from '../parts/useStore'
 import { directionOf, type Gap, gapsIn, missingDirections, type PlanPhoto, planOf } from './coverage'
 import './coverageRing.css'
 import { frontOf, treeFrom } from './followMeasured'
@@ -18,7 +18,8 @@ const [NEAREST, FARTHEST] = [0.72, 1.22]
 const ROOMY = '(width >= 1000px)'
 
 /** A plan of the tree from above with the photos around it, and a sentence that says from where more would help. */
-export function CoverageRing({ choose }: { choose(photo: string): void }) {
+export function CoverageRing() {
+  const { captures } = useStudio()
   const capture = useStore(captureOf)
   const chosen = useStore(photoDrawnOn)
   const front = useStore(state => frontOf(state.history.present))
@@ -31,7 +32,7 @@ export function CoverageRing({ choose }: { choose(photo: string): void }) {
   return (
     <details class="overlay coverage" hidden={!plan.length} open={matchMedia(ROOMY).matches}>
       <summary class="button">{words.title}</summary>
-      <Plan plan={plan} gaps={gaps} chosen={chosen} choose={choose} />
+      <Plan plan={plan} gaps={gaps} chosen={chosen} choose={photo => captures.choose(photo)} />
       <p>{gaps.length ? words.missing(missingDirections(gaps)) : words.all}</p>
       <ul class="visually-hidden">
         {plan.map(({ photo, azimuth }) => (

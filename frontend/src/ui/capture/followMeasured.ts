@@ -1,20 +1,26 @@
-import type { CaptureTraceAnswer } from '../../api/types'
+import type { CapturePhoto, CaptureTraceAnswer } from '../../api/types'
 import { applied, type Branches } from '../../branches'
 import type { Measured } from '../../preview/capture/measured'
 import type { Similarity } from '../../preview/capture/similarity'
 import type { Editing } from '../../preview/edit/editLayer'
 import type { Preview } from '../../preview/preview'
 import { captureOf, photoDrawnOn } from '../../sheets'
-import type { Capture, State, Store } from '../../state'
+import type { Capture, State } from '../../state'
 import type { Strokes } from '../../strokes'
 import { editable, selectedJoint } from '../../studio/edits'
+import type { Studio } from '../../studio/studio'
 import { tracedInSpace } from '../../tracedOn'
 
-type Stage = Pick<Preview, 'showMeasured' | 'choosePhoto' | 'setEditing'>
+type Stage = Pick<Preview, 'showMeasured' | 'choosePhoto' | 'setEditing' | 'setPictures'>
+type Studied = Pick<Studio, 'store'> & { readonly thumbnails: Pick<Studio['thumbnails'], 'of'> }
 
 /** Keep what the preview shows of many photos in step with the state; the call ends it. */
-export function followMeasured(store: Store, stage: Stage): () => void {
+export function followMeasured({ store, thumbnails }: Studied, stage: Stage): () => void {
   const ends = [
+    store.watch(usedPhotos, photos => {
+      for (const photo of photos)
+        void thumbnails.of(photo).then(url => url && stage.setPictures(new Map([[photo.name, url]])))
+    }),
     store.watch(photoDrawnOn, photo => stage.choosePhoto(photo)),
     store.watch(kept(measuredOf), measured => stage.showMeasured(measured)),
     store.watch(kept(editingOf), editing => stage.setEditing(editing)),
@@ -22,6 +28,14 @@ export function followMeasured(store: Store, stage: Stage): () => void {
   return () => {
     for (const end of ends) end()
   }
+}
+
+const NO_PHOTOS: readonly CapturePhoto[] = []
+
+/** Return the photos of a capture whose cameras are known. */
+function usedPhotos(state: State): readonly CapturePhoto[] {
+  const capture = captureOf(state)
+  return capture?.cameras.length ? capture.photos : NO_PHOTOS
 }
 
 /** Return what many photos say about the open tree; null where the tree has another source, or no camera was found yet. */

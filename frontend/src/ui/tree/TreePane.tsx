@@ -5,7 +5,6 @@ import { NOTHING_SHOWN, type PreviewStatus } from '../../preview/status'
 import type { State } from '../../state'
 import { text } from '../../text'
 import { CoverageRing } from '../capture/CoverageRing'
-import { choosePhoto } from '../capture/choosePhoto'
 import { EditTools } from '../capture/EditTools'
 import { followMeasured } from '../capture/followMeasured'
 import { Sapling } from '../parts/Sapling'
@@ -37,7 +36,7 @@ export function TreePane() {
         <div class="scene" ref={scene} />
         <StageMessage status={status} />
         <PreviewButtons status={status} preview={preview} />
-        <CoverageRing choose={photo => choosePhoto(store, photo)} />
+        <CoverageRing />
         <EditTools />
         <div class="stage-foot">
           <TakenChip />
@@ -54,7 +53,8 @@ export function TreePane() {
 
 /** Show the tree in an element as long as it is there; return the preview and what it shows. */
 function usePreview(scene: RefObject<HTMLDivElement | null>) {
-  const { store, edits } = useStudio()
+  const studio = useStudio()
+  const { store, edits, captures } = studio
   const preview = useRef<Preview>(null)
   const [status, setStatus] = useState(NOTHING_SHOWN)
   useLayoutEffect(() => {
@@ -62,7 +62,7 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
       labels: { wipe: text.preview.wipe, canvas: text.preview.canvas },
       reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
       onStatus: setStatus,
-      onPhoto: photo => choosePhoto(store, photo),
+      onPhoto: photo => captures.choose(photo),
       edits: {
         picked: joint => edits.picked(joint),
         moved: (joint, to) => edits.moved(joint, to),
@@ -70,7 +70,7 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
       },
     })
     preview.current = made
-    const ends = [followState(store, made), followMeasured(store, made), announceGrowth(store)]
+    const ends = [followState(store, made), followMeasured(studio, made), announceGrowth(store)]
     return () => {
       for (const end of ends) end()
       made.end()

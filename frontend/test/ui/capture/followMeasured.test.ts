@@ -5,22 +5,30 @@ import { Store } from '../../../src/state'
 import { NO_STROKES, withEdit } from '../../../src/strokes'
 import { branchesOf, followMeasured, measuredOf } from '../../../src/ui/capture/followMeasured'
 import { camera, captureAnswer, captureSheets, photoSheets } from '../../builders'
+import { settle } from '../../service'
 
 let store: Store
 let shown: (Measured | null)[]
 let edited: (Editing | null)[]
 let photos: (string | null)[]
+let pictures: [string, string][]
 
 beforeEach(() => {
   store = new Store()
   shown = []
   edited = []
   photos = []
-  followMeasured(store, {
-    showMeasured: measured => shown.push(measured),
-    choosePhoto: photo => photos.push(photo),
-    setEditing: editing => edited.push(editing),
-  })
+  const thumbnails = { of: async ({ name }: { name: string }) => `blob:${name}` }
+  pictures = []
+  followMeasured(
+    { store, thumbnails },
+    {
+      showMeasured: measured => shown.push(measured),
+      choosePhoto: photo => photos.push(photo),
+      setEditing: editing => edited.push(editing),
+      setPictures: urls => pictures.push(...urls),
+    },
+  )
 })
 
 test('a photo alone has nothing that many measured', () => {
@@ -39,6 +47,15 @@ test('cameras are shown once they are found, the tree once it is traced, and not
   store.set({ online: false })
   store.announce('Hello')
   expect(shown).toHaveLength(count)
+})
+
+test('the photos’ small pictures are shown once their cameras are found', async () => {
+  store.set({ sheets: captureSheets(['a.jpg']) })
+  await settle()
+  expect(pictures).toEqual([])
+  store.set({ sheets: captureSheets(['a.jpg'], { cameras: [camera('a.jpg')] }) })
+  await settle()
+  expect(pictures).toEqual([['a.jpg', 'blob:a.jpg']])
 })
 
 test('edits that the service has not answered are shown at once', () => {
