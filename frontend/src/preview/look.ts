@@ -89,6 +89,16 @@ export class Look {
     this.changed()
   }
 
+  /** Move the photo that one looks from, with all that is seen there, CSS px; elsewhere nothing moves. */
+  pan(across: number, down: number): void {
+    if (!this.rig.holds) return
+    const { pose } = this.rig
+    const [x, y] = pose.shift ?? [0, 0]
+    const { height } = this.viewport
+    this.rig.moveTo({ ...pose, shift: [x + across / height, y + down / height] }, true)
+    this.changed()
+  }
+
   /** Fit another viewport; a view that was chosen is shown whole again. */
   resize(viewport: Viewport): void {
     this.viewport = viewport

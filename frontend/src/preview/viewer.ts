@@ -84,7 +84,10 @@ export class Viewer {
     })
     this.look = new Look(this.rig, this.capture, () => this.onLook())
     this.wipe = new Wipe(host, options.label)
-    this.edit = new EditLayer(host, canvas, options.edits, () => this.requestFrame())
+    this.edit = new EditLayer(host, canvas, options.edits, {
+      changed: () => this.requestFrame(),
+      pan: (across, down) => this.look.pan(across, down),
+    })
     listenToClicks(canvas, place => this.onClick(place))
     // Before the rig's own listener, which would move the camera away from the photo's.
     host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false })

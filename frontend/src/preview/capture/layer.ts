@@ -11,7 +11,7 @@ import { after, IDENTITY, type Similarity, scaling } from './similarity'
 import { branchMesh, cloudPoints, crownMesh } from './surfaces'
 
 /** How far from what the cameras look at points are shown, in heights that photos show. */
-const CLOUD_REACH = 2.2
+const CLOUD_REACH = 1.5
 /** A tree's middle, about which its photos' cameras turn, as a share of its height. */
 const MIDDLE = 0.5
 

@@ -22,6 +22,8 @@ export interface EditEvents {
 
 /** How far from a joint the pointer may be to take it, CSS px. */
 const REACH = { fine: 12, touch: 22 }
+/** Branches whose distances from the pointer differ less count as equally near, CSS px. */
+const HARDLY = 3
 /** The least distance of two points of a branch that is drawn, CSS px. */
 const SPACING = 9
 
@@ -30,6 +32,14 @@ interface Sight {
   readonly pose: Pose
   readonly viewport: Viewport
   readonly world: Similarity
+}
+
+/** What the layer asks of what it lies over. */
+interface Hooks {
+  /** Called when another frame is needed. */
+  changed(): void
+  /** Move the photo under the branches, CSS px; does nothing where one does not look from a photo. */
+  pan(across: number, down: number): void
 }
 
 /** What is being dragged: a joint, or a branch that is drawn from one; its points are places on the screen. */
@@ -46,13 +56,14 @@ export class EditLayer {
   private editing: Editing | null = null
   private sight: Sight | null = null
   private drag: Drag | null = null
+  /** Where the pointer is that may move the photo. */
+  private held: PointerEvent | null = null
 
-  /** `changed` is called when another frame is needed. */
   constructor(
     host: HTMLElement,
     private readonly canvas: HTMLCanvasElement,
     private readonly events: EditEvents,
-    private readonly changed: () => void,
+    private readonly hooks: Hooks,
   ) {
     this.overlay.className = 'preview-branches'
     this.overlay.hidden = true
@@ -105,7 +116,7 @@ export class EditLayer {
     return to ? moved(branches, this.drag!.joint, to) : branches
   }
 
-  private onScreen({ points, radii }: Branches): [x: number, y: number, depth: number, radius: number][] {
+  private onScreen({ points, radii }: Branches): OnScreen[] {
     const { pose, viewport, world } = this.sight!
     const perUnit = (viewport.height / 2 / pose.slope) * Math.hypot(world[0][0], world[0][1], world[0][2])
     return points.map((point, joint) => {
@@ -125,34 +136,42 @@ export class EditLayer {
 
   private jointAt([x, y]: readonly [number, number], reach: number): number | null {
     if (!this.editing || !this.sight) return null
-    return nearestOnScreen(this.onScreen(this.editing.branches), [x, y], reach)
+    return nearestOnScreen(this.onScreen(this.editing.branches), this.editing.branches.parents, { at: [x, y], reach })
   }
 
   private onDown(event: PointerEvent): void {
     const { editing } = this
-    if (!editing || editing.tool === 'join' || event.target !== this.canvas || event.button !== 0) return
-    const place = this.placeOf(event)
-    const joint = this.jointAt(place, event.pointerType === 'touch' ? REACH.touch : REACH.fine)
-    const taken = editing.tool === 'add' ? joint !== null : joint !== null && this.isKnob(place, event)
-    if (!taken || !event.isPrimary) return
+    if (!editing || event.target !== this.canvas || event.button !== 0 || !event.isPrimary) return
+    const joint = this.takenBy(event, editing)
+    this.held = joint === null ? event : null
+    if (joint === null || editing.tool === 'join') return
     event.stopPropagation()
     event.preventDefault()
     this.canvas.focus({ preventScroll: true })
     this.canvas.setPointerCapture(event.pointerId)
-    const { tool } = editing
-    this.drag = { tool, joint: tool === 'move' ? editing.selected! : joint!, pointer: event.pointerId, path: [] }
+    this.drag = { tool: editing.tool, joint, pointer: event.pointerId, path: [] }
   }
 
-  /** Whether the pointer is on the selected joint; the root stays where the trunk's stroke begins. */
-  private isKnob(place: readonly [number, number], { pointerType }: PointerEvent): boolean {
-    const { branches, selected } = this.editing!
-    if (!selected || !this.sight) return false
-    const [x, y] = this.onScreen(branches)[selected]!
-    return Math.hypot(x - place[0], y - place[1]) <= (pointerType === 'touch' ? REACH.touch : REACH.fine)
+  /** Return the joint that a press drags: with the tool for branches any, else the selected one. */
+  private takenBy(event: PointerEvent, { tool, selected }: Editing): number | null {
+    const place = this.placeOf(event)
+    const reach = event.pointerType === 'touch' ? REACH.touch : REACH.fine
+    if (tool === 'add') return this.jointAt(place, reach)
+    return tool === 'move' && selected && this.isAt(selected, place, reach) ? selected : null
+  }
+
+  private isAt(joint: number, place: readonly [number, number], reach: number): boolean {
+    if (!this.sight) return false
+    const [x, y] = this.onScreen(this.editing!.branches)[joint] ?? [Number.NaN, 0]
+    return Math.hypot(x - place[0], y - place[1]) <= reach
   }
 
   private onMove(event: PointerEvent): void {
-    const { drag } = this
+    const { drag, held } = this
+    if (held?.pointerId === event.pointerId) {
+      this.held = event
+      this.hooks.pan(event.clientX - held.clientX, event.clientY - held.clientY)
+    }
     if (!drag || event.pointerId !== drag.pointer) return
     event.stopPropagation()
     const place = this.placeOf(event)
@@ -160,11 +179,12 @@ export class EditLayer {
     if (drag.tool === 'move') this.drag = { ...drag, path: [place] }
     else if (!last || Math.hypot(last[0] - place[0], last[1] - place[1]) >= SPACING)
       this.drag = { ...drag, path: [...drag.path, place] }
-    this.changed()
+    this.hooks.changed()
   }
 
   private onUp(event: PointerEvent): void {
     const { drag } = this
+    this.held = null
     if (!drag || event.pointerId !== drag.pointer) return
     event.stopPropagation()
     const spots = drag.path.map(place => this.spotAt(place, drag.joint)).filter(spot => spot !== null)
@@ -177,7 +197,8 @@ export class EditLayer {
 
   private stop(): void {
     this.drag = null
-    this.changed()
+    this.held = null
+    this.hooks.changed()
   }
 
   private placeOf({ clientX, clientY }: PointerEvent): readonly [number, number] {
@@ -186,15 +207,29 @@ export class EditLayer {
   }
 }
 
-/** Return the joint nearest to a place within reach; of those that are hardly farther, the one nearest to the eye. */
+/** A joint on the screen, CSS px, with its distance from the eye and its radius. */
+type OnScreen = readonly [x: number, y: number, depth: number, radius: number]
+
+/** Return the nearer joint of the edge that is nearest to a place; of those hardly farther, that of the one nearest to the eye. */
 export function nearestOnScreen(
-  joints: readonly (readonly [x: number, y: number, depth: number, radius: number])[],
-  [x, y]: readonly [number, number],
-  reach: number,
+  joints: readonly OnScreen[],
+  parents: readonly number[],
+  { at, reach }: { at: readonly [number, number]; reach: number },
 ): number | null {
-  const away = joints.map(joint => (joint[2] > 0 ? Math.hypot(joint[0] - x, joint[1] - y) : Number.POSITIVE_INFINITY))
-  const least = away.reduce((one, other) => Math.min(one, other), Number.POSITIVE_INFINITY)
+  const edges = joints.map((joint, index) => edgeFrom(joints[parents[index]!] ?? joint, joint, at))
+  const least = edges.reduce((best, { away }) => Math.min(best, away), Number.POSITIVE_INFINITY)
   if (least > reach) return null
-  const near = [...away.keys()].filter(joint => away[joint]! <= least + 3)
-  return near.reduce((best, joint) => (joints[joint]![2] < joints[best]![2] ? joint : best))
+  const near = [...edges.keys()].filter(index => edges[index]!.away <= least + HARDLY)
+  const chosen = near.reduce((best, index) => (joints[index]![2] < joints[best]![2] ? index : best))
+  return edges[chosen]!.share < 0.5 && parents[chosen]! >= 0 ? parents[chosen]! : chosen
+}
+
+/** Return how far the wood of an edge is from a place, px, and the share of its way at which it is nearest. */
+function edgeFrom(from: OnScreen, to: OnScreen, [x, y]: readonly [number, number]): { away: number; share: number } {
+  if (from[2] <= 0 || to[2] <= 0) return { away: Number.POSITIVE_INFINITY, share: 1 }
+  const [across, down] = [to[0] - from[0], to[1] - from[1]]
+  const square = across ** 2 + down ** 2
+  const share = square ? Math.min(Math.max(((x - from[0]) * across + (y - from[1]) * down) / square, 0), 1) : 1
+  const away = Math.hypot(from[0] + share * across - x, from[1] + share * down - y) - to[3]
+  return { away: Math.max(away, 0), share }
 }

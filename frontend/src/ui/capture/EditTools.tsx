@@ -26,6 +26,7 @@ const CM = 200
 export function EditTools() {
   const { edits } = useStudio()
   const tool = useStore(state => (canEdit(state) ? state.branchTool : null))
+  useEscape(tool !== null)
   return (
     <div class="overlay edit-tools" role="group" aria-label={words.title} hidden={tool === null}>
       <div class="edit-row">
@@ -50,6 +51,20 @@ export function EditTools() {
       <LostEdits />
     </div>
   )
+}
+
+/** Let Escape deselect what is selected, and where nothing is, end the editing. */
+function useEscape(isOn: boolean): void {
+  const { edits, store } = useStudio()
+  useLayoutEffect(() => {
+    const press = (event: KeyboardEvent) => {
+      if (!isOn || event.key !== 'Escape' || event.defaultPrevented || document.querySelector('dialog[open]')) return
+      if (selectedJoint(store.state) === null) edits.choose(null)
+      else edits.picked(null)
+    }
+    addEventListener('keydown', press)
+    return () => removeEventListener('keydown', press)
+  }, [isOn])
 }
 
 /** Whether there are branches that can be edited. */
