@@ -135,7 +135,7 @@ export class Viewer {
     this.edit.set(editing)
     this.stage.setTreeShown(editing === null)
     this.capture.setEdited(editing !== null)
-    this.requestFrame()
+    this.onLook()
   }
 
   showLive(grown: Grown): void {

@@ -15,12 +15,13 @@ const CLOUD_REACH = 1.5
 /** A tree's middle, about which its photos' cameras turn, as a share of its height. */
 const MIDDLE = 0.5
 
-/** What is shown of a capture unless the user chose otherwise, by whether a tree is shown, too. */
-const FIRST: Readonly<Record<'alone' | 'traced' | 'live' | 'model', readonly Part[]>> = {
+/** What is shown of a capture unless the user chose otherwise, by what else is shown. */
+const FIRST: Readonly<Record<'alone' | 'traced' | 'live' | 'model' | 'edited', readonly Part[]>> = {
   alone: ['cameras', 'cloud'],
   traced: ['cameras', 'crown', 'branches'],
   live: ['cameras', 'crown'],
   model: ['cameras'],
+  edited: ['crown'],
 }
 
 /** What many photos say about a tree, in the preview's world: cameras, cloud, crown and branches. */
@@ -154,7 +155,8 @@ export class CaptureLayer {
   }
 
   private isShown(part: Part): boolean {
-    const first = this.content?.kind ?? (this.measured?.tree ? 'traced' : 'alone')
+    const alone = this.measured?.tree ? 'traced' : 'alone'
+    const first = this.edited ? 'edited' : (this.content?.kind ?? alone)
     return this.wanted[part] ?? FIRST[first].includes(part)
   }
 
