@@ -9,7 +9,7 @@ export interface Branches {
   readonly seen: readonly boolean[]
 }
 
-/** Where one steps from a joint: to the one that it hangs on, to the thickest that leaves it, or to another at its fork. */
+/** Where one steps from a joint: to the one that it hangs on, to that which bears most, or to another at its fork. */
 export type Step = 'inward' | 'outward' | 'across'
 
 /** The radius at the start of a branch that is added, as a share of its parent's, and at its tip, as a share of that. */
@@ -106,12 +106,21 @@ function added(branches: Branches, parent: number, { points, radius }: Edit & { 
 }
 
 /** Return the joint one step from another, the first one after the root where there is none yet; the same where it ends. */
-export function stepped({ parents, radii }: Branches, joint: number | null, step: Step): number {
+export function stepped({ parents }: Pick<Branches, 'parents'>, joint: number | null, step: Step): number {
   if (joint === null) return Math.min(1, parents.length - 1)
   if (step === 'inward') return Math.max(parents[joint]!, 0)
   if (step === 'across') return siblingAtFork(parents, joint)
+  const borne = borneBy(parents)
   const [first, ...others] = childrenOf(parents, joint)
-  return others.reduce((best, child) => (radii[child]! > radii[best]! ? child : best), first ?? joint)
+  return others.reduce((best, child) => (borne[child]! > borne[best]! ? child : best), first ?? joint)
+}
+
+/** Return how many joints each one bears, itself among them. Radii tell less: along a trunk they may all be the same. */
+function borneBy(parents: readonly number[]): number[] {
+  const borne = parents.map(() => 1)
+  for (let joint = parents.length - 1; joint > 0; joint--)
+    if (parents[joint]! >= 0) borne[parents[joint]!]! += borne[joint]!
+  return borne
 }
 
 /** Return the next of those that leave the last fork before a joint, after the one that leads to it. */

@@ -67,7 +67,7 @@ test('a piece that is joined waits for the service’s answer', () => {
   expect(applied(TREE, { do: 'join', at: [2, 1, 0], to: [0, 3, 0] })).toBe(TREE)
 })
 
-test('steps lead along a branch, to the thickest that leaves it, and to the others of a fork', () => {
+test('steps lead along a branch, to what bears most, and to the others of a fork', () => {
   expect(stepped(TREE, null, 'outward')).toBe(1)
   expect(stepped(TREE, 1, 'outward')).toBe(2)
   expect(stepped(TREE, 3, 'outward')).toBe(3)
