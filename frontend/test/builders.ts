@@ -1,6 +1,8 @@
 import type {
   CameraInfo,
+  CaptureInfo,
   CapturePhoto,
+  CaptureState,
   CaptureTraceAnswer,
   Grown,
   Model,
@@ -93,7 +95,7 @@ export function captureAnswer(changes: Partial<CaptureTraceAnswer> = {}): Captur
       [0, -1, 0, 2],
       [0, 0, -1, 0],
     ],
-    taken: null,
+    taken: TAKEN,
     warnings: [],
     ...changes,
   }
@@ -159,4 +161,18 @@ export function model(changes: Partial<Model> = {}): Model {
     ...{ settings: { height: 10 }, seed: 0, engine: 'treestroke', created: '', started: null, finished: null },
     ...changes,
   } as Model
+}
+
+/** How far the search for the cameras of many photos is. */
+export function captureState(changes: Partial<CaptureState> = {}): CaptureState {
+  return {
+    ...{ id: 'cap_1', name: '', status: 'unsolved', phase: null, phase_fraction: 0, progress: 0, photo_count: 0 },
+    ...{ queue_position: null, eta_s: null, attempt: 0, error: null, engine: null, created: '', started: null },
+    ...{ finished: null, deleted: null, ...changes },
+  } as CaptureState
+}
+
+/** A capture as the service has it. */
+export function captureInfo(changes: Partial<CaptureInfo> = {}): CaptureInfo {
+  return { ...captureState(), photos: [], cameras: [], cloud: null, ...changes }
 }

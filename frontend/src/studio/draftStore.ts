@@ -82,19 +82,20 @@ export class DraftStore {
     this.#saved = null
   }
 
-  /** Return the drafts that have strokes, the latest first. */
+  /** Return the drafts that have strokes or many photos, the latest first. */
   async list(): Promise<Draft[]> {
     const drafts = await (await this.database).getAllFromIndex('drafts', 'saved')
-    return drafts.filter(({ history }) => !isEmpty(history.present)).reverse()
+    return drafts.filter(({ history, capture }) => capture || !isEmpty(history.present)).reverse()
   }
 
-  /** Return a draft with its pictures; null where it is gone. */
+  /** Return a draft with its pictures, of many photos a thumbnail; null where it is gone. */
   async find(id: string): Promise<DraftWithPictures | null> {
     const database = await this.database
     const stored = PICTURES.map(async what => [what, (await database.get('photos', keyOf(id, what))) ?? null] as const)
     const [draft, ...pictures] = await Promise.all([database.get('drafts', id), ...stored])
     const found = Object.fromEntries(pictures) as Pictures
-    return draft && (found.photo || draft.source === 'sketch' || draft.capture) ? { draft, ...found } : null
+    if (draft?.capture) return { draft, ...found, photo: await this.thumbnail(draft.photo.id ?? '', id) }
+    return draft && (found.photo || draft.source === 'sketch') ? { draft, ...found } : null
   }
 
   async remove(id: string): Promise<void> {

@@ -115,13 +115,17 @@ export async function readProject(file: Blob, readPicture: ReadPicture): Promise
 
 /** Return the many photos in a project by their own names, of which the service's pictures have one ending more. */
 function photosIn(members: Record<string, Uint8Array>): File[] {
-  return Object.keys(members).flatMap(member => {
-    const [, name, own] = member.match(/^photos\/((.+\.\w+?)(?:\.png)?)$/) ?? []
-    if (!name) return []
-    const known = own && TYPES[own.split('.').at(-1)!.toLowerCase()]
-    const type = TYPES[name.split('.').at(-1)!.toLowerCase()] ?? ''
-    return [new File([new Uint8Array(members[member]!)], known ? own : name, { type })]
+  const names = Object.keys(members).filter(member => /^photos\/[^/]+$/.test(member))
+  return names.map(member => {
+    const name = member.slice('photos/'.length)
+    const own = name.replace(/\.png$/i, '')
+    const type = typeByEnding(name) ?? ''
+    return new File([new Uint8Array(members[member]!)], typeByEnding(own) ? own : name, { type })
   })
+}
+
+function typeByEnding(name: string): string | undefined {
+  return TYPES[name.slice(name.lastIndexOf('.') + 1).toLowerCase()]
 }
 
 function viewsIn(members: Record<string, Uint8Array>): Strokes {

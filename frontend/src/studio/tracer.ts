@@ -51,6 +51,13 @@ export class Tracer {
     )
   }
 
+  /** Send again what the service refused: it may have been too busy. */
+  again(): void {
+    this.#refused = null
+    this.store.fault('strokes', null)
+    void this.#rounds.ask()
+  }
+
   async #catchUp(): Promise<void> {
     try {
       while (await this.#step()) {}

@@ -1,4 +1,4 @@
-import { metres, percent, whole } from './numbers'
+import { metres, whole } from './numbers'
 import { plural } from './plural'
 
 function photos(count: number): string {
@@ -58,7 +58,6 @@ export const captureText = {
   },
   strip: {
     label: 'Photos of the tree',
-    keys: 'Left and right arrow keys choose a photo.',
     photo: (place: number, count: number, name: string) => `Photo ${whole(place)} of ${whole(count)}, ${name}`,
     drawn: 'with strokes',
     used: 'used',
@@ -91,22 +90,16 @@ export const captureText = {
   /** At a stroke over one photo of many. */
   on: (stroke: string, photo: string) => `${stroke} (${photo})`,
   tracing: (count: number) => `Reading the tree in ${photos(count)} …`,
-  chosen: (name: string) => `${name}.`,
   edited: 'The branches were edited.',
   scaled: 'The tree’s size is set by the distance of two photos.',
   hints: {
-    crownHere: 'Draw a loose line around the leaves in this photo.',
-    finding: 'Draw while the cameras are found: a line around the leaves, one up the trunk.',
     waiting: 'Your strokes are enough. The tree takes shape once the cameras are found.',
     unsolved: 'Your strokes are enough. Now let the cameras be found.',
     reading: 'The tree is being read in all photos …',
     refine: 'Look at the other photos: draw where the tree is not found well, or grow it.',
     crownMissing: 'Strokes in this photo count once there is a line around its leaves, too.',
     notUsed: 'This photo is not used. Draw on another one.',
-  },
-  grow: {
-    unsolved: 'Grow once the cameras of the photos are found.',
-    reading: 'Reading the photos',
+    show: 'Show the photo',
   },
   welcome: {
     title: 'Or measure it: many photos, one tree',
@@ -132,5 +125,4 @@ export const captureText = {
     least: (least: number, most: number) =>
       `At least ${whole(least)} photos are needed, and ${whole(most)} are read at most.`,
   },
-  share: percent,
 } as const

@@ -4,10 +4,23 @@ import { strToU8, zipSync } from 'fflate'
 import { afterEach, beforeEach, expect, test, vi } from 'vitest'
 import { DEFAULT_SETTINGS } from '../../src/api/defaults'
 import type { Limits } from '../../src/api/types'
-import { NO_STROKES, toWire } from '../../src/strokes'
+import { captureOf } from '../../src/sheets'
+import { NO_STROKES, onPhoto, toWire, viewsToWire, withPhoto } from '../../src/strokes'
 import { writeProject } from '../../src/studio/project'
 import { Studio } from '../../src/studio/studio'
-import { answer, CROWN, drawnAnswer, LIMB, model, PNG, sketchAnswer, TRUNK } from '../builders'
+import { text } from '../../src/text'
+import {
+  answer,
+  CROWN,
+  captureInfo,
+  capturePhoto,
+  drawnAnswer,
+  LIMB,
+  model,
+  PNG,
+  sketchAnswer,
+  TRUNK,
+} from '../builders'
 import { type Call, Events, problem, service, settle } from '../service'
 
 const STROKES = { crown: CROWN, branches: [{ points: TRUNK }], erase: [], scale: null }
@@ -151,15 +164,94 @@ test('a model that is gone is a fault', async () => {
   expect(store.state.faults.photo?.text).toContain('no longer there')
 })
 
-test('a model of many photos is a fault that says where its file is, and no project is fetched', async () => {
-  const calls = service(() =>
-    Response.json(model({ capture: 'cap_1', files: { 'tree.glb': '/v1/models/mdl_1/tree.glb' } })),
-  )
+const NAMES = ['00.jpg', '01.jpg']
+const VIEWS = withPhoto(NO_STROKES, '01.jpg', STROKES)
+
+/** A service with a capture of two photos, and a model of it with its project. */
+async function serveCapture(call: Call): Promise<Response> {
+  const { method, path, body } = call
+  const photos = NAMES.map(name => capturePhoto(name, { used: true }))
+  if (path.endsWith('/photos') && method === 'POST')
+    return Response.json(capturePhoto(((body as FormData).get('file') as File).name), { status: 201 })
+  if (path.startsWith('/v1/captures')) return Response.json(captureInfo({ photos, status: 'solved' }))
+  const photosMade = NAMES.map(name => new File(['dots'], name, { type: 'image/png' }))
+  const project = { photo: null, photos: photosMade, strokes: VIEWS, settings: DEFAULT_SETTINGS, seed: 0, leaf: null }
+  if (path === '/project') return new Response(await writeProject(project))
+  return Response.json(model({ capture: 'cap_1', status: 'succeeded', files: { project: '/project' } }))
+}
+
+test('many photos are opened with the first one, and the others follow', async () => {
+  service(serveCapture)
+  const { store, opener } = new Studio()
+  await opener.openPhotos([jpeg('01.jpg'), jpeg('00.jpg')], 'The oak')
+  await settle()
+  expect(store.state).toMatchObject({ name: 'The oak', opening: false, sheets: { front: { name: '00.jpg' } } })
+  expect(captureOf(store.state)?.photos.map(({ name }) => name)).toEqual(NAMES)
+})
+
+test('an example of many photos comes with its strokes', async () => {
+  const strokes = new File([JSON.stringify(viewsToWire(VIEWS))], 'strokes.json')
+  service(call => (call.path === '/strokes.json' ? new Response(strokes) : serveCapture(call)))
+  const { store, opener } = new Studio()
+  const photos = NAMES.map(name => ({ name, url: `/${name}/image` }))
+  await opener.openPhotosExample({ name: 'young_ash', photos, strokes: '/strokes.json' })
+  expect(store.strokes).toEqual(VIEWS)
+  expect(store.state.name).toBe(text.examples.young_ash)
+})
+
+test('a model of many photos is opened over those that the service has, at the photo that was drawn on', async () => {
+  const calls = service(serveCapture)
   const { store, opener } = new Studio()
   await opener.openModel('mdl_1')
-  expect(store.state.faults.photo?.text).toContain('many photos')
-  expect(store.state.faults.photo?.text).toContain('/v1/models/mdl_1/tree.glb')
-  expect(calls.map(({ path }) => path)).toEqual(['/v1/models/mdl_1'])
+  expect(store.strokes).toEqual(VIEWS)
+  expect(store.state.sheets).toMatchObject({ source: 'capture', front: { name: '01.jpg' } })
+  expect(store.state.model?.strokes).toBe(store.strokes)
+  expect(calls.filter(({ method }) => method === 'POST')).toEqual([])
+})
+
+test('where the service no longer has its photos, they are sent again from its project', async () => {
+  const isLost = ({ path, method }: Call) => path === '/v1/captures/cap_1' && method === 'GET'
+  service(call => (isLost(call) ? problem(404, 'capture_not_found', 'gone') : serveCapture(call)))
+  const { store, opener } = new Studio()
+  await opener.openModel('mdl_1')
+  await settle()
+  expect(captureOf(store.state)?.photos.map(({ name }) => name)).toEqual(NAMES)
+  expect(store.strokes).toEqual(VIEWS)
+  expect(store.state.model?.info.id).toBe('mdl_1')
+})
+
+/** A draft of two photos that was left at the second. */
+async function keptCapture(): Promise<string> {
+  const { opener, captures, strokes, drafts } = new Studio()
+  await opener.openPhotos(
+    NAMES.map(name => jpeg(name)),
+    '',
+  )
+  await settle()
+  captures.choose('01.jpg')
+  strokes.draw('crown', CROWN)
+  await vi.waitFor(async () => expect((await drafts.find(drafts.id!))?.draft.history.past).toHaveLength(1))
+  return drafts.id!
+}
+
+test('a draft of many photos goes on where it was left', async () => {
+  service(serveCapture)
+  const id = await keptCapture()
+  const { store, opener } = new Studio()
+  await opener.openDraft(id)
+  expect(store.state.sheets).toMatchObject({ source: 'capture', front: { name: '01.jpg' } })
+  expect(onPhoto(store.strokes, '01.jpg').crown).toEqual(CROWN)
+  expect(store.state.solve?.status).toBe('solved')
+})
+
+test('a draft whose photos the service lost keeps its strokes and asks for the photos', async () => {
+  service(serveCapture)
+  const id = await keptCapture()
+  service(() => problem(404, 'capture_not_found', 'gone'))
+  const { store, opener } = new Studio()
+  await opener.openDraft(id)
+  expect(captureOf(store.state)).toMatchObject({ id: null, photos: [{ name: '00.jpg' }, { name: '01.jpg' }] })
+  expect(onPhoto(store.strokes, '01.jpg').crown).toEqual(CROWN)
 })
 
 test('a draft is opened with its history and its model', async () => {

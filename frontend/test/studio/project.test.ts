@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs'
 import { strToU8, zipSync } from 'fflate'
 import { expect, test } from 'vitest'
 import { DEFAULT_SETTINGS } from '../../src/api/defaults'
-import { NO_STROKES, withSheet } from '../../src/strokes'
+import { NO_STROKES, withEdit, withPhoto, withSheet } from '../../src/strokes'
 import { isProject, projectName, readProject, writeProject } from '../../src/studio/project'
 import { CROWN, LIMB, TRUNK } from '../builders'
 
@@ -55,10 +55,24 @@ test.each([
   ['no ZIP', new Blob(['hello']), 'damaged'],
   ['no photo', zip({ 'strokes.json': '{}' }), 'no photo'],
   ['strokes of another form', zip({ 'photo.jpg': 'x', 'strokes.json': '{"crown": 7}' }), 'damaged'],
-  ['many photos', zip({ 'photos/0.jpg.png': 'x', 'views.json': '{}' }), 'many photos'],
+  ['views of another form', zip({ 'photos/0.jpg.png': 'x', 'views.json': '{}' }), 'damaged'],
+  ['edits of another form', zip({ 'views.json': '{"views": []}', 'edits.json': '{}' }), 'damaged'],
   ['no JSON', zip({ 'photo.jpg': 'x', 'strokes.json': '{' }), 'damaged'],
 ])('%s is said in a sentence', async (_, file, word) => {
   await expect(opened(file)).rejects.toThrow(word)
+})
+
+test('a project of many photos is read as it was written, with its edits', async () => {
+  const strokes = withEdit(withPhoto(NO_STROKES, 'b.jpg', STROKES), { do: 'remove', at: [0, 1, 2] })
+  const photos = ['a.png', 'b.jpg'].map(name => new File(['dots'], name, { type: 'image/png' }))
+  const written = await writeProject({ photo: null, photos, strokes, settings: DEFAULT_SETTINGS, seed: 3, leaf: null })
+  const read = await opened(written)
+  expect(read.photos?.map(({ name, type }) => [name, type])).toEqual([
+    ['a.png', 'image/png'],
+    ['b.jpg', 'image/png'],
+  ])
+  expect(read.strokes).toEqual(strokes)
+  expect(read.seed).toBe(3)
 })
 
 test('a project is recognized by its ending or its type', () => {

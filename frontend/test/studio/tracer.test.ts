@@ -3,7 +3,18 @@ import { Client } from '../../src/api/client'
 import { type State, Store } from '../../src/state'
 import { StrokeActions } from '../../src/studio/strokeActions'
 import { Tracer } from '../../src/studio/tracer'
-import { answer, CROWN, grown, LIMB, photoSheets, shownModel, TRUNK } from '../builders'
+import {
+  answer,
+  CROWN,
+  camera,
+  captureAnswer,
+  captureSheets,
+  grown,
+  LIMB,
+  photoSheets,
+  shownModel,
+  TRUNK,
+} from '../builders'
 import { type Call, problem, service, settle } from '../service'
 
 afterEach(() => vi.unstubAllGlobals())
@@ -12,9 +23,9 @@ async function begin() {
   const store = new Store()
   store.set({ sheets: photoSheets() })
   const wait = vi.fn(async () => {})
-  new Tracer(store, new Client(), wait)
+  const tracer = new Tracer(store, new Client(), wait)
   await settle()
-  return { store, wait, strokes: new StrokeActions(store) }
+  return { store, wait, tracer, strokes: new StrokeActions(store) }
 }
 
 function traced({ body }: Call): Response {
@@ -241,5 +252,72 @@ test('a setting that the service refuses is told, and the next one is sent', asy
   const before = calls.length
   await choose(store, { form: 'spire' })
   expect(calls).toHaveLength(before + 1)
+  expect(store.state.faults.strokes).toBeUndefined()
+})
+
+/** Many photos with a crown and a trunk over the first, whose cameras are known or not. */
+async function beginPhotos(cameras = [camera('00.jpg')]) {
+  const all = await begin()
+  all.store.set({ sheets: captureSheets(['00.jpg', '01.jpg'], { cameras }) })
+  all.strokes.draw('crown', CROWN)
+  all.strokes.draw('branch', TRUNK)
+  await settle()
+  return all
+}
+
+function tracedPhotos({ body }: Call): Response {
+  return Response.json(captureAnswer(body.grow ? { grown: grown() } : {}))
+}
+
+test('many photos are traced once their cameras are known, and the tree grows', async () => {
+  const calls = service(tracedPhotos)
+  const { store } = await beginPhotos([])
+  expect(calls).toEqual([])
+  store.set({ sheets: captureSheets(['00.jpg', '01.jpg'], { cameras: [camera('00.jpg')] }) })
+  await settle()
+  expect(calls.map(({ path, body }) => [path, body.views.length, body.grow])).toEqual([
+    ['/v1/captures/cap_1/trace', 1, false],
+    ['/v1/captures/cap_1/trace', 1, true],
+  ])
+  expect(store.state.liveTree).toEqual(grown())
+})
+
+test('drawing on another photo traces nothing anew, an edit does', async () => {
+  const calls = service(tracedPhotos)
+  const { store, strokes } = await beginPhotos()
+  const before = calls.length
+  const { sheets } = store.state
+  if (sheets?.source === 'capture') store.set({ sheets: { ...sheets, front: { ...sheets.front, url: 'blob:other' } } })
+  await settle()
+  expect(calls).toHaveLength(before)
+  strokes.edit({ do: 'remove', at: [0, 1, 0] })
+  await settle()
+  expect(calls.at(-1)?.body.edits).toEqual([{ do: 'remove', at: [0, 1, 0] }])
+})
+
+test('a fault over one of many photos is at its stroke', async () => {
+  service(() => problem(422, 'too_short', 'it is too short', '/views/0/branches/0'))
+  const { store } = await beginPhotos()
+  expect(store.state.faults.strokes?.stroke).toEqual({ kind: 'branch', index: 0, photo: '00.jpg' })
+})
+
+test('many photos that the service no longer has are lost, not a fault of the strokes', async () => {
+  service(() => problem(404, 'capture_not_found', 'gone'))
+  const { store } = await beginPhotos()
+  expect(store.state.sheets).toMatchObject({ capture: { id: null } })
+  expect(store.state.faults.strokes).toBeUndefined()
+})
+
+test('what failed is tried again when it is asked for', async () => {
+  let fails = true
+  const calls = service(call => (fails ? problem(503, 'tracing_failed', 'it took too long') : traced(call)))
+  const { store, strokes, tracer } = await begin()
+  strokes.draw('crown', CROWN)
+  await settle()
+  expect(store.state.faults.strokes?.text).toBe('It took too long.')
+  fails = false
+  tracer.again()
+  await settle()
+  expect(calls).toHaveLength(2)
   expect(store.state.faults.strokes).toBeUndefined()
 })

@@ -16,18 +16,25 @@ const { strip: words } = text.capture
 
 /** The many photos of a tree below the one that is drawn on: what becomes of them, and which is drawn on. */
 export function PhotoStrip() {
-  const photos = useStore(state => captureOf(state)?.photos)
-  if (!photos) return null
+  const capture = useStore(captureOf)
+  if (!capture) return null
+  const { photos, chosen } = capture
   return (
     <div class="photo-strip">
       <CaptureStatus />
-      <Photos photos={photos} />
+      <Photos photos={photos} awaited={Math.max(chosen - photos.length, 0)} />
     </div>
   )
 }
 
+interface PhotosProps {
+  readonly photos: readonly CapturePhoto[]
+  /** How many more are to come. */
+  readonly awaited: number
+}
+
 /** The photos in a row; arrow keys go from one to the next, which is drawn on then. */
-function Photos({ photos }: { readonly photos: readonly CapturePhoto[] }) {
+function Photos({ photos, awaited }: PhotosProps) {
   const { captures } = useStudio()
   const chosen = useStore(photoDrawnOn)
   const strokes = useStore(({ history }) => history.present)
@@ -60,6 +67,9 @@ function Photos({ photos }: { readonly photos: readonly CapturePhoto[] }) {
             isDrawn={drawnOver.has(photo.name)}
             pointAt={pointAt}
           />
+        ))}
+        {Array.from({ length: awaited }, (_, at) => (
+          <span key={at} class="strip-awaited" aria-hidden="true" />
         ))}
       </div>
       <p class="strip-note">{noted?.used === false ? words.notUsed(noted.name, reasonOf(noted)) : ''}</p>

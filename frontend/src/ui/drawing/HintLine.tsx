@@ -1,5 +1,5 @@
 import { useLayoutEffect, useState } from 'preact/hooks'
-import { captureOf } from '../../sheets'
+import { captureOf, photoDrawnOn } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
 import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
@@ -52,14 +52,18 @@ function kindOf(pointerType: string): PointerKind {
 }
 
 function HintActions({ hint: { tone, stroke, deletes } }: { readonly hint: Hint }) {
-  const { strokes } = useStudio()
+  const { strokes, captures, tracer } = useStudio()
+  const drawnOver = useStore(photoDrawnOn)
+  const elsewhere = stroke?.photo !== undefined && stroke.photo !== drawnOver ? stroke.photo : null
   const removeStroke = () => {
     strokes.select(stroke!)
     strokes.remove()
   }
   return (
     <>
+      {elsewhere !== null && <Action label={text.capture.hints.show} run={() => captures.choose(elsewhere)} />}
       {stroke && <Action label={text.hints.deleteStroke} run={removeStroke} />}
+      {tone === 'fault' && !stroke && <Action label={text.grow.tryAgain} run={() => tracer.again()} />}
       {tone === 'fault' && <Action label={text.hints.undo} run={() => strokes.undo()} />}
       {deletes && <Action label={text.hints.delete} run={() => strokes.remove()} />}
     </>

@@ -3,6 +3,7 @@ import type { History } from '../../history'
 import type { Selection, Sheet, State, Store } from '../../state'
 import { isEmpty, lineOf, type Point, type Scale, type StrokeRef, type Strokes, strokeRefs } from '../../strokes'
 import { text } from '../../text'
+import { captureProgress } from '../capture/captureStatus'
 import { strokeName } from './strokeTexts'
 
 /** Announce the tool, the sheet and the selection that are chosen, edits, and what was traced; the call ends it. */
@@ -31,6 +32,10 @@ export function announceDrawing(store: Store): () => void {
     say(
       state => state.traced,
       traced => traced && text.strokes.branchesFound(tipCount(traced.answer.skeleton)),
+    ),
+    say(
+      state => state.solve?.status,
+      status => (status === 'solved' ? (captureProgress(store.state)?.words ?? null) : null),
     ),
     say(
       state => state.selection,

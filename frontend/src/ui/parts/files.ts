@@ -53,13 +53,14 @@ export function chooseSketch(take: (file: File) => void): void {
 export function openFiles(studio: Studio, files: readonly File[], folder = ''): void {
   const photos = files.filter(isPicture)
   const one = files.find(isProject) ?? (photos.length === 1 ? photos[0] : undefined)
-  if (one) return openFile(studio, one)
-  if (!photos.length) {
-    if (files.length) studio.store.fault('photo', { text: text.welcome.unknownFile })
-    return
-  }
-  const others = files.filter(file => !photos.includes(file) && !HIDDEN.test(file.name)).map(({ name }) => name)
-  studio.store.set({ dialog: 'photos', offer: { photos, others, name: folder } })
+  if (one) openFile(studio, one)
+  else if (photos.length) offerPhotos(studio, photos, files, folder)
+  else if (files.length) studio.store.fault('photo', { text: text.welcome.unknownFile })
+}
+
+function offerPhotos({ store }: Studio, photos: readonly File[], files: readonly File[], name: string): void {
+  const others = files.filter(file => !photos.includes(file) && !HIDDEN.test(file.name))
+  store.set({ dialog: 'photos', offer: { photos, others: others.map(other => other.name), name } })
 }
 
 /** Open a photo or a project in the place of the present drawing. */

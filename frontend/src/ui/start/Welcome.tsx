@@ -33,15 +33,15 @@ export function Welcome({ late }: { readonly late: boolean }) {
           ))}
         </ul>
       </Section>
+      <Section id="many" title={text.capture.welcome.title} hint={text.capture.welcome.hint}>
+        <ManyPhotos />
+      </Section>
       <Section id="sketches" title={sheets.welcome.examples} hint={sheets.welcome.examplesHint}>
         <ul class="picks pairs">
           {SKETCH_EXAMPLES.map(example => (
             <SketchCard key={example.name} example={example} />
           ))}
         </ul>
-      </Section>
-      <Section id="many" title={text.capture.welcome.title} hint={text.capture.welcome.hint}>
-        <ManyPhotos />
       </Section>
       <GrownTrees closed={closed} />
     </div>

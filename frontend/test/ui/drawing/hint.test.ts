@@ -3,10 +3,20 @@ import type { StrokeWarning, TraceAnswer } from '../../../src/api/types'
 import { advance, begin } from '../../../src/history'
 import { paper } from '../../../src/sheets'
 import { EMPTY, type State } from '../../../src/state'
-import { type Line, NO_STROKES, withSheet, withStroke } from '../../../src/strokes'
+import { type Line, NO_STROKES, withPhoto, withSheet, withStroke } from '../../../src/strokes'
 import { text } from '../../../src/text'
 import { hintOf } from '../../../src/ui/drawing/hint'
-import { grown, photo, photoSheets, shownModel, sketchSheets } from '../../builders'
+import {
+  camera,
+  captureAnswer,
+  capturePhoto,
+  captureSheets,
+  grown,
+  photo,
+  photoSheets,
+  shownModel,
+  sketchSheets,
+} from '../../builders'
 
 const LINE: Line = [
   [0, 0],
@@ -135,4 +145,29 @@ test('what was corrected while a drawing was read is said until it is drawn on',
     how: text.hints.waiting,
   })
   expect(said({ tool: 'branch', history: begin(two), corrections })).toBe(text.hints.waiting)
+})
+
+test('over many photos the hints lead on to the cameras, the tree and the other photos', () => {
+  const { hints } = text.capture
+  const [sheets, cameras] = [captureSheets(), [camera('00.jpg')]]
+  const over = (strokes: typeof two, photo = '00.jpg') => begin(withPhoto(NO_STROKES, photo, strokes))
+  expect(said({ sheets })).toBe(text.hints.crown)
+  expect(said({ sheets, tool: 'branch', history: over(crown) })).toBe(text.hints.trunk)
+  const drawn = { tool: 'branch', history: over(trunk) } as const
+  expect(said({ sheets, ...drawn, sending: true })).toBe(hints.waiting)
+  expect(said({ sheets, ...drawn })).toBe(hints.unsolved)
+  const solved = { ...drawn, sheets: captureSheets(['00.jpg', '01.jpg'], { cameras }) }
+  expect(said(solved)).toBe(hints.reading)
+  const found = { of: drawn.history.present, answer: captureAnswer() }
+  expect(said({ ...solved, traced: found, liveTree: grown() })).toBe(hints.refine)
+})
+
+test('over many photos it says which strokes do not count yet, and which photo is not used', () => {
+  const { hints } = text.capture
+  const branch = withStroke(NO_STROKES, 'branch', LINE)
+  const history = begin(withPhoto(withPhoto(NO_STROKES, '01.jpg', trunk), '00.jpg', branch))
+  expect(said({ sheets: captureSheets(), history })).toBe(hints.crownMissing)
+  const photos = [capturePhoto('00.jpg', { used: false })]
+  const drawn = begin(withPhoto(NO_STROKES, '01.jpg', trunk))
+  expect(said({ sheets: captureSheets(['00.jpg'], { photos }), history: drawn })).toBe(hints.notUsed)
 })

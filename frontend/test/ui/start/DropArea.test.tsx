@@ -9,6 +9,7 @@ import { text } from '../../../src/text'
 import { StudioProvider } from '../../../src/ui/parts/useStore'
 import { DropArea } from '../../../src/ui/start/DropArea'
 import { sketchSheets } from '../../builders'
+import { settle } from '../../service'
 
 const store = new Store()
 const [openFile, openSketch, openOn, addPicture] = [vi.fn(), vi.fn(), vi.fn(), vi.fn()]
@@ -38,11 +39,12 @@ beforeEach(() => {
 })
 
 /** Drag a file over a part of the page, and drop it there; gives what was chosen meanwhile. */
-function drop(file: File, target: Element, clientY: number): string[] {
-  const items = [{ kind: 'file', type: file.type }]
+function drop(file: File, target: Element, clientY: number, ...more: File[]): string[] {
+  const files = [file, ...more]
+  const items = files.map(({ type }) => ({ kind: 'file', type }))
   const send = (name: string) => {
     const event = new MouseEvent(name, { bubbles: true, cancelable: true, clientY })
-    Object.defineProperty(event, 'dataTransfer', { value: { types: ['Files'], items, files: [file] } })
+    Object.defineProperty(event, 'dataTransfer', { value: { types: ['Files'], items, files } })
     act(() => void target.dispatchEvent(event))
   }
   send('dragover')
@@ -68,25 +70,35 @@ test('a PNG that is dropped on a sheet is laid under it above, and opened on it 
   expect([openFile.mock.calls, openSketch.mock.calls]).toEqual([[], []])
 })
 
-test('a picture that can be no drawing is a photo wherever it is dropped', () => {
+test('a picture that can be no drawing is a photo wherever it is dropped', async () => {
   drop(jpeg, document.body, 790)
+  await settle()
   store.set({ sheets: sketchSheets(paper(), paper()) })
   drop(jpeg, side, 690)
   expect([openFile.mock.calls, addPicture.mock.calls]).toEqual([[[jpeg]], [['side', jpeg]]])
 })
 
-test('a photo that the browser has no type for is laid under the sheet that it is dropped on', () => {
+test('a photo that the browser has no type for is laid under the sheet that it is dropped on', async () => {
   const heic = new File(['dots'], 'oak.HEIC')
   drop(heic, document.body, 10)
+  await settle()
   store.set({ sheets: sketchSheets(paper(), paper()) })
   drop(heic, side, 390)
   expect([openFile.mock.calls, addPicture.mock.calls]).toEqual([[[heic]], [['side', heic]]])
 })
 
-test('strokes are a drawing wherever they are dropped, and what is neither is said', () => {
+test('strokes are a drawing wherever they are dropped, and what is neither is said', async () => {
   const strokes = new File(['{}'], 'oak.json', { type: 'application/json' })
   drop(strokes, document.body, 10)
   expect(openSketch.mock.calls).toEqual([[strokes]])
   drop(new File(['x'], 'notes.txt', { type: 'text/plain' }), document.body, 10)
+  await settle()
   expect(store.state.faults.photo?.text).toBe(text.welcome.unknownFile)
+})
+
+test('several photos are those of one tree, even over a sheet of paper', async () => {
+  store.set({ sheets: sketchSheets(paper(), paper()) })
+  expect(drop(jpeg, side, 300, png)).toEqual([text.capture.offer.drop])
+  await settle()
+  expect(store.state).toMatchObject({ dialog: 'photos', offer: { photos: [jpeg, png] } })
 })

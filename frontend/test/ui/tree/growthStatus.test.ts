@@ -2,10 +2,10 @@ import { expect, test } from 'vitest'
 import { begin } from '../../../src/history'
 import { paper } from '../../../src/sheets'
 import { EMPTY, type ShownModel, type State } from '../../../src/state'
-import { type Strokes, withStroke } from '../../../src/strokes'
+import { type Strokes, withPhoto, withStroke } from '../../../src/strokes'
 import { canGrow, growthStatusOf, isBusy } from '../../../src/ui/tree/growthStatus'
 import { progressOf, stepOf } from '../../../src/ui/tree/growthText'
-import { CROWN, model, photoSheets, shownModel, sketchSheets, TRUNK } from '../../builders'
+import { CROWN, camera, captureSheets, model, photoSheets, shownModel, sketchSheets, TRUNK } from '../../builders'
 
 const crown = withStroke(EMPTY.history.present, 'crown', CROWN)
 const drawn = withStroke(crown, 'branch', TRUNK)
@@ -24,6 +24,16 @@ test('it says what is missing until there is a photo, a crown and a trunk', () =
   expect(growthStatusOf(state({ history: begin(EMPTY.history.present) }))).toBe('noCrown')
   expect(growthStatusOf(state({ history: begin(crown) }))).toBe('noTrunk')
   expect(growthStatusOf(state())).toBe('ready')
+})
+
+test('many photos need a crown and a trunk over one of them, and their cameras', () => {
+  const over = (strokes: Strokes) => withPhoto(EMPTY.history.present, '01.jpg', strokes)
+  const many = (strokes: Strokes, cameras = [camera('00.jpg')]) =>
+    growthStatusOf(state({ sheets: captureSheets(['00.jpg', '01.jpg'], { cameras }), history: begin(strokes) }))
+  expect(many(EMPTY.history.present)).toBe('noCrown')
+  expect(many(over(crown))).toBe('noTrunk')
+  expect(many(over(drawn), [])).toBe('noCameras')
+  expect(many(over(drawn))).toBe('ready')
 })
 
 test('a stroke that cannot be used keeps the tree from growing, a fault of the service does not', () => {
