@@ -70,6 +70,9 @@ export type Source = Sheets['source']
 /** What the pointer does on a sheet. */
 export type Tool = 'crown' | 'branch' | 'scale' | 'select'
 
+/** What the pointer does to the branches of many photos where the tree is shown. */
+export type BranchTool = 'move' | 'add' | 'join'
+
 /** A stroke, or a traced branch by its first joint. */
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
@@ -139,6 +142,8 @@ export interface State extends OwnPictures {
   readonly settings: Settings
   readonly seed: number
   readonly tool: Tool
+  /** How branches are edited where the tree is shown; null while they are not. */
+  readonly branchTool: BranchTool | null
   /** The brush's width on paper, as a share of the paper's height; null for a pencil, which sets no width. */
   readonly brush: number | null
   readonly selection: Selection | null
@@ -185,6 +190,7 @@ export const EMPTY: State = {
   leaf: null,
   fruit: null,
   tool: 'crown',
+  branchTool: null,
   brush: null,
   selection: null,
   opening: false,

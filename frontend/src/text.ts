@@ -1,6 +1,7 @@
 import { captureText } from './text/capture'
 import { drawingText } from './text/drawing'
 import { filesText } from './text/files'
+import { measuredText } from './text/measured'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
 import { sheetsText } from './text/sheets'
@@ -17,6 +18,7 @@ export const text = {
   sheets: sheetsText,
   settings: settingsText,
   taken: takenText,
+  measured: measuredText,
   score: scoreText,
   files: filesText,
 } as const

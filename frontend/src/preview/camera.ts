@@ -20,6 +20,8 @@ export interface Rect extends Viewport {
 /**
  * Where the camera stands and looks: at `target`, from the direction `azimuth` (0 = the photo's side, turning to +X) and
  * `polar` (0 = above), radians; it sees a height of `size` world units at the target; `slope` is its lens, tan(fov / 2).
+ * `roll` turns the camera anticlockwise, radians; `shift` is where the target stands right of and below the viewport's
+ * middle, in viewport heights. Both are 0 where they are absent.
  */
 export interface Pose {
   target: Vec3
@@ -27,6 +29,8 @@ export interface Pose {
   polar: number
   size: number
   slope: number
+  roll?: number
+  shift?: readonly [number, number]
 }
 
 /** A lens so long that it matches the photo's orthographic view to a fraction of a pixel. */
@@ -74,6 +78,18 @@ export function axes(azimuth: number, polar: number): { right: Vec3; up: Vec3; b
   return { right: [ca, 0, -sa], up: [-sa * cp, sp, -ca * cp], back: [sa * sp, cp, ca * sp] }
 }
 
+/** Return the unit axes of a pose's camera, turned by its roll. */
+function rolledAxes({ azimuth, polar, roll = 0 }: Pose): { right: Vec3; up: Vec3; back: Vec3 } {
+  const { right, up, back } = axes(azimuth, polar)
+  const [sin, cos] = [Math.sin(roll), Math.cos(roll)]
+  const mix = (a: number, one: Vec3, b: number, other: Vec3): Vec3 => [
+    a * one[0] + b * other[0],
+    a * one[1] + b * other[1],
+    a * one[2] + b * other[2],
+  ]
+  return { right: mix(cos, right, sin, up), up: mix(cos, up, -sin, right), back }
+}
+
 /** Return the camera's position in the world. */
 export function eyeOf(pose: Pose): Vec3 {
   const { back } = axes(pose.azimuth, pose.polar)
@@ -83,11 +99,52 @@ export function eyeOf(pose: Pose): Vec3 {
 
 /** Return where the camera shows a world point, CSS px from the viewport's top left corner, y down. */
 export function screenOf(pose: Pose, point: Vec3, viewport: Viewport): [number, number] {
-  const { right, up, back } = axes(pose.azimuth, pose.polar)
+  const [x, y] = projected(pose, point, viewport)
+  return [x, y]
+}
+
+/** Return where the camera shows a world point, CSS px, and how far before the camera it lies, world units. */
+export function projected(pose: Pose, point: Vec3, { width, height }: Viewport): [x: number, y: number, depth: number] {
+  const { right, up, back } = rolledAxes(pose)
   const offset: Vec3 = [point[0] - pose.target[0], point[1] - pose.target[1], point[2] - pose.target[2]]
   const distance = distanceOf(pose)
-  const scale = ((viewport.height / pose.size) * distance) / (distance - dot(back, offset))
-  return [viewport.width / 2 + scale * dot(right, offset), viewport.height / 2 - scale * dot(up, offset)]
+  const depth = distance - dot(back, offset)
+  const scale = ((height / pose.size) * distance) / depth
+  const [across, down] = pose.shift ?? [0, 0]
+  return [
+    width / 2 + across * height + scale * dot(right, offset),
+    height / 2 + down * height - scale * dot(up, offset),
+    depth,
+  ]
+}
+
+/** Return the world point that the camera shows at a place (CSS px) and lies `depth` world units before the camera. */
+export function unprojected(
+  pose: Pose,
+  [x, y]: readonly [number, number],
+  depth: number,
+  { width, height }: Viewport,
+): Vec3 {
+  const { right, up, back } = rolledAxes(pose)
+  const [across, down] = pose.shift ?? [0, 0]
+  const distance = distanceOf(pose)
+  const scale = ((height / pose.size) * distance) / depth
+  const [toRight, toTop] = [(x - width / 2 - across * height) / scale, (height / 2 + down * height - y) / scale]
+  const on = (axis: 0 | 1 | 2) =>
+    pose.target[axis] + right[axis] * toRight + up[axis] * toTop + back[axis] * (distance - depth)
+  return [on(0), on(1), on(2)]
+}
+
+/** Return a pose with a lens that shows everything larger by a factor, except a place that stays (CSS px). */
+export function zoomedLens(pose: Pose, factor: number, [x, y]: readonly [number, number], viewport: Viewport): Pose {
+  const [across, down] = [(x - viewport.width / 2) / viewport.height, (y - viewport.height / 2) / viewport.height]
+  const shift = pose.shift ?? [0, 0]
+  return {
+    ...pose,
+    size: pose.size / factor,
+    slope: pose.slope / factor,
+    shift: [across + (shift[0] - across) * factor, down + (shift[1] - down) * factor],
+  }
 }
 
 /** Return the photo's rectangle in the viewport, for a camera that faces it. */
@@ -113,6 +170,8 @@ export function interpolate(from: Pose, to: Pose, t: number): Pose {
     polar: mix(from.polar, to.polar),
     size: Math.exp(mix(Math.log(from.size), Math.log(to.size))),
     slope: mix(from.slope, to.slope),
+    roll: mix(from.roll ?? 0, to.roll ?? 0),
+    shift: [mix(from.shift?.[0] ?? 0, to.shift?.[0] ?? 0), mix(from.shift?.[1] ?? 0, to.shift?.[1] ?? 0)],
   }
 }
 

@@ -9,7 +9,7 @@ import {
   type Texture,
   Vector3,
 } from 'three'
-import type { PhotoFrame } from '../api/types'
+import type { CameraInfo, PhotoFrame } from '../api/types'
 import { type Box, unitsPerMetre } from './camera'
 import { groundShadow } from './canopy'
 import { restMatrix } from './resting'
@@ -27,6 +27,8 @@ export interface Content {
   readonly leaves: Mesh | null
   /** Its animations by wind; null where its file has none. */
   readonly sway: Sway | null
+  /** The cameras of the photos that it was measured from, in its own frame, metres; absent for other trees. */
+  readonly cameras?: readonly CameraInfo[]
   /** Show it at a share of its growth, 0..1: the branches of the live tree, the leaves of a model. */
   showGrowth(share: number): void
   /** Free what it holds on the GPU. */

@@ -7,7 +7,7 @@ import {
   type Object3D,
   type Texture,
 } from 'three'
-import type { PhotoFrame } from '../api/types'
+import type { CameraInfo, PhotoFrame } from '../api/types'
 import { type Box, unitsPerMetre } from './camera'
 import { canopyOf, lightAt } from './canopy'
 import { type Content, disposeMesh, placeInWorld, trianglesOf } from './content'
@@ -31,6 +31,7 @@ export async function modelContent(glb: ArrayBuffer, uniforms: TreeUniforms, ant
   const crown = canopyOf(resting.get(leaves ?? meshes[0]!)!, SUN)
   for (const [mesh, vertices] of resting) replaceMaterial(mesh, lightAt(crown, vertices), { uniforms, antialiased })
   const photo = scene.userData.photo as PhotoFrame
+  const cameras = scene.userData.cameras as readonly CameraInfo[] | undefined
   const sway = animations.length ? new Sway(scene, animations) : null
   return {
     kind: 'model',
@@ -40,6 +41,7 @@ export async function modelContent(glb: ArrayBuffer, uniforms: TreeUniforms, ant
     triangles: meshes.reduce((sum, mesh) => sum + trianglesOf(mesh.geometry), 0),
     leaves,
     sway,
+    ...(cameras && { cameras }),
     showGrowth: share => {
       uniforms.leafShare.value = share
     },

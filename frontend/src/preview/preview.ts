@@ -1,5 +1,7 @@
 import './preview.css'
 import type { Grown } from '../api/types'
+import type { Measured, Part } from './capture/measured'
+import type { EditEvents, Editing } from './edit/editLayer'
 import { pressKey } from './keys'
 import { probeWebgl } from './software'
 import { NOTHING_SHOWN, type PreviewStatus, type View } from './status'
@@ -10,6 +12,10 @@ export interface PreviewOptions {
   labels: { wipe: string; canvas: string }
   reducedMotion: () => boolean
   onStatus: (status: PreviewStatus) => void
+  /** Called with the name of the photo whose camera was clicked on, where a tree was measured from many. */
+  onPhoto: (photo: string) => void
+  /** Called as branches are edited. */
+  edits: EditEvents
   /** Whether the processor draws WebGL; found out where absent. */
   software?: boolean
 }
@@ -36,6 +42,31 @@ export class Preview {
   /** Show the upright photo at this address in the wipe; null removes it. */
   showPhoto(url: string | null): void {
     this.viewer?.showPhoto(url)
+  }
+
+  /** Show what many photos say about a tree, beside the tree; null shows none of it. */
+  showMeasured(measured: Measured | null): void {
+    this.viewer?.showMeasured(measured)
+  }
+
+  /** Set the addresses of small pictures of the photos, by their names. */
+  setPictures(pictures: ReadonlyMap<string, string>): void {
+    this.viewer?.setPictures(pictures)
+  }
+
+  /** Mark the photo of this name, whose camera the photo's view is that of. */
+  choosePhoto(photo: string | null): void {
+    this.viewer?.choosePhoto(photo)
+  }
+
+  /** Show or hide a part of what many photos say. */
+  setPart(part: Part, shown: boolean): void {
+    this.viewer?.setPart(part, shown)
+  }
+
+  /** Edit branches in place of the tree; null ends that. */
+  setEditing(editing: Editing | null): void {
+    this.viewer?.setEditing(editing)
   }
 
   /** Show the live tree; the camera stays where it is, but the first tree of all is shown from the side. */

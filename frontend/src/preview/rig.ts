@@ -8,6 +8,8 @@ const SIZES = [0.06, 5] as const
 const DRAWN_RADIUS = 6
 /** How fast the lens changes after turning away from the photo's view, per second. */
 const LENS_RATE = 5
+/** How far roll and shift may be from none to be taken for none. */
+const STRAIGHT = 1e-3
 /** Radians from the photo's view that count as turned away. */
 const TURNED_AWAY = 0.002
 
@@ -30,8 +32,12 @@ export interface RigOptions {
 export class Rig {
   readonly camera = new PerspectiveCamera()
   private readonly controls: OrbitControls
-  private flight: { from: Pose; to: Pose; seconds: number; spent: number } | null = null
+  private flight: { from: Pose; to: Pose; hold: boolean; seconds: number; spent: number } | null = null
   private slope = VIEW_SLOPE
+  private roll = 0
+  private shift: readonly [number, number] = [0, 0]
+  /** Whether the camera keeps its roll and shift, as a photo's camera has them, until the pointer moves it. */
+  private held = false
   private aspect = 1
   /** Whether the pointer has grabbed the camera since the last flight. */
   private grabbed = false
@@ -43,7 +49,6 @@ export class Rig {
   ) {
     this.controls = new OrbitControls(this.camera, canvas)
     this.controls.minPolarAngle = 0.03
-    this.controls.maxPolarAngle = Math.PI / 2
     this.controls.maxTargetRadius = 4
     this.controls.dampingFactor = 0.09
     this.controls.zoomSpeed = 1.4
@@ -61,8 +66,17 @@ export class Rig {
   get pose(): Pose {
     const { target } = this.controls
     const offset = new Spherical().setFromVector3(new Vector3().subVectors(this.camera.position, target))
-    const size = 2 * offset.radius * this.slope
-    return { target: [target.x, target.y, target.z], azimuth: offset.theta, polar: offset.phi, size, slope: this.slope }
+    const { slope, roll, shift } = this
+    const size = 2 * offset.radius * slope
+    return {
+      target: [target.x, target.y, target.z],
+      azimuth: offset.theta,
+      polar: offset.phi,
+      size,
+      slope,
+      roll,
+      shift,
+    }
   }
 
   /** The pose that the camera flies to, or its pose now. */
@@ -76,26 +90,41 @@ export class Rig {
     return !this.flight && this.slope === PHOTO_SLOPE && Math.hypot(azimuth, polar - Math.PI / 2) < TURNED_AWAY
   }
 
-  /** Move to a pose at once. */
-  moveTo(pose: Pose): void {
+  /** Whether the camera is at rest as it was told to hold. */
+  get holds(): boolean {
+    return this.held && !this.flight
+  }
+
+  /** Let the pointer turn and move the camera, or not. */
+  set grabbable(on: boolean) {
+    this.controls.enabled = on
+  }
+
+  /** Move to a pose at once; `hold` keeps its roll and shift until the pointer moves the camera. */
+  moveTo(pose: Pose, hold = false): void {
     this.flight = null
     this.grabbed = false
+    this.held = hold
     this.place(pose)
   }
 
-  /** Fly to a pose over some seconds; at once with reduced motion. */
-  fly(to: Pose, seconds: number): void {
+  /** Fly to a pose over some seconds, to hold it there if wanted; at once with reduced motion. */
+  fly(to: Pose, seconds: number, hold = false): void {
     this.endDamping()
     this.grabbed = false
-    if (this.options.reducedMotion()) this.moveTo(to)
-    else this.flight = { from: this.pose, to, seconds, spent: 0 }
+    this.held = false
+    if (this.options.reducedMotion()) this.moveTo(to, hold)
+    else this.flight = { from: this.pose, to, hold, seconds, spent: 0 }
   }
 
   /** Advance by a time, seconds; returns whether anything moves. */
   step(seconds: number): boolean {
     if (this.flight) return this.advanceFlight(this.flight, seconds)
+    if (this.held) return false
     this.controls.enableDamping = this.options.damped()
+    this.controls.maxPolarAngle = lowest(this.pose)
     this.controls.update()
+    this.camera.rotateZ(this.roll)
     const { moved } = this
     this.moved = false
     if (moved && this.grabbed && !this.facesPhoto) this.options.onTurn()
@@ -113,20 +142,23 @@ export class Rig {
     flight.spent = Math.min(flight.spent + seconds, flight.seconds)
     const t = flight.spent / flight.seconds
     this.place(interpolate(flight.from, flight.to, t < 0.5 ? 4 * t ** 3 : 1 - (2 - 2 * t) ** 3 / 2))
-    if (t === 1) this.moveTo(flight.to)
+    if (t === 1) this.moveTo(flight.to, flight.hold)
     return true
   }
 
-  /** Away from the photo's view, bring its long lens closer to that of the other views; returns whether it changed. */
+  /** Away from a photo's view, bring its lens closer to that of the other views; returns whether it changed. */
   private changeLens(seconds: number): boolean {
-    if (this.slope === VIEW_SLOPE || this.facesPhoto) return false
+    const { slope, roll, shift } = this
+    if ((slope === VIEW_SLOPE && !roll && !shift[0] && !shift[1]) || this.facesPhoto) return false
     const remaining = this.options.reducedMotion() ? 0 : Math.exp(-LENS_RATE * seconds)
-    const slope = VIEW_SLOPE + (this.slope - VIEW_SLOPE) * remaining
-    this.place({ ...this.pose, slope: VIEW_SLOPE - slope < 1e-3 ? VIEW_SLOPE : slope })
+    const off = [slope - VIEW_SLOPE, roll, ...shift].map(one => one * remaining) as [number, number, number, number]
+    const [lens, turn, across, down] = off.some(one => Math.abs(one) > STRAIGHT) ? off : [0, 0, 0, 0]
+    this.place({ ...this.pose, slope: VIEW_SLOPE + lens, roll: turn, shift: [across, down] })
     return true
   }
 
   private onChange(): void {
+    this.held = false
     this.moved = true
     this.options.onMove()
   }
@@ -148,13 +180,18 @@ export class Rig {
   private place(pose: Pose): void {
     const { camera, controls } = this
     this.slope = pose.slope
+    this.roll = pose.roll ?? 0
+    this.shift = pose.shift ?? [0, 0]
+    controls.maxPolarAngle = lowest(pose)
     controls.target.set(...pose.target)
     controls.minDistance = SIZES[0] / 2 / pose.slope
     controls.maxDistance = SIZES[1] / 2 / pose.slope
     camera.position.set(...eyeOf(pose))
     camera.lookAt(controls.target)
+    camera.rotateZ(this.roll)
     camera.fov = (Math.atan(pose.slope) * 360) / Math.PI
-    camera.aspect = this.aspect
+    const [across, down] = this.shift
+    camera.setViewOffset(this.aspect, 1, -across, -down, this.aspect, 1)
     this.setDepthRange()
   }
 
@@ -165,4 +202,9 @@ export class Rig {
     this.camera.far = far
     this.camera.updateProjectionMatrix()
   }
+}
+
+/** Return how low the camera may go, radians from above: level with its target, or where a photo was taken below that. */
+function lowest({ polar }: Pose): number {
+  return Math.max(Math.PI / 2, polar)
 }

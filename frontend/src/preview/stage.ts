@@ -1,6 +1,7 @@
 import { DirectionalLight, HemisphereLight, NeutralToneMapping, PCFShadowMap, Scene, WebGLRenderer } from 'three'
 import { Backdrop, DARK, Ground, LIGHT, type Scheme } from './backdrop'
 import { type Box, horizonOf, VIEW_SLOPE, type Viewport } from './camera'
+import type { CaptureLayer } from './capture/layer'
 import { type Content, groundUnder, shadowOf } from './content'
 import type { Rig } from './rig'
 import type { TreeUniforms } from './shading'
@@ -27,10 +28,12 @@ export class Stage {
   private readonly backdrop = new Backdrop()
   private readonly ground = new Ground()
   private content: Content | null = null
+  private treeShown = true
 
   constructor(
     canvas: HTMLCanvasElement,
     private software: boolean,
+    private readonly measured: CaptureLayer,
   ) {
     this.renderer = new WebGLRenderer({ canvas, antialias: !software, powerPreference: 'high-performance' })
     this.renderer.info.autoReset = false
@@ -41,7 +44,7 @@ export class Stage {
     this.sun.shadow.mapSize.setScalar(SHADOW_MAP_SIDE)
     this.sun.shadow.intensity = 0.6
     this.sun.shadow.radius = 2.5
-    this.scene.add(this.sun, this.sun.target, this.sky, this.backdrop.mesh, this.ground.mesh)
+    this.scene.add(this.sun, this.sun.target, this.sky, this.backdrop.mesh, this.ground.mesh, measured.group)
     this.setSoftware(software)
   }
 
@@ -63,6 +66,7 @@ export class Stage {
     const scheme: Scheme = dark ? DARK : LIGHT
     this.backdrop.paint(scheme)
     this.ground.paint(scheme)
+    this.measured.paint(dark)
     this.sun.color.set(scheme.sun)
     this.sun.intensity = scheme.sunlight
     this.sky.color.set(scheme.sky)
@@ -77,9 +81,18 @@ export class Stage {
     this.content = content
     if (content) {
       this.scene.add(content.group)
+      content.group.visible = this.treeShown
       this.fitSun(content.box)
       this.ground.place(groundUnder(content.box))
     }
+    this.updateShadow()
+  }
+
+  /** Show the tree, or only its ground. */
+  setTreeShown(on: boolean): void {
+    if (on === this.treeShown) return
+    this.treeShown = on
+    if (this.content) this.content.group.visible = on
     this.updateShadow()
   }
 
@@ -99,7 +112,7 @@ export class Stage {
   draw(rig: Rig): number {
     rig.setDepthRange()
     // The photo's long lens looks at the ground edge-on.
-    const edgeOn = 1 - rig.pose.slope / VIEW_SLOPE
+    const edgeOn = Math.max(1 - rig.pose.slope / VIEW_SLOPE, 0)
     this.backdrop.set(horizonOf(rig.pose), edgeOn)
     this.ground.mesh.visible = this.content !== null && edgeOn < EDGE_ON
     this.renderer.info.reset()
@@ -110,6 +123,7 @@ export class Stage {
   /** Free everything: nothing can be drawn any more. */
   end(): void {
     this.show(null)
+    this.measured.dispose()
     this.renderer.dispose()
     this.renderer.forceContextLoss()
   }

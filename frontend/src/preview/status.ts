@@ -1,17 +1,24 @@
-/** The named views; `photo` lies exactly over the photo. */
+import type { Part } from './capture/measured'
+
+/** The named views; `photo` lies exactly over the photo, that of many which is chosen. */
 export type View = 'photo' | 'front' | 'side' | 'back' | 'top'
 
 /** What the preview shows, and how. */
 export interface PreviewStatus {
   webgl: 'ok' | 'software' | 'lost' | 'absent'
   view: View | 'free'
-  shows: 'empty' | 'live' | 'growing' | 'model'
+  /** `measured`: what many photos say about a tree, but no tree. */
+  shows: 'empty' | 'measured' | 'live' | 'growing' | 'model'
   leaves: boolean
   triangles: number
   /** The names of the file's winds. */
   winds: readonly string[]
   /** The wind that is played. */
   wind: string | null
+  /** The parts of what many photos say, and whether they are shown; null where there are none. */
+  parts: Readonly<Partial<Record<Part, boolean>>> | null
+  /** Whether there is a photo's view: a photo of many has one where its camera was found. */
+  hasPhotoView: boolean
 }
 
 /** The status before anything is shown. */
@@ -23,4 +30,6 @@ export const NOTHING_SHOWN: PreviewStatus = {
   triangles: 0,
   winds: [],
   wind: null,
+  parts: null,
+  hasPhotoView: true,
 }

@@ -1,5 +1,3 @@
-import type { Grown } from '../api/types'
-
 /**
  * A skeleton's surface, in metres: rings of vertices, with triangles along the edges in the order of birth. `counts[k]` is
  * the number of indices born by iteration k; for each vertex, `bornRadii` holds its iteration of birth and its radius
@@ -14,10 +12,18 @@ export interface Tubes {
   counts: Uint32Array
 }
 
+/** What tubes are made around: a skeleton with each joint's iteration of birth. */
+export interface Branches {
+  readonly points: readonly (readonly [number, number, number])[]
+  readonly radii: readonly number[]
+  readonly parents: readonly number[]
+  readonly born: readonly number[]
+}
+
 type Axis = [number, number, number]
 
 /** Return tapered tubes with `sides` sides around a skeleton; no radius is below `thinnest` metres. */
-export function tubes(grown: Grown, sides = 5, thinnest = 0): Tubes {
+export function tubes(grown: Branches, sides = 5, thinnest = 0): Tubes {
   const continuations = continuationsOf(grown)
   const rings = new Rings(grown, sides, thinnest, ringCount(grown, continuations))
   const starts = new Uint32Array(grown.parents.length)
@@ -31,7 +37,7 @@ export function tubes(grown: Grown, sides = 5, thinnest = 0): Tubes {
 }
 
 /** Return each joint's thickest child, with which its tube goes on; -1 where there is none. */
-function continuationsOf({ parents, radii }: Grown): Int32Array {
+function continuationsOf({ parents, radii }: Branches): Int32Array {
   const continuations = new Int32Array(parents.length).fill(-1)
   for (let joint = 0; joint < parents.length; joint++) {
     const parent = parents[joint]!
@@ -43,7 +49,7 @@ function continuationsOf({ parents, radii }: Grown): Int32Array {
 }
 
 /** Return the number of rings: one for each joint, and one more where a side branch starts. */
-function ringCount({ parents }: Grown, continuations: Int32Array): number {
+function ringCount({ parents }: Branches, continuations: Int32Array): number {
   let count = parents.length
   for (let joint = 0; joint < parents.length; joint++) {
     const parent = parents[joint]!
@@ -53,7 +59,11 @@ function ringCount({ parents }: Grown, continuations: Int32Array): number {
 }
 
 /** Return the indices of the edges from ring `starts[joint]` to ring `joint`, in the order of birth. */
-function edgeIndices({ parents, born }: Grown, starts: Uint32Array, sides: number): Pick<Tubes, 'indices' | 'counts'> {
+function edgeIndices(
+  { parents, born }: Branches,
+  starts: Uint32Array,
+  sides: number,
+): Pick<Tubes, 'indices' | 'counts'> {
   const counts = indexCounts(parents, born, sides * 6)
   const indices = new Uint32Array(counts[counts.length - 1]!)
   const next = new Uint32Array(counts.length)
@@ -76,7 +86,7 @@ function edgeIndices({ parents, born }: Grown, starts: Uint32Array, sides: numbe
 }
 
 /** Return how many indices are born by each iteration. */
-function indexCounts(parents: number[], born: number[], perEdge: number): Uint32Array {
+function indexCounts(parents: readonly number[], born: readonly number[], perEdge: number): Uint32Array {
   let last = 0
   for (const iteration of born) last = Math.max(last, iteration)
   const counts = new Uint32Array(last + 1)
@@ -98,7 +108,7 @@ class Rings {
   private nextStart: number
 
   constructor(
-    private readonly grown: Grown,
+    private readonly grown: Branches,
     sides: number,
     private readonly thinnest: number,
     rings: number,

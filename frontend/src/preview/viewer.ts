@@ -1,14 +1,17 @@
 import type { Grown } from '../api/types'
-import { photoRect, type Viewport } from './camera'
+import { CaptureLayer } from './capture/layer'
+import type { Measured, Part } from './capture/measured'
+import { listenToClicks } from './clicks'
 import type { Content } from './content'
+import { type EditEvents, type Editing, EditLayer } from './edit/editLayer'
 import { GrowthAnimation } from './growthAnimation'
 import { liveTreeContent } from './liveTree'
+import { Look } from './look'
 import { modelContent } from './model'
 import { Rig } from './rig'
 import { softwarePixelRatio } from './software'
 import { Stage } from './stage'
 import type { PreviewStatus, View } from './status'
-import { aspectOf, openingPose, poseOf } from './views'
 import { Wipe } from './wipe'
 
 export interface ViewerOptions {
@@ -20,11 +23,12 @@ export interface ViewerOptions {
   label: string
   reducedMotion: () => boolean
   onStatus: (status: PreviewStatus) => void
+  /** Called with the name of the photo whose camera was clicked on. */
+  onPhoto: (photo: string) => void
+  edits: EditEvents
 }
 
-/** Durations in seconds: a flight between views, one by a key, the growth of branches, that of leaves. */
-const FLIGHT = 0.9
-const KEY_FLIGHT = 0.16
+/** Durations in seconds: the growth of branches, that of leaves. */
 const GROWTH = 2.5
 const LEAF_GROWTH = 0.6
 /** The wind that is played first, unless the processor draws or the user wants reduced motion. */
@@ -33,6 +37,8 @@ const FIRST_WIND = 'breeze'
 const SLOW_FRAME = 150
 /** How many frames with a tree are timed; the first one also compiles the shaders. */
 const TIMED_FRAMES = 3
+/** How much a photo grows by each px that the wheel turns, as a logarithm. */
+const WHEEL_RATE = 0.0015
 /** How long nothing must move before the picture is drawn at full resolution, ms. */
 const REST = 160
 
@@ -40,15 +46,16 @@ const REST = 160
 export class Viewer {
   private readonly stage: Stage
   private readonly rig: Rig
+  private readonly capture = new CaptureLayer(() => this.requestFrame())
+  private readonly look: Look
   private readonly wipe: Wipe
+  private readonly edit: EditLayer
   private readonly darkScheme = matchMedia('(prefers-color-scheme: dark)')
   private readonly resizing = new ResizeObserver(() => this.onResize())
-  private viewport: Viewport = { width: 0, height: 0 }
   private content: Content | null = null
   private readonly growth = new GrowthAnimation(share => this.showGrowth(share))
   /** Counts contents, so that a model that was read too late is not shown. */
   private contentCount = 0
-  private currentView: View | 'free' = 'free'
   private leaves = true
   private wind: string | null
   private lost = false
@@ -68,14 +75,22 @@ export class Viewer {
     this.software = options.software
     this.wind = options.reducedMotion() || options.software ? null : FIRST_WIND
     if (options.softwareIsKnown) this.timedFrames = TIMED_FRAMES
-    this.stage = new Stage(canvas, this.software)
+    this.stage = new Stage(canvas, this.software, this.capture)
     this.rig = new Rig(canvas, {
       reducedMotion: options.reducedMotion,
       damped: () => !this.software && !options.reducedMotion(),
-      onTurn: () => this.leaveView(),
+      onTurn: () => this.look.leaveView(),
       onMove: () => this.requestFrame(),
     })
+    this.look = new Look(this.rig, this.capture, () => this.onLook())
     this.wipe = new Wipe(host, options.label)
+    this.edit = new EditLayer(host, canvas, options.edits, {
+      changed: () => this.requestFrame(),
+      pan: (across, down) => this.look.pan(across, down),
+    })
+    listenToClicks(canvas, place => this.onClick(place))
+    // Before the rig's own listener, which would move the camera away from the photo's.
+    host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false })
     canvas.addEventListener('webglcontextlost', this.onLost)
     canvas.addEventListener('webglcontextrestored', this.onRestored)
     this.darkScheme.addEventListener('change', this.onScheme)
@@ -87,6 +102,40 @@ export class Viewer {
   showPhoto(url: string | null): void {
     this.wipe.show(url)
     this.requestFrame()
+  }
+
+  showMeasured(measured: Measured | null): void {
+    const wasEmpty = this.capture.isEmpty
+    this.capture.show(measured)
+    if (!this.content && wasEmpty !== this.capture.isEmpty) this.look.open()
+    this.look.follow()
+  }
+
+  setPictures(pictures: ReadonlyMap<string, string>): void {
+    this.capture.setPictures(pictures)
+    this.requestFrame()
+  }
+
+  /** Mark a photo of many; one who looks from a photo flies there. */
+  choosePhoto(photo: string | null): void {
+    if (photo === this.capture.chosen) return
+    this.capture.choose(photo)
+    if (this.look.isFromPhoto) this.look.fly('photo')
+    this.onLook()
+  }
+
+  setPart(part: Part, shown: boolean): void {
+    this.capture.setPart(part, shown)
+    this.onLook()
+  }
+
+  /** Edit branches in place of the tree, or over the whole photo that one looks from; null shows the tree again. */
+  setEditing(editing: Editing | null): void {
+    if (editing && !this.edit.isOn) this.wipe.set(0)
+    this.edit.set(editing)
+    this.stage.setTreeShown(editing === null)
+    this.capture.setEdited(editing !== null)
+    this.onLook()
   }
 
   showLive(grown: Grown): void {
@@ -118,8 +167,7 @@ export class Viewer {
     this.contentCount++
     this.content = null
     this.stage.show(null)
-    this.reportStatus()
-    this.requestFrame()
+    this.look.at(null)
   }
 
   /** Stop, and free what is held on the GPU; nothing can be shown from now on. */
@@ -135,11 +183,7 @@ export class Viewer {
   }
 
   view(name: View): void {
-    if (!this.content) return
-    this.currentView = name
-    this.rig.fly(poseOf(name, this.content, this.viewport), FLIGHT)
-    this.reportStatus()
-    this.requestFrame()
+    this.look.fly(name)
   }
 
   toggleLeaves(): void {
@@ -162,24 +206,18 @@ export class Viewer {
   }
 
   orbit(azimuth: number, polar: number): void {
-    const { goal } = this.rig
-    const tilted = Math.min(Math.max(goal.polar + polar, 0.03), Math.PI / 2)
-    this.rig.fly({ ...goal, azimuth: goal.azimuth + azimuth, polar: tilted }, KEY_FLIGHT)
-    this.leaveView()
-    this.requestFrame()
+    this.look.orbit(azimuth, polar)
   }
 
   zoom(factor: number): void {
-    const { goal } = this.rig
-    this.rig.fly({ ...goal, size: Math.min(Math.max(goal.size / factor, 0.06), 5) }, KEY_FLIGHT)
-    this.requestFrame()
+    this.look.zoom(factor)
   }
 
   /** Return what is shown as a PNG, with at least two pixels per CSS px. */
   png(): Promise<Blob> {
     if (this.lost) return Promise.reject(new Error('The WebGL context is lost.'))
     const scale = Math.max(2, devicePixelRatio)
-    this.stage.size(this.viewport, scale)
+    this.stage.size(this.look.viewport, scale)
     this.stage.draw(this.rig)
     const picture = new OffscreenCanvas(this.canvas.width, this.canvas.height)
     const ctx = picture.getContext('2d')!
@@ -191,15 +229,12 @@ export class Viewer {
 
   /** Show a tree in place of the last one; for the first one the camera moves to the opening view. */
   private setContent(content: Content): void {
-    const isFirst = this.content === null
     this.contentCount++
     this.content = content
     this.stage.show(content)
     this.applyLeaves()
     this.applyWind()
-    if (isFirst) this.rig.moveTo(openingPose(content, this.viewport))
-    if (isFirst) this.currentView = 'free'
-    this.requestFrame()
+    this.look.at(content)
   }
 
   /** Play the chosen wind on the tree, or its first one where it has no such wind. */
@@ -219,7 +254,7 @@ export class Viewer {
 
   /** Animate the tree's growth, unless it is not visible or the user wants reduced motion. */
   private async animateGrowth(seconds: number): Promise<void> {
-    const isHidden = this.lost || document.hidden || !this.viewport.width || !this.viewport.height
+    const isHidden = this.lost || document.hidden || !this.hasRoom
     if (isHidden || this.options.reducedMotion()) return
     const grown = this.growth.start(seconds)
     this.reportStatus()
@@ -234,17 +269,27 @@ export class Viewer {
     this.requestFrame()
   }
 
-  private leaveView(): void {
-    this.currentView = 'free'
+  private onLook(): void {
     this.reportStatus()
+    this.requestFrame()
+  }
+
+  private onClick(place: readonly [number, number]): void {
+    const photo = this.edit.isOn ? null : this.capture.photoAt(place, this.rig.pose, this.look.viewport)
+    if (this.edit.isOn) this.edit.click(place)
+    else if (photo) this.options.onPhoto(photo)
+  }
+
+  private onWheel(event: WheelEvent): void {
+    if (!this.rig.holds) return
+    event.preventDefault()
+    event.stopPropagation()
+    const { left, top } = this.host.getBoundingClientRect()
+    this.look.zoom(Math.exp(-event.deltaY * WHEEL_RATE), [event.clientX - left, event.clientY - top])
   }
 
   private onResize(): void {
-    this.viewport = { width: this.host.clientWidth, height: this.host.clientHeight }
-    if (!this.viewport.width || !this.viewport.height) return
-    this.rig.resize(aspectOf(this.viewport))
-    if (this.content && this.currentView !== 'free')
-      this.rig.moveTo(poseOf(this.currentView, this.content, this.viewport))
+    this.look.resize({ width: this.host.clientWidth, height: this.host.clientHeight })
     this.requestFrame()
   }
 
@@ -255,7 +300,7 @@ export class Viewer {
 
   private frame(now: number): void {
     this.pendingFrame = 0
-    if (this.lost || !this.viewport.width || !this.viewport.height) return
+    if (this.lost || !this.hasRoom) return
     const seconds = this.lastFrameTime === null ? 1 / 60 : Math.min((now - this.lastFrameTime) / 1000, 0.25)
     const moved = this.rig.step(seconds)
     const swaying = this.stepWind(seconds)
@@ -273,21 +318,27 @@ export class Viewer {
   }
 
   private draw(moving: boolean): void {
-    this.stage.size(this.viewport, this.pixelRatio(moving))
+    this.capture.standsInPhoto = this.look.isFromPhoto
+    this.stage.size(this.look.viewport, this.pixelRatio(moving))
     const start = performance.now()
     const calls = this.stage.draw(this.rig)
     if (!this.software && this.content && this.timedFrames++ < TIMED_FRAMES) this.detectSoftware(start)
     this.frames++
     Object.assign(this.host.dataset, { calls: String(calls), frames: String(this.frames) })
-    const rect =
-      this.content && this.rig.facesPhoto ? photoRect(this.rig.pose, this.content.photo, this.viewport) : null
-    this.wipe.place(rect, this.viewport)
+    this.edit.draw(this.rig.pose, this.look.viewport, this.capture.toWorld)
+    // Over a photo, a pointer that misses a joint must not turn the branches away from it.
+    this.rig.grabbable = !(this.edit.isOn && this.rig.holds)
+    this.wipe.place(this.look.photoRect(), this.look.viewport)
     clearTimeout(this.restTimer)
     if (moving && this.software) this.restTimer = setTimeout(() => this.requestFrame(), REST)
   }
 
+  private get hasRoom(): boolean {
+    return this.look.viewport.width > 0 && this.look.viewport.height > 0
+  }
+
   private pixelRatio(moving: boolean): number {
-    if (this.software) return softwarePixelRatio(this.viewport, moving)
+    if (this.software) return softwarePixelRatio(this.look.viewport, moving)
     return Math.min(devicePixelRatio, 2)
   }
 
@@ -303,18 +354,21 @@ export class Viewer {
   }
 
   private reportStatus(): void {
-    const shows = this.growth.running && this.content?.kind === 'live' ? 'growing' : (this.content?.kind ?? 'empty')
+    const without = this.capture.isEmpty ? 'empty' : 'measured'
+    const shows = this.growth.running && this.content?.kind === 'live' ? 'growing' : (this.content?.kind ?? without)
     const webgl = this.lost ? 'lost' : this.software ? 'software' : 'ok'
-    const { leaves, currentView: view, content } = this
+    const { leaves, content } = this
     const [triangles, winds] = [content?.triangles ?? 0, content?.sway?.winds ?? []]
     const status: PreviewStatus = {
       webgl,
-      view,
+      view: this.look.view,
       shows,
       leaves,
       triangles,
       winds,
       wind: winds.length ? this.wind : null,
+      parts: this.capture.shownParts,
+      hasPhotoView: this.look.hasPhotoView,
     }
     this.host.dataset.state = shows
     if (this.lastStatus === JSON.stringify(status)) return

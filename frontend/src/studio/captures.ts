@@ -106,7 +106,10 @@ export class Captures {
     const { sheets } = this.store.state
     const photo = captureOf({ sheets })?.photos.find(other => other.name === name)
     if (!photo || sheets?.source !== 'capture' || sheets.front.id === photo.id) return
-    this.store.set({ sheets: { ...sheets, front: captureSheet(photo) }, selection: null })
+    const { selection } = this.store.state
+    // A joint keeps its number over every photo; a stroke belongs to one.
+    const kept = selection?.kind === 'traced' ? selection : null
+    this.store.set({ sheets: { ...sheets, front: captureSheet(photo) }, selection: kept })
     this.#showPicture()
   }
 

@@ -2,6 +2,7 @@ import { Client } from '../api/client'
 import { Store } from '../state'
 import { Captures } from './captures'
 import { DraftStore } from './draftStore'
+import { BranchEdits } from './edits'
 import { Grower } from './grower'
 import { Opener } from './opener'
 import { OwnPictureActions } from './ownPictures'
@@ -17,6 +18,7 @@ export class Studio {
   readonly client = new Client()
   readonly drafts = new DraftStore(this.store)
   readonly strokes = new StrokeActions(this.store)
+  readonly edits = new BranchEdits(this.store, this.strokes)
   readonly sheets = new SheetActions(this.store, this.client)
   readonly ownPictures = new OwnPictureActions(this.store)
   readonly grower = new Grower(this.store, this.client)

@@ -111,7 +111,7 @@ describe('a flight', () => {
   const to = treePose(TREE, Math.PI * 1.5, 1.44, 1.6)
 
   it('starts and ends where it should', () => {
-    expect(interpolate(from, to, 0)).toEqual(from)
+    expect(interpolate(from, to, 0)).toMatchObject(from)
     const end = interpolate(from, to, 1)
     expect(eyeOf(end).map(part => part.toFixed(6))).toEqual(eyeOf(to).map(part => part.toFixed(6)))
   })

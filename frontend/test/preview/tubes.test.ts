@@ -127,7 +127,7 @@ it('draws no twig thinner than the limit', () => {
 })
 
 it('has no triangles for a lone root', () => {
-  const lone = tubes({ points: [[0, 0, 0]], radii: [1], parents: [-1], born: [0], photo })
+  const lone = tubes({ points: [[0, 0, 0]], radii: [1], parents: [-1], born: [0] })
   expect(lone.indices).toHaveLength(0)
   expect([...lone.counts]).toEqual([0])
 })

@@ -1,11 +1,14 @@
+import { PARTS, type Part } from '../../preview/capture/measured'
 import type { Preview } from '../../preview/preview'
 import type { PreviewStatus, View } from '../../preview/status'
 import type { State } from '../../state'
 import { variantsOf } from '../../studio/variants'
 import { text } from '../../text'
+import { canEdit } from '../capture/EditTools'
 import { Icon } from '../parts/Icon'
 import { IconButton } from '../parts/IconButton'
 import { ICONS } from '../parts/icons'
+import { Popover } from '../parts/Popover'
 import { useStore, useStudio } from '../parts/useStore'
 import { isBareDrawing } from './previewContent'
 import { readable } from './settingGroups'
@@ -18,7 +21,7 @@ const MOST_BUTTONS = 6
 
 interface Props {
   readonly status: PreviewStatus
-  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'setWind'>
+  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'setWind' | 'setPart'>
 }
 
 /** The buttons that turn the tree to its views, hide its leaves and zoom; hidden while there is no tree. */
@@ -27,7 +30,12 @@ export function PreviewButtons({ status, preview }: Props) {
   const { leaves } = status
   return (
     <>
-      <ViewButtons hidden={hidden} view={status.view} choose={name => preview().view(name)} />
+      <ViewButtons
+        hidden={hidden}
+        view={status.view}
+        hasPhoto={status.hasPhotoView}
+        choose={name => preview().view(name)}
+      />
       <div class="overlay view-tools" hidden={hidden}>
         <IconButton
           label={text.preview.leaves}
@@ -38,26 +46,86 @@ export function PreviewButtons({ status, preview }: Props) {
         />
         <IconButton label={text.preview.nearer} icon={ICONS.plus} onClick={() => preview().zoom(STEP)} />
         <IconButton label={text.preview.farther} icon={ICONS.minus} onClick={() => preview().zoom(1 / STEP)} />
+        <PartsMenu parts={status.parts} show={(part, shown) => preview().setPart(part, shown)} />
+        <EditButton />
       </div>
     </>
+  )
+}
+
+interface PartsProps {
+  readonly parts: PreviewStatus['parts']
+  show(part: Part, shown: boolean): void
+}
+
+/** The parts of what many photos say, each shown or hidden. */
+function PartsMenu({ parts, show }: PartsProps) {
+  const { group, names, branches, crown } = text.measured.parts
+  const there = PARTS.filter(part => parts?.[part] !== undefined)
+  return (
+    <div hidden={!there.length}>
+      <Popover
+        opener={{ class: 'button square', 'aria-label': group, title: group, children: <Icon path={ICONS.layers} /> }}
+        class="parts-menu"
+        label={group}
+      >
+        {there.map(part => (
+          <label key={part}>
+            <input
+              type="checkbox"
+              checked={parts![part]!}
+              onChange={event => show(part, event.currentTarget.checked)}
+            />
+            {names[part]}
+          </label>
+        ))}
+        <p hidden={!parts?.crown}>{crown}</p>
+        <p hidden={!parts?.branches}>{branches}</p>
+      </Popover>
+    </div>
+  )
+}
+
+/** The button that begins and ends the editing of branches; hidden where no photos show any. */
+function EditButton() {
+  const { edits } = useStudio()
+  const isOn = useStore(state => state.branchTool !== null)
+  const isThere = useStore(canEdit)
+  return (
+    <IconButton
+      label={text.measured.edits.start}
+      icon={ICONS.pencil}
+      hidden={!isThere}
+      aria-pressed={isOn}
+      onClick={() => edits.choose(isOn ? null : 'move')}
+    />
   )
 }
 
 interface ViewProps {
   readonly hidden: boolean
   readonly view: PreviewStatus['view']
+  readonly hasPhoto: boolean
   choose(name: View): void
 }
 
 /** The views as buttons, and as a list for where there is no room for buttons. */
-function ViewButtons({ hidden, view, choose }: ViewProps) {
+function ViewButtons({ hidden, view, hasPhoto, choose }: ViewProps) {
   const isDrawing = useStore(isBareDrawing)
   const labels = { ...text.preview.view, ...(isDrawing && { photo: text.preview.drawing }) }
   return (
     <>
       <div class="overlay views" role="group" aria-label={text.preview.views} hidden={hidden}>
         {VIEWS.map(name => (
-          <button type="button" class="button" key={name} aria-pressed={view === name} onClick={() => choose(name)}>
+          <button
+            type="button"
+            class="button"
+            key={name}
+            aria-pressed={view === name}
+            disabled={name === 'photo' && !hasPhoto}
+            title={name === 'photo' && !hasPhoto ? text.measured.noCamera : undefined}
+            onClick={() => choose(name)}
+          >
             {labels[name]}
           </button>
         ))}
@@ -73,7 +141,7 @@ function ViewButtons({ hidden, view, choose }: ViewProps) {
           {text.preview.free}
         </option>
         {VIEWS.map(name => (
-          <option value={name} key={name}>
+          <option value={name} key={name} disabled={name === 'photo' && !hasPhoto}>
             {labels[name]}
           </option>
         ))}

@@ -4,6 +4,9 @@ import { Preview } from '../../preview/preview'
 import { NOTHING_SHOWN, type PreviewStatus } from '../../preview/status'
 import type { State } from '../../state'
 import { text } from '../../text'
+import { CoverageRing } from '../capture/CoverageRing'
+import { EditTools } from '../capture/EditTools'
+import { followMeasured } from '../capture/followMeasured'
 import { Sapling } from '../parts/Sapling'
 import { useStore, useStudio } from '../parts/useStore'
 import { announceGrowth } from './announceGrowth'
@@ -33,6 +36,8 @@ export function TreePane() {
         <div class="scene" ref={scene} />
         <StageMessage status={status} />
         <PreviewButtons status={status} preview={preview} />
+        <CoverageRing />
+        <EditTools />
         <div class="stage-foot">
           <TakenChip />
           <AssumedNote />
@@ -48,7 +53,8 @@ export function TreePane() {
 
 /** Show the tree in an element as long as it is there; return the preview and what it shows. */
 function usePreview(scene: RefObject<HTMLDivElement | null>) {
-  const { store } = useStudio()
+  const studio = useStudio()
+  const { store, edits, captures } = studio
   const preview = useRef<Preview>(null)
   const [status, setStatus] = useState(NOTHING_SHOWN)
   useLayoutEffect(() => {
@@ -56,9 +62,15 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
       labels: { wipe: text.preview.wipe, canvas: text.preview.canvas },
       reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
       onStatus: setStatus,
+      onPhoto: photo => captures.choose(photo),
+      edits: {
+        picked: joint => edits.picked(joint),
+        moved: (joint, to) => edits.moved(joint, to),
+        drew: (joint, points) => edits.drew(joint, points),
+      },
     })
     preview.current = made
-    const ends = [followState(store, made), announceGrowth(store)]
+    const ends = [followState(store, made), followMeasured(studio, made), announceGrowth(store)]
     return () => {
       for (const end of ends) end()
       made.end()

@@ -46,6 +46,7 @@ let blown: (string | null)[]
 const preview = {
   view: () => {},
   setLeaves: () => {},
+  setPart: () => {},
   zoom: () => {},
   setWind: (wind: string | null) => blown.push(wind),
 }
@@ -63,6 +64,7 @@ function show(status: PreviewStatus): void {
   const preview = {
     view: () => {},
     setLeaves: () => {},
+    setPart: () => {},
     zoom: () => {},
     setWind: (wind: string | null) => blown.push(wind),
   }
