@@ -58,6 +58,13 @@ def test_a_limb_in_leaves_is_not_seen_and_the_cloud_tells_the_leaves() -> None:
     assert found.leaf_points.tolist() == points[1:].tolist()
 
 
+def test_a_trunk_under_leaves_is_where_and_as_wide_as_its_silhouette() -> None:
+    tree = seen_branches(*capture(FORK, (BALL,)), NOWHERE).skeleton
+    trunk = (tree.points[:, 1] > 0.3) & (tree.points[:, 1] < 1.2)
+    assert np.hypot(tree.points[trunk, 0], tree.points[trunk, 2]).max() < 0.004
+    assert np.median(tree.radii[trunk]) == pytest.approx(FORK[0][2], rel=0.1)
+
+
 def test_what_a_leafless_piece_bridges_is_marked_as_not_seen() -> None:
     cover = ((0, 0.7, 0), (0, 0.9, 0), 0.15)
     found = seen_branches(*capture(FORK, (cover,)), NOWHERE)

@@ -36,7 +36,7 @@ HIDDEN = 0.9
 """Share of a card's opaque dots behind nearer cards from which on it is not seen."""
 AROUND = 3
 """Number of views from which on they tell together where leaves are."""
-SURE_OF_MANY = 0.55
+SURE_OF_MANY = 0.4
 """`SURE_SHARE` where many views bound the crown: what is drawn of a card, neither more nor less."""
 MIDDLE = 0.6
 """How far down from the foliage's top, as a share of its height, the point is that cards face away from."""

@@ -1,7 +1,7 @@
 """The skeleton along centre lines: smooth, with radii that taper."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -29,6 +29,8 @@ ENOUGH_WIDTHS = 3
 """Joints of a path whose widths are known from which on these alone tell its radii."""
 SURE_QUANTILES = 0.1, 0.3
 """Which of the radii tell where no shot shows a limb by itself: it lies within what all of them show."""
+FREE = 0.4
+"""Share of the shots that show a limb free of leaves from which on it is measured by the tree's silhouette."""
 THINNEST = 0.15
 """Least radius, in units of the graph."""
 
@@ -48,8 +50,9 @@ def path_skeleton(
 ) -> tuple[Skeleton, Mask]:
     """Lay a skeleton (3D, metres) along the paths (k,) that are ``kept``, and tell which joints (n,) are seen.
 
-    Radii are those that the shots show of the ``wood``. On a ``bare`` tree joints are moved to its middle there, and
-    tips go on; amid leaves its outlines are too often theirs (a leafy oak lost true branches).
+    Radii are those that the shots show of the ``wood``. Joints are moved to its middle there, and tips go on, on a
+    ``bare`` tree; amid leaves its outlines are too often theirs (a leafy oak lost true branches), so that in a crown
+    only limbs that stand free of leaves in many shots, the trunk above all, are moved to the middle of the silhouette.
 
     The first joint is the root of the graph. A path that leads over more that is not seen than it shows is left out.
     """
@@ -64,7 +67,7 @@ def path_skeleton(
     least = THINNEST * graph.unit
     first = _Laid(np.concatenate(points), np.concatenate(seen), np.array(parents), np.array(owner))
     if not bare:
-        return _without_guesses(Skeleton(first.points, _radii(first, wood, least), first.parents), first.seen)
+        return _without_guesses(_fitted_where_free(first, wood, least), first.seen)
     laid = _lengthened(first, wood, graph.unit, least)
     return _without_guesses(_fitted(laid, wood, least), laid.seen)
 
@@ -74,6 +77,15 @@ def _fitted(laid: _Laid, wood: Sequence[ShownArea], least: float) -> Skeleton:
     tree, widths = fitted(Skeleton(laid.points, _radii(laid, wood, least), laid.parents), wood)
     measured = np.where(laid.seen, limb_radii(tree.points, wood, SURE_QUANTILES), 0.0)
     radii = _tapering(_told(widths * laid.seen, measured, laid.owner), tree.parents, laid.owner, least)
+    return Skeleton(tree.points, radii, tree.parents)
+
+
+def _fitted_where_free(laid: _Laid, wood: Sequence[ShownArea], least: float) -> Skeleton:
+    """Return the skeleton with the joints of limbs that stand free in the middle of the tree's silhouette."""
+    silhouettes = [replace(area, shown=area.tree) for area in wood]
+    tree, widths = fitted(Skeleton(laid.points, _radii(laid, wood, least), laid.parents), silhouettes, FREE)
+    measured = np.where(widths > 0, widths, limb_radii(tree.points, wood))
+    radii = _tapering(np.where(laid.seen, measured, 0.0), tree.parents, laid.owner, least)
     return Skeleton(tree.points, radii, tree.parents)
 
 

@@ -10,6 +10,7 @@ from scipy.sparse.linalg import spsolve
 
 from treestroke.core.geometry.vectors import unit
 from treestroke.core.lift.thin_hull import ShownArea
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.types import Floats, Indices, Mask
 
@@ -47,26 +48,28 @@ class _Across:
     pixel_m: Floats
 
 
-def fitted(skeleton: Skeleton, areas: Sequence[ShownArea]) -> tuple[Skeleton, Floats]:
+def fitted(skeleton: Skeleton, areas: Sequence[ShownArea], least_share: float = 0.0) -> tuple[Skeleton, Floats]:
     """Move the joints of a skeleton (3D, metres) to the middle of what the shots show of their limbs.
 
-    Also returns the radii (n,), metres, by the widths that the shots show; 0 where too few show a limb by itself.
+    Also returns the radii (n,), metres, by the widths that the shots show; 0 where too few show a limb by itself. A
+    joint that less than ``least_share`` of the shots show so is moved with its neighbours alone.
 
     Limbs are straight to within a pixel over a few joints: all corrections are found together by least squares, with a
     weight on bending, robustly by reweighting (Huber 1964). The root stays.
     """
     for _ in range(ROUNDS):
-        across = _measured(skeleton, areas)
+        across = _measured(skeleton, areas, least_share)
         skeleton = Skeleton(skeleton.points + _moves(skeleton, across), skeleton.radii, skeleton.parents)
-    return skeleton, _radii(_measured(skeleton, areas))
+    return skeleton, _radii(_measured(skeleton, areas, least_share))
 
 
-def _measured(skeleton: Skeleton, areas: Sequence[ShownArea]) -> _Across:
-    """Measure what the shots show across each joint."""
+def _measured(skeleton: Skeleton, areas: Sequence[ShownArea], least_share: float) -> _Across:
+    """Measure what the shots show across each joint, if enough of them show it by itself."""
     along = _tangents(skeleton)
-    columns = zip(*(_one_shot(skeleton, along, area) for area in areas), strict=True)
+    columns = zip(*side_by_side(lambda area: _one_shot(skeleton, along, area), areas), strict=True)
     told, offset, radius, aside, pixel = (np.stack(column) for column in columns)
-    return _Across(told.astype(np.bool_), offset, radius, aside, pixel)
+    enough = told.sum(axis=0) >= least_share * len(areas)
+    return _Across(told.astype(np.bool_) & enough, offset, radius, aside, pixel)
 
 
 def _one_shot(skeleton: Skeleton, along: Floats, area: ShownArea) -> tuple[Floats, Floats, Floats, Floats, Floats]:

@@ -5,6 +5,8 @@ below. And leaves are brighter at a crown's top than in its shade. So once the c
 their weights follow the height.
 """
 
+from functools import lru_cache
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -180,10 +182,20 @@ def weights_by_height(mixture: Mixture, pixels: Picture, where: Mask) -> Floats:
 
 def _log_density_by_height(mixture: Mixture, pixels: Picture, where: Mask) -> Floats:
     """Logarithm (bands, 32768) of a mixture's density at the look-up table's colours in each band."""
+    peak, shares = _of_table(mixture)
+    change = weights_by_height(mixture, pixels, where) / np.maximum(mixture.weights, 1e-12)
+    return np.asarray(peak + np.log(change @ shares.T))
+
+
+@lru_cache(maxsize=2)
+def _of_table(mixture: Mixture) -> tuple[Floats, Floats]:
+    """Return the components' greatest log density (32768,) at the look-up table's colours, and all over it (32768, k).
+
+    The photos of a capture share a mixture for leaves and one for the ground.
+    """
     parts = log_components(mixture, table_colours())
     peak = parts.max(axis=1)
-    change = weights_by_height(mixture, pixels, where) / np.maximum(mixture.weights, 1e-12)
-    return np.asarray(peak + np.log(change @ np.exp(parts - peak[:, None]).T))
+    return peak, np.exp(parts - peak[:, None])
 
 
 def _places(height: int) -> Floats:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -37,7 +38,7 @@ class TreeColours:
     leaf: Mixture | None
     wood: Mixture | None
 
-    @property
+    @cached_property
     def tree(self) -> Mixture:
         """Both together."""
         if self.leaf is None or self.wood is None:
