@@ -5,12 +5,13 @@ from tests.engines.rendered_set import centre_errors, photos_of, picture, ring
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import CaptureError
 from treestroke.engines.solving import SolveBounds, SolveEnded, solve_in_process
+from treestroke.engines.structure import solve
 
 BOUNDS = SolveBounds(seconds=300.0, memory=3 * 2**30)
 CAMERAS = ring(5, 60.0)
 
 
-def test_photos_of_two_sizes_are_solved_in_another_process() -> None:
+def test_photos_of_two_sizes_are_solved_in_another_process_as_in_this() -> None:
     photos = photos_of(CAMERAS)
     larger = CapturedPhoto(photos[1].name, picture(CAMERAS[1].resized(720, 540)))
     fractions: list[float] = []
@@ -20,6 +21,10 @@ def test_photos_of_two_sizes_are_solved_in_another_process() -> None:
     assert np.median(centre_errors(structure, {f"{n:02d}.jpg": one for n, one in enumerate(CAMERAS)})) < 0.01
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
+    again = solve([photos[0], larger, *photos[2:]])
+    assert (again.cloud.points == structure.cloud.points).all()
+    pairs = zip(again.photos, structure.photos, strict=True)
+    assert all((one.camera.camera_from_world == other.camera.camera_from_world).all() for one, other in pairs)
 
 
 def test_refusals_arrive_with_their_code() -> None:

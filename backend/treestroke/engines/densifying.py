@@ -23,7 +23,7 @@ _ERROR_PX = 2.0
 
 def densify(model: pycolmap.Reconstruction, photos: Matched, advanced: Callable[[float], None]) -> None:
     """Add the points of further matches to a model, and adjust it; ``advanced(fraction)`` is told how far it is."""
-    rays = {index: _rays(model, photos.views[index], photos.features[index], index) for index in indices_of(model)}
+    rays = {index: rays_of(model, photos.views[index], photos.features[index], index) for index in indices_of(model)}
     points = np.array([point.xyz for point in model.points3D.values()])
     ranges = _neighbours(rays, points)
 
@@ -41,7 +41,8 @@ def densify(model: pycolmap.Reconstruction, photos: Matched, advanced: Callable[
     _adjust(model)
 
 
-def _rays(model: pycolmap.Reconstruction, view: View, features: Features, index: int) -> Rays:
+def rays_of(model: pycolmap.Reconstruction, view: View, features: Features, index: int) -> Rays:
+    """Return what a view of a model, by its index, sees."""
     image = model.image(index + 1)
     camera = model.camera(image.camera_id)
     on_plane = np.asarray(camera.cam_from_img(view.points_px))

@@ -20,6 +20,7 @@ from treestroke.engines.bad_photos import (
     too_little_overlap,
     without_camera,
 )
+from treestroke.engines.contradictions import contradicts, without_weak
 from treestroke.engines.densifying import densify
 from treestroke.engines.features import find_features
 from treestroke.engines.lone_points import confirmed
@@ -135,6 +136,9 @@ def _largest(
     flat_share = float(np.mean(flat)) if flat else 0.0
     if _most_photos(models) <= len(matched.photos) / 2 and flat_share <= _FLAT_SHARE:
         models = max(models, reconstruct(cache, registered, few_matches=True), key=_most_photos)
+    if models and contradicts(models[0], matched):
+        cache = cache_of(matched.views, matched.cameras, without_weak(matched.pairs))
+        models = reconstruct(cache, registered)
     largest = _most_photos(models)
     if largest < MIN_PHOTOS or _spread(models[0]) < _LEAST_SPREAD:
         if len(flat) >= len(matched.photos) - 1 and (flat_share > _FLAT_SHARE or largest >= MIN_PHOTOS):
