@@ -110,6 +110,21 @@ def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: Trac
     assert tracers("i", work.process)
 
 
+def test_a_pool_of_long_calls_lets_fewer_wait(tmp_path: Path) -> None:
+    pool, over = TracingPool(1, SECONDS, 1536, waiting=1), tmp_path / "over"
+    with ThreadPoolExecutor(1) as other:
+        waiting = other.submit(pool, "a", work.wait_for_file, over)
+        try:
+            wait_for(lambda: sum(pool._busy) == 1, SECONDS, "the call")
+            with pytest.raises(Overloaded):
+                pool("b", work.process)
+        finally:
+            over.touch()
+        waiting.result()
+    assert pool("b", work.process)
+    pool.close()
+
+
 def test_a_pool_that_is_closed_leaves_no_process() -> None:
     pool = TracingPool(2, SECONDS, 1536)
     pids = {pool(f"key {at}", work.process) for at in range(4)}
