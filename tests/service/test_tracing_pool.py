@@ -55,7 +55,7 @@ def test_a_process_that_hangs_is_ended_at_the_limit(tracers: TracingPool, monkey
     before, limit_s = tracers("c", work.process), 0.5
     with monkeypatch.context() as short:
         for child in tracers._children:
-            short.setattr(child, "_bounds", child._bounds._replace(seconds=limit_s))
+            short.setattr(child, "_seconds", limit_s)
         began = time.monotonic()
         with kept(limit_s + 3), pytest.raises(Crashed, match="slow"):
             tracers("c", work.hang)
@@ -108,6 +108,21 @@ def test_more_calls_than_may_wait_are_refused_and_then_taken_again(tracers: Trac
             over.touch()
         assert {future.result() for future in waiting} == {1}
     assert tracers("i", work.process)
+
+
+def test_a_pool_of_long_calls_lets_fewer_wait(tmp_path: Path) -> None:
+    pool, over = TracingPool(1, SECONDS, 1536, waiting=1), tmp_path / "over"
+    with ThreadPoolExecutor(1) as other:
+        waiting = other.submit(pool, "a", work.wait_for_file, over)
+        try:
+            wait_for(lambda: sum(pool._busy) == 1, SECONDS, "the call")
+            with pytest.raises(Overloaded):
+                pool("b", work.process)
+        finally:
+            over.touch()
+        waiting.result()
+    assert pool("b", work.process)
+    pool.close()
 
 
 def test_a_pool_that_is_closed_leaves_no_process() -> None:

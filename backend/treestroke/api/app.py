@@ -44,7 +44,6 @@ HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
 CAPTURES_WAITING = 4
 """Captures that are traced or wait for it: one by one, in a process of their own, so that none holds up photos."""
-_CAPTURE_TRACER = ("treestroke.service.capture_tracer", "treestroke.service.capture_trace")
 _FORM_BYTES = 100_000
 """Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
@@ -99,9 +98,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     database, blobs = Database(settings.folder), Blobs(settings.folder)
     database.migrate()
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
-    capture_tracers = TracingPool(
-        1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING, _CAPTURE_TRACER
-    )
+    capture_tracers = TracingPool(1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING)
     dispatcher = Dispatcher(database, blobs, partial(send_job_message, make_queue(settings)), settings.keep_days)
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
     app.state.resources = Resources(database, blobs, tracers, capture_tracers, *limits)

@@ -16,7 +16,7 @@ from treestroke import __version__
 PACKAGES = ("core", "codec", "engines")
 MODULES = ("execution", "files", "jobs", "loading", "model", "report", "solving")
 """Modules of ``service`` on the way from the inputs to a tree and its files, or to a capture's structure."""
-_BELOW = ("limits", "wire_strokes")
+_BELOW = ("limits", "wire_edits", "wire_strokes")
 """Modules of the whole package that say what inputs may hold."""
 LIBRARIES = {
     "numpy": np.__version__,

@@ -11,7 +11,7 @@ import resource
 import signal
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from importlib import import_module
 from multiprocessing.connection import Connection
@@ -31,7 +31,7 @@ _REMEMBERED_KEYS = 64
 """Keys (photos) whose process is remembered."""
 _START_SECONDS = 30.0
 """A process that is not ready after this time has failed to start."""
-IMPORTED = ("treestroke.service.tracer", "treestroke.service.model_request")
+_IMPORTED = ("treestroke.service.tracer", "treestroke.service.model_request")
 """Modules that a process imports before it is ready, so that no call spends its time on them."""
 REPLACED = Counter("treestroke_tracers_replaced", "Tracing processes that crashed or took too long.", ["why"])
 for _why in ("slow", "crash"):
@@ -61,15 +61,10 @@ class TracingPool:
         What a call, and a process, may take.
     waiting
         Calls that may wait or run at once; more are refused, so that no call waits long.
-    imported
-        Modules that a process imports before it is ready, so that no call spends its time on them.
     """
 
-    def __init__(
-        self, count: int, seconds: float, memory_mb: int, waiting: int = WAITING, imported: Sequence[str] = IMPORTED
-    ) -> None:
-        bounds = _Bounds(seconds, memory_mb * 2**20, tuple(imported))
-        self._children = [_Child(bounds) for _ in range(count)]
+    def __init__(self, count: int, seconds: float, memory_mb: int, waiting: int = WAITING) -> None:
+        self._children = [_Child(seconds, memory_mb * 2**20) for _ in range(count)]
         self._waiting = waiting
         self._lock = threading.Lock()
         self._index_of: OrderedDict[str, int] = OrderedDict()
@@ -129,14 +124,6 @@ class TracingPool:
             return index
 
 
-class _Bounds(NamedTuple):
-    """How many seconds a call and how many bytes a process may take, and the modules that it imports at first."""
-
-    seconds: float
-    memory: int
-    imported: tuple[str, ...]
-
-
 class _Running(NamedTuple):
     """A process that is ready, and the connection to it."""
 
@@ -147,8 +134,8 @@ class _Running(NamedTuple):
 class _Child:
     """A place of the pool: its process is started at the first call, and again whenever it has ended."""
 
-    def __init__(self, bounds: _Bounds) -> None:
-        self._bounds = bounds
+    def __init__(self, seconds: float, memory: int) -> None:
+        self._seconds, self._memory = seconds, memory
         self._lock = threading.Lock()
         self._running: _Running | None = None
         self._closed = threading.Event()
@@ -166,7 +153,7 @@ class _Child:
             connection = self._ready()
             try:
                 connection.send((work, args, kwargs))
-                if not connection.poll(self._bounds.seconds):
+                if not connection.poll(self._seconds):
                     raise self._ended("slow")
                 result, error = connection.recv()
             except (EOFError, ConnectionError) as lost:
@@ -195,7 +182,7 @@ class _Child:
             raise Crashed("closed")
         if self._running is None:
             try:
-                self._running, self.failure = _start(self._bounds), None
+                self._running, self.failure = _start(self._memory), None
             except CannotStart as error:
                 self.failure = str(error)
                 raise
@@ -213,7 +200,7 @@ class _Child:
         return Crashed(why)
 
 
-def _start(bounds: _Bounds) -> _Running:
+def _start(memory: int) -> _Running:
     """Return a started process once it is ready; on failure nothing of it remains."""
     context = multiprocessing.get_context("spawn")
     with ExitStack() as undo:
@@ -221,7 +208,7 @@ def _start(bounds: _Bounds) -> _Running:
             ours, theirs = context.Pipe()
             undo.callback(ours.close)
             with theirs:  # closed in this process, so that the other's end is noticed
-                process = context.Process(target=_serve, args=(theirs, bounds), daemon=True)
+                process = context.Process(target=_serve, args=(theirs, memory), daemon=True)
                 process.start()
             undo.callback(_kill, process)
             if not ours.poll(_START_SECONDS):
@@ -241,11 +228,11 @@ def _kill(process: SpawnProcess) -> None:
     process.close()
 
 
-def _serve(connection: Connection, bounds: _Bounds) -> None:
+def _serve(connection: Connection, memory: int) -> None:
     """Do the work that arrives, call after call, until the parent's end of the connection is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl+C is handled by the parent
-    limit_memory(bounds.memory)
-    for name in bounds.imported:
+    limit_memory(memory)
+    for name in _IMPORTED:
         import_module(name)
     with suppress(EOFError, ConnectionError):
         connection.send(None)
