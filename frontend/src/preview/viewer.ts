@@ -51,6 +51,7 @@ export class Viewer {
   private readonly wipe: Wipe
   private readonly edit: EditLayer
   private readonly darkScheme = matchMedia('(prefers-color-scheme: dark)')
+  private readonly listening = new AbortController()
   private readonly resizing = new ResizeObserver(() => this.onResize())
   private content: Content | null = null
   private readonly growth = new GrowthAnimation(share => this.showGrowth(share))
@@ -84,13 +85,15 @@ export class Viewer {
     })
     this.look = new Look(this.rig, this.capture, () => this.onLook())
     this.wipe = new Wipe(host, options.label)
+    const { signal } = this.listening
     this.edit = new EditLayer(host, canvas, options.edits, {
       changed: () => this.requestFrame(),
       pan: (across, down) => this.look.pan(across, down),
+      signal,
     })
-    listenToClicks(canvas, place => this.onClick(place))
+    listenToClicks(canvas, signal, place => this.onClick(place))
     // Before the rig's own listener, which would move the camera away from the photo's.
-    host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false })
+    host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false, signal })
     canvas.addEventListener('webglcontextlost', this.onLost)
     canvas.addEventListener('webglcontextrestored', this.onRestored)
     this.darkScheme.addEventListener('change', this.onScheme)
@@ -176,6 +179,7 @@ export class Viewer {
     cancelAnimationFrame(this.pendingFrame)
     clearTimeout(this.restTimer)
     this.resizing.disconnect()
+    this.listening.abort()
     this.darkScheme.removeEventListener('change', this.onScheme)
     this.canvas.removeEventListener('webglcontextlost', this.onLost)
     this.rig.end()
