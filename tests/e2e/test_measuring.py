@@ -73,7 +73,8 @@ def measured(visitor: Visitor, photos: list[Path]) -> Visitor:
     page.get_by_role("button", name=f"Make one tree of {PHOTOS} photos").click()
     visitor.sketch.wait_for()
     visitor.draw_tree(strokes())
-    expect(page.get_by_text(f"All {PHOTOS} photos are used.")).to_be_visible(timeout=SOLVED_MS)
+    drawing = page.get_by_role("region", name="Drawing")
+    expect(drawing.get_by_text(f"All {PHOTOS} photos are used.")).to_be_visible(timeout=SOLVED_MS)
     visitor.wait_for_preview("live")
     return visitor
 

@@ -94,9 +94,9 @@ export class Viewer {
     listenToClicks(canvas, signal, place => this.onClick(place))
     // Before the rig's own listener, which would move the camera away from the photo's.
     host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false, signal })
-    canvas.addEventListener('webglcontextlost', this.onLost)
-    canvas.addEventListener('webglcontextrestored', this.onRestored)
-    this.darkScheme.addEventListener('change', this.onScheme)
+    canvas.addEventListener('webglcontextlost', this.onLost, { signal })
+    canvas.addEventListener('webglcontextrestored', this.onRestored, { signal })
+    this.darkScheme.addEventListener('change', this.onScheme, { signal })
     this.stage.paint(this.darkScheme.matches)
     this.resizing.observe(host)
     this.reportStatus()
@@ -180,8 +180,6 @@ export class Viewer {
     clearTimeout(this.restTimer)
     this.resizing.disconnect()
     this.listening.abort()
-    this.darkScheme.removeEventListener('change', this.onScheme)
-    this.canvas.removeEventListener('webglcontextlost', this.onLost)
     this.rig.end()
     this.stage.end()
   }
@@ -279,7 +277,7 @@ export class Viewer {
   }
 
   private onClick(place: readonly [number, number]): void {
-    const photo = this.edit.isOn ? null : this.capture.photoAt(place, this.rig.pose, this.look.viewport)
+    const photo = this.capture.photoAt(place, this.rig.pose, this.look.viewport)
     if (this.edit.isOn) this.edit.click(place)
     else if (photo) this.options.onPhoto(photo)
   }
