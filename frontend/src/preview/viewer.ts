@@ -51,6 +51,7 @@ export class Viewer {
   private readonly wipe: Wipe
   private readonly edit: EditLayer
   private readonly darkScheme = matchMedia('(prefers-color-scheme: dark)')
+  private readonly listening = new AbortController()
   private readonly resizing = new ResizeObserver(() => this.onResize())
   private content: Content | null = null
   private readonly growth = new GrowthAnimation(share => this.showGrowth(share))
@@ -84,16 +85,18 @@ export class Viewer {
     })
     this.look = new Look(this.rig, this.capture, () => this.onLook())
     this.wipe = new Wipe(host, options.label)
+    const { signal } = this.listening
     this.edit = new EditLayer(host, canvas, options.edits, {
       changed: () => this.requestFrame(),
       pan: (across, down) => this.look.pan(across, down),
+      signal,
     })
-    listenToClicks(canvas, place => this.onClick(place))
+    listenToClicks(canvas, signal, place => this.onClick(place))
     // Before the rig's own listener, which would move the camera away from the photo's.
-    host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false })
-    canvas.addEventListener('webglcontextlost', this.onLost)
-    canvas.addEventListener('webglcontextrestored', this.onRestored)
-    this.darkScheme.addEventListener('change', this.onScheme)
+    host.addEventListener('wheel', event => this.onWheel(event), { capture: true, passive: false, signal })
+    canvas.addEventListener('webglcontextlost', this.onLost, { signal })
+    canvas.addEventListener('webglcontextrestored', this.onRestored, { signal })
+    this.darkScheme.addEventListener('change', this.onScheme, { signal })
     this.stage.paint(this.darkScheme.matches)
     this.resizing.observe(host)
     this.reportStatus()
@@ -176,8 +179,7 @@ export class Viewer {
     cancelAnimationFrame(this.pendingFrame)
     clearTimeout(this.restTimer)
     this.resizing.disconnect()
-    this.darkScheme.removeEventListener('change', this.onScheme)
-    this.canvas.removeEventListener('webglcontextlost', this.onLost)
+    this.listening.abort()
     this.rig.end()
     this.stage.end()
   }
@@ -275,7 +277,7 @@ export class Viewer {
   }
 
   private onClick(place: readonly [number, number]): void {
-    const photo = this.edit.isOn ? null : this.capture.photoAt(place, this.rig.pose, this.look.viewport)
+    const photo = this.capture.photoAt(place, this.rig.pose, this.look.viewport)
     if (this.edit.isOn) this.edit.click(place)
     else if (photo) this.options.onPhoto(photo)
   }

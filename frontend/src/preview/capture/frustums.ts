@@ -30,7 +30,7 @@ const TEXTURE = new Float32Array([0, 1, 1, 1, 1, 0, 0, 0])
 /** The cameras of photos, each as a small pyramid with its photo at the base; in the capture's frame. */
 export class Frustums {
   readonly group = new Group()
-  private readonly textures = new Map<string, Texture>()
+  private readonly pictures = new Map<string, { readonly url: string; readonly texture: Texture }>()
   private readonly plain = new LineBasicMaterial({ toneMapped: false, transparent: true, opacity: 0.75 })
   private readonly marked = new LineBasicMaterial({ color: CHOSEN, toneMapped: false })
   private cameras: readonly CameraInfo[] = []
@@ -56,15 +56,14 @@ export class Frustums {
 
   /** Set the addresses of small pictures, by the photos' names. */
   setPictures(pictures: ReadonlyMap<string, string>): void {
-    let arrived = false
-    for (const [photo, url] of pictures) {
-      if (this.textures.has(photo)) continue
+    const fresh = [...pictures].filter(([photo, url]) => this.pictures.get(photo)?.url !== url)
+    for (const [photo, url] of fresh) {
+      this.pictures.get(photo)?.texture.dispose()
       const texture = new TextureLoader().load(url, this.changed)
       texture.colorSpace = SRGBColorSpace
-      this.textures.set(photo, texture)
-      arrived = true
+      this.pictures.set(photo, { url, texture })
     }
-    if (arrived) this.build()
+    if (fresh.length) this.build()
   }
 
   paint(dark: boolean): void {
@@ -85,8 +84,8 @@ export class Frustums {
 
   dispose(): void {
     this.clear()
-    for (const texture of this.textures.values()) texture.dispose()
-    this.textures.clear()
+    for (const { texture } of this.pictures.values()) texture.dispose()
+    this.pictures.clear()
     this.plain.dispose()
     this.marked.dispose()
   }
@@ -120,7 +119,7 @@ export class Frustums {
     geometry.setAttribute('position', new BufferAttribute(Float32Array.from(this.cornersOf(camera).flat()), 3))
     geometry.setAttribute('uv', new BufferAttribute(TEXTURE, 2))
     geometry.setIndex(FILL)
-    const map = this.textures.get(camera.photo) ?? null
+    const map = this.pictures.get(camera.photo)?.texture ?? null
     const look = { side: DoubleSide, toneMapped: false, transparent: true, opacity: map ? 0.95 : 0.35 }
     return new Mesh(geometry, new MeshBasicMaterial({ ...look, map, color: map ? '#ffffff' : PLAIN }))
   }

@@ -40,6 +40,8 @@ interface Hooks {
   changed(): void
   /** Move the photo under the branches, CSS px; does nothing where one does not look from a photo. */
   pan(across: number, down: number): void
+  /** Ends the layer's listening. */
+  readonly signal: AbortSignal
 }
 
 /** What is being dragged: a joint, or a branch that is drawn from one; its points are places on the screen. */
@@ -69,10 +71,11 @@ export class EditLayer {
     this.overlay.hidden = true
     host.append(this.overlay)
     // Before the rig's own listeners, which would turn the camera.
-    host.addEventListener('pointerdown', event => this.onDown(event), { capture: true })
-    host.addEventListener('pointermove', event => this.onMove(event), { capture: true })
-    host.addEventListener('pointerup', event => this.onUp(event), { capture: true })
-    host.addEventListener('pointercancel', () => this.stop(), { capture: true })
+    const first = { capture: true, signal: hooks.signal }
+    host.addEventListener('pointerdown', event => this.onDown(event), first)
+    host.addEventListener('pointermove', event => this.onMove(event), first)
+    host.addEventListener('pointerup', event => this.onUp(event), first)
+    host.addEventListener('pointercancel', () => this.stop(), first)
   }
 
   get isOn(): boolean {

@@ -24,7 +24,7 @@ const place = (joint: number) => projected(POSE, TREE.points[joint]!, VIEWPORT)
 let canvas: HTMLCanvasElement
 let layer: EditLayer
 const events = { picked: vi.fn(), moved: vi.fn(), drew: vi.fn() }
-const hooks = { changed: vi.fn(), pan: vi.fn() }
+const hooks = { changed: vi.fn(), pan: vi.fn(), signal: new AbortController().signal }
 
 beforeEach(() => {
   vi.resetAllMocks()

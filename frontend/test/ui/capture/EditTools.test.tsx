@@ -82,14 +82,14 @@ test('a branch is reached, removed and brought back by buttons alone', () => {
 })
 
 test('Escape deselects, and then ends the editing', () => {
-  const escape = () =>
+  const pressEscape = () =>
     void act(() => {
       dispatchEvent(new KeyboardEvent('keydown', { key: 'Escape' }))
     })
   void act(() => studio.edits.picked(1))
-  escape()
+  pressEscape()
   expect([studio.store.state.selection, tools().hidden]).toEqual([null, false])
-  escape()
+  pressEscape()
   expect(tools().hidden).toBe(true)
 })
 
