@@ -15,8 +15,8 @@ from treestroke.core.side_by_side import side_by_side
 from treestroke.core.types import Floats, Indices, Mask
 
 SWEPT = 7
-"""Most shots whose depths are found: more of 18 add few points. (Ten, each compared with four shots, take twice as long;
-of two trees in leaf all figures were the same to 0.005.)"""
+"""Most shots whose depths are found: more of 18 add few points. (Ten, each compared with four shots, take twice as
+long; of two trees in leaf all silhouettes were the same to 0.005.)"""
 NEIGHBOURS = 3
 """Shots that each is compared with."""
 LEAST_ANGLE_RAD = np.deg2rad(6.0)

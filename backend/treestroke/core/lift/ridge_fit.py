@@ -83,17 +83,39 @@ def _one_shot(skeleton: Skeleton, along: Floats, area: ShownArea) -> tuple[Float
     middle = camera.pixels_from_world(points)
     step = camera.pixels_from_world(points + aside * pixel[:, None]) - middle
     radius = np.maximum(skeleton.radii / pixel, 0.5)
-    reach = LOOK_RADII * radius + LOOK_PX
+    # What is so far from all outlines, or from all that is shown, cannot be within one limb: most joints amid leaves.
+    within = area.look_up(points)[0] / pixel
+    alone = (within <= 0.5 * _widest(radius) + 1) & (within >= -_farthest(radius) - 1) & clear
+    told, offset, half = np.zeros((3, len(points)))
+    told[alone], offset[alone], half[alone] = _across_limb(area.shown, middle[alone], step[alone], radius[alone])
+    return told, offset, half, aside, pixel
+
+
+def _across_limb(shown: Mask, middle_px: Floats, step: Floats, radius_px: Floats) -> tuple[Mask, Floats, Floats]:
+    """Look across limbs at their axes (n, 2) in directions (n, 2), by what is ``shown`` (h, w).
+
+    Returns whether each is seen by itself, how far aside of its axis its middle is, and half its width, px: (n,) each.
+    """
+    reach = LOOK_RADII * radius_px + LOOK_PX
     offsets = np.linspace(-1, 1, SAMPLES) * reach[:, None]
-    x, y = np.moveaxis(middle[:, None] + offsets[:, :, None] * step[:, None] - 0.5, 2, 0)
-    shown = map_coordinates(area.shown.astype(np.float32), [y, x], order=1, mode="constant") >= 0.5
-    first, last = _run(shown, offsets, OFF_RADII * radius + OFF_PX)
-    known = (first > 0) & (last < SAMPLES - 1) & (last >= first) & clear
-    rows, apart = np.arange(len(points)), 2 * reach / (SAMPLES - 1)
+    x, y = np.moveaxis(middle_px[:, None] + offsets[:, :, None] * step[:, None] - 0.5, 2, 0)
+    share = map_coordinates(shown.astype(np.float32), [y, x], order=1, mode="constant")
+    first, last = _run(share >= 0.5, offsets, _farthest(radius_px))
+    known = (first > 0) & (last < SAMPLES - 1) & (last >= first)
+    rows, apart = np.arange(len(radius_px)), 2 * reach / (SAMPLES - 1)
     left, right = offsets[rows, first], offsets[rows, np.minimum(last, SAMPLES - 1)]
     width = right - left + apart
-    known &= width <= WIDEST * 2 * radius + WIDEST_PX
-    return known.astype(np.float64), 0.5 * (left + right), 0.5 * width, aside, pixel
+    return known & (width <= _widest(radius_px)), 0.5 * (left + right), 0.5 * width
+
+
+def _widest(radius_px: Floats) -> Floats:
+    """Width (n,), px, up to which what is seen is one limb of a radius (n,), px."""
+    return WIDEST * 2 * radius_px + WIDEST_PX
+
+
+def _farthest(radius_px: Floats) -> Floats:
+    """How far aside of its axis (n,), px, a limb of a radius (n,), px, may be seen."""
+    return OFF_RADII * radius_px + OFF_PX
 
 
 def _run(shown: Mask, offsets: Floats, off: Floats) -> tuple[Indices, Indices]:
