@@ -171,6 +171,6 @@ class TreeMatte:
 
 
 def evenly(count: int, most: int) -> list[int]:
-    """Return the numbers of at most ``most`` of ``count`` shots, evenly spread, ascending; all where there are fewer."""
+    """Return the numbers of at most ``most`` of ``count`` shots, evenly spread, ascending; all if there are fewer."""
     chosen = np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
     return [int(number) for number in chosen]
