@@ -66,8 +66,10 @@ def carved(shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report) -
 
     Raises
     ------
+    StrokesError
+        The mattes leave no space to the tree.
     ValueError
-        Fewer than three shots, not one matte for each, or no space is left.
+        Fewer than three shots, or not one matte for each.
     """
     report("hull", 0.0)
     hull = visual_hull(shots, mattes)
