@@ -168,3 +168,9 @@ class TreeMatte:
     def tree(self) -> Mask:
         """(h, w) pixels that the tree covers by half or more."""
         return np.asarray(self.opacity >= 0.5)
+
+
+def evenly(count: int, most: int) -> list[int]:
+    """Return the numbers of at most ``most`` of ``count`` shots, evenly spread, ascending; all if there are fewer."""
+    chosen = np.linspace(0, count - 1, min(count, most)).round().astype(np.int64)
+    return [int(number) for number in chosen]

@@ -6,6 +6,7 @@ from tests.core.carve.walk import Ball, ball_points, matte, sees, shot, walk
 
 from treestroke.core.capture import TreeMatte
 from treestroke.core.carve.visual_hull import VisualHull, hull_top, visual_hull
+from treestroke.core.errors import StrokesError
 
 CROWN: Ball = ((0.2, 3.0, -0.1), 1.2)
 OTHER: Ball = ((0.2, 3.0, 2.3), 0.5)
@@ -92,7 +93,7 @@ def test_noise_in_the_mattes_does_not_change_the_hull_much(plain: VisualHull) ->
 def test_mattes_that_agree_on_nothing_are_refused() -> None:
     cameras = walk(4, 360)
     empty = [matte(np.zeros((200, 160), dtype=bool))] * 4
-    with pytest.raises(ValueError, match="no space"):
+    with pytest.raises(StrokesError, match="do not agree on where the tree stands"):
         visual_hull([shot(camera) for camera in cameras], empty)
     with pytest.raises(ValueError, match="three shots"):
         visual_hull([shot(camera) for camera in cameras[:2]], empty[:2])

@@ -85,6 +85,16 @@ def test_a_drawn_length_beside_the_tree_sets_the_scale() -> None:
     assert tree_frame(CAMERAS, cloud(), drawn, 1.0).scale == pytest.approx(1 / SOLVED.scale, rel=0.01)
 
 
+def test_an_upright_length_is_right_in_a_photo_that_looks_up() -> None:
+    pitch, level = np.radians(8.0), WALK[2].camera_from_world
+    up = np.array([[1, 0, 0], [0, np.cos(pitch), np.sin(pitch)], [0, -np.sin(pitch), np.cos(pitch)]]) @ level
+    camera = replace(WALK[2], camera_from_world=up)
+    ends = camera.pixels_from_world(ROOT + np.array([[0.0, 0.0, 0.0], [0.0, 3.0, 0.0]]))
+    cameras = {**CAMERAS, "2.jpg": SOLVED.camera(camera)}
+    drawn = CaptureStrokes({"2.jpg": drawn_on(camera)}, LengthInPhoto("2.jpg", Length(ends, 3.0)))
+    assert tree_frame(cameras, cloud(), drawn, 1.0).scale == pytest.approx(1 / SOLVED.scale, rel=0.002)
+
+
 @pytest.mark.parametrize(
     ("drawn", "pointer"),
     [

@@ -116,3 +116,14 @@ def test_a_trunk_on_a_photo_without_a_camera_is_refused() -> None:
     with pytest.raises(StrokesError, match=r"no camera was found for shaken\.jpg; .* such as 0\.jpg") as refused:
         read_views(photos, STRUCTURE, bad("shaken.jpg"), HEIGHT)
     assert refused.value.code == "photo_not_used"
+
+
+def test_too_few_photos_of_the_tree_that_was_drawn_are_refused() -> None:
+    aside = Similarity(np.array([40.0, 0.0, 0.0]), np.eye(3), 1.0)
+    moved = [
+        photo if place in (0, 4) else replace(photo, camera=aside.camera(photo.camera))
+        for place, photo in enumerate(STRUCTURE.photos)
+    ]
+    with pytest.raises(StrokesError, match="fewer than 5 photos show the tree") as refused:
+        read_views(PHOTOS, replace(STRUCTURE, photos=tuple(moved)), DRAWN, HEIGHT)
+    assert refused.value.code == "no_tree"

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from treestroke.core.capture import PointCloud, Shot, TreeMatte
+from treestroke.core.capture import PointCloud, Shot, TreeMatte, evenly
 from treestroke.core.carve.tomography import (
     DensityField,
     HullGrid,
@@ -24,8 +24,8 @@ from treestroke.core.side_by_side import side_by_side
 
 JOINED = 2
 """Sides of the hull's cells that make one of the cells whose density is measured."""
-
-
+MOST_SHOTS = 24
+"""Shots, evenly spread, that tell how densely cells are filled: their lines of sight take most of the memory."""
 MOST_LINES = 6000
 """Points of each shot that tell of open lines of sight."""
 
@@ -67,8 +67,10 @@ def carved(shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report) -
 
     Raises
     ------
+    StrokesError
+        The mattes leave no space to the tree.
     ValueError
-        Fewer than three shots, not one matte for each, or no space is left.
+        Fewer than three shots, or not one matte for each.
     """
     report("hull", 0.0)
     hull = visual_hull(shots, mattes)
@@ -76,6 +78,7 @@ def carved(shots: Sequence[Shot], mattes: Sequence[TreeMatte], report: Report) -
     report("density", 0.0)
     grid = grid_of(hull.cells, JOINED)
     good = np.flatnonzero(hull.good).tolist()
+    good = [good[place] for place in evenly(len(good), MOST_SHOTS)]
     lines = together(side_by_side(lambda index: lines_of(grid, shots[index].camera, mattes[index]), good))
     carving = Carving(hull, grid, lines, densities(grid, lines), leafiness(lines))
     report("density", 1.0)

@@ -178,7 +178,7 @@ def _best(shot: SweptShot, planes: Floats, scores: Singles, total: Singles) -> D
     pixels = np.arange(len(best))
     inner = np.clip(best, 1, len(planes) - 2)
     before, at, after = (scores[inner + step, pixels] for step in (-1, 0, 1))
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         bend = before - 2 * at + after
         move = np.where((bend < 0) & np.isfinite(bend), 0.5 * (before - after) / bend, 0.0)
     place = np.where(inner == best, best + np.clip(move, -0.5, 0.5), best)

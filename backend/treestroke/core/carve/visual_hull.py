@@ -8,6 +8,7 @@ import numpy as np
 from scipy import ndimage
 
 from treestroke.core.capture import Shot, TreeMatte
+from treestroke.core.errors import StrokesError
 from treestroke.core.geometry.camera import PerspectiveCamera
 from treestroke.core.geometry.clumped_crown import Cells
 from treestroke.core.side_by_side import side_by_side
@@ -117,8 +118,10 @@ def visual_hull(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> VisualHul
 
     Raises
     ------
+    StrokesError
+        The mattes leave no space to the tree.
     ValueError
-        Fewer than three shots, not one matte for each, or no space is left.
+        Fewer than three shots, or not one matte for each.
 
     Notes
     -----
@@ -141,7 +144,7 @@ def hull_top(shots: Sequence[Shot], mattes: Sequence[TreeMatte]) -> float:
 
     Raises
     ------
-    ValueError
+    StrokesError, ValueError
         As `visual_hull` does.
     """
     place, side, distances, _ = _first_cells(shots, mattes)
@@ -195,7 +198,8 @@ def _left(place: Indices, side: float, mattes: Sequence[MatteDistance], radius: 
     shown, denied = _votes(mattes, _middles(place, side), side * radius)
     left = place[(denied < CONTRADICTED) & (shown >= max(SHOWN_LEAST, SHOWN_SHARE * len(mattes)))]
     if len(left) == 0:
-        raise ValueError("the mattes leave no space to the tree")
+        fault = "photos do not agree on where the tree stands; draw its crown in one or two further ones"
+        raise StrokesError.at(("views",), fault, "no_tree")
     return left
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from treestroke.core.capture import PointCloud, Shot, TreeMatte
+from treestroke.core.capture import PointCloud, Shot, TreeMatte, evenly
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.lift.branch_points import is_branch
 from treestroke.core.lift.centre_lines import centre_lines
@@ -18,6 +18,8 @@ from treestroke.core.types import Floats, Mask
 
 BARE = 0.9
 """Share of the tree's pixels that are wood from which it is bare."""
+MOST_SHOTS = 30
+"""Shots, evenly spread, by which branches are found: 28 bytes for each of their pixels are at hand all the time."""
 
 WOODEN = 0.5
 """How likely what a shot shows must be wood to be taken for it."""
@@ -61,9 +63,10 @@ def seen_branches(
         No wood is seen in enough shots.
     """
     bare = sum(float(matte.wood.sum()) for matte in mattes) > BARE * sum(float(matte.tree.sum()) for matte in mattes)
-    pairs = list(zip(shots, mattes, strict=True))
-    tree = side_by_side(lambda pair: _shown(*pair, 0.0), pairs)
-    wood = side_by_side(lambda pair: _shown(*pair, WOODEN), pairs)
+    pairs = [(shots[place], mattes[place]) for place in evenly(len(shots), MOST_SHOTS)]
+    tree = side_by_side(lambda pair: shown_area(pair[0], pair[1].tree, pair[1].tree, pair[1].hidden), pairs)
+    shown = list(zip(tree, (matte for _, matte in pairs), strict=True))
+    wood = side_by_side(lambda pair: _wood(*pair), shown)
     report("branches", 0.1)
     graph = point_graph(wood, tree, FINE_BARE if bare else FINE)
     report("branches", 0.5)
@@ -77,6 +80,7 @@ def seen_branches(
     return SeenBranches(skeleton, seen, cloud.points[~is_branch(cloud, shots, mattes)])
 
 
-def _shown(shot: Shot, matte: TreeMatte, least: float) -> ShownArea:
-    """Prepare what a shot shows of a tree: all of it that is wood so likely."""
-    return shown_area(shot, matte.tree, matte.tree & (matte.wood >= least), matte.hidden)
+def _wood(tree: ShownArea, matte: TreeMatte) -> ShownArea:
+    """Return what a shot shows of the wood, by what it shows of the tree; that itself where all is wood."""
+    wood = matte.tree & (matte.wood >= WOODEN)
+    return tree if (wood == matte.tree).all() else shown_area(tree.shot, matte.tree, wood, matte.hidden)

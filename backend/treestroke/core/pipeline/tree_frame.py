@@ -35,6 +35,8 @@ GROUND_REACH, GROUND_RANK = 0.15, 0.1
 """Without such points: how far from the root, as a share of its distance, ground tells how high it is, and the rank
 among the heights there that is the ground's."""
 
+FROM_ABOVE = -0.8
+"""Rise of the line of sight below which a photo shows the ground from above."""
 AXIS_POINTS = 20
 """Places along a tree's axis of which a photo of it shows at least one."""
 
@@ -184,9 +186,15 @@ def _on_ground(trunk: _Trunk, cloud: PointCloud) -> Floats:
 
 def height_above(camera: PerspectiveCamera, root: Floats, top_px: Floats) -> float:
     """Height of a picture point above the root, in the upright plane through the root that faces the camera."""
-    ray = camera.world_from_pixels(top_px[None], 1.0)[0] - camera.centre
+    return float(_upright(camera, root, top_px[None])[0, 1] - root[1])
+
+
+def _upright(camera: PerspectiveCamera, root: Floats, points_px: Floats) -> Floats:
+    """Lay picture points (n, 2) on the upright plane through the root that faces the camera: (n, 3)."""
+    rays = camera.world_from_pixels(points_px, 1.0) - camera.centre
     ahead = unit((root - camera.centre) * [1.0, 0.0, 1.0])
-    return float(camera.centre[1] + (root - camera.centre) @ ahead / max(ray @ ahead, 1e-9) * ray[1] - root[1])
+    along = ((root - camera.centre) @ ahead) / np.maximum(rays @ ahead, 1e-9)
+    return np.asarray(camera.centre + along[:, None] * rays)
 
 
 def shows_tree(camera: PerspectiveCamera, height_m: float) -> bool:
@@ -209,6 +217,8 @@ def _metres_per_unit(cameras: Mapping[str, PerspectiveCamera], drawn: CaptureStr
 
 
 def _metres_by_line(camera: PerspectiveCamera, line: Length, root: Floats) -> float:
-    """Metres of a unit by a drawn line as far away as the root."""
-    ends = camera.world_from_pixels(line.points, float(camera.depth(root[None])[0]))
+    """Metres of a unit by a drawn line beside the root: an upright one, but in a photo taken from above."""
+    above = camera.ahead[1] < FROM_ABOVE
+    depth = float(camera.depth(root[None])[0])
+    ends = camera.world_from_pixels(line.points, depth) if above else _upright(camera, root, line.points)
     return line.metres / max(float(np.linalg.norm(ends[1] - ends[0])), 1e-9)

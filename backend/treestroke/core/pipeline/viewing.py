@@ -35,6 +35,7 @@ from treestroke.core.strokes import CaptureStrokes, LengthInPhoto, Stroke, Strok
 from treestroke.core.survey.measures import Scale, Stature
 from treestroke.core.types import Floats
 from treestroke.core.undistortion import undistorted, undistorted_points
+from treestroke.limits import MIN_PHOTOS
 
 FRAME_SIDE = 1200
 """Side, px, of the picture in which the front is drawn."""
@@ -207,10 +208,19 @@ def _drawn_height(shots: Sequence[Shot], drawn: CaptureStrokes) -> float:
 def _of_tree(
     photos: Sequence[CapturedPhoto], structure: Structure, shots: tuple[Shot, ...], cloud: PointCloud, height_m: float
 ) -> tuple[Structure, tuple[Shot, ...], PointCloud]:
-    """Leave out the photos that look past the tree, such as those of another tree in the same place."""
+    """Leave out the photos that look past the tree, such as those of another tree in the same place.
+
+    Raises
+    ------
+    StrokesError
+        Too few are left.
+    """
     shown = np.array([shows_tree(shot.camera, height_m) for shot in shots])
     if shown.all():
         return structure, shots, cloud
+    if np.count_nonzero(shown) < MIN_PHOTOS:
+        fault = f"fewer than {MIN_PHOTOS} photos show the tree that was drawn; take more of it, or draw another one"
+        raise StrokesError.at(("views",), fault, "no_tree")
     past = [_past_tree(shot.name) for shot, of_tree in zip(shots, shown, strict=True) if not of_tree]
     place = {photo.name: index for index, photo in enumerate(photos)}
     kept = Structure(
