@@ -6,11 +6,12 @@ import './advice.css'
 
 const { advice: words } = text.capture
 
-/** How to photograph a tree so that it can be measured. */
+/** How to photograph a tree so that it can be measured; it leads back to photos that were chosen. */
 export function AdviceDialog() {
   const limits = useStore(state => state.limits)
+  const hasOffer = useStore(state => state.offer !== null)
   return (
-    <Dialog title={words.title} class="advice">
+    <Dialog title={words.title} class="advice" after={{ dialog: hasOffer ? 'photos' : null }}>
       <div class="advice-body">
         <PhotoRing label={words.ring} />
         <div>

@@ -9,13 +9,14 @@ import { Dialog } from './Dialog'
 import './photosDialog.css'
 
 const { offer: words } = text.capture
+const CLOSED = { dialog: null, offer: null }
 
 /** Says what becomes of several photos before anything is sent: one tree of all of them, or of one alone. */
 export function PhotosDialog() {
   const offer = useStore(state => state.offer)
   if (!offer) return null
   return (
-    <Dialog title={words.title(offer.photos.length)} class="photos-dialog">
+    <Dialog title={words.title(offer.photos.length)} class="photos-dialog" after={CLOSED}>
       <Choice offer={offer} />
     </Dialog>
   )
@@ -59,11 +60,11 @@ function StartButtons({ offer: { photos, name }, canStart, canAdd }: StartProps)
   const { opener, captures, store } = studio
   const start = () => {
     if (!mayLeave(studio)) return
-    store.set({ dialog: null })
+    store.set(CLOSED)
     void opener.openPhotos(photos, name)
   }
   const add = () => {
-    store.set({ dialog: null })
+    store.set(CLOSED)
     void captures.add(photos)
   }
   return (
@@ -92,7 +93,7 @@ function PhotoChoice({ photo }: { readonly photo: File }) {
   useEffect(() => () => URL.revokeObjectURL(url), [url])
   const open = () => {
     if (!mayLeave(studio)) return
-    studio.store.set({ dialog: null })
+    studio.store.set(CLOSED)
     void studio.opener.openFile(photo)
   }
   return (
