@@ -7,18 +7,12 @@ from typing import Any, Unpack
 
 import httpx
 
+from treestroke.capture_schemas import CaptureInfo, CapturePage, CapturePhotoInfo, CaptureState, CaptureTraceAnswer
 from treestroke.client_connection import Connection, Followed, id_of
 from treestroke.codec.photo_kinds import PHOTO_ENDINGS
-from treestroke.request_bodies import TreeOptions, ViewsLike, plain_strokes
+from treestroke.request_bodies import TraceOptions, TreeOptions, ViewsLike, plain_strokes
 from treestroke.responses import read
-from treestroke.schemas import (
-    CaptureInfo,
-    CapturePage,
-    CapturePhotoInfo,
-    CaptureState,
-    CaptureTraceAnswer,
-    ModelInfo,
-)
+from treestroke.schemas import ModelInfo
 
 CaptureLike = CaptureState | str
 """A capture, or its id."""
@@ -93,23 +87,18 @@ class CaptureCalls(Connection):
         capture: CaptureLike,
         views: ViewsLike,
         edits: Sequence[Mapping[str, Any]] = (),
-        *,
-        rev: int | None = None,
-        grow: bool = False,
-        settings: Mapping[str, Any] | None = None,
+        **options: Unpack[TraceOptions],
     ) -> CaptureTraceAnswer:
         """Find the tree in the photos of a solved capture, its crown and its branches, to which ``edits`` are applied.
 
-        With ``grow`` the whole tree's skeleton too, by ``settings``. The answer repeats ``rev``. The first answer for
-        new strokes takes many seconds.
+        ``options`` are the names of `TraceOptions`. The first answer for new strokes takes many seconds.
 
         Raises
         ------
         ServiceError
             There is no such capture, it is not solved, or a stroke, an edit or a setting cannot be used.
         """
-        body = {**plain_strokes(views), "edits": list(edits), "grow": grow} | ({} if rev is None else {"rev": rev})
-        body |= {} if settings is None else {"settings": dict(settings)}
+        body = {**plain_strokes(views), "edits": list(edits), **options}
         patience = httpx.Timeout(self._timeout, read=max(self._timeout, _TRACE_SECONDS))
         path = f"/v1/captures/{id_of(capture)}/trace"
         return read(CaptureTraceAnswer, self._ask("POST", path, json=body, timeout=patience).content)

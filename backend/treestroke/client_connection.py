@@ -14,9 +14,10 @@ from urllib.parse import quote
 
 import httpx
 
+from treestroke.capture_schemas import CapturePage, CaptureState
 from treestroke.request_bodies import plain_options
 from treestroke.responses import Event, RetryableError, checked, events_of, read, unreachable
-from treestroke.schemas import CapturePage, CaptureState, ModelInfo, ModelPage, PhotoInfo, PhotoPage
+from treestroke.schemas import ModelInfo, ModelPage, PhotoInfo, PhotoPage
 
 Done = TypeVar("Done")
 Page = TypeVar("Page", ModelPage, PhotoPage, CapturePage)

@@ -44,6 +44,22 @@ class TreeOptions(Cutouts, total=False):
     idempotency_key: str | None
 
 
+class TraceOptions(TypedDict, total=False):
+    """Options of `Client.trace_capture`, all of which may be left out.
+
+    Attributes
+    ----------
+    rev
+        The answer repeats it.
+    grow
+        Also grow the whole tree's skeleton, by ``settings``.
+    """
+
+    rev: int
+    grow: bool
+    settings: Mapping[str, Any]
+
+
 class PhotoOptions(TreeOptions, total=False):
     """Options of `Client.grow`: also a sketch of the tree's left ``side``, from which its branches have their depth."""
 

@@ -35,7 +35,7 @@ class Settings(BaseSettings):
         float, _setting(20, "a tracing or decoding that takes longer is stopped, in seconds", gt=0, le=600)
     ]
     capture_trace_seconds: Annotated[
-        float, _setting(120, "tracing a capture is stopped if it takes longer, in seconds", gt=0, le=3600)
+        float, _setting(300, "tracing a capture is stopped if it takes longer, in seconds", gt=0, le=3600)
     ]
     model_seconds: Annotated[float, _setting(300, "a model that takes longer fails, in seconds", gt=0, le=86_400)]
     solve_seconds: Annotated[

@@ -130,6 +130,27 @@ def test_a_deleted_capture_is_gone(client: httpx.Client) -> None:
     assert {(one.status_code, one.json()["code"]) for one in answers} == {(404, "capture_not_found")}
 
 
+def test_a_deleted_capture_is_restored_with_its_photos(client: httpx.Client) -> None:
+    place = made(client, [0], name="Oak")
+    before = client.get(place).json()
+    client.delete(place)
+    assert client.post(f"{place}/restore").json() == before
+    assert client.post(f"{place}/restore").json() == client.get(place).json() == before
+    nothing = client.post(f"/v1/captures/cap_{'0' * 24}/restore")
+    assert (nothing.status_code, nothing.json()["code"]) == (404, "capture_not_found")
+
+
+def test_a_capture_is_named(client: httpx.Client) -> None:
+    place = made(client)
+    renamed = client.patch(place, json={"name": "Ash"})
+    assert (renamed.status_code, renamed.json()["name"]) == (200, "Ash")
+    assert client.get(place).json() == renamed.json()
+    for body, code in (({"name": "a\nb"}, "name_invalid"), ({}, "missing_key")):
+        assert client.patch(place, json=body).json()["code"] == code
+    client.delete(place)
+    assert client.patch(place, json={"name": "Oak"}).status_code == 404
+
+
 def test_captures_are_listed_newest_first_page_by_page(client: httpx.Client) -> None:
     places = [made(client, name=name) for name in ("one", "two", "three")]
     first = client.get("/v1/captures", params={"limit": 2}).json()
@@ -220,8 +241,50 @@ def tree_walk(service: Service) -> str:
     return id
 
 
+def test_a_solved_capture_is_traced_and_its_edits_are_replayed(client: httpx.Client, tree_walk: str) -> None:
+    place, drawn_over = f"/v1/captures/{tree_walk}/trace", walked_capture.views()
+    first = client.post(place, json={**drawn_over, "rev": 3}).json()
+    assert first["rev"] == 3
+    assert [photo["photo"] for photo in first["photos"]] == walked_capture.names()
+    assert "grown" not in first
+    edit = {"do": "remove", "at": first["skeleton"]["points"][-1]}
+    edits = {"edits": [edit, {**edit, "at": [99, 99, 99]}], "settings": walked_capture.SETTINGS}
+    asked = [client.post(place, json={**drawn_over, **edits, "grow": grow}).json() for grow in (False, True, False)]
+    assert asked[0] == asked[2]
+    assert asked[0] == {key: value for key, value in asked[1].items() if key not in ("grown", "photo")}
+    assert len(asked[0]["skeleton"]["points"]) < len(first["skeleton"]["points"])
+    told = [(one["code"], one["stroke"]) for one in asked[0]["warnings"]]
+    assert told == [("same_photo", "photos/copy.png"), ("edit_lost", "edits/1")]
+    assert asked[1]["grown"]["photo"] == asked[1]["photo"]
+    assert len(asked[1]["grown"]["points"]) >= len(asked[0]["skeleton"]["points"])
+
+
+@pytest.mark.parametrize(
+    ("wish", "code", "pointer"),
+    [
+        ({"views": []}, "wrong_type", "/views"),
+        ({"views": [{**walked_capture.views()["views"][0], "branches": []}]}, "trunk_missing", "/views/0/branches"),
+        ({"views": [{**walked_capture.views()["views"][0], "photo": "9.png"}]}, "photo_unknown", "/views/0/photo"),
+        ({**walked_capture.views(), "edits": [{"do": "grow"}]}, "edit_unknown", "/edits/0"),
+        ({**walked_capture.views(), "settings": {"height": "tall"}}, "setting_not_allowed", "/settings/height"),
+    ],
+)
+def test_a_trace_that_cannot_be_made_is_refused_by_name(
+    client: httpx.Client, tree_walk: str, wish: dict[str, Any], code: str, pointer: str
+) -> None:
+    answer = client.post(f"/v1/captures/{tree_walk}/trace", json=wish)
+    assert (answer.status_code, answer.json()["code"]) == (422, code)
+    assert [fault["pointer"] for fault in answer.json()["errors"]] == [pointer]
+
+
+def test_a_capture_is_solved_before_it_is_traced(client: httpx.Client) -> None:
+    answer = client.post(f"{made(client)}/trace", json=walked_capture.views())
+    assert (answer.status_code, answer.json()["code"]) == (409, "capture_unsolved")
+
+
 def test_a_capture_becomes_a_tree(service: Service, tree_walk: str) -> None:
-    client, wish = service.client, walked_capture.request(tree_walk, name="Around")
+    edits = [{"do": "remove", "at": [99, 0, 0]}]
+    client, wish = service.client, walked_capture.request(tree_walk, name="Around", edits=edits)
     asked = client.post("/v1/models", json=wish, headers={"idempotency-key": tree_walk})
     assert (asked.status_code, asked.json()["capture"], asked.json()["photo"]) == (202, tree_walk, None)
     told = list(events(client, f"/v1/models/{asked.json()['id']}"))
@@ -230,6 +293,7 @@ def test_a_capture_becomes_a_tree(service: Service, tree_walk: str) -> None:
     assert {"tree.glb", "preview.png", "views.json", "project"} <= set(model["files"])
     assert "structure.json" not in model["files"]
     assert client.get(model["files"]["views.json"]).json() == walked_capture.views()
+    assert client.get(model["files"]["edits.json"]).json() == {"edits": edits}
     assert client.get(model["files"]["tree.glb"]).content[:4] == b"glTF"
     assert [camera["photo"] for camera in model["report"]["cameras"]] == walked_capture.names()
     again = client.post("/v1/models", json=wish)

@@ -12,13 +12,14 @@ from tests.architecture.names import PACKAGE, ROOT, routes
 
 import treestroke
 from treestroke.api.errors import _STATUS
+from treestroke.capture_schemas import CaptureInfo
 from treestroke.cli import main
 from treestroke.client import Client
 from treestroke.core.pipeline.settings import Choice, ModelSettings, Several
-from treestroke.schemas import CaptureInfo, ModelInfo, PhotoInfo, Problem
+from treestroke.schemas import ModelInfo, PhotoInfo, Problem
 from treestroke.service.failures import _DETAILS, problem_of_input
 from treestroke.settings import PREFIX, Settings
-from treestroke.wire_requests import ModelRequest
+from treestroke.wire_requests import CaptureTraceRequest, ModelRequest
 from treestroke.wire_strokes import CaptureStrokes, Strokes, StrokeSketch
 
 COMMANDS = ("model", "views", "sketch", "trace", "serve", "worker", "doctor")
@@ -150,7 +151,7 @@ def test_the_library_s_arguments_are_documented() -> None:
 
 
 def test_the_client_s_methods_are_documented() -> None:
-    methods = {name for name in vars(Client) if not name.startswith("_")} - {"close"}
+    methods = {name for name in dir(Client) if not name.startswith("_")} - {"close"}
     with_python = text_of("docs/http.md").split("## With Python\n")[1].split("\n## ")[0]
     shown = set(re.findall(r"`(?:client\.)?([a-z_]+)(?:\(.*?\))?`|client\.([a-z_]+)\(", with_python))
     assert {name for pair in shown for name in pair if name} == methods
@@ -189,7 +190,7 @@ def test_the_doctor_s_parts_are_those_that_it_examines() -> None:
 
 
 def test_examples_in_json_are_what_the_service_takes_and_gives() -> None:
-    (strokes,), (sketch,), (views,), (request, captured, problem) = (
+    (strokes,), (sketch,), (views,), (request, traced, captured, problem) = (
         [json.loads(fence.text) for fence in fences(f"docs/{name}.md", "json")]
         for name in ("formats", "sketches", "views", "http")
     )
@@ -198,6 +199,7 @@ def test_examples_in_json_are_what_the_service_takes_and_gives() -> None:
     StrokeSketch.model_validate(sketch)
     CaptureStrokes.model_validate(views)
     ModelRequest.model_validate(request)
+    CaptureTraceRequest.model_validate(traced)
     ModelRequest.model_validate(captured)
     assert set(problem) == set(Problem.model_fields)
     Problem.model_validate(problem)

@@ -154,7 +154,7 @@ def main() -> int:
             database = Database(Path(folder))
             database.migrate()
             fill(database.path, count)
-            resources = Resources(database, Blobs(Path(folder)), tracers)
+            resources = Resources(database, Blobs(Path(folder)), tracers, tracers)
             sys.stdout.write(f"{count} models, {database.path.stat().st_size / 1e6:.0f} MB\n")
             answer(database, count)
             short &= ask(resources)

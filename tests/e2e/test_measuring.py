@@ -54,10 +54,9 @@ def test_many_photos_become_one_measured_tree(open_page: OpenPage, service: Serv
     expect(page.get_by_text(f"All {PHOTOS} photos are used.")).to_be_visible(timeout=SOLVED_MS)
     visitor.wait_for_preview("live")
     visitor.shot("measured")
-    page.get_by_role("radio", name="Photo ", checked=True).press("ArrowRight")
-    expect(page.get_by_role("radio", name="Photo ", checked=True)).to_have_accessible_name(
-        f"Photo 2 of {PHOTOS}, 01.jpg, used"
-    )
+    drawn_on = page.get_by_role("radio", name="Photo ", checked=True)
+    drawn_on.press("ArrowRight")
+    expect(drawn_on).to_have_accessible_name(f"Photo 2 of {PHOTOS}, 01.jpg, used")
     assert not visitor.violations()
     page.get_by_role("button", name="Grow", exact=True).click()
     visitor.wait_for_preview("model")

@@ -21,5 +21,5 @@ def tracers() -> Iterator[TracingPool]:
 def resources(tmp_path: Path, tracers: TracingPool) -> Iterator[Resources]:
     database = Database(tmp_path)
     database.migrate()
-    yield Resources(database, Blobs(tmp_path), tracers)
+    yield Resources(database, Blobs(tmp_path), tracers, tracers)
     database.close()

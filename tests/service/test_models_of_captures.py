@@ -24,6 +24,11 @@ from treestroke.store.queries import referenced
 from treestroke.store.tables import CapturePhoto
 
 PATIENCE_SECONDS = 300
+EDITS = [
+    {"do": "add", "from": [0.0, 2.0, 0.0], "points": [[0.5, 2.4, 0.3], [1.0, 3.0, 0.4]]},
+    {"do": "remove", "at": [90.0, 0.0, 0.0]},
+]
+"""A branch of the small tree, and an edit of nothing."""
 ELSE = [f"{index}.png" for index in range(1, 6)]
 
 
@@ -66,13 +71,15 @@ def test_a_model_shares_the_files_of_its_capture(resources: Resources, capture: 
     assert sum(path.is_file() for path in resources.blobs.folder.rglob("*")) == blobs_before + 1  # the strokes
     assert (model.row.capture, model.row.photo, model.row.name) == (capture, None, "Around")
     assert list(model.drawings) == ["views.json"]
+    assert list(ask(resources, **request(capture, edits=[])).drawings) == ["views.json"]
+    assert list(ask(resources, **request(capture, edits=EDITS)).drawings) == ["views.json", "edits.json"]
 
 
 def test_a_capture_becomes_a_tree_and_its_project_makes_the_same_tree(
     resources: Resources, capture: str, projects: Projects
 ) -> None:
-    """The longest of this file: two whole trees are made."""
-    model = ask(resources, **request(capture))
+    """The longest of this file: two whole trees are made, of edited branches."""
+    model = ask(resources, **request(capture, edits=EDITS))
     captures.delete(resources.database, capture)
     with resources.database.writing() as session:
         for photo in session.query(CapturePhoto).all():
@@ -88,10 +95,12 @@ def test_a_capture_becomes_a_tree_and_its_project_makes_the_same_tree(
     assert report["registered"] == {"used": COUNT, "of": COUNT + 1}
     assert {"decode", "mattes", "hull", "density", "points", "branches", "grow", "leaf"} <= set(report["seconds"])
     assert {(warning["code"], warning["stroke"]) for warning in report["warnings"]} >= {
-        ("same_photo", f"photos/{UNUSED}")
+        ("same_photo", f"photos/{UNUSED}"),
+        ("edit_lost", "edits/1"),
     }
     packed = projects.pack(after).result(PATIENCE_SECONDS).path.read_bytes()
     project = read_project(io.BytesIO(packed), "around.treestroke")
+    assert json.loads(project.inputs.parts["edits"]) == {"edits": EDITS}
     options = Options.of({key: value for key, value in project.settings.items() if key != "seed"}, 0)
     made = make_tree(project.inputs, options)
     assert made.glb == resources.blobs.get(after.files["tree.glb"].blob)
@@ -121,8 +130,12 @@ def test_the_same_photos_and_strokes_are_one_tree_whichever_capture_has_them(
 ) -> None:
     first, second = ask(resources, **request(capture)), ask(resources, **request(make_solved(resources)))
     assert first.row.fingerprint == second.row.fingerprint
-    others = [request(capture, seed=1), request(capture, views=views(scale={"photos": names()[:2], "metres": 3.0}))]
-    assert len({ask(resources, **other).row.fingerprint for other in others} | {first.row.fingerprint}) == 3
+    others = [
+        request(capture, seed=1),
+        request(capture, edits=EDITS),
+        request(capture, views=views(scale={"photos": names()[:2], "metres": 3.0})),
+    ]
+    assert len({ask(resources, **other).row.fingerprint for other in others} | {first.row.fingerprint}) == 4
 
 
 def test_a_request_sent_again_is_the_same_model_though_the_capture_has_changed(
@@ -192,6 +205,9 @@ def test_strokes_that_the_photos_cannot_carry_are_refused(
     [
         ({"capture": "cap_1"}, "missing_key", "/views"),
         ({"views": views()}, "missing_key", "/capture"),
+        ({"edits": []}, "missing_key", "/capture"),
+        ({"capture": "cap_1", "edits": []}, "missing_key", "/views"),
+        ({"capture": "cap_1", "views": views(), "edits": [{}]}, "edit_unknown", "/edits/0"),
         ({"capture": 1, "views": views()}, "wrong_type", "/capture"),
         ({"capture": "cap_1", "views": views(), "photo": "pho_1"}, "strokes_and_sketch", "/photo"),
         ({"capture": "cap_1", "views": views(), "sketches": {}}, "strokes_and_sketch", "/sketches"),

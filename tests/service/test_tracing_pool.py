@@ -55,7 +55,7 @@ def test_a_process_that_hangs_is_ended_at_the_limit(tracers: TracingPool, monkey
     before, limit_s = tracers("c", work.process), 0.5
     with monkeypatch.context() as short:
         for child in tracers._children:
-            short.setattr(child, "_seconds", limit_s)
+            short.setattr(child, "_bounds", child._bounds._replace(seconds=limit_s))
         began = time.monotonic()
         with kept(limit_s + 3), pytest.raises(Crashed, match="slow"):
             tracers("c", work.hang)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from treestroke import schemas
+from treestroke import capture_schemas, schemas
 from treestroke.codec.cameras import plain_photo_camera
 from treestroke.codec.structure import plain_cloud
 from treestroke.core.capture import Structure
@@ -58,36 +58,36 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
     )
 
 
-def capture_state(capture: StoredCapture) -> schemas.CaptureState:
+def capture_state(capture: StoredCapture) -> capture_schemas.CaptureState:
     """Return how far a capture is, as the API shows it."""
-    return schemas.CaptureState(**_state(capture))
+    return capture_schemas.CaptureState(**_state(capture))
 
 
-def capture_view(capture: StoredCapture, structure: Structure | None) -> schemas.CaptureInfo:
+def capture_view(capture: StoredCapture, structure: Structure | None) -> capture_schemas.CaptureInfo:
     """Return a capture as the API shows it, with what was found of its photos."""
     shown = _state(capture)
     shown["photos"] = [capture_photo_view(photo, structure) for photo in capture.photos]
     if structure is None:
-        return schemas.CaptureInfo(**shown, cameras=[], cloud=None)
-    return schemas.CaptureInfo(
+        return capture_schemas.CaptureInfo(**shown, cameras=[], cloud=None)
+    return capture_schemas.CaptureInfo(
         **shown,
         cameras=_cameras(capture.photos, structure),
-        cloud=schemas.CloudInfo(**plain_cloud(structure.cloud, MAX_CLOUD_POINTS)),
+        cloud=capture_schemas.CloudInfo(**plain_cloud(structure.cloud, MAX_CLOUD_POINTS)),
     )
 
 
-def _cameras(photos: Sequence[CapturePhoto], structure: Structure) -> list[schemas.CameraInfo]:
+def _cameras(photos: Sequence[CapturePhoto], structure: Structure) -> list[capture_schemas.CameraInfo]:
     """Return the cameras that were found, in pixels of the upright photos: large ones are solved smaller."""
     sizes = {photo.name: (photo.width, photo.height) for photo in photos}
     cameras = {one.name: one.camera.resized(*sizes[one.name]) for one in structure.photos}
-    return [schemas.CameraInfo(**plain_photo_camera(name, camera)) for name, camera in cameras.items()]
+    return [capture_schemas.CameraInfo(**plain_photo_camera(name, camera)) for name, camera in cameras.items()]
 
 
-def capture_photo_view(row: CapturePhoto, structure: Structure | None = None) -> schemas.CapturePhotoInfo:
+def capture_photo_view(row: CapturePhoto, structure: Structure | None = None) -> capture_schemas.CapturePhotoInfo:
     """Return a photo of a capture as the API shows it, with what was found of it."""
     unused = {} if structure is None else {one.name: one for one in structure.unused}
     why = unused.get(row.name)
-    return schemas.CapturePhotoInfo(
+    return capture_schemas.CapturePhotoInfo(
         id=row.id,
         name=row.name,
         width=row.width,

@@ -12,11 +12,10 @@ from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.geometry.clumped_crown import Cells
 from treestroke.core.geometry.surface_nets import surface
 from treestroke.core.imaging.outline import rings_of_mask
-from treestroke.core.pipeline.captured_photos import fitted
-from treestroke.core.pipeline.edited_views import at_height, edited_views
+from treestroke.core.pipeline.edited_views import at_height, edited_views, traced_views
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.viewing import ViewsEvidence, live_views, read_views
+from treestroke.core.pipeline.viewing import ViewsEvidence, live_views
 from treestroke.core.skeleton.branch_edits import BranchEdit
 from treestroke.core.strokes import CaptureStrokes
 from treestroke.core.types import Floats
@@ -34,33 +33,23 @@ _SHARE_DIGITS = 5
 
 @dataclass(frozen=True, eq=False)
 class CaptureReading:
-    """What the photos of a capture show, before any edit, of a tree of the settings' default height.
-
-    Attributes
-    ----------
-    evidence
-        The recipe's own result.
-    structure
-        The cameras of the photos as they were read.
-    """
+    """What the photos of a capture show, before any edit: the recipe's own ``evidence``, and plain values of it."""
 
     evidence: ViewsEvidence
-    structure: Structure
 
     @cached_property
     def photos(self) -> list[dict[str, Any]]:
         """Where each photo that is used shows the tree, as plain values: closed rings, px of the upright photo."""
-        solved = {photo.name: photo for photo in self.structure.photos}
-        pairs = zip(self.evidence.photos, self.evidence.mattes, strict=True)
+        read = zip(self.evidence.photos, self.evidence.structure.photos, self.evidence.mattes, strict=True)
         return [
             {
                 "photo": photo.name,
                 "foliage": [
-                    (distorted_points(ring, solved[photo.name]) / photo.reduction).round(_PX_DIGITS).tolist()
+                    (distorted_points(ring, solved) / photo.reduction).round(_PX_DIGITS).tolist()
                     for ring in rings_of_mask(matte.tree)
                 ],
             }
-            for photo, matte in pairs
+            for photo, solved, matte in read
         ]
 
     @cached_property
@@ -82,11 +71,10 @@ def read_capture(photos: Sequence[CapturedPhoto], structure: Structure, drawn: C
     Raises
     ------
     StrokesError, CaptureError
-        As `read_views`.
+        As `traced_views`.
     """
-    structure = fitted(structure, photos)
     with one_thread():
-        return CaptureReading(read_views(photos, structure, drawn, ModelSettings().height), structure)
+        return CaptureReading(traced_views(photos, structure, drawn))
 
 
 def trace_capture(

@@ -14,7 +14,7 @@ from treestroke.codec.refusals import checked
 from treestroke.codec.structure import decode_structure
 from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.errors import StrokesError
-from treestroke.core.pipeline.captured_photos import TRACED_SIDE
+from treestroke.core.pipeline.captured_photos import TRACED_SIDE, reduced
 from treestroke.core.pipeline.drawn_views import check_used, mend_views
 from treestroke.core.pipeline.settings import settings_from
 from treestroke.core.strokes import CaptureStrokes
@@ -94,4 +94,4 @@ def _read(structure: Path, photos: tuple[StoredPhoto, ...], drawn: CaptureStroke
 
 
 def _load(photo: StoredPhoto) -> CapturedPhoto:
-    return load_stored_capture(photo.name, read_blob(photo.path), side=TRACED_SIDE)
+    return reduced(load_stored_capture(photo.name, read_blob(photo.path)), TRACED_SIDE)

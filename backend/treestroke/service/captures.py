@@ -2,10 +2,8 @@
 
 import hashlib
 import time
-import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 import structlog
@@ -17,9 +15,10 @@ from treestroke.codec.refusals import checked
 from treestroke.codec.structure import decode_structure
 from treestroke.core.capture import Structure
 from treestroke.core.errors import CaptureError, TreestrokeError
-from treestroke.limits import MAX_NAME, MAX_PHOTOS, MIN_PHOTOS
-from treestroke.service import capture_tracer, tracer
+from treestroke.limits import MAX_PHOTOS, MIN_PHOTOS
+from treestroke.service import tracer
 from treestroke.service.engine_version import engine_version
+from treestroke.service.file_names import file_name, free_name
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
@@ -186,7 +185,7 @@ def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple
         As `photos.kept_columns`.
     """
     sha256 = hashlib.sha256(content).hexdigest()
-    sent_name = _file_name(name) or sha256[:12]
+    sent_name = file_name(name) or sha256[:12]
     with resources.database.reading() as session:
         present = _present(session, id, sent_name, sha256)
     if present is not None:
@@ -197,8 +196,8 @@ def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple
         if present is not None:
             return present, False
         taken = session.scalars(select(CapturePhoto.name).where(CapturePhoto.capture == id)).all()
-        free_name = _free_name(sent_name, taken)
-        added = CapturePhoto(id=queries.new_id("cph"), capture=id, name=free_name, sent_name=sent_name, **columns)
+        free = free_name(sent_name, taken)
+        added = CapturePhoto(id=queries.new_id("cph"), capture=id, name=free, sent_name=sent_name, **columns)
         session.add(added)
         _note_change(session, id)
     return added, True
@@ -298,28 +297,6 @@ def solved_structure(capture: StoredCapture) -> str:
     return structure
 
 
-def trace(resources: Resources, id: str, body: bytes) -> bytes:
-    """Trace a solved capture by the body of a request; return the response's JSON.
-
-    Raises
-    ------
-    NotFound, CaptureError, StrokesError, SettingsError
-        There is no such capture, it is not solved, or the body cannot be used.
-    Damaged
-        The file of its cameras is damaged.
-    Overloaded, Crashed
-        Too many captures are being traced, or the process died over this request.
-    """
-    capture = find_capture(resources.database, id)
-    structure = resources.blobs.path(solved_structure(capture))
-    photos = [
-        capture_tracer.StoredPhoto(photo.name, (photo.width, photo.height), resources.blobs.path(photo.blob))
-        for photo in capture.photos
-    ]
-    mended = warnings_of(capture.photos)
-    return resources.capture_tracers("", capture_tracer.trace_answer, structure, photos, body, mended)
-
-
 def warnings_of(photos: Sequence[CapturePhoto]) -> list[dict[str, Any]]:
     """Return what was mended when photos were read, each with the photo's name as its place."""
     return [{**warning, "stroke": f"photos/{photo.name}"} for photo in photos for warning in photo.warnings]
@@ -413,26 +390,3 @@ def _new_solve(capture: StoredCapture, ready: SolveRow | None) -> SolveRow | Non
         created=time.time(),
         finished=time.time() if over else None,
     )
-
-
-def _file_name(name: str) -> str:
-    """Return a file's name without folders and without what cannot stand in a line of text."""
-    last = unicodedata.normalize("NFC", name.encode("utf-8", "replace").decode()).replace("\\", "/").rpartition("/")[2]
-    plain = "".join(c if c.isprintable() else "_" for c in last).strip(" .")
-    return _cut(plain, "")
-
-
-def _free_name(name: str, taken: Sequence[str]) -> str:
-    """Return a name that no other photo has: the photo's own, or one with a number."""
-    free, number = name, 1
-    while free in taken:
-        number += 1
-        free = _cut(name, f" ({number})")
-    return free
-
-
-def _cut(name: str, mark: str) -> str:
-    """Return a file's name with a mark before its ending, at most as long as names may be."""
-    ending = PurePosixPath(name).suffix[: MAX_NAME // 4]
-    stem = name[: len(name) - len(PurePosixPath(name).suffix)]
-    return f"{stem[: MAX_NAME - len(mark) - len(ending)]}{mark}{ending}"

@@ -19,7 +19,7 @@ from treestroke.codec.strokes import parse_strokes, strokes_from
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.imaging.opacity import over_white
-from treestroke.core.pipeline.captured_photos import CAPTURED_SIDE, captured_photo
+from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.branch_edits import BranchEdit
@@ -141,14 +141,12 @@ def load_edits(edits: EditsLike) -> tuple[BranchEdit, ...]:
     return parse_edits(*read_part("edits", edits))
 
 
-def load_stored_capture(
-    name: str, stored: bytes, focal_px: float | None = None, side: int = CAPTURED_SIDE
-) -> CapturedPhoto:
-    """Decode one photo of a capture that the service keeps, at no more than ``side`` px.
+def load_stored_capture(name: str, stored: bytes, focal_px: float | None = None) -> CapturedPhoto:
+    """Decode one photo of a capture that the service keeps, at no more than `CAPTURED_SIDE` px.
 
     ``focal_px`` is its focal length, px of the photo, where that is known.
     """
-    return captured_photo(name, over_white(decode_stored(stored)), focal_px, side)
+    return captured_photo(name, over_white(decode_stored(stored)), focal_px)
 
 
 def load_captured(

@@ -264,7 +264,7 @@ def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
 
 def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
     # With scipy, slow, and of no use for one photo.
-    from treestroke.core.pipeline.edited_views import edited_views
+    from treestroke.core.pipeline.edited_views import traced_views, with_edits
     from treestroke.core.pipeline.viewing import grow_views, read_views
 
     photos = [photo for name, photo in parts.items() if name.startswith("photos/")]
@@ -272,7 +272,7 @@ def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
     structure = parts["structure"] if "structure" in parts else solve_in_process(photos, SOLVE_BOUNDS, report)
     evidence = read_views(photos, structure, drawn, settings.height, report)
     if "edits" in parts:
-        evidence = edited_views(evidence, parts["edits"])
+        evidence = with_edits(evidence, traced_views(photos, structure, parts["views"]), parts["edits"])
     return lambda rng: grow_views(evidence, settings, rng, report)
 
 

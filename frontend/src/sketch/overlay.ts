@@ -1,5 +1,6 @@
 import type { TraceAnswer, TracedSkeleton } from '../api/types'
 import { along, distance } from '../plane'
+import type { Extent } from '../sheets'
 import type { Selection } from '../state'
 import { type Line, lineOf, type Point, type StrokeKind, type StrokeRef, type Strokes, strokeRefs } from '../strokes'
 import { branchAt } from '../tracedBranch'
@@ -33,10 +34,14 @@ const CROSS = 5
 const TICK = 7
 const CURSOR = { inner: 4, outer: 13 }
 
-/** Draw what was traced: the foliage's tint and the branches. */
-export function drawTraced(target: DrawTarget, answer: TraceAnswer): void {
+/** Draw what was traced on a sheet: the foliage's tint and the branches. A tree of many photos may reach beyond one of them. */
+export function drawTraced(target: DrawTarget, answer: TraceAnswer, { width, height }: Extent): void {
   const { ctx } = target
   useSheetPixels(target)
+  ctx.save()
+  ctx.beginPath()
+  ctx.rect(0, 0, width, height)
+  ctx.clip()
   const foliage = foliagePath(answer)
   // Where a photo is shown small, full outlines would cover its leaves.
   const thinning = Math.min(1, 0.4 + target.view.scale)
@@ -46,6 +51,7 @@ export function drawTraced(target: DrawTarget, answer: TraceAnswer): void {
   ctx.fill(foliage, 'evenodd')
   outline(target, foliage, INK.foliageEdge, thinning * WIDTH.edge)
   drawWood(target, answer.skeleton)
+  ctx.restore()
 }
 
 /** Draw the strokes, with halos around the one at fault, what is selected and what is under the pointer. */

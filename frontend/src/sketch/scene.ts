@@ -45,7 +45,7 @@ export class Scene {
   #drawTraced(target: DrawTarget): void {
     const { traced } = this.status()
     const { sheet, levels, stray, assumedCrown } = this.shown()
-    if (traced && sheet) drawTraced(target, traced)
+    if (traced && sheet) drawTraced(target, traced, sheet)
     if (assumedCrown) drawAssumedCrown(target, assumedCrown, this.#inks)
     if (levels && sheet) drawLevels(target, { levels, stray, width: sheet.width }, this.#inks)
   }

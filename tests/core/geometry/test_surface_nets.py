@@ -31,7 +31,9 @@ def test_a_ball_of_cells_has_the_surface_of_a_ball(most: int) -> None:
 def test_the_surface_of_any_cells_is_closed() -> None:
     filled = np.random.default_rng(3).random((14, 20, 11)) < 0.3
     points, triangles = surface(Cells(filled, np.zeros(3), SIDE), 4000)
-    edges = Counter(tuple(sorted(edge)) for face in triangles.tolist() for edge in zip(face, face[1:] + face[:1], strict=True))
+    edges = Counter(
+        tuple(sorted(edge)) for face in triangles.tolist() for edge in zip(face, face[1:] + face[:1], strict=True)
+    )
     assert all(count % 2 == 0 for count in edges.values())
     assert len(np.unique(triangles)) == len(points)
 

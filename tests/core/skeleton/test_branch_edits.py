@@ -24,6 +24,8 @@ from treestroke.core.skeleton.branch_edits import (
 from treestroke.core.skeleton.measure import edge_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 
+EXTENT = 100.0
+"""Height of the drawn trees."""
 ROOT, FORK, LEFT, LEFT_TIP, RIGHT, RIGHT_TIP = range(6)
 SMALL = Skeleton(
     np.array([[0, 0, 0], [0, 1, 0], [-0.5, 1.5, 0], [-1, 2, 0], [0.5, 1.5, 0], [1, 2, 0]], dtype=np.float64),
@@ -35,7 +37,7 @@ SEEN = np.array([True, True, True, True, False, True])
 
 
 def apply(*edits: BranchEdit) -> EditedBranches:
-    return edited(SMALL, SEEN, edits)
+    return edited(SMALL, SEEN, edits, 2.0)
 
 
 def at(joint: int) -> np.ndarray:
@@ -74,7 +76,7 @@ def edited_trees(draw: st.DrawFn, most: int = 5) -> tuple[Skeleton, np.ndarray, 
 @given(edited_trees())
 def test_a_tree_stays_a_tree_with_its_root(drawn: tuple[Skeleton, np.ndarray, list[BranchEdit]]) -> None:
     tree, seen, edits = drawn
-    found = edited(tree, seen, edits)
+    found = edited(tree, seen, edits, EXTENT)
     assert (found.skeleton.parents[1:] >= 0).all()
     assert np.array_equal(found.skeleton.points[0], tree.points[0])
     assert found.seen.shape == found.skeleton.parents.shape
@@ -88,7 +90,7 @@ def test_radii_fall_outward_unless_another_was_asked_for(
 ) -> None:
     tree, seen, edits = drawn
     unasked = [edit for edit in edits if not isinstance(edit, SetRadius) and getattr(edit, "radius", None) is None]
-    found = edited(tree, seen, unasked).skeleton
+    found = edited(tree, seen, unasked, EXTENT).skeleton
     assert (found.radii[1:] <= found.radii[found.parents[1:]] * (1 + 1e-9)).all()
 
 
@@ -97,10 +99,10 @@ def test_the_same_edits_give_the_same_bits_and_later_ones_change_nothing_that_wa
     drawn: tuple[Skeleton, np.ndarray, list[BranchEdit]],
 ) -> None:
     tree, seen, edits = drawn
-    found, again = edited(tree, seen, edits), edited(tree, seen, edits)
+    found, again = edited(tree, seen, edits, EXTENT), edited(tree, seen, edits, EXTENT)
     for name in ("points", "radii", "parents"):
         assert getattr(found.skeleton, name).tobytes() == getattr(again.skeleton, name).tobytes()
-    before = edited(tree, seen, edits[:-1])
+    before = edited(tree, seen, edits[:-1], EXTENT)
     assert found.lost[: len(before.lost)] == before.lost
 
 
@@ -110,7 +112,10 @@ def test_edits_mean_the_same_in_every_frame(drawn: tuple[Skeleton, np.ndarray, l
     turn = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
     frame = Similarity(np.array([1.0, -2.0, 3.0]), turn, 0.25)
     moved = Skeleton(frame.points(tree.points), frame.scale * tree.radii, tree.parents)
-    here, there = edited(tree, seen, edits), edited(moved, seen, edits_in_frame(edits, frame))
+    here, there = (
+        edited(tree, seen, edits, EXTENT),
+        edited(moved, seen, edits_in_frame(edits, frame), frame.scale * EXTENT),
+    )
     assert np.allclose(there.skeleton.points, frame.points(here.skeleton.points), atol=1e-6)
     assert np.allclose(there.skeleton.radii, frame.scale * here.skeleton.radii, atol=1e-6)
 

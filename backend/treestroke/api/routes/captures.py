@@ -25,9 +25,9 @@ from treestroke.api.following import Follower
 from treestroke.api.sending import file_responses, send_blob
 from treestroke.api.uploads import UPLOAD_BODY, UploadOf
 from treestroke.api.views import capture_photo_view, capture_state, capture_view
+from treestroke.capture_schemas import CaptureInfo, CapturePage, CapturePhotoInfo, CaptureTraceAnswer
 from treestroke.limits import MAX_NAME
-from treestroke.schemas import CaptureInfo, CapturePage, CapturePhotoInfo, CaptureTraceAnswer
-from treestroke.service import captures
+from treestroke.service import capture_traces, captures
 from treestroke.service.captures import SETTLED, StoredCapture
 from treestroke.service.model_request import read_name
 from treestroke.service.photos import Resources
@@ -222,7 +222,7 @@ def trace_capture(resources: ResourcesOf, id: CaptureId, body: JsonBody) -> Resp
 
     With ``grow`` the whole tree's skeleton too. Strokes are read once: edits and settings are answered soon after.
     """
-    return Response(captures.trace(resources, id, body), media_type="application/json")
+    return Response(capture_traces.trace_capture(resources, id, body), media_type="application/json")
 
 
 def _capture(resources: ResourcesOf, id: CaptureId) -> StoredCapture:

@@ -19,18 +19,24 @@ _ROUNDED_PX = 2.0
 """Most px by which the height of a picture may differ from that of its camera, after rounding."""
 
 
-def captured_photo(name: str, photo: Picture, focal_px: float | None, side: int = CAPTURED_SIDE) -> CapturedPhoto:
-    """Reduce an upright photo (h, w, 3), sRGB, where its longest side has more than ``side`` px.
+def captured_photo(name: str, photo: Picture, focal_px: float | None) -> CapturedPhoto:
+    """Reduce an upright photo (h, w, 3), sRGB, where it is large.
 
     ``focal_px`` is its lens's focal length, px of the photo, where that is known.
     """
-    height, width = photo.shape[:2]
+    return reduced(CapturedPhoto(name, photo, focal_px), CAPTURED_SIDE)
+
+
+def reduced(photo: CapturedPhoto, side: int) -> CapturedPhoto:
+    """Return a captured photo whose picture's longest side has at most ``side`` px."""
+    height, width = photo.picture.shape[:2]
     scale = min(1.0, side / max(width, height))
     if scale == 1:
-        return CapturedPhoto(name, photo, focal_px)
+        return photo
     size = max(1, round(width * scale)), max(1, round(height * scale))
-    picture = np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-    return CapturedPhoto(name, picture, None if focal_px is None else focal_px * size[0] / width, (width, height))
+    picture = np.asarray(cv2.resize(photo.picture, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+    focal_px = None if photo.focal_px is None else photo.focal_px * size[0] / width
+    return CapturedPhoto(photo.name, picture, focal_px, photo.size_px)
 
 
 def fitted(structure: Structure, photos: Sequence[CapturedPhoto]) -> Structure:

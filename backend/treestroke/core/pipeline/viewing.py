@@ -1,6 +1,6 @@
 """The first half of the recipe for many photos: from photos with their cameras to a grown tree (Tan et al. 2007)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -111,18 +111,14 @@ def read_views(
         The structure is of other photos.
     """
     report("mattes", 0.0)
-    structure = fitted(structure, photos)
-    by_name = {photo.name: photo for photo in photos}
+    structure, by_name = fitted(structure, photos), {photo.name: photo for photo in photos}
     drawn = mend_views(drawn, {photo.name: photo.size_px for photo in photos})
-    used = tuple(by_name[solved.name] for solved in structure.photos)
-    pairs = zip(used, structure.photos, strict=True)
-    shots = tuple(undistorted(photo.picture, solved) for photo, solved in pairs)
-    drawn = _on_shots(drawn, used, structure)
+    shots = tuple(undistorted(by_name[solved.name].picture, solved) for solved in structure.photos)
+    drawn = _on_shots(drawn, by_name, structure)
     frame = tree_frame({shot.name: shot.camera for shot in shots}, structure.cloud, drawn, height_m)
     shots, cloud = tuple(in_frame(shot, frame) for shot in shots), cloud_in_frame(structure.cloud, frame)
     structure, shots, cloud = _of_tree(photos, structure, shots, cloud, _drawn_height(shots, drawn))
     names = [shot.name for shot in shots]
-    used = tuple(by_name[name] for name in names)
     drawn = replace(drawn, by_photo={name: one for name, one in drawn.by_photo.items() if name in names})
     mattes = view_mattes(shots, {names.index(name): one for name, one in drawn.by_photo.items()}, cloud, report)
     if drawn.scale is None:
@@ -133,23 +129,31 @@ def read_views(
     cloud = dense_cloud(carving, shots, mattes, report)
     crown = measured_crown(with_points(carving, shots, cloud), shots)
     seen = seen_branches(shots, mattes, cloud, report)
-    front = read_photo(shots[names.index(drawn.first)].picture, drawn.by_photo[drawn.first])
     return ViewsEvidence(
-        photos=used,
+        photos=tuple(by_name[name] for name in names),
         structure=structure,
         shots=shots,
         mattes=mattes,
         cloud=cloud,
         crown=crown,
         seen=seen,
-        front=replace(front, odds=odds_by_shots(front.odds, shots, mattes, crown)),
+        front=_front(drawn, shots, mattes, crown),
         known=drawn.scale is not None,
         height_m=height_m,
         frame=frame,
     )
 
 
-def _on_shots(drawn: CaptureStrokes, photos: Sequence[CapturedPhoto], structure: Structure) -> CaptureStrokes:
+def _front(
+    drawn: CaptureStrokes, shots: Sequence[Shot], mattes: Sequence[TreeMatte], crown: MeasuredCrown
+) -> PhotoEvidence:
+    """Return what the front shows by itself; what its twigs bear is told by several shots."""
+    shot = next(shot for shot in shots if shot.name == drawn.first)
+    front = read_photo(shot.picture, drawn.by_photo[drawn.first])
+    return replace(front, odds=odds_by_shots(front.odds, shots, mattes, crown))
+
+
+def _on_shots(drawn: CaptureStrokes, photos: Mapping[str, CapturedPhoto], structure: Structure) -> CaptureStrokes:
     """Return the strokes over photos that are used, in px of their shots.
 
     Raises
@@ -158,8 +162,8 @@ def _on_shots(drawn: CaptureStrokes, photos: Sequence[CapturedPhoto], structure:
         The photo with the trunk stroke, or one that the scale names, is not used.
     """
     carriers = {
-        photo.name: partial(_carried, reduction=photo.reduction, solved=solved)
-        for photo, solved in zip(photos, structure.photos, strict=True)
+        solved.name: partial(_carried, reduction=photos[solved.name].reduction, solved=solved)
+        for solved in structure.photos
     }
     check_used(drawn, carriers)
     by_photo = {name: _moved(strokes, carriers[name]) for name, strokes in drawn.by_photo.items() if name in carriers}

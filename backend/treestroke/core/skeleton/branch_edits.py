@@ -13,15 +13,15 @@ from treestroke.core.skeleton.traverse import child_counts
 from treestroke.core.types import Floats, Indices, Mask
 
 REACH = 0.05
-"""Greatest distance of an edit's place from the joint that it names, as a share of the tree's extent."""
+"""Greatest distance of an edit's place from the joint that it names, as a share of the tree's height."""
 FAR = 3.0
-"""Greatest distance from the root of what an edit places, and greatest length of an added branch, in extents."""
+"""Greatest distance from the root of what an edit places, and greatest length of an added branch, in heights."""
 THICKEST = 0.5
-"""Greatest radius that an edit may give, in extents."""
+"""Greatest radius that an edit may give, in heights."""
 SHORTEST = 1e-6
-"""Least distance of two joints, in extents."""
-FINEST = 0.002
-"""Least distance, in extents, at which joints are laid along what is added."""
+"""Least distance of two joints, in heights."""
+FINEST = 0.005
+"""Least distance, in heights, at which joints are laid along what is added."""
 OF_PARENT = 0.6
 """Radius at the start of a branch that is added without one, as a share of that of the joint which it leaves."""
 OF_START = 0.25
@@ -112,14 +112,16 @@ def edits_in_frame(edits: Sequence[BranchEdit], frame: Similarity) -> tuple[Bran
     return tuple(moved(edit) for edit in edits)
 
 
-def edited(skeleton: Skeleton, seen: Mask, edits: Sequence[BranchEdit]) -> EditedBranches:
+def edited(skeleton: Skeleton, seen: Mask, edits: Sequence[BranchEdit], height: float) -> EditedBranches:
     """Apply edits, in the skeleton's frame, one after another to visible branches (3D, one root).
+
+    ``height`` is that of the whole tree, of which perhaps only the trunk's foot is visible.
 
     Each names joints by places: the nearest joint counts, within `REACH`. One that finds none, or would break the tree,
     is left out and told. ``seen`` (n,) tells whether wood is seen at each joint; it is not where a joint was added. The
     root stays; a joint is thicker than its parent only where a radius was asked for. The same edits give the same bits.
     """
-    tree, lost = _Branches(skeleton, seen, max(float(np.ptp(skeleton.points, axis=0).max()), 1e-12)), []
+    tree, lost = _Branches(skeleton, seen, height), list[LostEdit]()
     for index, edit in enumerate(edits):
         try:
             tree = _applied(tree, edit)
@@ -134,17 +136,17 @@ class _Lost(Exception):
 
 @dataclass(frozen=True, eq=False)
 class _Branches:
-    """Branches that are edited, whether each joint is seen (n,), and the extent that the whole tree had at first."""
+    """Branches that are edited, whether each joint is seen (n,), and the height of the whole tree."""
 
     skeleton: Skeleton
     seen: Mask
-    extent: float
+    height: float
 
     def nearest(self, place: Floats) -> int:
         """Return the joint nearest a place (3,)."""
         away = np.linalg.norm(self.skeleton.points - place, axis=1)
         joint = int(away.argmin())
-        if away[joint] > REACH * self.extent:
+        if away[joint] > REACH * self.height:
             raise _Lost("there is no branch near the place that it names")
         return joint
 
@@ -170,18 +172,18 @@ class _Branches:
 
     def check_place(self, points: Floats) -> None:
         """Check that places (n, 3) lie near the tree."""
-        if np.linalg.norm(points - self.skeleton.points[0], axis=1).max() > FAR * self.extent:
+        if np.linalg.norm(points - self.skeleton.points[0], axis=1).max() > FAR * self.height:
             raise _Lost("it leads far away from the tree")
 
     def check_radius(self, radius: float) -> None:
         """Check that a radius is one of a branch."""
-        if radius > THICKEST * self.extent:
+        if radius > THICKEST * self.height:
             raise _Lost("no branch is that thick")
 
     def with_chain(self, parent: int, points: Floats, radii: Floats) -> "_Branches":
         """Add unseen joints along a line (m, 3) of radii (m,) that starts at a joint, with more of them between."""
         lengths = edge_lengths(self.skeleton)
-        step = max(float(np.median(lengths[lengths > 0])) if (lengths > 0).any() else 0.0, FINEST * self.extent)
+        step = max(float(np.median(lengths[lengths > 0])) if (lengths > 0).any() else 0.0, FINEST * self.height)
         dense, _ = densified(Skeleton(points, radii, np.arange(len(points)) - 1), step)
         added, count = len(dense) - 1, len(self.skeleton)
         skeleton = Skeleton(
@@ -219,11 +221,11 @@ def _added(tree: _Branches, edit: Add) -> _Branches:
     tree.check_place(edit.points)
     line = np.concatenate([tree.skeleton.points[[parent]], edit.points])
     steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    line = line[np.append(True, steps > SHORTEST * tree.extent)]
+    line = line[np.append(True, steps > SHORTEST * tree.height)]
     far = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1)))
     if len(line) < 2:
         raise _Lost("the branch has no length")
-    if far[-1] > FAR * tree.extent:
+    if far[-1] > FAR * tree.height:
         raise _Lost("the branch is far longer than the tree is high")
     start = OF_PARENT * tree.skeleton.radii[parent] if edit.radius is None else edit.radius
     tree.check_radius(start)
@@ -240,7 +242,7 @@ def _moved(tree: _Branches, edit: Move) -> _Branches:
     points[tree.beyond(joint)] += shift
     points[way[:-1]] += share[:-1, None] * shift
     skeleton = replace(tree.skeleton, points=points)
-    if edge_lengths(skeleton)[way].min() <= SHORTEST * tree.extent:
+    if edge_lengths(skeleton)[way].min() <= SHORTEST * tree.height:
         raise _Lost("the joint would lie on the one before it")
     return replace(tree, skeleton=skeleton)
 
@@ -294,7 +296,7 @@ def _with_piece(tree: _Branches, onto: int, whole: _Branches, piece: Indices) ->
     """
     points, radii = whole.skeleton.points[piece], whole.skeleton.radii[piece]
     ends = np.stack([tree.skeleton.points[onto], points[0]])
-    if np.linalg.norm(ends[1] - ends[0]) <= SHORTEST * tree.extent:
+    if np.linalg.norm(ends[1] - ends[0]) <= SHORTEST * tree.height:
         raise _Lost("the piece would lie on the joint that it is joined to")
     radii = radii * min(1.0, float(tree.skeleton.radii[onto]) / max(float(radii[0]), 1e-12))
     bridged = tree.with_chain(onto, ends, np.full(2, radii[0]))
