@@ -84,7 +84,7 @@ def test_branches_are_seen_and_edited_over_each_photo(visitor: Visitor, photos: 
     page.get_by_role("group", name="View").get_by_role("button", name="Photo").click()
     expect(page.get_by_role("slider", name="Slide between photo and tree")).to_be_visible()
     page.get_by_role("button", name="Edit branches").click()
-    thickness = page.get_by_label("Thickness")
+    thickness = page.get_by_role("spinbutton", name="Thickness")
     expect(thickness).to_be_disabled()
     trunk = strokes()["branches"][0]["points"]
     page.mouse.click(*over_photo(visitor, trunk[len(trunk) // 3]))
@@ -99,14 +99,14 @@ def test_branches_are_seen_and_edited_over_each_photo(visitor: Visitor, photos: 
     visitor.until(lambda: not visitor.traced[-1].get("edits"))
     page.get_by_role("radio", name="Photo ", checked=True).press("ArrowLeft")
     page.get_by_role("button", name="Add", exact=True).click()
-    expect(page.get_by_text("Draw a branch")).to_be_visible()
+    expect(page.get_by_text("Draw a branch: press on the branch that it leaves", exact=False)).to_be_visible()
     x, y = over_photo(visitor, trunk[len(trunk) // 3])
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 90, y - 40, steps=12)
     page.mouse.up()
     visitor.until(lambda: [edit["do"] for edit in visitor.traced[-1].get("edits", [])] == ["add"])
-    page.get_by_role("button", name="Done").click()
+    page.get_by_role("button", name="Done", exact=True).click()
     expect(page.get_by_role("group", name="Branches")).to_be_hidden()
 
 
