@@ -29,7 +29,7 @@ ENOUGH_WIDTHS = 3
 """Joints of a path whose widths are known from which on these alone tell its radii."""
 SURE_QUANTILES = 0.1, 0.3
 """Which of the radii tell where no shot shows a limb by itself: it lies within what all of them show."""
-FREE = 0.2
+FREE = 0.4
 """Share of the shots that show a limb free of leaves from which on it is measured by the tree's silhouette."""
 THINNEST = 0.15
 """Least radius, in units of the graph."""
