@@ -71,7 +71,7 @@ def drawn_tree(photo: Picture, strokes: Strokes) -> DrawnTree:
     trunk_px = strokes.branches[0].points
     bare = likeliest(kind_odds(foliage.cues, crown, trunk_px)) == "bare"
     wood = wood_in_crown(foliage, photo, trunk_px) if bare else None
-    thin = None if bare else _thin_plant(foliage, photo, trunk_px)
+    thin = None if wood is not None else _thin_plant(foliage, photo, trunk_px)
     if thin is not None:  # its stroke runs beside so thin a stem as often as on it
         return DrawnTree(thin.alpha * kept, np.zeros_like(thin.mask), foliage.region & kept, True)
     foliage = wood or foliage
