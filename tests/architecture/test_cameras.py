@@ -13,6 +13,7 @@ MAY_READ = {
     "engines/mapping.py": "tells COLMAP, which has cameras of its own",
     "service/report.py": "reports the scale",
     "codec/cameras.py": "writes the cameras of a capture into reports and files",
+    "core/pipeline/captured_photos.py": "scales the focal length with the photo",
     "core/geometry/similarity.py": "carries cameras into another frame",
     "core/geometry/plane_maps.py": "maps planes of space from one picture to another",
     "core/segment/view_mattes_solid.py": "projects millions of cells in single precision",
