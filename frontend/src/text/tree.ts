@@ -63,6 +63,7 @@ export const treeText = {
     canvas: 'The tree in 3D. Drag or use the arrow keys to turn it, plus and minus to zoom.',
     wipe: 'Slide between photo and tree',
     empty: 'Your tree appears here once you draw its trunk',
+    reading: 'Your tree appears here once it is read in all photos',
     views: 'View',
     free: 'Free view',
     view: { photo: 'Photo', front: 'Front', side: 'Side', back: 'Back', top: 'Top' },

@@ -83,6 +83,7 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
 function StageMessage({ status: { webgl, shows } }: { readonly status: PreviewStatus }) {
   const url = useStore(({ model }) => (model?.glb ? model.info.files['preview.png'] : undefined))
   const fault = useStore(state => state.faults.preview?.text)
+  const isRead = useStore(({ sheets, tracing }) => sheets?.source === 'capture' && tracing)
   const isAbsent = webgl === 'absent'
   const hasPicture = isAbsent && url !== undefined
   const notice = fault ?? webglNotice(webgl)
@@ -90,7 +91,7 @@ function StageMessage({ status: { webgl, shows } }: { readonly status: PreviewSt
     <div class="stage-message">
       <div class="invitation" hidden={isAbsent ? hasPicture : shows !== 'empty'}>
         <Sapling />
-        <p>{text.preview.empty}</p>
+        <p>{isRead ? text.preview.reading : text.preview.empty}</p>
       </div>
       <img class="tree-picture" alt={text.preview.picture} src={hasPicture ? url : undefined} hidden={!hasPicture} />
       <p class={fault ? 'stage-notice fault' : 'stage-notice'} hidden={notice === ''}>
