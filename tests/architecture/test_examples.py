@@ -112,7 +112,7 @@ def test_every_page_with_python_is_known() -> None:
 
 
 def test_the_documented_problem_is_what_the_service_answers(address: str) -> None:
-    order, _, problem = (json.loads(fence.text) for fence in fences("docs/http.md", "json"))
+    order, *_, problem = (json.loads(fence.text) for fence in fences("docs/http.md", "json"))
     del order["strokes"]["branches"]
     answer = httpx.post(f"{address}/v1/models", json=order, trust_env=False)
     assert answer.headers["Content-Type"] == "application/problem+json"

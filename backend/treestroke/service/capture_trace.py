@@ -84,16 +84,17 @@ def trace_capture(
 
     With ``grow`` also the tree that grows by ``settings`` and seed 0.
     """
-    evidence = edited_views(at_height(reading.evidence, settings.height), edits)
+    evidence = edited_views(reading.evidence, edits)
+    standing = at_height(evidence, settings.height)
     values = {
         "photos": reading.photos,
         "skeleton": _plain_branches(evidence),
         "crown": reading.crown,
-        "tree_from_capture": evidence.frame.matrix.tolist(),
+        "tree_from_capture": standing.frame.matrix.tolist(),
         "taken": plain_taken(evidence.front.taken(ModelSettings())),
         "warnings": [asdict(warning) for warning in evidence.warnings],
     }
-    return {**values, **(_plain_growth(evidence, settings) if grow else {})}
+    return {**values, **(_plain_growth(standing, settings) if grow else {})}
 
 
 def _plain_branches(evidence: ViewsEvidence) -> dict[str, Any]:

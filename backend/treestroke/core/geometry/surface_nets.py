@@ -12,6 +12,8 @@ SMOOTHING = 0.7
 """Standard deviation, in places, over which what is filled is smoothed."""
 FINEST = 48
 """Most blocks along the longest side of the grid that the surface is laid around."""
+FURTHEST = 0.3
+"""Most places by which the surface is moved to hold the cells' volume."""
 WIDER = 1.08
 """Factor by which places are further apart where there are too many triangles."""
 
@@ -33,6 +35,7 @@ def surface(cells: Cells, most_triangles: int) -> tuple[Floats, Indices]:
         level = min(LEVEL, float(np.sort(values, axis=None)[-count]))
         points, triangles = _net(values, level)
         if len(triangles) <= most_triangles:
+            points = _of_volume(points, triangles, float(blocks.sum()) / width**3)
             return cells.corner + side * width * (points - 0.5), triangles
         width *= WIDER
 
@@ -77,6 +80,17 @@ def _net(values: Floats, level: float) -> tuple[Floats, Indices]:
     corners = number[tuple(np.concatenate(quads).transpose(2, 0, 1))]
     crossed = count > 0
     return total[crossed] / count[crossed][:, None], np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+
+
+def _of_volume(points: Floats, triangles: Indices, volume: float) -> Floats:
+    """Move points (n, 3) outward until the mesh holds the volume: between points that touch a ball it holds less."""
+    one, two, three = points[triangles].transpose(1, 0, 2)
+    areas = np.cross(two - one, three - one) / 2
+    outward = np.zeros_like(points)
+    np.add.at(outward, triangles.ravel(), np.repeat(areas, 3, axis=0))
+    outward /= np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-12)
+    missing, area = volume - float((one * areas).sum()) / 3, float(np.linalg.norm(areas, axis=1).sum())
+    return np.asarray(points + float(np.clip(missing / max(area, 1e-12), -FURTHEST, FURTHEST)) * outward)
 
 
 def _around(edges: Indices, axis: int) -> Indices:
