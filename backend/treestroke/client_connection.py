@@ -39,18 +39,7 @@ class Followed(NamedTuple, Generic[State]):
 
 
 class Connection:
-    """A connection to one service; threads may share it.
-
-    A request is sent again, for some seconds, where the service was too busy for it or the connection broke and sending
-    it twice does no harm.
-
-    Parameters
-    ----------
-    address
-        The address on which `treestroke serve` listens.
-    timeout
-        Seconds that the service may take for one answer.
-    """
+    """What calls of a service have in common; `client.Client` documents its parameters."""
 
     def __init__(self, address: str = "http://127.0.0.1:8000", timeout: float = 60.0) -> None:
         # The service listens on this machine only: no proxy leads there.

@@ -1,10 +1,10 @@
 """Decoding of what a caller hands in: the parts of `Inputs`, and settings."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from treestroke.core.skeleton.branch_edits import BranchEdit
 from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
 from treestroke.core.types import Picture
 
+T = TypeVar("T")
 FileLike = str | os.PathLike[str] | bytes
 """A path, or the bytes of a file."""
 PhotoLike = FileLike | Picture
@@ -104,11 +105,7 @@ def load_strokes(strokes: StrokesLike) -> Strokes:
     StrokesError
         As `parse_strokes`; or the file cannot be read.
     """
-    if isinstance(strokes, Strokes):
-        return strokes
-    if isinstance(strokes, Mapping):
-        return strokes_from(strokes)
-    return parse_strokes(*read_part("strokes", strokes))
+    return strokes if isinstance(strokes, Strokes) else _read("strokes", strokes, strokes_from, parse_strokes)
 
 
 def load_views(views: ViewsLike) -> CaptureStrokes:
@@ -119,11 +116,11 @@ def load_views(views: ViewsLike) -> CaptureStrokes:
     StrokesError
         As `parse_capture_strokes`; or the file cannot be read.
     """
-    if isinstance(views, CaptureStrokes):
-        return views
-    if isinstance(views, Mapping):
-        return capture_strokes_from(views)
-    return parse_capture_strokes(*read_part("views", views))
+    return (
+        views
+        if isinstance(views, CaptureStrokes)
+        else _read("views", views, capture_strokes_from, parse_capture_strokes)
+    )
 
 
 def load_edits(edits: EditsLike) -> tuple[BranchEdit, ...]:
@@ -134,11 +131,17 @@ def load_edits(edits: EditsLike) -> tuple[BranchEdit, ...]:
     StrokesError
         As `parse_edits`; or the file cannot be read.
     """
-    if isinstance(edits, tuple):
-        return edits
-    if isinstance(edits, Mapping):
-        return edits_from(edits)
-    return parse_edits(*read_part("edits", edits))
+    return edits if isinstance(edits, tuple) else _read("edits", edits, edits_from, parse_edits)
+
+
+def _read(
+    part: str,
+    given: FileLike | Mapping[str, Any],
+    from_plain: Callable[[Mapping[str, Any]], T],
+    parse: Callable[[bytes, str], T],
+) -> T:
+    """Read a part of the inputs that is given as a plain mapping, JSON bytes or a path."""
+    return from_plain(given) if isinstance(given, Mapping) else parse(*read_part(part, given))
 
 
 def load_stored_capture(name: str, stored: bytes, focal_px: float | None = None) -> CapturedPhoto:
