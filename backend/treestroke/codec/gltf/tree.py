@@ -8,12 +8,12 @@ from treestroke.codec.cameras import plain_cameras
 from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
-from treestroke.codec.gltf.rig import add_wind
+from treestroke.codec.gltf.rig import add_motion
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.pipeline.grown_tree import CapturedViews
-from treestroke.core.sway.wind import Skin, Wind
+from treestroke.core.sway.motion import Motion, Skin
 
 _CLAMP, _REPEAT = 33071, 10497  # a sampler's wrapS and wrapT
 MaterialName = Literal["bark", "leaf", "impostor", "collision"]
@@ -64,7 +64,7 @@ class Part:
     surface
         Its triangles and textures.
     skin
-        How its vertices follow the wind's bones, or None where nothing moves.
+        How its vertices follow the bones, or None where nothing moves.
     suffix
         Added to the names of its node, mesh and material, such as ``_lod1``.
     coarser
@@ -83,7 +83,7 @@ def encode_glb(
     camera: OrthographicCamera,
     *,
     provenance: Provenance,
-    wind: Wind | None = None,
+    motion: Motion | None = None,
     compress: bool = False,
 ) -> bytes:
     """Encode a tree as a self-contained GLB.
@@ -94,32 +94,32 @@ def encode_glb(
     0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Compressed, the file is about a third as large and requires
     three extensions of its readers (`compression`). Equal input gives equal bytes.
     """
-    document, head = build_document(parts, camera, provenance, wind)
+    document, head = build_document(parts, camera, provenance, motion)
     return (compressed(document) if compress else document).glb(head)
 
 
 def build_document(
-    parts: Sequence[Part], camera: OrthographicCamera, provenance: Provenance, wind: Wind | None
+    parts: Sequence[Part], camera: OrthographicCamera, provenance: Provenance, motion: Motion | None
 ) -> tuple[Document, dict[str, Any]]:
     """Build the document of a tree, and the entries of its JSON that come before the tables."""
     document = Document()
-    roots = [_add(document, part, wind) for part in parts]
+    roots = [_add(document, part, motion) for part in parts]
     for part, node in zip(parts, roots, strict=True):
         if part.coarser:
             ends = part.coarser[-1].material == "impostor"
-            add_levels(document, node, [_add(document, level, wind) for level in part.coarser], ends)
-    if wind is not None:
+            add_levels(document, node, [_add(document, level, motion) for level in part.coarser], ends)
+    if motion is not None:
         # a skinned mesh stands beside its bones, for no other node may move it
-        roots.append(add_wind(document, wind))
+        roots.append(add_motion(document, motion))
     return document, head_of(roots, camera, provenance)
 
 
-def _add(document: Document, part: Part, wind: Wind | None) -> int:
+def _add(document: Document, part: Part, motion: Motion | None) -> int:
     """Add a part and return the index of its node."""
     name = part.material + part.suffix
     # An impostor is transparent between its leaves: readers that recognise leaves by name must cut it as they do those.
     material_name = f"leaf_{name}" if part.material == "impostor" else name
-    return document.add(name, part.surface, MATERIALS[part.material], part.skin if wind else None, material_name)
+    return document.add(name, part.surface, MATERIALS[part.material], part.skin if motion else None, material_name)
 
 
 def head_of(roots: list[int], camera: OrthographicCamera, provenance: Provenance) -> dict[str, Any]:
