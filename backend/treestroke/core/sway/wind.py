@@ -154,7 +154,7 @@ def _rotations(rig: Rig, weather: _Weather, swing: _Swing, times: Floats) -> Flo
     turned = weather.lean * leant + (1.0 - weather.lean) * strength * swung
     turned *= swing.angle_rad / max(float(np.linalg.norm(turned, axis=1).max()), 1e-12)
     turned[-1] = turned[0]
-    return _quaternions(turned)
+    return quaternions(turned)
 
 
 def _tones(loop: Floats, swing: _Swing, first: int) -> Floats:
@@ -183,7 +183,7 @@ def _spread(index: Indices, row: int) -> Floats:
     return np.asarray(index * _GOLDEN * row + 0.37 * row, dtype=np.float64) % 1.0
 
 
-def _quaternions(turned: Floats) -> Floats:
+def quaternions(turned: Floats) -> Floats:
     """Convert rotation vectors (k, 3), radians, to unit quaternions (k, 4), real part last."""
     angle = np.linalg.norm(turned, axis=1, keepdims=True)
     quaternions = np.concatenate([0.5 * turned * np.sinc(angle / (2.0 * np.pi)), np.cos(angle / 2.0)], axis=1)
