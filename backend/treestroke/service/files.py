@@ -21,7 +21,7 @@ from treestroke.core.pipeline.settings import FILES, ModelSettings
 from treestroke.core.progress import Report
 from treestroke.core.sway.motion import Motion
 from treestroke.core.sway.skinning import skin
-from treestroke.core.sway.wind import wind_of
+from treestroke.core.sway.wind import blown, wind_of
 
 Bundle = Mapping[str, bytes]
 """Files that belong together, by name; the first refers to the others."""
@@ -79,7 +79,10 @@ def files_on_offer() -> tuple[str, ...]:
 
 
 def _motion(tree: TreeModel, settings: ModelSettings) -> Motion | None:
+    """Return what moves a tree: as it was filmed, and as the setting ``wind`` wants it."""
     names = ANIMATIONS[settings.wind]
+    if tree.motion is not None:
+        return Motion(tree.motion.rig, (tree.motion.animation, *blown(tree.motion.rig, names)))
     return wind_of(tree.grown.skeleton, names, None if tree.cards is None else tree.cards.joints) if names else None
 
 
@@ -100,7 +103,7 @@ class _Writer:
     ) -> None:
         self._tree, self._settings, self._name = tree, settings, name
         self._motion = motion
-        self._provenance = Provenance(generator, tree.captured)
+        self._provenance = Provenance(generator, tree.captured, tree.motion)
 
     def glbs(self, coarse: Levels | None) -> dict[str, Callable[[], Bundle]]:
         """Return functions that write the GLB and its levels of detail, as files of their own or in the one file."""

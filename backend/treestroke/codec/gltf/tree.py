@@ -2,18 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from treestroke.codec.cameras import plain_cameras
 from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
 from treestroke.codec.gltf.rig import add_motion
+from treestroke.codec.motion import plain_motion
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.pipeline.grown_tree import CapturedViews
 from treestroke.core.sway.motion import Motion, Skin
+
+if TYPE_CHECKING:
+    from treestroke.core.pipeline.measured_motion import MeasuredMotion
 
 _CLAMP, _REPEAT = 33071, 10497  # a sampler's wrapS and wrapT
 MaterialName = Literal["bark", "leaf", "impostor", "collision"]
@@ -47,10 +51,11 @@ MATERIALS: Mapping[MaterialName, Material] = {
 
 @dataclass(frozen=True, eq=False)
 class Provenance:
-    """Where a tree's file comes from: the program that wrote it, and the photos that the tree was measured from."""
+    """Where a tree's file comes from: the program that wrote it, the photos or the clip that it was measured from."""
 
     generator: str
     captured: CapturedViews | None = None
+    motion: "MeasuredMotion | None" = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +94,7 @@ def encode_glb(
     """Encode a tree as a self-contained GLB.
 
     Nodes, meshes and materials are named by their material; the scene's ``extras.photo`` holds the camera,
-    ``extras.cameras`` those of a capture's photos. The bark's
+    ``extras.cameras`` those of a capture's photos, ``extras.motion`` what a clip showed. The bark's
     texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at `ALPHA_CUT`. Texture coordinates within
     0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Compressed, the file is about a third as large and requires
     three extensions of its readers (`compression`). Equal input gives equal bytes.
@@ -125,5 +130,6 @@ def _add(document: Document, part: Part, motion: Motion | None) -> int:
 def head_of(roots: list[int], camera: OrthographicCamera, provenance: Provenance) -> dict[str, Any]:
     """Return the entries before the tables: the asset, and one scene with the cameras."""
     cameras = {} if provenance.captured is None else {"cameras": plain_cameras(provenance.captured)}
-    scene = {"nodes": roots, "extras": {"photo": plain_camera(camera), **cameras}}
+    motion = {} if provenance.motion is None else {"motion": plain_motion(provenance.motion)}
+    scene = {"nodes": roots, "extras": {"photo": plain_camera(camera), **cameras, **motion}}
     return {"asset": {"version": "2.0", "generator": provenance.generator}, "scene": 0, "scenes": [scene]}

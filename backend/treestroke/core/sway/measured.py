@@ -1,9 +1,10 @@
 """Motion in 3D from how a tree moves in the picture: bones keep their length and turn.
 
 Source: Li et al. 2011, section 4. The paper takes, from the root to the tips, for each branch the rotation of highest
-posterior: a normal track term about the tracked point, times a normal shape term about its angle in the first frame. Both
-are squares in the logarithm, and rotations in the wind are small, so that the posterior of all branches together has its
-maximum where a linear system is solved, and no branch has to mend what was decided for its parent: docs/decisions/0019.
+posterior: a normal track term about the tracked point, times a normal shape term about its angle in the first frame.
+Both are squares in the logarithm, and rotations in the wind are small, so that the posterior of all branches together
+has its maximum where a linear system is solved, and no branch has to mend what was decided for its parent:
+docs/decisions/0019.
 """
 
 from dataclasses import dataclass
@@ -75,7 +76,7 @@ def turns_of(rig: Rig, seen: Seen) -> Floats:
     return turns + _flutter(rig, turns, seen.frames_per_second)
 
 
-def looped(rig: Rig, turns: Floats, frames_per_second: float) -> Animation:
+def looped(turns: Floats, frames_per_second: float) -> Animation:
     """Make an animation ``measured`` of the turns (f, b, 3) of each frame, which then leads back to the first."""
     back = max(2, round(RETURN_SECONDS * frames_per_second))
     whole = np.concatenate([turns, _return(turns, back)])
