@@ -8,6 +8,7 @@ import cv2
 import numpy as np
 
 from treestroke.codec.cameras import plain_cameras
+from treestroke.codec.motion import plain_motion
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.silhouette import overlap, silhouette
@@ -56,6 +57,7 @@ def tree_report(
         ],
         "files": files,
         **({} if tree.captured is None else _plain_views(tree.captured, ious[0])),
+        **({} if tree.motion is None else {"motion": plain_motion(tree.motion)}),
         "warnings": [asdict(warning) for warning in tree.warnings],
     }
 
