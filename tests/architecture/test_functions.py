@@ -16,6 +16,7 @@ MANY_ARGUMENTS = {
     "client.py Client.trace": "the library's call over HTTP",
     "service/model.py model": "the library's call, with the inputs of a photo by name",
     "service/model.py model_views": "the library's call, with the inputs of many photos by name",
+    "service/model.py model_video": "the library's call, with the inputs of a clip by name",
     "service/model.py sketch": "the library's call, with the inputs of sketches by name",
     "service/trace.py trace": "the library's call, with all that a live tree grows of by name",
 }

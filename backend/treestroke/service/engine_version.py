@@ -14,7 +14,7 @@ import PIL
 from treestroke import __version__
 
 PACKAGES = ("core", "codec", "engines")
-MODULES = ("execution", "files", "jobs", "loading", "model", "report", "solving")
+MODULES = ("clip_loading", "execution", "files", "jobs", "loading", "model", "opened", "report", "solving")
 """Modules of ``service`` on the way from the inputs to a tree and its files, or to a capture's structure."""
 _BELOW = ("limits", "wire_edits", "wire_strokes")
 """Modules of the whole package that say what inputs may hold."""
