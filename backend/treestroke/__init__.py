@@ -1,8 +1,8 @@
 """A 3D tree from photos of a real tree and a few strokes, or from two sketches of a tree.
 
 The functions are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)``,
-``treestroke.model_views(photos, views, settings, seed, report)`` and
-``treestroke.sketch(front, side, settings, seed, report)``.
+``treestroke.model_views(photos, views, settings, seed, report)``,
+``treestroke.sketch(front, side, settings, seed, report)`` and ``treestroke.siblings(project, count, settings, seed)``.
 They are imported at first use, so that ``treestroke --version`` and a wrong command respond at once.
 """
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from treestroke.core.errors import (
         CaptureError,
+        EnvelopeError,
         FruitError,
         LeafError,
         PhotoError,
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from treestroke.core.strokes import CaptureStrokes, Sketch, Stroke, Strokes
     from treestroke.engines.solving import SolveEnded
     from treestroke.service.model import Model, model, model_views, sketch
+    from treestroke.service.sibling_models import siblings
     from treestroke.service.trace import Trace, trace
 
 __version__ = "0.1.0"
@@ -31,6 +33,7 @@ __version__ = "0.1.0"
 __all__ = [
     "CaptureError",
     "CaptureStrokes",
+    "EnvelopeError",
     "FruitError",
     "LeafError",
     "LiveTree",
@@ -47,6 +50,7 @@ __all__ = [
     "TreestrokeError",
     "model",
     "model_views",
+    "siblings",
     "sketch",
     "trace",
 ]
@@ -54,6 +58,7 @@ __all__ = [
 _HOMES = {
     "treestroke.core.errors": (
         "CaptureError",
+        "EnvelopeError",
         "FruitError",
         "LeafError",
         "PhotoError",
@@ -66,6 +71,7 @@ _HOMES = {
     "treestroke.core.strokes": ("CaptureStrokes", "Sketch", "Stroke", "Strokes"),
     "treestroke.engines.solving": ("SolveEnded",),
     "treestroke.service.model": ("Model", "model", "model_views", "sketch"),
+    "treestroke.service.sibling_models": ("siblings",),
     "treestroke.service.trace": ("Trace", "trace"),
 }
 

@@ -84,9 +84,9 @@ def read_by(options: argparse.Namespace) -> set[str]:
 
 def chosen_settings(options: argparse.Namespace) -> dict[str, Any]:
     """Return the settings that flags name, and the seed."""
-    flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
+    flags = {entry.name: getattr(options, entry.name, None) for entry in fields(ModelSettings)}
     settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
-    return settings if options.seed is None else {**settings, "seed": _whole(options.seed)}
+    return settings if options.seed is None else {**settings, "seed": whole(options.seed)}
 
 
 def _value(name: str, text: str | bool) -> object:
@@ -104,7 +104,22 @@ def _value(name: str, text: str | bool) -> object:
         return text
 
 
-def _whole(text: str) -> object:
+def project_stem(path: str) -> str:
+    """Return what the names of the files begin with that are made of a project.
+
+    Raises
+    ------
+    UsageError
+        It is no project: a GLB holds neither branches nor photo.
+    """
+    if not path.endswith(".treestroke"):
+        fault = "siblings are made of a project, which holds what the tree was made of"
+        raise UsageError(f"{path}: {fault}; name the tree's NAME.treestroke")
+    return Path(path).stem
+
+
+def whole(text: str) -> Any:
+    """Return a flag's value as an int; what is no whole number stays text, which is refused by name."""
     try:
         return int(text)
     except ValueError:

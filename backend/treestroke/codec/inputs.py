@@ -8,7 +8,15 @@ from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, extension_of
-from treestroke.core.errors import CaptureError, FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
+from treestroke.core.errors import (
+    CaptureError,
+    EnvelopeError,
+    FruitError,
+    LeafError,
+    PhotoError,
+    StrokesError,
+    TreestrokeError,
+)
 from treestroke.limits import (
     MAX_LEAF_BYTES,
     MAX_PHOTO_BYTES,
@@ -18,7 +26,7 @@ from treestroke.limits import (
 )
 
 Content = TypeVar("Content", covariant=True)
-PartKind = Literal["photo", "strokes", "views", "edits", "structure", "sketch", "cutout"]
+PartKind = Literal["photo", "strokes", "views", "edits", "structure", "sketch", "cutout", "envelope"]
 SourceName = Literal["photo", "views", "sketches"]
 
 BEGINNING = 128
@@ -156,11 +164,21 @@ PARTS: Mapping[str, Part] = {
             FruitError,
             "a fruit cut out, stalk up, that the tree is to bear",
         ),
+        Part(
+            "envelope",
+            "an outline of the siblings",
+            "envelope",
+            (TEXT, CUTOUT_PNG),
+            EnvelopeError,
+            "outline that siblings fill: heart, triangle, circle, pentagon, stroke JSON, or PNG of a shape",
+        ),
     )
 }
 """All parts, in the order in which they are stored and read."""
 SIDES = tuple(name for name, part in PARTS.items() if part.kind == "sketch")
 CUTOUTS = tuple(name for name, part in PARTS.items() if part.kind == "cutout")
+BESIDE = (*CUTOUTS, "envelope")
+"""Parts that may stand beside those of any source."""
 
 
 @dataclass(frozen=True)
@@ -192,16 +210,16 @@ class Source:
 SOURCES: Mapping[SourceName, Source] = {
     source.name: source
     for source in (
-        Source("photo", "photo and strokes", "strokes", ("photo", "strokes"), ("side", *CUTOUTS), "photo"),
+        Source("photo", "photo and strokes", "strokes", ("photo", "strokes"), ("side", *BESIDE), "photo"),
         Source(
             "views",
             "several photos and strokes over some of them",
             "views",
             ("photos", "views"),
-            ("structure", "edits", *CUTOUTS),
+            ("structure", "edits", *BESIDE),
             "photos",
         ),
-        Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *CUTOUTS), "side"),
+        Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *BESIDE), "side"),
     )
 }
 _SOURCE_NEEDED = f"a tree is made of {', or of '.join(source.title for source in SOURCES.values())}"

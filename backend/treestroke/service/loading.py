@@ -10,6 +10,7 @@ import numpy as np
 
 from treestroke.codec.branch_edits import edits_from, parse_edits
 from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
+from treestroke.codec.envelope import envelope_from, parse_envelope
 from treestroke.codec.exif import exif_focal_px
 from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, decode_stored, ignore_warning
 from treestroke.codec.inputs import Inputs, part_of
@@ -22,6 +23,7 @@ from treestroke.core.imaging.opacity import over_white
 from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
+from treestroke.core.siblings.outlines import SHAPES, Envelope
 from treestroke.core.skeleton.branch_edits import BranchEdit
 from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
 from treestroke.core.types import Picture
@@ -32,10 +34,20 @@ FileLike = str | os.PathLike[str] | bytes
 PhotoLike = FileLike | Picture
 StrokesLike = FileLike | Mapping[str, Any] | Strokes
 SketchLike = FileLike | Mapping[str, Any] | Sketch
+EnvelopeLike = FileLike | Mapping[str, Any] | Envelope
+"""An outline's name, or what it is read from."""
 ViewsLike = FileLike | Mapping[str, Any] | CaptureStrokes
 EditsLike = FileLike | Mapping[str, Any] | tuple[BranchEdit, ...]
 PartLike = (
-    FileLike | Mapping[str, Any] | Picture | CapturedPhoto | Strokes | CaptureStrokes | tuple[BranchEdit, ...] | Sketch
+    FileLike
+    | Mapping[str, Any]
+    | Picture
+    | CapturedPhoto
+    | Strokes
+    | CaptureStrokes
+    | tuple[BranchEdit, ...]
+    | Sketch
+    | Envelope
 )
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
@@ -204,6 +216,21 @@ def load_cutout(picture: FileLike, name: str) -> Picture:
     return decode_cutout(*read_part(name, picture), part_of(name).refusal)
 
 
+def load_envelope(envelope: EnvelopeLike) -> Envelope:
+    """Read the outline that siblings are to fill: its name, a path, JSON or PNG bytes, plain mapping or value.
+
+    Raises
+    ------
+    EnvelopeError
+        As `parse_envelope`; or the file cannot be read.
+    """
+    if isinstance(envelope, Envelope):
+        return envelope
+    if isinstance(envelope, Mapping) or envelope in SHAPES:
+        return envelope_from(envelope)
+    return parse_envelope(*read_part("envelope", envelope))
+
+
 def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore_warning) -> dict[str, Any]:
     """Decode all parts of a tree's inputs, by name: photos to pixels, drawings to strokes and sketches.
 
@@ -217,10 +244,8 @@ def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore
 
     def load(name: str) -> Any:
         match part_of(name).kind:
-            case "photo" if part_of(name).many:
-                return load_captured(name.partition("/")[2], inputs.parts[name], report, warn)
             case "photo":
-                return load_photo(inputs.parts[name], report, warn)
+                return _load_any_photo(name, inputs.parts[name], report, warn)
             case "views":
                 return load_views(inputs.parts[name])
             case "edits":
@@ -233,10 +258,19 @@ def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore
                 return load_strokes(inputs.parts[name])
             case "sketch":
                 return load_sketch(inputs.parts[name], name)
+            case "envelope":
+                return load_envelope(inputs.parts[name])
             case "cutout":
                 return load_cutout(inputs.parts[name], name)
 
     return {name: load(name) for name in sorted(inputs.parts, key=lambda name: part_of(name).kind == "photo")}
+
+
+def _load_any_photo(name: str, photo: Any, report: Report, warn: Warn) -> Picture | CapturedPhoto:
+    """Read a photo, or one of many, whose part has its name after a slash."""
+    if part_of(name).many:
+        return load_captured(name.partition("/")[2], photo, report, warn)
+    return load_photo(photo, report, warn)
 
 
 def load_settings(settings: SettingsLike) -> ModelSettings:
