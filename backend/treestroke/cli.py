@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from treestroke import __version__
 from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, project_stem, whole
 from treestroke.cli_outputs import ProgressLine, check_further, outputs_of, stem
-from treestroke.codec.inputs import CUTOUTS, PARTS, SOURCES, Source
+from treestroke.codec.inputs import BESIDE, PARTS, SOURCES, Source
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Toggle
@@ -99,7 +99,7 @@ def _add_views(commands: "Commands") -> None:
     about = f"photos of the tree from all sides, {ACCEPTED_FORMATS}, or their folder; or a NAME.treestroke project"
     command.add_argument("photos", metavar="PHOTO", nargs="+", help=about)
     command.add_argument("--strokes", metavar="VIEWS.json", dest="views", help=PARTS["views"].help)
-    for name in CUTOUTS:
+    for name in BESIDE:
         _add_part(command, name)
     _add_outputs(command)
     _add_settings(command)

@@ -7,7 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from treestroke.codec.inputs import CUTOUTS, PARTS, Inputs
+from treestroke.codec.inputs import BESIDE, PARTS, Inputs
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, PHOTO_ENDINGS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span
@@ -30,7 +30,7 @@ def inputs_of(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str
     from treestroke.service.loading import load_project
 
     for name in parts:
-        if name not in CUTOUTS:
+        if name not in BESIDE:
             raise UsageError(f"--{name}: a project has its own {name}; leave the flag out")
     project = load_project(project_path)
     return Inputs.of({**project.inputs.parts, **parts}), project.settings

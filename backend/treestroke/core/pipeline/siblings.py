@@ -87,9 +87,7 @@ def grow_sibling(
     """
     report("grow", 0.0)
     room = _room(example, rng, envelope)
-    top = np.flatnonzero(room.leafy.any(axis=1))[:1].astype(np.float64)
-    height = float(room.front.camera.heights_from_rows(top)[0])
-    grown, volume = _filled(example, room, height, settings, rng, report)
+    grown, volume = _filled(example, room, settings, rng, report)
     tree, camera = example.tree, room.front.camera
     wood = drawn(seen_from_front(grown.skeleton, camera), room.leafy.shape)
     leafy = room.leafy & (tree.kind != "bare")
@@ -103,7 +101,7 @@ def grow_sibling(
         appearance=Appearance((view,), tree.appearance.shows_leaves),
         camera=camera,
         expected=(Silhouette(leafy | wood, camera),),
-        stature=Stature(height, scale, False, volume),
+        stature=Stature(room.height, scale, False, volume),
         score={"attractors_reached": grown.attractors_reached},
         reading=READ,
         warnings=(),
@@ -130,6 +128,12 @@ class _Room:
     outline: Mask
     leafy: Mask
     clipped: bool
+
+    @property
+    def height(self) -> float:
+        """Height of the highest leaf, metres."""
+        top = np.flatnonzero(self.leafy.any(axis=1))[:1].astype(np.float64)
+        return float(self.front.camera.heights_from_rows(top)[0])
 
 
 def _front(tree: GrownTree) -> FrontPicture:
@@ -177,18 +181,18 @@ def _camera(outline: Floats, metres_per_pixel: float) -> OrthographicCamera:
 
 
 def _filled(
-    example: Example, room: _Room, height: float, settings: ModelSettings, rng: np.random.Generator, report: Report
+    example: Example, room: _Room, settings: ModelSettings, rng: np.random.Generator, report: Report
 ) -> tuple[Grown, CrownVolume]:
     """Grow the sibling in its crown: limbs as learnt, then small branches as on any tree."""
     tree, camera = example.tree, room.front.camera
     front = Silhouette(room.outline if room.clipped else _solid(room), camera)
     outline = turned_outline(front)
     if tree.kind == "palm":
-        stems = grow_limbs(replace(example.branching, orders=()), outline, height, rng)
+        stems = grow_limbs(replace(example.branching, orders=()), outline, room.height, rng)
         return grow_palm(stems, CrownToFill(outline, front), settings.iterations, rng), outline
     imagined = imagined_crown(outline if room.clipped else outline.widened(BULGE), front, rng)
     volume: CrownVolume = outline if room.clipped else imagined.hull()
-    limbs = grow_limbs(example.branching, volume, height, rng)
+    limbs = grow_limbs(example.branching, volume, room.height, rng)
     if not room.clipped:
         volume = in_clumps(imagined, camera.picture_space_from_world(limbs.points), rng)
     share = CLIPPED_GROWN if room.clipped else SHARE_GROWN
