@@ -39,7 +39,7 @@ TALLER = 0.06
 SHARE_GROWN, CLIPPED_GROWN = 0.15, 0.35
 """Share of the rounds of growth that siblings take, since their limbs are there before; and in an outline unlike that
 of the example, which limbs as learnt do not fill."""
-OPAQUE = 0.5
+OPAQUE = 0.8
 """Opacity above which a pixel shows a leaf in its own colour."""
 AT_EDGE = 0.06
 """Room around a sibling in its front, as a share of its height."""
