@@ -23,7 +23,7 @@ from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import CaptureTraceRequest, ModelRequest
 from treestroke.wire_strokes import CaptureStrokes, FrameStrokes, Strokes, StrokeSketch
 
-COMMANDS = ("model", "views", "video", "sketch", "trace", "serve", "worker", "doctor")
+COMMANDS = ("model", "views", "video", "sketch", "siblings", "trace", "serve", "worker", "doctor")
 INVOCATION = re.compile(r"^(?:\$ )?treestroke (\w+)(.*)$", re.M)
 
 
@@ -37,11 +37,11 @@ def flags_of(command: str, capsys: pytest.CaptureFixture[str]) -> set[str]:
 def test_the_settings_are_the_table() -> None:
     lists = {"form": "Form", "species": "Species", "foliage": "Foliage", "files": "More files"}
     found = [(*named(name), *rest) for name, *rest in rows(text_of("docs/settings.md").split("\n## ")[0])]
-    plain = {False: "false", (): "none"}
+    plain = {"False": "false", "()": "none"}
     table = [
         (
             f.name,
-            f"{f.default:g}" if isinstance(f.default, float) else plain.get(f.default, str(f.default)),
+            f"{f.default:g}" if isinstance(f.default, float) else plain.get(str(f.default), str(f.default)),
             f"[names](#{lists[f.name].lower().replace(' ', '-')})" if f.name in lists else str(f.metadata["allowed"]),
             f.metadata["meaning"],
         )
@@ -85,9 +85,12 @@ def test_the_flags_of_a_command_are_those_of_its_help(command: str, capsys: pyte
         for flag, of, _ in rows(section("docs/cli.md", "Flags"))
         if of == "all" or command in of.split(", ")
     }
-    if command in ("model", "views", "video", "sketch"):
+    if command in ("model", "views", "video", "sketch", "siblings"):
         assert f"`{command}`" in section("docs/cli.md", "Flags")
-        written |= {f"--{f.name.replace('_', '-')}" for f in fields(ModelSettings)} | {"--no-compress"}
+        flags = [f"--{f.name.replace('_', '-')}" for f in fields(ModelSettings)]
+        written |= {*flags, "--no-compress", "--no-grove"}
+    if command == "siblings":
+        written -= {"--variants", "--siblings", "--grove", "--no-grove"}
     assert written == flags_of(command, capsys)
 
 
