@@ -2,6 +2,7 @@ import { captureText } from './text/capture'
 import { drawingText } from './text/drawing'
 import { filesText } from './text/files'
 import { measuredText } from './text/measured'
+import { motionText } from './text/motion'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
 import { sheetsText } from './text/sheets'
@@ -19,6 +20,7 @@ export const text = {
   settings: settingsText,
   taken: takenText,
   measured: measuredText,
+  motion: motionText,
   score: scoreText,
   files: filesText,
 } as const

@@ -1,4 +1,5 @@
 import { Client } from '../api/client'
+import { Playhead } from '../playhead'
 import { Store } from '../state'
 import { Captures } from './captures'
 import { DraftStore } from './draftStore'
@@ -15,6 +16,7 @@ import { Tracer } from './tracer'
 /** Everything that can be done on the page, apart from how it looks. */
 export class Studio {
   readonly store = new Store()
+  readonly playhead = new Playhead()
   readonly client = new Client()
   readonly drafts = new DraftStore(this.store)
   readonly strokes = new StrokeActions(this.store)

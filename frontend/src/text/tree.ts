@@ -77,12 +77,6 @@ export const treeText = {
       live: { long: 'Live skeleton', short: 'Live' },
       model: { long: 'Grown tree', short: 'Grown' },
     },
-    wind: {
-      group: 'Wind',
-      names: { still: 'Still', breeze: 'Breeze', gust: 'Gust' } as Readonly<Record<string, string>>,
-      add: 'Add wind',
-      addHow: 'No wind yet. Choose it in Settings, File, then grow again.',
-    },
     variants: {
       group: 'Tree',
       oneOf: (number: number, count: number) => `Tree ${number} of ${count}`,

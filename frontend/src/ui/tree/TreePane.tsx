@@ -7,11 +7,13 @@ import { text } from '../../text'
 import { CoverageRing } from '../capture/CoverageRing'
 import { EditTools } from '../capture/EditTools'
 import { followMeasured } from '../capture/followMeasured'
+import { Transport } from '../film/Transport'
 import { Sapling } from '../parts/Sapling'
 import { useStore, useStudio } from '../parts/useStore'
+import { AnimationSwitch } from './AnimationSwitch'
 import { announceGrowth } from './announceGrowth'
 import { GrowBar } from './GrowBar'
-import { PreviewButtons, ShowsSwitch, VariantChoice, WindSwitch } from './PreviewButtons'
+import { PreviewButtons, ShowsSwitch, VariantChoice } from './PreviewButtons'
 import { followState } from './previewContent'
 import { useSettingsView } from './SettingsPanel'
 import { TakenChip } from './TakenChip'
@@ -22,7 +24,7 @@ const ASSUMED = 'side_assumed'
 
 /** The tree's side of the page: the preview with its buttons, and the bar that has it grown. */
 export function TreePane() {
-  const { client, store } = useStudio()
+  const { client, store, playhead } = useStudio()
   const scene = useRef<HTMLDivElement>(null)
   const { preview, status } = usePreview(scene)
   const settings = useSettingsView()
@@ -43,9 +45,12 @@ export function TreePane() {
           <AssumedNote />
           <ShowsSwitch webgl={status.webgl} />
           <VariantChoice />
-          <WindSwitch status={status} preview={preview} toSettings={() => settings.open('file')} />
+          <AnimationSwitch status={status} preview={preview} toSettings={() => settings.open('file')} />
         </div>
       </div>
+      {status.animation !== null && (
+        <Transport playhead={playhead} gain={{ now: status.gain, set: gain => preview().setGain(gain) }} />
+      )}
       <GrowBar settings={settings} picture={picture} />
     </div>
   )
@@ -54,13 +59,14 @@ export function TreePane() {
 /** Show the tree in an element as long as it is there; return the preview and what it shows. */
 function usePreview(scene: RefObject<HTMLDivElement | null>) {
   const studio = useStudio()
-  const { store, edits, captures } = studio
+  const { store, edits, captures, playhead } = studio
   const preview = useRef<Preview>(null)
   const [status, setStatus] = useState(NOTHING_SHOWN)
   useLayoutEffect(() => {
     const made = new Preview(scene.current!, {
       labels: { wipe: text.preview.wipe, canvas: text.preview.canvas },
       reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
+      playhead,
       onStatus: setStatus,
       onPhoto: photo => captures.choose(photo),
       edits: {
