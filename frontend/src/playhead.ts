@@ -29,6 +29,11 @@ export class Playhead {
     return this.#spans.tree ?? this.#spans.clip ?? null
   }
 
+  /** Whether a tree is played, alone or with its clip. */
+  get hasTree(): boolean {
+    return this.#spans.tree !== undefined
+  }
+
   get playing(): boolean {
     return this.#playing && this.span !== null
   }

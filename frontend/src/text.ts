@@ -1,4 +1,5 @@
 import { captureText } from './text/capture'
+import { clipText } from './text/clip'
 import { drawingText } from './text/drawing'
 import { filesText } from './text/files'
 import { measuredText } from './text/measured'
@@ -16,6 +17,7 @@ export const text = {
   ...drawingText,
   ...treeText,
   capture: captureText,
+  clip: clipText,
   sheets: sheetsText,
   settings: settingsText,
   taken: takenText,

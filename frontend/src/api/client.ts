@@ -1,14 +1,17 @@
-import { type Strokes, toWire, viewsToWire } from '../strokes'
+import { frameToWire, type Strokes, toWire, viewsToWire } from '../strokes'
 import type { components } from './schema'
 import type {
   CaptureInfo,
   CapturePhoto,
   CaptureTraceAnswer,
+  ClipInfo,
+  ClipTraceAnswer,
   Limits,
   Model,
   Settings,
   SketchTraceAnswer,
   TraceAnswer,
+  UploadInfo,
 } from './types'
 
 type Schemas = components['schemas']
@@ -33,10 +36,11 @@ export class Unreachable extends Error {}
 
 type Sketches = Schemas['Sketches']
 
-/** What a tree is made of: strokes over a photo, sketches, or both; or strokes over the photos of a capture. */
+/** What a tree is made of: strokes over a photo, sketches, or both; or strokes over the photos of a capture, or over a frame of a clip. */
 export interface Inputs {
   readonly photo?: string
   readonly capture?: string
+  readonly clip?: string
   readonly strokes?: Strokes
   readonly sketches?: Sketches
 }
@@ -120,6 +124,31 @@ export class Client {
     return request('POST', `/v1/captures/${id}/trace`, json({ ...viewsToWire(strokes), ...editsIn(strokes), ...asked }))
   }
 
+  /** Begin to send a clip in parts. */
+  beginClip(name: string): Promise<UploadInfo> {
+    return request('POST', `/v1/clips?name=${encodeURIComponent(name)}`, { headers: { 'Upload-Complete': '?0' } })
+  }
+
+  /** Return how much of a clip has arrived. */
+  getUpload(id: string): Promise<UploadInfo> {
+    return request('GET', `/v1/uploads/${id}`)
+  }
+
+  /** Send the part of a clip that begins at `offset` bytes; the last one gives the clip. */
+  sendPart(id: string, part: Blob, offset: number, isLast: boolean): Promise<UploadInfo | ClipInfo> {
+    const headers = { 'Upload-Offset': String(offset), 'Upload-Complete': isLast ? '?1' : '?0' }
+    return request('PATCH', `/v1/uploads/${id}`, { body: part, headers })
+  }
+
+  getClip(id: string): Promise<ClipInfo> {
+    return request('GET', `/v1/clips/${id}`)
+  }
+
+  /** Follow the points of a tree through a clip and trace its branches, and grow the live tree where it is asked for. */
+  traceClip(id: string, strokes: Strokes, asked: Omit<TraceRequest, 'side'>): Promise<ClipTraceAnswer> {
+    return request('POST', `/v1/clips/${id}/trace`, json({ ...frameToWire(strokes), ...asked }))
+  }
+
   /** Trace sketches; with `grow` the live tree too. */
   traceSketches(sketches: Sketches, grow: boolean): Promise<SketchTraceAnswer> {
     return request('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
@@ -168,8 +197,9 @@ export class Client {
 }
 
 /** Return the strokes of a request for a model, in its form. */
-function drawnIn({ strokes, capture }: Inputs) {
+function drawnIn({ strokes, capture, clip }: Inputs) {
   if (!strokes) return {}
+  if (clip) return { strokes: frameToWire(strokes) }
   return capture
     ? { strokes: undefined, views: viewsToWire(strokes), ...editsIn(strokes) }
     : { strokes: toWire(strokes) }

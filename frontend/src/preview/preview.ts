@@ -47,6 +47,11 @@ export class Preview {
     this.viewer?.showPhoto(url)
   }
 
+  /** Show a canvas with a video's frame in the wipe, in the photo's place; null shows the photo again. */
+  showFilm(canvas: HTMLCanvasElement | null): void {
+    this.viewer?.showFilm(canvas)
+  }
+
   /** Show what many photos say about a tree, beside the tree; null shows none of it. */
   showMeasured(measured: Measured | null): void {
     this.viewer?.showMeasured(measured)

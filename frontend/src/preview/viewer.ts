@@ -108,6 +108,11 @@ export class Viewer {
     this.requestFrame()
   }
 
+  showFilm(canvas: HTMLCanvasElement | null): void {
+    this.wipe.showFilm(canvas)
+    this.requestFrame()
+  }
+
   showMeasured(measured: Measured | null): void {
     const wasEmpty = this.capture.isEmpty
     this.capture.show(measured)

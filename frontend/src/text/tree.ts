@@ -19,6 +19,7 @@ export const treeText = {
       noTrunk: 'Now draw a stroke up the trunk.',
       noFront: 'First draw the trunk on the front sheet.',
       noCameras: 'Grow once it is known where the photos were taken.',
+      noClip: 'Choose the video again to grow the tree.',
       badStroke: 'A stroke cannot be used. Change it, then grow the tree.',
       ready: 'Ready to grow bark, twigs and leaves.',
       asking: 'Sending the request',

@@ -1,0 +1,24 @@
+import type { Tracks } from '../../api/types'
+
+/** How many frames of its way a point's tail shows. */
+const TAIL = 14
+
+type Point = readonly [number, number]
+
+/** A point that is seen in a frame, and the way it came, its place now last; px of the frame. */
+export interface TrackPath {
+  /** The number of its track. */
+  readonly track: number
+  readonly way: readonly Point[]
+}
+
+/** Return the points that are seen in a frame of the clip, from 0, each with a short tail without gaps. */
+export function pathsAt({ points, every }: Tracks, frame: number): TrackPath[] {
+  const at = Math.floor(frame / Math.max(every, 1))
+  return points.flatMap((places, track) => {
+    if (!places[at]) return []
+    const way: Point[] = []
+    for (let past = at; past >= Math.max(at - TAIL, 0) && places[past]; past--) way.unshift(places[past]!)
+    return [{ track, way }]
+  })
+}
