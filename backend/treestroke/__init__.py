@@ -1,7 +1,8 @@
-"""A 3D tree from photos of a real tree and a few strokes, or from two sketches of a tree.
+"""A 3D tree from photos or a video of a real tree and a few strokes, or from two sketches of a tree.
 
 The functions are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)``,
-``treestroke.model_views(photos, views, settings, seed, report)`` and
+``treestroke.model_views(photos, views, settings, seed, report)``,
+``treestroke.model_video(clip, strokes, settings, seed, report)`` and
 ``treestroke.sketch(front, side, settings, seed, report)``.
 They are imported at first use, so that ``treestroke --version`` and a wrong command respond at once.
 """
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from treestroke.core.errors import (
         CaptureError,
+        ClipError,
         FruitError,
         LeafError,
         PhotoError,
@@ -21,9 +23,9 @@ if TYPE_CHECKING:
     )
     from treestroke.core.pipeline.grown_tree import LiveTree
     from treestroke.core.pipeline.settings import ModelSettings
-    from treestroke.core.strokes import CaptureStrokes, Sketch, Stroke, Strokes
+    from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Stroke, Strokes
     from treestroke.engines.solving import SolveEnded
-    from treestroke.service.model import Model, model, model_views, sketch
+    from treestroke.service.model import Model, model, model_video, model_views, sketch
     from treestroke.service.trace import Trace, trace
 
 __version__ = "0.1.0"
@@ -31,6 +33,8 @@ __version__ = "0.1.0"
 __all__ = [
     "CaptureError",
     "CaptureStrokes",
+    "ClipError",
+    "FrameStrokes",
     "FruitError",
     "LeafError",
     "LiveTree",
@@ -46,6 +50,7 @@ __all__ = [
     "Trace",
     "TreestrokeError",
     "model",
+    "model_video",
     "model_views",
     "sketch",
     "trace",
@@ -54,6 +59,7 @@ __all__ = [
 _HOMES = {
     "treestroke.core.errors": (
         "CaptureError",
+        "ClipError",
         "FruitError",
         "LeafError",
         "PhotoError",
@@ -63,9 +69,9 @@ _HOMES = {
     ),
     "treestroke.core.pipeline.grown_tree": ("LiveTree",),
     "treestroke.core.pipeline.settings": ("ModelSettings",),
-    "treestroke.core.strokes": ("CaptureStrokes", "Sketch", "Stroke", "Strokes"),
+    "treestroke.core.strokes": ("CaptureStrokes", "FrameStrokes", "Sketch", "Stroke", "Strokes"),
     "treestroke.engines.solving": ("SolveEnded",),
-    "treestroke.service.model": ("Model", "model", "model_views", "sketch"),
+    "treestroke.service.model": ("Model", "model", "model_video", "model_views", "sketch"),
     "treestroke.service.trace": ("Trace", "trace"),
 }
 

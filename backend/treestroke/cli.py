@@ -95,11 +95,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _parser() -> Parser:
     parser = Parser(
-        prog="treestroke", description="Photos of a tree and a few strokes, or two sketches of it, become a 3D tree."
+        prog="treestroke",
+        description="Photos or a video of a tree and a few strokes, or two sketches of it, become a 3D tree.",
     )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for add in (_add_model, _add_views, _add_sketch, _add_trace, _add_service):
+    for add in (_add_model, _add_views, _add_video, _add_sketch, _add_trace, _add_service):
         add(commands)
     return parser
 
@@ -117,6 +118,17 @@ def _add_views(commands: "Commands") -> None:
     about = f"photos of the tree from all sides, {ACCEPTED_FORMATS}, or their folder; or a NAME.treestroke project"
     command.add_argument("photos", metavar="PHOTO", nargs="+", help=about)
     command.add_argument("--strokes", metavar="VIEWS.json", dest="views", help=PARTS["views"].help)
+    for name in CUTOUTS:
+        _add_part(command, name)
+    _add_outputs(command)
+    _add_settings(command)
+
+
+def _add_video(commands: "Commands") -> None:
+    command = _add_command(commands, "video", _make, "make a GLB of a video: a tree that moves")
+    command.set_defaults(first="clip")
+    command.add_argument("clip", metavar="CLIP", help=f"{PARTS['clip'].help}; or a NAME.treestroke project")
+    command.add_argument("--strokes", metavar="STROKES.json", dest="frame_strokes", help=PARTS["frame_strokes"].help)
     for name in CUTOUTS:
         _add_part(command, name)
     _add_outputs(command)
@@ -233,7 +245,7 @@ def _make(options: argparse.Namespace) -> None:
 
 def _print_warnings(warnings: Sequence[Mapping[str, str]]) -> None:
     for warning in warnings:
-        if warning["code"] in _PRINTED or warning["stroke"].startswith("photos/"):
+        if warning["code"] in _PRINTED or warning["stroke"].startswith(("photos/", "clip")):
             print(f"treestroke: {warning['stroke']}: {warning['detail']}", file=sys.stderr)
 
 

@@ -24,14 +24,15 @@ def inputs_of(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str
     """Return what the tree is made of, and a project's settings, the seed among them."""
     parts, project_path = _parts(options), _project_path(options)
     if project_path is None:
-        if options.first in ("photo", "photos") and not {"strokes", "views"} & parts.keys():
+        if options.first in ("photo", "photos", "clip") and not {"strokes", "views", "frame_strokes"} & parts.keys():
             raise UsageError("--strokes is missing; name the strokes' JSON file")
         return Inputs.of(parts), {}
     from treestroke.service.loading import load_project
 
     for name in parts:
         if name not in CUTOUTS:
-            raise UsageError(f"--{name}: a project has its own {name}; leave the flag out")
+            flag = "strokes" if PARTS[name].kind in ("views", "frame_strokes") else name
+            raise UsageError(f"--{flag}: a project has its own {flag}; leave the flag out")
     project = load_project(project_path)
     return Inputs.of({**project.inputs.parts, **parts}), project.settings
 

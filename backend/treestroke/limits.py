@@ -18,6 +18,16 @@ MAX_SKETCH_BYTES = 25_000_000
 """Most bytes of a sketch's picture."""
 MAX_LEAF_BYTES = 4_000_000
 """Most bytes of the picture of a leaf or a fruit."""
+MAX_CLIP_BYTES = 300_000_000
+"""Most bytes of a clip's file."""
+MIN_CLIP_FRAMES, MIN_CLIP_SECONDS, MAX_CLIP_SECONDS = 24, 1.0, 60.0
+"""Fewest frames and least seconds of a clip; what is longer is cut there."""
+MAX_CLIP_RATE = 30.0
+"""Most frames a second that are taken of a clip."""
+MAX_FRAME = 9999
+"""Largest index of a frame that strokes may name."""
+MAX_CLIP_SIDE, FRAME_SIDE = 4096, 640
+"""Longest side, px, of a clip's picture that is drawn on, and of its grey frames."""
 MAX_NAME = 200
 """Most characters of a model's name."""
 MAX_ID = 40

@@ -165,8 +165,9 @@ class ModelInfo(Wire):
 
     id: str
     name: str
-    photo: str | None = Field(description="null where it is made of sketches alone, or of a capture")
+    photo: str | None = Field(description="null where it is made of sketches alone, of a capture, or of a clip")
     capture: str | None = Field(default=None, description="where it is made of one")
+    clip: str | None = Field(default=None, description="where it is made of one")
     status: Status
     phase: str | None = Field(description="the step under way")
     phase_fraction: float = Field(ge=0, le=1)
@@ -260,6 +261,11 @@ class Limits(Wire):
     sketch_bytes: int = Field(description="of the picture of a sketch")
     trace_seconds: float
     capture_trace_seconds: float
+    clip_bytes: int
+    clip_formats: list[str]
+    clip_seconds: float = Field(description="what is longer is cut there")
+    clip_seconds_min: float
+    clip_frames_min: int
     edits: int
     edit_points: int = Field(description="of a branch that an edit adds")
     model_seconds: float

@@ -14,6 +14,7 @@ from treestroke.wire_edits import EDITS_EXAMPLE, EditList
 from treestroke.wire_strokes import (
     STROKES_EXAMPLE,
     CaptureStrokes,
+    FrameStrokes,
     RequestPart,
     Sketch,
     Sketches,
@@ -49,6 +50,12 @@ def _capture_id(schema: dict[str, Any]) -> None:
     """Document a capture's id where it may be absent."""
     no_default(schema)
     schema["pattern"] = "^cap_[0-9a-f]{24}$"
+
+
+def _clip_id(schema: dict[str, Any]) -> None:
+    """Document a clip's id where it may be absent."""
+    no_default(schema)
+    schema["pattern"] = "^clp_[0-9a-f]{24}$"
 
 
 def _setting_type(allowed: table.Allowed) -> Any:
@@ -119,6 +126,16 @@ class SketchTraceRequest(RequestPart):
     grow: Annotated[bool, Strict()] = Field(default=False, description="grow the whole skeleton too, without leaves")
 
 
+class ClipTraceRequest(FrameStrokes):
+    """Strokes over one frame of a clip to trace."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {"frame": 0, **STROKES_EXAMPLE, **_HOW_TO_TRACE}})
+
+    rev: Rev | None = Field(default=None, description="comes back with the answer")
+    grow: Annotated[bool, Strict()] = Field(default=False, description="grow the whole skeleton too, without leaves")
+    settings: ModelSettings = Field(default_factory=ModelSettings, description="what the grown skeleton grows by")
+
+
 class CaptureTraceRequest(CaptureStrokes):
     """Strokes over some of a solved capture's photos to trace, and edits of the branches that are found."""
 
@@ -144,7 +161,7 @@ class ModelRequest(TreeRequest):
 
     It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
     of its left side, perhaps with the photo that they were drawn over; or of a solved capture and strokes over some of
-    its photos.
+    its photos; or of a clip and strokes over one of its frames.
     """
 
     model_config = ConfigDict(json_schema_extra={"example": MODEL_EXAMPLE})
@@ -152,7 +169,13 @@ class ModelRequest(TreeRequest):
     photo: Annotated[str, Strict()] | SkipJsonSchema[None] = Field(
         default=None, max_length=MAX_ID, json_schema_extra=_photo_id
     )
+    strokes: FrameStrokes | SkipJsonSchema[None] = Field(
+        default=None, description="over the photo, or over a frame of the clip", json_schema_extra=no_default
+    )
     sketches: Sketches | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+    clip: Annotated[str, Strict()] | SkipJsonSchema[None] = Field(
+        default=None, max_length=MAX_ID, json_schema_extra=_clip_id
+    )
     capture: Annotated[str, Strict()] | SkipJsonSchema[None] = Field(
         default=None, max_length=MAX_ID, json_schema_extra=_capture_id
     )

@@ -25,6 +25,7 @@ from pydantic_core import PydanticCustomError
 
 from treestroke.limits import (
     MAX_CANVAS,
+    MAX_FRAME,
     MAX_NAME,
     MAX_PHOTOS,
     MAX_POINTS,
@@ -135,6 +136,14 @@ class Strokes(RequestPart):
     branches: Branches = Field(default_factory=list)
     erase: Annotated[list[EraseStroke], Field(max_length=MAX_STROKES - 1), FailFast()] = Field(default_factory=list)
     scale: KnownLength | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
+
+
+class FrameStrokes(Strokes):
+    """What was drawn over one frame of a clip; of its branches, even the trunk may be absent."""
+
+    frame: Annotated[int, Strict(), Field(ge=0, le=MAX_FRAME)] = Field(
+        default=0, description="the frame's index, among the frames at the clip's even rate"
+    )
 
 
 PhotoName = Annotated[str, Strict(), Field(min_length=1, max_length=MAX_NAME)]

@@ -29,6 +29,7 @@ from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import ModelRow
+from treestroke.store.uploads import Uploads
 
 SIZES = (50_000, 100_000)
 ASKED, DELETED, REPEATS = 40, 1000, 20
@@ -154,7 +155,7 @@ def main() -> int:
             database = Database(Path(folder))
             database.migrate()
             fill(database.path, count)
-            resources = Resources(database, Blobs(Path(folder)), tracers, tracers)
+            resources = Resources(database, Blobs(Path(folder)), tracers, tracers, tracers, Uploads(Path(folder)))
             sys.stdout.write(f"{count} models, {database.path.stat().st_size / 1e6:.0f} MB\n")
             answer(database, count)
             short &= ask(resources)

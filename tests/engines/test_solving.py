@@ -4,10 +4,11 @@ from tests.engines.rendered_set import centre_errors, photos_of, picture, ring
 
 from treestroke.core.capture import CapturedPhoto
 from treestroke.core.errors import CaptureError
-from treestroke.engines.solving import SolveBounds, SolveEnded, solve_in_process
+from treestroke.engines.child import Bounds
+from treestroke.engines.solving import SolveEnded, solve_in_process
 from treestroke.engines.structure import solve
 
-BOUNDS = SolveBounds(seconds=300.0, memory=3 * 2**30)
+BOUNDS = Bounds(seconds=300.0, memory=3 * 2**30)
 CAMERAS = ring(5, 60.0)
 
 

@@ -8,6 +8,7 @@ from treestroke.service.photos import Resources
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.uploads import Uploads
 
 
 @pytest.fixture(scope="module")
@@ -21,5 +22,5 @@ def tracers() -> Iterator[TracingPool]:
 def resources(tmp_path: Path, tracers: TracingPool) -> Iterator[Resources]:
     database = Database(tmp_path)
     database.migrate()
-    yield Resources(database, Blobs(tmp_path), tracers, tracers)
+    yield Resources(database, Blobs(tmp_path), tracers, tracers, tracers, Uploads(tmp_path))
     database.close()

@@ -9,7 +9,8 @@ from treestroke.codec.image import decode_photo
 from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.errors import CaptureError
 from treestroke.core.progress import Report
-from treestroke.engines.solving import SolveBounds, SolveEnded
+from treestroke.engines.child import Bounds
+from treestroke.engines.solving import SolveEnded
 from treestroke.service import captures, solving
 from treestroke.service.attempts import Assignment
 from treestroke.service.captures import StoredCapture
@@ -17,7 +18,7 @@ from treestroke.service.photos import Resources
 from treestroke.service.solving import solve_capture
 from treestroke.store.leases import MAX_ATTEMPTS
 
-Solve = Callable[[Sequence[CapturedPhoto], SolveBounds, Report], Structure]
+Solve = Callable[[Sequence[CapturedPhoto], Bounds, Report], Structure]
 
 
 @pytest.fixture
@@ -44,9 +45,9 @@ def test_the_engine_is_given_the_photos_by_name_and_what_it_finds_is_kept(
     resources: Resources, capture: StoredCapture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given: list[CapturedPhoto] = []
-    bounds: list[SolveBounds] = []
+    bounds: list[Bounds] = []
 
-    def solve(photos: Sequence[CapturedPhoto], within: SolveBounds, report: Report) -> Structure:
+    def solve(photos: Sequence[CapturedPhoto], within: Bounds, report: Report) -> Structure:
         given.extend(photos)
         bounds.append(within)
         report("solve", 0.5)
@@ -57,7 +58,7 @@ def test_the_engine_is_given_the_photos_by_name_and_what_it_finds_is_kept(
     assert [photo.name for photo in given] == [f"{seed}.png" for seed in range(5)]
     assert np.array_equal(given[3].picture, decode_photo(drawn.encoded(seed=3), "photo"))
     assert after.status == "solved"
-    assert bounds == [SolveBounds(60, 3 * 2**30)]
+    assert bounds == [Bounds(60, 3 * 2**30)]
     structure = captures.structure_of(resources.blobs, after)
     assert structure is not None
     assert [photo.name for photo in structure.photos] == [photo.name for photo in given]

@@ -13,13 +13,14 @@ from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
 
 from treestroke import __version__
+from treestroke.api.clip_uploads import is_streamed
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
 from treestroke.api.metrics import add_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware
-from treestroke.api.routes import captures, events, files, models, photos, sketches, status
+from treestroke.api.routes import captures, clips, events, files, models, photos, sketches, status, uploads
 from treestroke.api.routes.page import add_page
-from treestroke.limits import MAX_PHOTO_BYTES, MAX_TEXT_BYTES
+from treestroke.limits import MAX_CLIP_BYTES, MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_job_message
 from treestroke.schemas import Problem
 from treestroke.service.dispatch import Dispatcher
@@ -30,28 +31,35 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
+from treestroke.store.uploads import Uploads
 from treestroke.wire_edits import Edits
 from treestroke.wire_requests import (
     CaptureRequest,
     CaptureTraceRequest,
+    ClipTraceRequest,
     ModelRequest,
     Rename,
     SketchTraceRequest,
     TraceRequest,
 )
+from treestroke.wire_strokes import Strokes
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
 CAPTURES_WAITING = 4
 """Captures that are traced or wait for it: one by one, in a process of their own, so that none holds up photos."""
+CLIP_TRACERS, CLIPS_WAITING = 2, 8
+"""Processes that read and trace clips, so that frames are shown meanwhile; clips and frames that wait or are read."""
 _FORM_BYTES = 100_000
 """Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
 _BODIES = (
+    Strokes,
     TraceRequest,
     SketchTraceRequest,
     CaptureTraceRequest,
+    ClipTraceRequest,
     ModelRequest,
     Edits,
     Rename,
@@ -79,11 +87,11 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     )
     app.state.settings, app.state.places = settings, places
     add_handlers(app)
-    for routes in (photos, sketches, captures, models, events, files, status):
+    for routes in (photos, sketches, captures, clips, uploads, models, events, files, status):
         app.include_router(routes.router, responses=documented("foreign_host", "internal", "overloaded"))
     add_metrics(app)
     add_page(app)
-    app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of)
+    app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of, streamed=is_streamed)
     app.add_middleware(MethodMiddleware)
     app.add_middleware(SecurityMiddleware, hosts=HOSTS)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]
@@ -99,9 +107,12 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     database.migrate()
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
     capture_tracers = TracingPool(1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING)
+    clip_tracers = TracingPool(CLIP_TRACERS, settings.capture_trace_seconds, settings.memory_mb, CLIPS_WAITING)
     dispatcher = Dispatcher(database, blobs, partial(send_job_message, make_queue(settings)), settings.keep_days)
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
-    app.state.resources = Resources(database, blobs, tracers, capture_tracers, *limits)
+    app.state.resources = Resources(
+        database, blobs, tracers, capture_tracers, clip_tracers, Uploads(settings.folder), *limits
+    )
     app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
     tracers.start()
@@ -114,12 +125,15 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         app.state.projects.close()
         tracers.close()
         capture_tracers.close()
+        clip_tracers.close()
         database.close()
 
 
 def _limit_of(scope: Scope) -> int:
     """Return how many bytes a request's body may have."""
     path = scope["path"]
+    if is_streamed(scope):
+        return MAX_CLIP_BYTES + _FORM_BYTES
     if path == "/v1/photos" or _CAPTURE_PHOTOS.fullmatch(path):
         return MAX_PHOTO_BYTES + _FORM_BYTES
     if path == "/v1/models":

@@ -100,6 +100,8 @@ Cursor = Annotated[str | None, Query(pattern="^[0-9]{1,18}$", description="``nex
 Limit = Annotated[int, Query(ge=1, le=MAX_PAGE)]
 PhotoId = Annotated[str, _id("pho")]
 ModelId = Annotated[str, _id("mdl")]
+ClipId = Annotated[str, _id("clp")]
+UploadId = Annotated[str, _id("upl")]
 CaptureId = Annotated[str, _id("cap")]
 CapturePhotoId = Annotated[str, _id("cph")]
 SettingsOf = Annotated[Settings, Depends(_settings)]

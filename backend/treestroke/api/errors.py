@@ -24,6 +24,7 @@ from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
 from treestroke.store.blobs import Damaged
+from treestroke.store.uploads import Superseded, WrongOffset
 
 MEDIA_TYPE = "application/problem+json"
 _RETRY_SECONDS = 1
@@ -37,11 +38,16 @@ _STATUS = {
     "photo_not_found": 404,
     "model_not_found": 404,
     "capture_not_found": 404,
+    "clip_not_found": 404,
+    "upload_not_found": 404,
+    "frame_not_found": 404,
     "file_not_found": 404,
     "method_not_allowed": 405,
     "body_too_slow": 408,
     "request_too_slow": 408,
     "capture_unsolved": 409,
+    "upload_offset_wrong": 409,
+    "upload_superseded": 409,
     "body_too_large": 413,
     "unsupported_media_type": 415,
     "range_not_satisfiable": 416,
@@ -144,8 +150,19 @@ def _reused(_: Request, __: KeyReused) -> JSONResponse:
 
 
 def _no_room(_: Request, __: NoRoom) -> JSONResponse:
-    detail = "all photos together would take more than they may here; delete some, whose room is free a day later"
+    detail = (
+        "all photos and clips together would take more than they may here; delete some, whose room is free a day later"
+    )
     return problem("photos_full", f"{detail}, or raise TREESTROKE_PHOTOS_MB")
+
+
+def _misplaced(_: Request, error: WrongOffset) -> JSONResponse:
+    detail = f"{error}; send what follows these, by Upload-Offset: {error.size}"
+    return problem("upload_offset_wrong", detail, headers={"Upload-Offset": str(error.size)})
+
+
+def _superseded(_: Request, __: Superseded) -> JSONResponse:
+    return problem("upload_superseded", "another request goes on with this upload; ask by HEAD how far it is")
 
 
 def _busy(_: Request, error: Overloaded) -> JSONResponse:
@@ -178,7 +195,7 @@ def _storage(request: Request, error: OSError | SQLAlchemyError) -> JSONResponse
 
 def _damaged(_: Request, error: Damaged) -> JSONResponse:
     log.error("file_damaged", file=str(error))
-    detail = "a file that the service kept is damaged or gone; upload the photo or ask for its model or cameras again"
+    detail = "a file that the service kept is damaged or gone; upload it again, or ask for its model or cameras again"
     return problem("file_damaged", f"{detail}, and have `treestroke doctor` say what else is")
 
 
@@ -211,6 +228,8 @@ _ANSWERS: dict[type[Exception], Any] = {
     NotFound: _missing,
     KeyReused: _reused,
     NoRoom: _no_room,
+    WrongOffset: _misplaced,
+    Superseded: _superseded,
     Overloaded: _busy,
     TooManyFollowers: _crowded,
     Crashed: _crashed,

@@ -148,7 +148,10 @@ class _Body:
 
 
 class BodyLimitMiddleware:
-    """Limits the size of a request's body, whatever Content-Length says, and refuses bodies that arrive too slowly."""
+    """Limits the size of a request's body, whatever Content-Length says, and refuses bodies that arrive too slowly.
+
+    Bodies that are ``streamed`` to disk do not count among the bytes that are held.
+    """
 
     def __init__(
         self,
@@ -157,8 +160,9 @@ class BodyLimitMiddleware:
         patience_s: float = PATIENCE_SECONDS,
         min_rate: float = MIN_BYTES_PER_SECOND,
         held_bytes: int = HELD_BYTES,
+        streamed: Callable[[Scope], bool] = lambda _: False,
     ) -> None:
-        self._app, self._limit_of = app, limit_of
+        self._app, self._limit_of, self._streamed = app, limit_of, streamed
         self._patience_s, self._min_rate, self._free = patience_s, min_rate, held_bytes
         self._bodies: set[_Body] = set()
 
@@ -172,21 +176,23 @@ class BodyLimitMiddleware:
         if declared.isdecimal() and int(declared) > limit:
             await problem("body_too_large", _too_large(limit))(scope, receive, send)
             return
-        body = _Body(receive, self._patience_s, self._min_rate)
+        body, streamed = _Body(receive, self._patience_s, self._min_rate), self._streamed(scope)
 
         async def counted() -> Message:
             if body.complete:
                 return await receive()  # what follows a body is the message that the client has disconnected
             message = await body.receive_piece()
-            self._free -= len(message.get("body", b""))
+            if not streamed:
+                self._free -= len(message.get("body", b""))
             if body.received > limit:
                 raise Refusal("body_too_large", _too_large(limit))
             self._make_room()
-            if self._free < 0:
+            if self._free < 0 and not streamed:
                 raise Refusal("overloaded", "too many bytes are being sent at the moment; try again")
             return message
 
-        self._bodies.add(body)
+        if not streamed:
+            self._bodies.add(body)
         try:
             await self._app(scope, counted, send)
         finally:
@@ -195,7 +201,11 @@ class BodyLimitMiddleware:
     def _make_room(self) -> None:
         """Drop bodies that have used up half of their patience while all bodies together are too large."""
         late = asyncio.get_running_loop().time() + self._patience_s / 2
-        while self._free < 0 and (slowest := min(self._bodies, key=attrgetter("deadline"))).deadline < late:
+        while (
+            self._free < 0
+            and self._bodies
+            and (slowest := min(self._bodies, key=attrgetter("deadline"))).deadline < late
+        ):
             slowest.drop()
             self._release(slowest)
 

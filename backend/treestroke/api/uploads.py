@@ -1,34 +1,28 @@
 """Photos as they are uploaded: in a form, or as the whole body."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import Depends, Request
-from starlette.datastructures import UploadFile
+from starlette.datastructures import FormData, UploadFile
 
 from treestroke.api.deps import check_length, form_of, media_type
 from treestroke.api.errors import Refusal
 from treestroke.codec.photo_kinds import MEDIA_TYPES
 
 _RAW = (*MEDIA_TYPES, "image/*", "application/octet-stream")
-_BINARY = {"type": "string", "format": "binary"}
-UPLOAD_BODY: dict[str, Any] = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["file"],
-                    "properties": {"file": _BINARY},
-                    "additionalProperties": False,
-                }
-            },
-            **{kind: {"schema": _BINARY} for kind in _RAW},
-        },
-    }
-}
-"""What the API's document says of a body that is an upload."""
+
+
+def upload_body(kinds: Sequence[str]) -> dict[str, Any]:
+    """Return what the API's document says of a body that is an upload: a form, or a file of one of these kinds."""
+    binary = {"type": "string", "format": "binary"}
+    form = {"type": "object", "required": ["file"], "properties": {"file": binary}, "additionalProperties": False}
+    content = {"multipart/form-data": {"schema": form}, **{kind: {"schema": binary} for kind in kinds}}
+    return {"requestBody": {"required": True, "content": content}}
+
+
+UPLOAD_BODY = upload_body(_RAW)
 
 
 @dataclass(frozen=True)
@@ -37,6 +31,20 @@ class Upload:
 
     content: bytes
     name: str
+
+
+def file_in(form: FormData, what: str) -> UploadFile:
+    """Return the file in the field ``file`` of a form; a message calls it by ``what`` it is.
+
+    Raises
+    ------
+    Refusal
+        There is none.
+    """
+    file = form.get("file")
+    if not isinstance(file, UploadFile):
+        raise Refusal("bad_request", f"the form has no file in the field file; send the {what} there")
+    return file
 
 
 async def _upload(request: Request) -> Upload:
@@ -51,9 +59,7 @@ async def _upload(request: Request) -> Upload:
         upload = Upload(await request.body(), "")
     else:
         async with form_of(request, max_files=1, max_fields=0) as form:
-            file = form.get("file")
-            if not isinstance(file, UploadFile):
-                raise Refusal("bad_request", "the form has no file in the field file; send the photo there")
+            file = file_in(form, "photo")
             upload = Upload(await file.read(), file.filename or "")
     check_length(upload.content)
     return upload

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from typing import Any
 
-from treestroke import capture_schemas, schemas
+from treestroke import capture_schemas, clip_schemas, schemas
 from treestroke.codec.cameras import plain_photo_camera
 from treestroke.codec.structure import plain_cloud
 from treestroke.core.capture import Structure
@@ -12,7 +12,7 @@ from treestroke.limits import MAX_CLOUD_POINTS
 from treestroke.service.captures import StoredCapture
 from treestroke.service.jobs import GROWTH
 from treestroke.service.stored_models import StoredModel
-from treestroke.store.tables import CapturePhoto, PhotoRow
+from treestroke.store.tables import CapturePhoto, ClipRow, PhotoRow
 
 
 def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
@@ -28,6 +28,25 @@ def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
     )
 
 
+def clip_view(row: ClipRow) -> clip_schemas.ClipInfo:
+    """Return a clip as the API shows it."""
+    return clip_schemas.ClipInfo(
+        id=row.id,
+        name=row.name,
+        width=row.width,
+        height=row.height,
+        frames=row.frames,
+        frames_per_second=row.frames_per_second,
+        seconds=round(row.frames / row.frames_per_second, 3),
+        bytes=row.bytes,
+        sha256=row.sha256,
+        media_type=row.media_type,
+        created=_time(row.created),
+        video=f"/v1/clips/{row.id}/video",
+        notes=[schemas.StrokeWarning(**note) for note in row.warnings],
+    )
+
+
 def model_view(model: StoredModel) -> schemas.ModelInfo:
     """Return a model as the API shows it."""
     row, path = model.row, f"/v1/models/{model.row.id}"
@@ -37,6 +56,7 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
         name=row.name,
         photo=row.photo,
         capture=row.capture,
+        clip=row.clip,
         status=row.status,  # type: ignore[arg-type]
         phase=row.phase,
         phase_fraction=row.phase_fraction,

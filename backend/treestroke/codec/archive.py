@@ -10,7 +10,10 @@ from typing import BinaryIO
 
 _NO_TIME = (1980, 1, 1, 0, 0, 0)
 _UNIX, _READABLE = 3, 0o644
-_COMPRESSED_ALREADY = (".jpg", ".png", ".webp", ".heic", ".avif")
+_COMPRESSED_ALREADY = (
+    *(".jpg", ".png", ".webp", ".heic", ".avif"),
+    *(".mp4", ".mov", ".webm", ".mkv", ".avi", ".gif"),
+)
 _CHUNK = 1_000_000
 """Bytes that are copied at a time."""
 
@@ -23,7 +26,7 @@ def zipped(members: Mapping[str, bytes]) -> bytes:
 
 
 def zip_into(out: BinaryIO, members: Mapping[str, BinaryIO]) -> None:
-    """Pack members into a file in their order and in small chunks; pictures are stored, all else is deflated."""
+    """Pack members into a file in their order, in small chunks; pictures and videos are stored, the rest deflated."""
     with zipfile.ZipFile(out, "w") as archive:
         for name, content in members.items():
             info = zipfile.ZipInfo(name, _NO_TIME)

@@ -8,8 +8,18 @@ from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, extension_of
-from treestroke.core.errors import CaptureError, FruitError, LeafError, PhotoError, StrokesError, TreestrokeError
+from treestroke.codec.video_kinds import ACCEPTED_VIDEOS, MP4, VIDEO_KINDS, video_kind
+from treestroke.core.errors import (
+    CaptureError,
+    ClipError,
+    FruitError,
+    LeafError,
+    PhotoError,
+    StrokesError,
+    TreestrokeError,
+)
 from treestroke.limits import (
+    MAX_CLIP_BYTES,
     MAX_LEAF_BYTES,
     MAX_PHOTO_BYTES,
     MAX_SKETCH_BYTES,
@@ -18,8 +28,8 @@ from treestroke.limits import (
 )
 
 Content = TypeVar("Content", covariant=True)
-PartKind = Literal["photo", "strokes", "views", "edits", "structure", "sketch", "cutout"]
-SourceName = Literal["photo", "views", "sketches"]
+PartKind = Literal["photo", "clip", "strokes", "frame_strokes", "views", "edits", "structure", "sketch", "cutout"]
+SourceName = Literal["photo", "views", "clip", "sketches"]
 
 BEGINNING = 128
 """Bytes of a file that are enough to tell its format."""
@@ -50,6 +60,7 @@ _PHOTOS = tuple(
         ("tif", "tiff"),
     )
 )
+_VIDEOS = tuple(Format(kind.ending, kind.media_type, MAX_CLIP_BYTES) for kind in VIDEO_KINDS)
 
 
 @dataclass(frozen=True)
@@ -90,12 +101,14 @@ class Part:
     @property
     def drawn(self) -> bool:
         """Whether the person drew it."""
-        return self.kind in ("strokes", "views", "edits", "sketch")
+        return self.kind in ("strokes", "frame_strokes", "views", "edits", "sketch")
 
     def format_of(self, beginning: bytes) -> Format:
         """Return the format of a file by its first `BEGINNING` bytes."""
         if self.kind == "photo":
             ending = extension_of(beginning)
+        elif self.kind == "clip":
+            ending = (video_kind(beginning) or MP4).ending
         else:
             ending = "png" if beginning.startswith(PNG_BEGINNING) else "json"
         return next((file_format for file_format in self.formats if file_format.ending == ending), self.formats[0])
@@ -123,6 +136,15 @@ PARTS: Mapping[str, Part] = {
             (STRUCTURE,),
             CaptureError,
             "the photos' cameras, as they were found before",
+        ),
+        Part("clip", "a clip", "clip", _VIDEOS, ClipError, f"a video of the tree in the wind, {ACCEPTED_VIDEOS}"),
+        Part(
+            "frame_strokes",
+            "strokes over a frame",
+            "frame_strokes",
+            (TEXT,),
+            StrokesError,
+            "stroke JSON for one frame of the clip",
         ),
         Part(
             "front",
@@ -200,6 +222,14 @@ SOURCES: Mapping[SourceName, Source] = {
             ("photos", "views"),
             ("structure", "edits", *CUTOUTS),
             "photos",
+        ),
+        Source(
+            "clip",
+            "a clip and strokes over one of its frames",
+            "frame_strokes",
+            ("clip", "frame_strokes"),
+            CUTOUTS,
+            "clip",
         ),
         Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *CUTOUTS), "side"),
     )

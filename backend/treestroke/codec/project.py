@@ -18,7 +18,7 @@ from treestroke.limits import MAX_TEXT_BYTES
 
 MAX_SETTINGS_BYTES = 100_000
 _SETTINGS = "settings"
-_ORDER = ("photo", "strokes", "front", "side", _SETTINGS)
+_ORDER = ("photo", "strokes", "clip", "frame_strokes", "front", "side", _SETTINGS)
 """Members that come first, in this order; all other parts follow in theirs."""
 _PIECE = 1_000_000
 """Bytes that are read at once, and the longest table of members that is read."""

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 from treestroke.core.errors import SettingsError, TreestrokeError, shown
 from treestroke.core.pipeline.settings import MAX_SEED, settings_from
 from treestroke.core.stroke_rules import NO_TRUNK, Place
-from treestroke.limits import MAX_CANVAS, MAX_LEAF_BYTES, MAX_NAME, MAX_REV, MAX_SKETCH_BYTES, MIN_CANVAS
+from treestroke.limits import MAX_CANVAS, MAX_FRAME, MAX_LEAF_BYTES, MAX_NAME, MAX_REV, MAX_SKETCH_BYTES, MIN_CANVAS
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -80,6 +80,8 @@ _BY_KEY = {
     ),
     "seed": Rule("seed_invalid", f"{{value}} is not allowed; give a whole number from 0 to {MAX_SEED}"),
     "photo": Rule("wrong_type", "it must be a photo's id; upload the photo first"),
+    "clip": Rule("wrong_type", "it must be a clip's id; upload the clip first"),
+    "frame": Rule("frame_missing", f"{{value}} is not a frame; give a whole number from 0 to {MAX_FRAME}"),
     "capture": Rule("wrong_type", "it must be a capture's id; make a capture first"),
     **dict.fromkeys(_PLACES, _PLACE),
     "added point": _PLACE,

@@ -1,18 +1,22 @@
 """Strokes: JSON to values and back."""
 
 import json
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
 from treestroke.codec.json_text import check_ascii, read_json
 from treestroke.core.errors import StrokesError
 from treestroke.core.stroke_rules import check_count
-from treestroke.core.strokes import Length, Stroke, Strokes
+from treestroke.core.strokes import FrameStrokes, Length, Stroke, Strokes
 
 if TYPE_CHECKING:
     from treestroke.wire_strokes import BranchStroke, CrownStroke, EraseStroke
+    from treestroke.wire_strokes import FrameStrokes as DescribedFrameStrokes
     from treestroke.wire_strokes import Strokes as DescribedStrokes
+
+T = TypeVar("T")
 
 
 def parse_strokes(text: str | bytes, name: str) -> Strokes:
@@ -24,10 +28,25 @@ def parse_strokes(text: str | bytes, name: str) -> Strokes:
         It is not JSON, or not as `wire_strokes.Strokes` describes it: a wrong type, an unknown or missing key, NaN or
         infinity, too many or too few points, too many strokes. The message names the file and the stroke.
     """
+    return _parsed(text, name, strokes_from)
+
+
+def parse_frame_strokes(text: str | bytes, name: str) -> FrameStrokes:
+    """Return the strokes over a frame of a clip that JSON text describes; ``name`` appears in messages.
+
+    Raises
+    ------
+    StrokesError
+        As `parse_strokes`; or the frame is no whole number from 0.
+    """
+    return _parsed(text, name, frame_strokes_from)
+
+
+def _parsed(text: str | bytes, name: str, from_plain: Callable[[object], T]) -> T:
     data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogatepass")
     try:
         check_ascii(data, StrokesError)
-        return strokes_from(read_json(data, StrokesError, "the strokes are", "save them again"))
+        return from_plain(read_json(data, StrokesError, "the strokes are", "save them again"))
     except StrokesError as error:
         raise error.within(name) from error
 
@@ -44,6 +63,31 @@ def strokes_from(value: object) -> Strokes:
     from treestroke.wire_strokes import Strokes as DescribedStrokes
 
     return strokes_of(checked(DescribedStrokes, value, StrokesError))
+
+
+def frame_strokes_from(value: object) -> FrameStrokes:
+    """Return the strokes over a frame of a clip that plain mappings, lists and numbers describe.
+
+    Raises
+    ------
+    StrokesError
+        As `parse_frame_strokes`.
+    """
+    from treestroke.codec.refusals import checked
+    from treestroke.wire_strokes import FrameStrokes as DescribedFrameStrokes
+
+    return frame_strokes_of(checked(DescribedFrameStrokes, value, StrokesError))
+
+
+def frame_strokes_of(described: "DescribedFrameStrokes") -> FrameStrokes:
+    """Return the value of strokes over a frame that were checked by their description.
+
+    Raises
+    ------
+    StrokesError
+        There are too many strokes.
+    """
+    return FrameStrokes(strokes_of(described), described.frame)
 
 
 def strokes_of(described: "DescribedStrokes") -> Strokes:
@@ -71,10 +115,12 @@ def stroke_of(described: "CrownStroke | BranchStroke | EraseStroke") -> Stroke:
 
 def encode_strokes(strokes: Strokes) -> str:
     """Return strokes as JSON that `parse_strokes` reads back."""
-    value = plain_strokes(strokes)
-    if strokes.scale is not None:
-        value["scale"] = plain_length(strokes.scale)
-    return json.dumps(value)
+    return json.dumps(_plain(strokes))
+
+
+def encode_frame_strokes(drawn: FrameStrokes) -> str:
+    """Return strokes over a frame of a clip as JSON that `parse_frame_strokes` reads back."""
+    return json.dumps({"frame": drawn.frame, **_plain(drawn.strokes)})
 
 
 def plain_strokes(strokes: Strokes) -> dict[str, object]:
@@ -84,6 +130,11 @@ def plain_strokes(strokes: Strokes) -> dict[str, object]:
         "branches": [plain_stroke(stroke) for stroke in strokes.branches],
         "erase": [plain_stroke(stroke) for stroke in strokes.erase],
     }
+
+
+def _plain(strokes: Strokes) -> dict[str, object]:
+    scale = {} if strokes.scale is None else {"scale": plain_length(strokes.scale)}
+    return {**plain_strokes(strokes), **scale}
 
 
 def plain_length(length: Length) -> dict[str, object]:

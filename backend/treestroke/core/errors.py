@@ -5,6 +5,7 @@ TreestrokeError              the input cannot be used; the message says what is 
 ├── LeafError                the picture of a leaf
 ├── FruitError               the picture of a fruit
 ├── CaptureError             several photos that do not show one tree from different places
+├── ClipError                a video that does not show one tree that moves
 ├── StrokesError             a stroke, a sketch, or their file
 └── SettingsError            a setting's name or value
 
@@ -80,6 +81,13 @@ class CaptureError(TreestrokeError):
 
     usual_code = "capture_unusable"
     whole = "photos"
+
+
+class ClipError(TreestrokeError):
+    """A video that cannot be read, is too short or too dark, or in which nothing moves."""
+
+    usual_code = "clip_unreadable"
+    whole = "clip"
 
 
 class StrokesError(TreestrokeError):

@@ -48,6 +48,14 @@ class Strokes:
 
 
 @dataclass(frozen=True, eq=False)
+class FrameStrokes:
+    """Strokes that were drawn over one frame of a clip, by the frame's index."""
+
+    strokes: Strokes
+    frame: int = 0
+
+
+@dataclass(frozen=True, eq=False)
 class LengthInPhoto:
     """A line of known length that was drawn over one photo of a capture, by the photo's file name."""
 

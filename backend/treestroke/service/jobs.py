@@ -13,6 +13,7 @@ from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.progress import Report
 from treestroke.service.attempts import Assignment, Heartbeat, carry_out, publish
 from treestroke.service.captures import warnings_of
+from treestroke.service.clip_loading import StoredClip
 from treestroke.service.files import Bundle
 from treestroke.service.loading import PartLike, load_settings, load_stored_capture
 from treestroke.service.model import Options, make_tree
@@ -64,14 +65,21 @@ def _make(
 
 
 def _contents(blobs: Blobs, inputs: Inputs[ModelPart], report: Report) -> Inputs[PartLike]:
-    """Return the parts' bytes; the many photos of a capture are decoded one by one, so that none is kept whole."""
+    """Return the parts as `make_tree` takes them."""
     contents: dict[str, PartLike] = {}
     for done, (name, part) in enumerate(inputs.parts.items()):
         report("decode", done / len(inputs.parts))
-        content = blobs.get(part.blob)
-        many = part_of(name).many
-        contents[name] = load_stored_capture(name.partition("/")[2], content) if many else stored_part(name, content)
+        contents[name] = _content(blobs, name, part.blob)
     return Inputs.of(contents)
+
+
+def _content(blobs: Blobs, name: str, blob: str) -> PartLike:
+    """Return a part's bytes; a clip's file by its path, and a capture's photo decoded, so that none is kept whole."""
+    part = part_of(name)
+    if part.kind == "clip":
+        return StoredClip(blobs.check(blob))
+    content = blobs.get(blob)
+    return load_stored_capture(name.partition("/")[2], content) if part.many else stored_part(name, content)
 
 
 def _mended_in_photos(database: Database, job: ModelRow) -> list[dict[str, Any]]:

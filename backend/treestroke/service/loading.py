@@ -1,10 +1,8 @@
 """Decoding of what a caller hands in: the parts of `Inputs`, and settings."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
-from typing import Any, BinaryIO, TypeVar
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -12,19 +10,21 @@ from treestroke.codec.branch_edits import edits_from, parse_edits
 from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
 from treestroke.codec.exif import exif_focal_px
 from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, decode_stored, ignore_warning
-from treestroke.codec.inputs import Inputs, part_of
+from treestroke.codec.inputs import Inputs, PartKind, part_of
 from treestroke.codec.project import Project, read_project
 from treestroke.codec.sketch import parse_sketch, sketch_from
-from treestroke.codec.strokes import parse_strokes, strokes_from
-from treestroke.core.capture import CapturedPhoto
+from treestroke.codec.strokes import frame_strokes_from, parse_frame_strokes, parse_strokes, strokes_from
+from treestroke.core.capture import CapturedPhoto, Structure
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.core.imaging.opacity import over_white
 from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
 from treestroke.core.skeleton.branch_edits import BranchEdit
-from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
+from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Strokes
 from treestroke.core.types import Picture
+from treestroke.service.clip_loading import ClipLike, load_clip
+from treestroke.service.opened import open_input
 
 T = TypeVar("T")
 FileLike = str | os.PathLike[str] | bytes
@@ -34,31 +34,10 @@ StrokesLike = FileLike | Mapping[str, Any] | Strokes
 SketchLike = FileLike | Mapping[str, Any] | Sketch
 ViewsLike = FileLike | Mapping[str, Any] | CaptureStrokes
 EditsLike = FileLike | Mapping[str, Any] | tuple[BranchEdit, ...]
-PartLike = (
-    FileLike | Mapping[str, Any] | Picture | CapturedPhoto | Strokes | CaptureStrokes | tuple[BranchEdit, ...] | Sketch
-)
+FrameStrokesLike = FileLike | Mapping[str, Any] | FrameStrokes
+PartLike = PhotoLike | CapturedPhoto | StrokesLike | ViewsLike | EditsLike | SketchLike | ClipLike | FrameStrokesLike
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
-
-
-@contextmanager
-def open_input(path: str | os.PathLike[str], refusal: type[TreestrokeError]) -> Iterator[BinaryIO]:
-    """Open a file that the person named.
-
-    Raises
-    ------
-    TreestrokeError
-        Of the type ``refusal``: the file does not exist or may not be read.
-    """
-    try:
-        with Path(path).open("rb") as file:
-            yield file
-    except FileNotFoundError as error:
-        raise refusal(f"{os.fspath(path)}: there is no such file; check the path") from error
-    except (IsADirectoryError, NotADirectoryError, PermissionError) as error:
-        raise refusal(f"{os.fspath(path)}: it cannot be read ({error.strerror}); name a file that can") from error
-    except ValueError as error:
-        raise refusal(f"{os.fspath(path)!r}: this is not a path ({error}); check it") from error
 
 
 def read_part(name: str, file: FileLike) -> tuple[bytes, str]:
@@ -106,6 +85,19 @@ def load_strokes(strokes: StrokesLike) -> Strokes:
         As `parse_strokes`; or the file cannot be read.
     """
     return strokes if isinstance(strokes, Strokes) else _read("strokes", strokes, strokes_from, parse_strokes)
+
+
+def load_frame_strokes(strokes: FrameStrokesLike) -> FrameStrokes:
+    """Read strokes over a frame of a clip (path, JSON bytes, plain mapping or values).
+
+    Raises
+    ------
+    StrokesError
+        As `parse_frame_strokes`; or the file cannot be read.
+    """
+    if isinstance(strokes, FrameStrokes):
+        return strokes
+    return _read("frame_strokes", strokes, frame_strokes_from, parse_frame_strokes)
 
 
 def load_views(views: ViewsLike) -> CaptureStrokes:
@@ -207,36 +199,46 @@ def load_cutout(picture: FileLike, name: str) -> Picture:
 def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore_warning) -> dict[str, Any]:
     """Decode all parts of a tree's inputs, by name: photos to pixels, drawings to strokes and sketches.
 
-    Photos, which take longest, come last.
+    Photos and clips, which take longest, come last; a clip is read at the frame that was drawn on.
 
     Raises
     ------
     TreestrokeError
         As the function that decodes each part.
     """
-
-    def load(name: str) -> Any:
+    loaded: dict[str, Any] = {}
+    for name in sorted(inputs.parts, key=lambda name: part_of(name).kind in ("photo", "clip")):
+        content = inputs.parts[name]
         match part_of(name).kind:
             case "photo" if part_of(name).many:
-                return load_captured(name.partition("/")[2], inputs.parts[name], report, warn)
+                loaded[name] = load_captured(name.partition("/")[2], content, report, warn)
             case "photo":
-                return load_photo(inputs.parts[name], report, warn)
-            case "views":
-                return load_views(inputs.parts[name])
-            case "edits":
-                return load_edits(inputs.parts[name])
-            case "structure":
-                from treestroke.codec.structure import decode_structure  # with pydantic, and few trees have one
+                loaded[name] = load_photo(content, report, warn)
+            case "clip":
+                loaded[name] = load_clip(content, loaded["frame_strokes"].frame, report)
+                for note in loaded[name].notes:
+                    warn(note)
+            case kind:
+                loaded[name] = _LOADERS[kind](content, name)
+    return loaded
 
-                return decode_structure(read_part(name, inputs.parts[name])[0])
-            case "strokes":
-                return load_strokes(inputs.parts[name])
-            case "sketch":
-                return load_sketch(inputs.parts[name], name)
-            case "cutout":
-                return load_cutout(inputs.parts[name], name)
 
-    return {name: load(name) for name in sorted(inputs.parts, key=lambda name: part_of(name).kind == "photo")}
+def _load_structure(structure: FileLike, name: str) -> Structure:
+    from treestroke.codec.structure import decode_structure  # with pydantic, and few trees have one
+
+    return decode_structure(read_part(name, structure)[0])
+
+
+_LOADERS: Mapping[PartKind, Callable[[Any, str], Any]] = {
+    "strokes": lambda strokes, _: load_strokes(strokes),
+    "frame_strokes": lambda strokes, _: load_frame_strokes(strokes),
+    "views": lambda views, _: load_views(views),
+    "edits": lambda edits, _: load_edits(edits),
+    "structure": _load_structure,
+    "sketch": load_sketch,
+    "cutout": load_cutout,
+}
+"""Loaders of all parts but pictures, by kind: they take a part and its name."""
 
 
 def load_settings(settings: SettingsLike) -> ModelSettings:

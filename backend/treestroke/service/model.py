@@ -22,12 +22,15 @@ from treestroke.core.progress import Report, silent
 from treestroke.core.stroke_rules import require_trunk
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.types import Picture
-from treestroke.engines.solving import SolveBounds, solve_in_process
+from treestroke.engines.child import Bounds
+from treestroke.engines.solving import solve_in_process
+from treestroke.service.clip_loading import ClipLike
 from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import Bundle, check_files, tree_files
 from treestroke.service.loading import (
     EditsLike,
     FileLike,
+    FrameStrokesLike,
     PartLike,
     PhotoLike,
     SettingsLike,
@@ -42,7 +45,7 @@ from treestroke.service.report import tree_report, variant_seeds
 GENERATOR = f"treestroke {__version__}"
 """The generator that files name; without the engine's digest, so that the same tree has the same bytes."""
 
-SOLVE_BOUNDS = SolveBounds(seconds=600.0, memory=3 * 2**30)
+SOLVE_BOUNDS = Bounds(seconds=600.0, memory=3 * 2**30)
 """What finding the cameras of as many photos as a capture may have takes at most."""
 
 GrowTree = Callable[[np.random.Generator], GrownTree]
@@ -193,6 +196,38 @@ def model_views(
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
+def model_video(
+    clip: ClipLike,
+    strokes: FrameStrokesLike,
+    settings: SettingsLike = None,
+    seed: int = 0,
+    report: Report = silent,
+    on_grown: OnGrown = ignore_grown,
+    *,
+    leaf: FileLike | None = None,
+    fruit: FileLike | None = None,
+    name: str = "tree",
+) -> Model:
+    """Turn a clip of a tree in the wind, and strokes over one of its frames, into a 3D tree that moves as it did.
+
+    Parameters not listed here are those of `model`.
+
+    Parameters
+    ----------
+    clip
+        A path, the bytes of a video (MP4, MOV, WebM, AVI or GIF), or decoded frames.
+    strokes
+        A path, JSON bytes, a plain mapping or values. The trunk stroke may be absent.
+
+    Raises
+    ------
+    ClipError, StrokesError, LeafError, FruitError, SettingsError
+        An input cannot be used; the message says what, where and how to mend it.
+    """
+    parts = {"clip": clip, "frame_strokes": strokes, "leaf": leaf, "fruit": fruit}
+    return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
+
+
 def sketch(
     front: SketchLike,
     side: SketchLike | None = None,
@@ -249,6 +284,8 @@ def make_tree(
                 grow = _photo_recipe(parts, options.settings, watch)
             case "views":
                 grow = _views_recipe(parts, options.settings, watch)
+            case "clip":
+                grow = _clip_recipe(parts, options.settings, watch)
             case "sketches":
                 grow = _sketch_recipe(parts, options.settings, watch)
         pictures = OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
@@ -274,6 +311,13 @@ def _views_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Rep
     if "edits" in parts:
         evidence = with_edits(evidence, traced_views(photos, structure, parts["views"]), parts["edits"])
     return lambda rng: grow_views(evidence, settings, rng, report)
+
+
+def _clip_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
+    from treestroke.core.pipeline.filming import grow_clip, read_clip  # with scipy, slow, and of no use for one photo
+
+    evidence = read_clip(parts["clip"], parts["frame_strokes"].strokes, report)
+    return lambda rng: grow_clip(evidence, settings, rng, report)
 
 
 def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:

@@ -13,11 +13,11 @@ from treestroke.codec.json_text import read_json
 from treestroke.codec.refusals import checked, inside
 from treestroke.codec.sketch import encode_sketch, picture_of, sketch_of
 from treestroke.codec.sketch_picture import PNG, read_picture, without_metadata
-from treestroke.codec.strokes import encode_strokes, strokes_of
+from treestroke.codec.strokes import encode_frame_strokes, encode_strokes, frame_strokes_of, strokes_of
 from treestroke.core.errors import StrokesError, TreestrokeError
 from treestroke.core.pipeline.settings import plain_settings, settings_from
 from treestroke.core.stroke_rules import Place, require_trunk
-from treestroke.core.strokes import CaptureStrokes, Sketch, Strokes
+from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Strokes
 from treestroke.service.files import check_files
 from treestroke.wire_requests import FormRequest, ModelRequest, Rename, TreeRequest
 from treestroke.wire_strokes import PictureSketch, Sketches
@@ -28,11 +28,12 @@ _JSON_FIELDS = ("strokes", "settings", "seed")
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """The drawn parts of a request as values: strokes over a photo, sketches by view, strokes over a capture."""
+    """The drawn parts of a request as values: strokes over a photo, a capture or a clip, and sketches by view."""
 
     strokes: Strokes | None
     sketches: Mapping[str, Sketch]
     views: CaptureStrokes | None = None
+    frame: FrameStrokes | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,12 +42,12 @@ class ModelOrder:
 
     Attributes
     ----------
-    photo, capture
-        The id of a stored photo, or of a capture; None where the request names none.
+    photo, capture, clip
+        The id of a stored photo, of a capture, or of a clip; None where the request names none.
     parts
-        What else the tree is made of, as files: strokes, views, edits, front, side, leaf, fruit.
+        What else the tree is made of, as files: strokes, views, frame_strokes, edits, front, side, leaf, fruit.
     drawing
-        The strokes and sketches among them as values, to be checked against the photo or the capture.
+        The strokes and sketches among them as values, to be checked against the photo, the capture or the clip.
     settings
         All settings by name, plain values.
     within
@@ -55,6 +56,7 @@ class ModelOrder:
 
     photo: str | None
     capture: str | None
+    clip: str | None
     parts: dict[str, bytes]
     drawing: Drawing
     settings: dict[str, Any]
@@ -118,19 +120,33 @@ def read_body(body: bytes) -> Any:
 
 
 def _check_source(request: ModelRequest, sent: set[str], within: Place) -> None:
-    """Check that what was sent makes a tree: a capture's photos come by its id."""
-    if request.capture is None:
-        for key in ("views", "edits"):
-            if key in request.model_fields_set:
-                fault = f"missing: {key} need a capture; send its id too"
-                raise TreestrokeError.at(("capture",), fault, "missing_key")
-        check_parts(sent, within)
+    """Check that what was sent makes a tree: a capture's photos come by its id, a clip's strokes are called strokes."""
+    if request.capture is not None:
+        _refuse_others(request, "capture", ("photo", "strokes", "sketches", "clip"))
+        check_parts({*sent, "photos"})
         return
-    other = next((key for key in ("photo", "strokes", "sketches") if key in request.model_fields_set), None)
+    for key in ("views", "edits"):
+        if key in request.model_fields_set:
+            fault = f"missing: {key} need a capture; send its id too"
+            raise TreestrokeError.at(("capture",), fault, "missing_key")
+    if request.clip is not None:
+        _refuse_others(request, "clip", ("photo", "sketches"))
+        if request.strokes is None:
+            fault = "missing: a clip needs strokes over one of its frames; send them too"
+            raise TreestrokeError.at(("strokes",), fault, "missing_key")
+        return
+    if request.strokes is not None and "frame" in request.strokes.model_fields_set:
+        fault = "there is a frame, but no clip; send the clip's id too, or leave the frame out"
+        raise TreestrokeError.at(("clip",), fault, "missing_key")
+    check_parts(sent, within)
+
+
+def _refuse_others(request: ModelRequest, decided: str, keys: tuple[str, ...]) -> None:
+    """Refuse what belongs to another source than the one that is ``decided``."""
+    other = next((key for key in keys if key in request.model_fields_set), None)
     if other is not None:
-        fault = "there is a capture too, and a tree is made of one of them; leave the other out"
+        fault = f"there is a {decided} too, and a tree is made of one of them; leave the other out"
         raise TreestrokeError.at((other,), fault, "strokes_and_sketch")
-    check_parts({*sent, "photos"})
 
 
 def _field(key: str, content: bytes) -> Any:
@@ -142,16 +158,10 @@ def _field(key: str, content: bytes) -> Any:
 
 def _order(request: ModelRequest | FormRequest, sketches: Sketches | FormRequest, within: Place) -> ModelOrder:
     """Return what a checked request asks for, its parts as files and as values."""
-    parts: dict[str, bytes] = {}
+    parts, views, frame = _named_parts(request) if isinstance(request, ModelRequest) else ({}, None, None)
     drawn: dict[str, Sketch] = {}
-    strokes = views = photo = capture = None
-    if isinstance(request, ModelRequest):
-        photo, capture, views = request.photo, request.capture, _views(request)
-    if views is not None:
-        parts["views"] = encode_capture_strokes(views).encode()
-    if isinstance(request, ModelRequest) and request.edits:
-        parts["edits"] = encode_edits(edits_of(request.edits)).encode()
-    if request.strokes is not None:
+    strokes = None
+    if request.strokes is not None and frame is None:
         strokes = _strokes(request)
         parts["strokes"] = encode_strokes(strokes).encode()
     for view, sketch in (("front", sketches.front), ("side", sketches.side)):
@@ -160,8 +170,21 @@ def _order(request: ModelRequest | FormRequest, sketches: Sketches | FormRequest
     for name, picture in (("leaf", request.leaf), ("fruit", request.fruit)):
         if picture is not None:
             parts[name] = _cutout(picture, name)
-    drawing, settings = Drawing(strokes, drawn, views), _settings(request)
-    return ModelOrder(photo, capture, parts, drawing, settings, request.seed, request.name, within)
+    drawing, settings = Drawing(strokes, drawn, views, frame), _settings(request)
+    ids = (request.photo, request.capture, request.clip) if isinstance(request, ModelRequest) else (None, None, None)
+    return ModelOrder(*ids, parts, drawing, settings, request.seed, request.name, within)
+
+
+def _named_parts(request: ModelRequest) -> tuple[dict[str, bytes], CaptureStrokes | None, FrameStrokes | None]:
+    """Return what was drawn over a capture or a clip that a request names, as files and as values."""
+    parts, views, frame = {}, _views(request), _frame(request)
+    if views is not None:
+        parts["views"] = encode_capture_strokes(views).encode()
+    if request.edits:
+        parts["edits"] = encode_edits(edits_of(request.edits)).encode()
+    if frame is not None:
+        parts["frame_strokes"] = encode_frame_strokes(frame).encode()
+    return parts, views, frame
 
 
 def _views(request: ModelRequest) -> CaptureStrokes | None:
@@ -170,6 +193,16 @@ def _views(request: ModelRequest) -> CaptureStrokes | None:
         return None if request.views is None else capture_strokes_of(request.views)
     except StrokesError as error:
         raise inside(("views",), error) from error
+
+
+def _frame(request: ModelRequest) -> FrameStrokes | None:
+    """Return a request's strokes over a frame of a clip, where it names one."""
+    if request.clip is None or request.strokes is None:
+        return None
+    try:
+        return frame_strokes_of(request.strokes)
+    except StrokesError as error:
+        raise inside(("strokes",), error) from error
 
 
 def _strokes(request: TreeRequest) -> Strokes:

@@ -18,27 +18,30 @@ from treestroke.store.database import Database
 from treestroke.store.queries import new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
 from treestroke.store.tables import PhotoRow
+from treestroke.store.uploads import Uploads
 
 Keep = Callable[[Path, bytes, int, int], dict[str, Any]]
 """Stores a photo: `tracer.keep_photo` and its like."""
 
 
 class NotFound(Exception):
-    """There is no such photo, model or capture."""
+    """There is no such photo, model, capture, clip or upload."""
 
 
 @dataclass(frozen=True)
 class Resources:
-    """The service's storage (rows and blobs), the processes that decode and trace, and the one that traces captures."""
+    """The service's storage (rows, blobs, uploads) and its processes: for photos, for captures, and for clips."""
 
     database: Database
     blobs: Blobs
     tracers: TracingPool
     capture_tracers: TracingPool
+    clip_tracers: TracingPool
+    uploads: Uploads
     photo_bytes: int = PHOTO_MB * 10**6
     """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
-    """Most bytes of all photos together."""
+    """Most bytes of all photos and clips together."""
 
 
 def add_photo(resources: Resources, content: bytes) -> PhotoRow:
@@ -74,7 +77,7 @@ def kept_columns(resources: Resources, content: bytes, keep: Keep) -> dict[str, 
     PhotoError
         It cannot be used.
     NoRoom
-        All photos together would take more than they may.
+        All photos and clips together would take more than they may.
     OSError
         The disk is full.
     """

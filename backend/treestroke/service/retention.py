@@ -21,7 +21,18 @@ from treestroke.store.blobs import Blobs, state_of
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
 from treestroke.store.queries import referenced
-from treestroke.store.tables import CaptureRow, ModelRow, PhotoRow, Replay, SolveRow, StoreClock, Stray
+from treestroke.store.tables import (
+    CaptureRow,
+    ClipRow,
+    ModelRow,
+    PhotoRow,
+    Replay,
+    SolveRow,
+    StoreClock,
+    Stray,
+    UploadRow,
+)
+from treestroke.store.uploads import Uploads
 
 STRAY_SECONDS = 3600.0
 """A file that no row refers to is kept this long: its row may be about to be written."""
@@ -42,13 +53,16 @@ class Swept:
     models: int
     photos: int
     captures: int
+    clips: int
+    uploads: int
     blobs: int
 
 
 class Sweeper:
     """Removes deleted rows and unreferenced files, in small steps between which others write.
 
-    Models, photos and captures older than ``keep_days`` are deleted (0: never); ``over`` is set when this process ends.
+    Models, photos, captures and clips older than ``keep_days`` are deleted (0: never); ``over`` is set when this
+    process ends.
     """
 
     def __init__(
@@ -60,7 +74,7 @@ class Sweeper:
         monotonic: Callable[[], float] = time.monotonic,
     ) -> None:
         self._database, self._blobs, self._keep_days, self._over = database, blobs, keep_days, over
-        self._monotonic = monotonic
+        self._uploads, self._monotonic = Uploads(blobs.folder.parent), monotonic
         self._last: float | None = None
 
     def sweep(self, stray_s: float = STRAY_SECONDS) -> Swept:
@@ -71,7 +85,7 @@ class Sweeper:
         """
         first, age_s = self._last is None, self._advance_clock()
         removed_until = age_s - RESTORABLE_SECONDS
-        for table in (ModelRow, PhotoRow, CaptureRow, Replay):
+        for table in (ModelRow, PhotoRow, CaptureRow, ClipRow, UploadRow, Replay):
             self._in_steps(table, update(table).values(seen=age_s), table.seen.is_(None))
         if self._keep_days:
             self._delete_older_than(age_s - self._keep_days * _DAY, age_s)
@@ -84,8 +98,22 @@ class Sweeper:
         captures = self._in_steps(
             CaptureRow, delete(CaptureRow), CaptureRow.deleted.is_not(None), CaptureRow.seen <= removed_until, _SETTLED
         )
+        clips = self._in_steps(ClipRow, delete(ClipRow), ClipRow.deleted.is_not(None), ClipRow.seen <= removed_until)
         self._in_steps(Replay, delete(Replay), Replay.seen <= removed_until)
-        return Swept(models, photos, captures, sum(self._sweep_folders(age_s, math.inf if first else stray_s)))
+        uploads = self._sweep_uploads(removed_until)
+        blobs = sum(self._sweep_folders(age_s, math.inf if first else stray_s))
+        return Swept(models, photos, captures, clips, uploads, blobs)
+
+    def _sweep_uploads(self, removed_until: float) -> int:
+        """Remove uploads that stopped a day ago, and what has arrived of those without a row: a row comes first."""
+        arrived = self._uploads.ids()
+        removed = self._in_steps(UploadRow, delete(UploadRow), UploadRow.seen <= removed_until)
+        with self._database.reading() as session:
+            kept = set(session.scalars(select(UploadRow.id)))
+        for id in arrived:
+            if id not in kept:
+                self._uploads.remove(id)
+        return removed
 
     def _advance_clock(self) -> float:
         """Advance the store's clock and return its time, seconds.
@@ -104,8 +132,8 @@ class Sweeper:
         return clock.age_s
 
     def _delete_older_than(self, oldest: float, age_s: float) -> None:
-        over: dict[type[ModelRow | PhotoRow | CaptureRow], list[ColumnElement[bool]]]
-        over = {ModelRow: [_FINISHED], PhotoRow: [], CaptureRow: [_SETTLED]}
+        over: dict[type[ModelRow | PhotoRow | CaptureRow | ClipRow], list[ColumnElement[bool]]]
+        over = {ModelRow: [_FINISHED], PhotoRow: [], CaptureRow: [_SETTLED], ClipRow: []}
         for table, conditions in over.items():
             change = update(table).values(deleted=time.time(), seen=age_s)
             self._in_steps(table, change, table.deleted.is_(None), table.seen <= oldest, *conditions)

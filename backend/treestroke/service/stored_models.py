@@ -11,7 +11,7 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
-from treestroke.service import captures, tracer
+from treestroke.service import captures, clips, tracer
 from treestroke.service.engine_version import engine_version
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import ModelOrder
@@ -88,17 +88,17 @@ def accept_model(
     Raises
     ------
     NotFound, TreestrokeError, KeyReused
-        There is no such photo or capture; something in the request cannot be used, or the capture is not solved; the
-        key was used for another request.
+        There is no such photo, capture or clip; something in the request cannot be used, or the capture is not solved;
+        the key was used for another request.
     Damaged
-        The photo's file is damaged.
+        The file of the photo or the clip is damaged.
     OSError
         The disk is full.
     """
-    if order.capture and (before := _repeated(resources, order, key)) is not None:
+    if (order.capture or order.clip) and (before := _repeated(resources, order, key)) is not None:
         return before
     photo = sent_photo or (None if order.photo is None else _photo_for(resources, order.photo, key))
-    base = _drawn_over_capture(resources, order) if order.capture else _drawn_over_photo(resources, order, photo)
+    base = _base(resources, order, photo)
     inputs = Inputs.of({**base.parts, **_sent_parts(resources, order)})
     row = _new_row(order, photo, _fingerprint(order, base, inputs))
     request = _request_digest(order, row, photo)
@@ -221,6 +221,30 @@ def _photo_for(resources: Resources, id: str, key: str | None) -> PhotoRow:
     return photo
 
 
+def _base(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> _Base:
+    """Check what was drawn, against what it was drawn over, and return that."""
+    if order.capture is not None:
+        return _drawn_over_capture(resources, order)
+    return _drawn_over_photo(resources, order, photo) if order.clip is None else _drawn_over_clip(resources, order)
+
+
+def _drawn_over_clip(resources: Resources, order: ModelOrder) -> _Base:
+    """Check what was drawn, against the clip.
+
+    Raises
+    ------
+    NotFound
+        There is no such clip.
+    """
+    assert order.clip is not None
+    assert order.drawing.frame is not None
+    clip = clips.get_clip(resources, order.clip)
+    size = clip.width, clip.height
+    resources.tracers("", tracer.check_frame, order.drawing.frame, size, clip.frames)
+    resources.blobs.check(clip.blob)
+    return _Base({"clip": ModelPart(name="clip", blob=clip.blob, media_type=clip.media_type)}, [])
+
+
 def _drawn_over_photo(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> _Base:
     """Check what was drawn, against the photo where there is one."""
     path = None if photo is None else resources.blobs.path(photo.blob)
@@ -271,6 +295,7 @@ def _new_row(order: ModelOrder, photo: PhotoRow | None, fingerprint: str) -> Mod
         name=order.name,
         photo=None if photo is None else photo.id,
         capture=order.capture,
+        clip=order.clip,
         settings=order.settings,
         seed=order.seed,
         engine=engine_version(),
@@ -294,19 +319,19 @@ def _fingerprint(order: ModelOrder, base: _Base, inputs: Inputs[ModelPart]) -> s
 
 def _request_digest(order: ModelOrder, row: ModelRow, photo: PhotoRow | None) -> str:
     """Return a digest of what was asked for."""
-    if order.capture is not None:
-        return _capture_request_digest(order)
+    if order.capture is not None or order.clip is not None:
+        return _named_request_digest(order)
     return digest([row.fingerprint, order.name, None if photo is None else photo.sha256])
 
 
-def _capture_request_digest(order: ModelOrder) -> str:
-    """Return a digest of what was asked for; a capture counts by its id, since its photos may be others by now."""
+def _named_request_digest(order: ModelOrder) -> str:
+    """Return a digest of what was asked for; a capture or a clip counts by its id: it may be another or gone by now."""
     parts = {name: hashlib.sha256(content).hexdigest() for name, content in order.parts.items()}
-    return digest([order.capture, parts, order.settings, order.seed, order.name])
+    return digest([order.capture or order.clip, parts, order.settings, order.seed, order.name])
 
 
 def _repeated(resources: Resources, order: ModelOrder, key: str | None) -> StoredModel | None:
-    """Find the model that a request for one of a capture was answered with when it was sent before.
+    """Find the model that a request for one of a capture or a clip was answered with when it was sent before.
 
     Raises
     ------
@@ -314,7 +339,7 @@ def _repeated(resources: Resources, order: ModelOrder, key: str | None) -> Store
         The key was used for another request.
     """
     with resources.database.reading() as session:
-        row = _answered_before(session, key, _capture_request_digest(order))
+        row = _answered_before(session, key, _named_request_digest(order))
     return None if row is None else find_model(resources.database, row.id, deleted=True)
 
 

@@ -1,6 +1,6 @@
 """Trace a photo (its foliage and its visible branches) or sketches (their branches)."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from treestroke.core.pipeline.taken import Taken
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes, StrokeWarning, same_stroke, same_strokes
 from treestroke.core.trace.drawing import Drawing
+from treestroke.core.types import Picture
 from treestroke.service.execution import one_thread
 from treestroke.service.loading import (
     PhotoLike,
@@ -128,18 +129,39 @@ def trace(
         else:
             traced = trace_photo(picture, drawn, None if last is None else last.photo_trace.evidence)
         traced = with_side(traced, None if side is None else load_sketch(side, "side"))
-        grown = grow_photo(traced, chosen, np.random.default_rng(0)) if grow else None
-    rings = rings_of_mask(traced.foliage) if last is None else last.rings
+    rings = None if last is None else last.rings
+    found = _trace_of(over_white(picture), drawn, traced, chosen if grow else None, rings)
+    return replace(found, warnings=(*mended, *found.warnings))
+
+
+def trace_values(photo: Picture, drawn: Strokes, traced: PhotoTrace, growing: ModelSettings | None) -> dict[str, Any]:
+    """Return what was traced in a photo (h, w, 3) as plain values, as `Trace.as_dict` does.
+
+    With settings also the skeleton that is ``growing`` by them and seed 0.
+    """
+    return _trace_of(photo, drawn, traced, growing).as_dict()
+
+
+def _trace_of(
+    photo: Picture,
+    drawn: Strokes,
+    traced: PhotoTrace,
+    growing: ModelSettings | None,
+    rings: list[NDArray[np.float64]] | None = None,
+) -> Trace:
+    """Return a trace with the tree that grows by settings, where some are given; ``rings`` where they are known."""
+    with one_thread():
+        grown = None if growing is None else grow_photo(traced, growing, np.random.default_rng(0))
     return Trace(
-        photo=over_white(picture),
+        photo=photo,
         foliage=traced.foliage,
-        rings=rings,
+        rings=rings_of_mask(traced.foliage) if rings is None else rings,
         strokes=drawn,
         photo_trace=traced,
         skeleton=traced.skeleton,
         stroke=traced.stroke,
-        warnings=(*mended, *traced.warnings),
-        grow=grow,
+        warnings=traced.warnings,
+        grow=growing is not None,
         grown=grown,
     )
 

@@ -17,11 +17,12 @@ from treestroke.codec.sketch import sketch_of
 from treestroke.codec.strokes import strokes_of
 from treestroke.codec.structure import decode_structure
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
+from treestroke.core.film.judged import require_frame
 from treestroke.core.pipeline.drawn_views import check_used, mend_views
 from treestroke.core.pipeline.sides import draw_side
 from treestroke.core.pipeline.sketching import read_sketches
 from treestroke.core.stroke_rules import Place, mend_strokes
-from treestroke.core.strokes import CaptureStrokes, Sketch, StrokeWarning
+from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, StrokeWarning
 from treestroke.core.types import Picture
 from treestroke.service.model_request import Drawing, read_body
 from treestroke.service.trace import Trace, trace, trace_sketches
@@ -46,7 +47,7 @@ _known: OrderedDict[Path, Known] = OrderedDict()
 
 
 class NoRoom(Exception):
-    """All stored photos together would take more bytes than they may."""
+    """All stored photos and clips together would take more bytes than they may."""
 
 
 def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
@@ -137,6 +138,18 @@ def check_views(structure: Path, drawn: CaptureStrokes, sizes_px: Mapping[str, t
     solved = decode_structure(read_blob(structure))
     _within(("views",), mend_views, drawn, sizes_px)
     _within(("views",), check_used, drawn, {photo.name for photo in solved.photos})
+
+
+def check_frame(drawn: FrameStrokes, size_px: tuple[int, int], frames: int) -> None:
+    """Check strokes over a clip, whose frames have (width, height), so that every accepted model can be made.
+
+    Raises
+    ------
+    StrokesError, ClipError
+        One cannot be used, or there is no such frame; the pointer leads into the request.
+    """
+    _within(("strokes",), require_frame, drawn.frame, frames)
+    _within(("strokes",), mend_strokes, drawn.strokes, *size_px)
 
 
 def _check_sketches(sketches: Mapping[str, Sketch], picture: Picture | None) -> None:

@@ -29,7 +29,7 @@ def write_atomically(contents: Mapping[Path, bytes]) -> None:
                 _write_synced(written, data)
         for target, written in temporary.items():
             written.replace(target)
-            _sync_folder(target.parent)
+            sync_folder(target.parent)
     finally:
         for written in temporary.values():
             with suppress(FileNotFoundError):
@@ -44,7 +44,7 @@ def _write_synced(path: Path, data: bytes) -> None:
         os.fsync(file.fileno())
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
     """Wait until a rename in the folder is on disk, so that it survives a power cut."""
     descriptor = os.open(folder, os.O_RDONLY)
     try:

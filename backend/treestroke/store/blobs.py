@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
-from treestroke.store.atomic_write import write_atomically
+from treestroke.store.atomic_write import sync_folder, write_atomically
 
 _MAX_VERIFIED = 1024
 """Files whose content was verified and need not be read again while their metadata stays the same."""
@@ -49,6 +49,19 @@ class Blobs:
         write_atomically({path: content})
         return sha256
 
+    def take(self, path: Path, sha256: str) -> None:
+        """Store a file, already on disk and with this SHA-256, that is moved here from the same file system.
+
+        Raises
+        ------
+        OSError
+            It cannot be moved.
+        """
+        place = self.path(sha256)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        path.replace(place)
+        sync_folder(place.parent)
+
     def path(self, sha256: str) -> Path:
         """Return the path of a blob, which need not exist."""
         return self.folder / sha256[:2] / sha256
@@ -77,8 +90,7 @@ class Blobs:
             state = (now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns)
             if self._verified.get(sha256) == state:
                 return path
-            with path.open("rb") as file:
-                found = hashlib.file_digest(file, "sha256").hexdigest()
+            found = sha256_of(path)
         except OSError as error:
             raise _read_error(path, error) from error
         if found != sha256:
@@ -115,6 +127,12 @@ class Blobs:
             self._verified[sha256] = state
             if len(self._verified) > _MAX_VERIFIED:
                 del self._verified[next(iter(self._verified))]
+
+
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file's content."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def state_of(path: Path) -> str:

@@ -9,10 +9,11 @@ from sqlalchemy.orm import Session
 
 from treestroke.store.leases import TERMINAL, AnyJob, JobRow
 from treestroke.store.tables import (
-    PHOTOS,
     REFERENCES,
+    UPLOADED,
     CapturePhoto,
     CaptureRow,
+    ClipRow,
     File,
     ModelPart,
     ModelRow,
@@ -21,8 +22,8 @@ from treestroke.store.tables import (
 )
 
 FileRow = TypeVar("FileRow", File, ModelPart)
-Listed = TypeVar("Listed", ModelRow, PhotoRow, CaptureRow)
-Kept = TypeVar("Kept", ModelRow, PhotoRow, CaptureRow)
+Listed = TypeVar("Listed", ModelRow, PhotoRow, CaptureRow, ClipRow)
+Kept = TypeVar("Kept", ModelRow, PhotoRow, CaptureRow, ClipRow)
 _RECENT = 20
 """Finished jobs by whose times the next one's is estimated."""
 _FIRST_GUESS_S = {ModelRow: 5.0, SolveRow: 120.0}
@@ -48,6 +49,11 @@ def capture(session: Session, id: str, deleted: bool = False) -> CaptureRow | No
     return _kept(session, CaptureRow, id, deleted)
 
 
+def clip(session: Session, id: str, deleted: bool = False) -> ClipRow | None:
+    """Find a clip; a deleted one only where ``deleted``."""
+    return _kept(session, ClipRow, id, deleted)
+
+
 def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
     """Return the files of models, by model and name."""
     return _by_model_and_name(session, File, models)
@@ -59,7 +65,7 @@ def parts(session: Session, models: Iterable[str]) -> dict[str, dict[str, ModelP
 
 
 def page(session: Session, table: type[Listed], cursor: str | None, limit: int) -> tuple[Sequence[Listed], str | None]:
-    """Return a page of models, photos or captures, newest first, and the cursor of the next page: decimal digits."""
+    """Return a page of rows, newest first, and the cursor of the next page: decimal digits."""
     query = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
     rows = session.scalars(query if cursor is None else query.where(table.number < int(cursor))).all()
     return rows[:limit], str(rows[limit - 1].number) if len(rows) > limit else None
@@ -137,8 +143,8 @@ def waits(session: Session, table: type[AnyJob], rows: Sequence[Any]) -> dict[in
 
 
 def stored_bytes(session: Session) -> int:
-    """Return the bytes that all photos take, deleted but not yet removed ones too; equal pixels count once."""
-    blobs = (select(table.blob, func.max(table.bytes).label("bytes")).group_by(table.blob) for table in PHOTOS)
+    """Return the bytes that all photos and clips take, deleted but not yet removed ones too; equal files count once."""
+    blobs = (select(table.blob, func.max(table.bytes).label("bytes")).group_by(table.blob) for table in UPLOADED)
     each = union(*blobs).subquery()
     return session.scalar(select(func.sum(each.c.bytes))) or 0
 

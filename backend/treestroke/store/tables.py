@@ -35,8 +35,8 @@ class Aged:
     seen: Mapped[float | None]
 
 
-class Pixels:
-    """A row of an uploaded photo: upright sRGB pixels in a blob, without metadata."""
+class Uploaded:
+    """A row of an uploaded photo or clip, whose file is a blob; of a photo, upright sRGB pixels without metadata."""
 
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
@@ -48,16 +48,39 @@ class Pixels:
     bytes: Mapped[int] = mapped_column(insert_default=0, server_default="0")
     """Size of the blob, which may be many times that of the upload."""
     warnings: Mapped[list[dict[str, Any]]] = mapped_column(insert_default=list, server_default="[]")
-    """What was mended when the photo was read: code, stroke and detail of each."""
+    """What was mended or left out when it was read: code, stroke and detail of each."""
     created: Mapped[float]
 
 
-class PhotoRow(Pixels, Aged, Table):
+class PhotoRow(Uploaded, Aged, Table):
     """A photo by itself."""
 
     __tablename__ = "photos"
 
     deleted: Mapped[float | None]
+
+
+class ClipRow(Uploaded, Aged, Table):
+    """A video of one tree: its file as it was sent, and the size and number of its frames as they are used."""
+
+    __tablename__ = "clips"
+
+    name: Mapped[str] = mapped_column(String(200))
+    frames: Mapped[int]
+    frames_per_second: Mapped[float]
+    media_type: Mapped[str] = mapped_column(String(40))
+    deleted: Mapped[float | None]
+
+
+class UploadRow(Aged, Table):
+    """A clip that is on its way here; what has arrived is a file of this id. It names the clip once it is whole."""
+
+    __tablename__ = "uploads"
+
+    id: Mapped[str] = mapped_column(String(40), primary_key=True)
+    name: Mapped[str] = mapped_column(String(200))
+    clip: Mapped[str | None] = mapped_column(String(40))
+    created: Mapped[float]
 
 
 class Job:
@@ -97,6 +120,7 @@ class ModelRow(Job, Aged, Table):
     name: Mapped[str] = mapped_column(String(200))
     photo: Mapped[str | None] = mapped_column(String(40))
     capture: Mapped[str | None] = mapped_column(String(40))
+    clip: Mapped[str | None] = mapped_column(String(40))
     settings: Mapped[dict[str, Any]]
     seed: Mapped[int] = mapped_column(BigInteger)
     report: Mapped[dict[str, Any] | None]
@@ -139,7 +163,7 @@ class CaptureRow(Aged, Table):
     deleted: Mapped[float | None]
 
 
-class CapturePhoto(Pixels, Table):
+class CapturePhoto(Uploaded, Table):
     """A photo of a capture, whose name none of its others has."""
 
     __tablename__ = "capture_photos"
@@ -210,23 +234,24 @@ class Stray(Table):
 
 JOBS: tuple[type[ModelRow] | type[SolveRow], ...] = (ModelRow, SolveRow)
 """Every table whose rows are work for a worker."""
-PHOTOS: tuple[type[PhotoRow] | type[CapturePhoto], ...] = (PhotoRow, CapturePhoto)
-"""Every table of uploaded photos."""
-REFERENCES = (PhotoRow.blob, ModelPart.blob, File.blob, CapturePhoto.blob, SolveRow.structure)
+UPLOADED: tuple[type[PhotoRow] | type[CapturePhoto] | type[ClipRow], ...] = (PhotoRow, CapturePhoto, ClipRow)
+"""Every table of uploaded photos and clips."""
+REFERENCES = (*(table.blob for table in UPLOADED), ModelPart.blob, File.blob, SolveRow.structure)
 """Every column that names a blob."""
 
 for _job in JOBS:
     Index(f"ix_{_job.__tablename__}_queue", _job.status, _job.number)
     Index(f"ix_{_job.__tablename__}_fingerprint", _job.fingerprint, _job.engine, _job.status)
     Index(f"ix_{_job.__tablename__}_times", _job.status, _job.started, _job.finished)
-for _photos in PHOTOS:
-    Index(f"ix_{_photos.__tablename__}_stored", _photos.blob, _photos.bytes)
-    Index(f"ix_{_photos.__tablename__}_blob", _photos.blob)
+for _uploaded in UPLOADED:
+    Index(f"ix_{_uploaded.__tablename__}_stored", _uploaded.blob, _uploaded.bytes)
+    Index(f"ix_{_uploaded.__tablename__}_blob", _uploaded.blob)
 Index("ix_solves_capture", SolveRow.capture, SolveRow.fingerprint, SolveRow.number)
 Index("ix_solves_structure", SolveRow.structure)
-for _table in (ModelRow, PhotoRow, CaptureRow):
+for _table in (ModelRow, PhotoRow, CaptureRow, ClipRow):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
 Index("ix_replays_seen", Replay.seen)
+Index("ix_uploads_seen", UploadRow.seen)
 Index("ix_model_parts_blob", ModelPart.blob)
 Index("ix_files_blob", File.blob)

@@ -332,6 +332,144 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/v1/clips": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List Clips
+         * @description List clips, newest first.
+         */
+        get: operations["list_clips"];
+        put?: never;
+        /**
+         * Add Clip
+         * @description Upload a clip: MP4, MOV, WebM, AVI or GIF; or with Upload-Complete: ?0 its first piece, perhaps empty.
+         */
+        post: operations["add_clip"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/clips/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Clip
+         * @description Return a clip.
+         */
+        get: operations["get_clip"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Clip
+         * @description Delete a clip; models that were made of it keep their own copy.
+         */
+        delete: operations["delete_clip"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/clips/{id}/video": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Clip Video
+         * @description Return the file as it was uploaded.
+         */
+        get: operations["get_clip_video"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/clips/{id}/frames/{frame}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Clip Frame
+         * @description Return one frame as a JPEG; those that follow each other are read fastest.
+         */
+        get: operations["get_clip_frame"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/clips/{id}/trace": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Trace Clip
+         * @description Find foliage and visible branches in one frame, and follow points of the tree through all frames.
+         *
+         *     With ``grow`` the whole tree's skeleton too. Tracks are found once for a frame and its crown.
+         */
+        post: operations["trace_clip"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/uploads/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Upload
+         * @description Tell how many bytes have arrived, in the headers of a HEAD, too; a piece that is under way is ended.
+         */
+        get: operations["get_upload"];
+        put?: never;
+        post?: never;
+        /**
+         * Delete Upload
+         * @description Give an upload up; the clip that was made of it stays.
+         */
+        delete: operations["delete_upload"];
+        options?: never;
+        head?: never;
+        /**
+         * Add Piece
+         * @description Add the piece that begins at Upload-Offset; with Upload-Complete: ?1, also empty, the clip is then stored.
+         */
+        patch: operations["add_piece"];
+        trace?: never;
+    };
     "/v1/models": {
         parameters: {
             query?: never;
@@ -519,6 +657,26 @@ export interface paths {
          * @description Download the strokes over the photos of a capture that the tree was made of.
          */
         get: operations["get_views"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/v1/models/{id}/frame_strokes.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get Frame Strokes
+         * @description Download the strokes over a frame of a clip that the tree was made of.
+         */
+        get: operations["get_frame_strokes"];
         put?: never;
         post?: never;
         delete?: never;
@@ -960,6 +1118,97 @@ export interface components {
             photo?: components["schemas"]["PhotoFrame"] | null;
         };
         /**
+         * ClipInfo
+         * @description A stored clip: a video of one tree.
+         */
+        ClipInfo: {
+            /** Id */
+            id: string;
+            /**
+             * Name
+             * @description its file name; empty where it came without
+             */
+            name: string;
+            /**
+             * Width
+             * @description of its frames, upright, pixels
+             */
+            width: number;
+            /** Height */
+            height: number;
+            /**
+             * Frames
+             * @description how many there are at the even rate
+             */
+            frames: number;
+            /**
+             * Frames Per Second
+             * @description even, at most about 30, whatever the file's own
+             */
+            frames_per_second: number;
+            /** Seconds */
+            seconds: number;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Sha256
+             * @description of the uploaded bytes
+             */
+            sha256: string;
+            /** Media Type */
+            media_type: string;
+            /** Created */
+            created: string;
+            /**
+             * Video
+             * @description the uploaded file
+             */
+            video: string;
+            /**
+             * Notes
+             * @description what was left out or changed in reading it
+             */
+            notes: components["schemas"]["StrokeWarning"][];
+        };
+        /**
+         * ClipPage
+         * @description Clips, newest first; ``next`` is the cursor of the next page.
+         */
+        ClipPage: {
+            /** Clips */
+            clips: components["schemas"]["ClipInfo"][];
+            /** Next */
+            next: string | null;
+        };
+        /**
+         * ClipTraceAnswer
+         * @description What was found in one frame of a clip, as in a photo, and the tracks through all of its frames.
+         */
+        ClipTraceAnswer: {
+            /** Rev */
+            rev: number | null;
+            /** Foliage */
+            foliage: [
+                number,
+                number
+            ][][];
+            skeleton: components["schemas"]["TracedSkeleton"];
+            /** @description null without a trunk stroke */
+            taken: components["schemas"]["Taken"] | null;
+            /** Warnings */
+            warnings: components["schemas"]["StrokeWarning"][];
+            /** @description with ``grow`` and a trunk stroke */
+            grown?: components["schemas"]["GrownSkeleton"] | null;
+            /** @description with ``grown`` */
+            photo?: components["schemas"]["PhotoFrame"] | null;
+            /**
+             * Frame
+             * @description the frame that was drawn on
+             */
+            frame: number;
+            tracks: components["schemas"]["Tracks"];
+        };
+        /**
          * CloudInfo
          * @description Points that several photos show; evenly chosen ones where there are many.
          */
@@ -1099,6 +1348,19 @@ export interface components {
             trace_seconds: number;
             /** Capture Trace Seconds */
             capture_trace_seconds: number;
+            /** Clip Bytes */
+            clip_bytes: number;
+            /** Clip Formats */
+            clip_formats: string[];
+            /**
+             * Clip Seconds
+             * @description what is longer is cut there
+             */
+            clip_seconds: number;
+            /** Clip Seconds Min */
+            clip_seconds_min: number;
+            /** Clip Frames Min */
+            clip_frames_min: number;
             /** Edits */
             edits: number;
             /**
@@ -1147,7 +1409,7 @@ export interface components {
             name: string;
             /**
              * Photo
-             * @description null where it is made of sketches alone, or of a capture
+             * @description null where it is made of sketches alone, of a capture, or of a clip
              */
             photo: string | null;
             /**
@@ -1155,6 +1417,11 @@ export interface components {
              * @description where it is made of one
              */
             capture?: string | null;
+            /**
+             * Clip
+             * @description where it is made of one
+             */
+            clip?: string | null;
             /**
              * Status
              * @enum {string}
@@ -1459,6 +1726,45 @@ export interface components {
             ][][];
         };
         /**
+         * Tracks
+         * @description Points of the tree that are followed through a clip, in pixels of its frames.
+         */
+        Tracks: {
+            /** Frames Per Second */
+            frames_per_second: number;
+            /**
+             * Every
+             * @description each place is so many frames after the one before
+             */
+            every: number;
+            /**
+             * Points
+             * @description for each track its places, null where it is not seen
+             */
+            points: ([
+                number,
+                number
+            ] | null)[][];
+        };
+        /**
+         * UploadInfo
+         * @description A clip that arrives in pieces.
+         */
+        UploadInfo: {
+            /** Id */
+            id: string;
+            /**
+             * Offset
+             * @description how many bytes have arrived
+             */
+            offset: number;
+            /**
+             * Clip
+             * @description the id of the clip that was made of it
+             */
+            clip: string | null;
+        };
+        /**
          * Version
          * @description Which treestroke this is.
          */
@@ -1584,6 +1890,39 @@ export interface components {
             settings?: components["schemas"]["ModelSettings"];
         };
         /**
+         * ClipTraceRequest
+         * @description Strokes over one frame of a clip to trace.
+         */
+        ClipTraceRequest: {
+            crown: components["schemas"]["CrownStroke"];
+            /** Branches */
+            branches?: components["schemas"]["BranchStroke"][];
+            /** Erase */
+            erase?: components["schemas"]["EraseStroke"][];
+            /** Scale */
+            scale?: components["schemas"]["KnownLength"];
+            /**
+             * Frame
+             * @description the frame's index, among the frames at the clip's even rate
+             * @default 0
+             */
+            frame: number;
+            /**
+             * Rev
+             * @description comes back with the answer
+             * @default null
+             */
+            rev: number | null;
+            /**
+             * Grow
+             * @description grow the whole skeleton too, without leaves
+             * @default false
+             */
+            grow: boolean;
+            /** @description what the grown skeleton grows by */
+            settings?: components["schemas"]["ModelSettings"];
+        };
+        /**
          * CrownStroke
          * @description A stroke around the foliage; its last point is joined to its first.
          */
@@ -1627,6 +1966,25 @@ export interface components {
             code: string;
             /** Detail */
             detail: string;
+        };
+        /**
+         * FrameStrokes
+         * @description What was drawn over one frame of a clip; of its branches, even the trunk may be absent.
+         */
+        FrameStrokes: {
+            crown: components["schemas"]["CrownStroke"];
+            /** Branches */
+            branches?: components["schemas"]["BranchStroke"][];
+            /** Erase */
+            erase?: components["schemas"]["EraseStroke"][];
+            /** Scale */
+            scale?: components["schemas"]["KnownLength"];
+            /**
+             * Frame
+             * @description the frame's index, among the frames at the clip's even rate
+             * @default 0
+             */
+            frame: number;
         };
         /**
          * JoinEdit
@@ -1694,10 +2052,14 @@ export interface components {
          *
          *     It is made of photo and strokes, perhaps with the sketch of its left side; or of sketches of its front and perhaps
          *     of its left side, perhaps with the photo that they were drawn over; or of a solved capture and strokes over some of
-         *     its photos.
+         *     its photos; or of a clip and strokes over one of its frames.
          */
         ModelRequest: {
-            strokes?: components["schemas"]["Strokes"];
+            /**
+             * Strokes
+             * @description over the photo, or over a frame of the clip
+             */
+            strokes?: components["schemas"]["FrameStrokes"];
             settings?: components["schemas"]["ModelSettings"];
             /**
              * Seed
@@ -1712,6 +2074,8 @@ export interface components {
             /** Photo */
             photo?: string;
             sketches?: components["schemas"]["Sketches"];
+            /** Clip */
+            clip?: string;
             /** Capture */
             capture?: string;
             /**
@@ -3871,6 +4235,894 @@ export interface operations {
             };
         };
     };
+    list_clips: {
+        parameters: {
+            query?: {
+                /** @description ``next`` of the page before */
+                cursor?: string | null;
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClipPage"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_clip: {
+        parameters: {
+            query?: {
+                /** @description the file's name, where no form gives it */
+                name?: string | null;
+            };
+            header?: {
+                /** @description ?0 where further pieces will follow, ?1 with the last one */
+                "upload-complete"?: string | null;
+                /** @description how many bytes the whole clip has, where that is known */
+                "upload-length"?: string | null;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "multipart/form-data": {
+                    /** Format: binary */
+                    file: string;
+                };
+                "video/mp4": string;
+                "video/quicktime": string;
+                "video/webm": string;
+                "video/x-matroska": string;
+                "video/x-msvideo": string;
+                "image/gif": string;
+                "video/*": string;
+                "application/octet-stream": string;
+            };
+        };
+        responses: {
+            /** @description The clip; with Upload-Complete: ?0 the upload */
+            201: {
+                headers: {
+                    /** @description the clip, or the upload to which further pieces are sent */
+                    Location?: string;
+                    /** @description bytes that have arrived */
+                    "Upload-Offset"?: string;
+                    /** @description whether that is all */
+                    "Upload-Complete"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClipInfo"] | components["schemas"]["UploadInfo"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Timeout */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_clip: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClipInfo"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_clip: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_clip_video: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "video/mp4": string;
+                    "video/quicktime": string;
+                    "video/webm": string;
+                    "video/x-matroska": string;
+                    "video/x-msvideo": string;
+                    "image/gif": string;
+                };
+            };
+            /** @description The part that Range requests */
+            206: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "video/mp4": string;
+                    "video/quicktime": string;
+                    "video/webm": string;
+                    "video/x-matroska": string;
+                    "video/x-msvideo": string;
+                    "image/gif": string;
+                };
+            };
+            /** @description If-None-Match has this file's ETag */
+            304: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Requested Range Not Satisfiable */
+            416: {
+                headers: {
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_clip_frame: {
+        parameters: {
+            query?: {
+                /** @description most pixels high */
+                height?: number | null;
+            };
+            header?: never;
+            path: {
+                id: string;
+                frame: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The frame */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/jpeg": string;
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    trace_clip: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ClipTraceRequest"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClipTraceAnswer"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Timeout */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_upload: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description bytes that have arrived */
+                    "Upload-Offset"?: string;
+                    /** @description whether that is all */
+                    "Upload-Complete"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UploadInfo"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_upload: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_piece: {
+        parameters: {
+            query?: never;
+            header: {
+                /** @description how many bytes were sent before this piece */
+                "upload-offset": string;
+                /** @description ?0 where further pieces will follow, ?1 with the last one */
+                "upload-complete"?: string | null;
+            };
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/partial-upload": string;
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description bytes that have arrived */
+                    "Upload-Offset"?: string;
+                    /** @description whether that is all */
+                    "Upload-Complete"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UploadInfo"];
+                };
+            };
+            /** @description The clip */
+            201: {
+                headers: {
+                    /** @description bytes that have arrived */
+                    "Upload-Offset"?: string;
+                    /** @description whether that is all */
+                    "Upload-Complete"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ClipInfo"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Timeout */
+            408: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Request Entity Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Insufficient Storage */
+            507: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_models: {
         parameters: {
             query?: {
@@ -4881,6 +6133,101 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["CaptureStrokes"];
+                };
+            };
+            /** @description The part that Range requests */
+            206: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": string;
+                };
+            };
+            /** @description If-None-Match has this file's ETag */
+            304: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Requested Range Not Satisfiable */
+            416: {
+                headers: {
+                    /** @description bytes FIRST-LAST/SIZE */
+                    "Content-Range"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Internal Server Error */
+            500: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Service Unavailable */
+            503: {
+                headers: {
+                    /** @description seconds */
+                    "Retry-After"?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    get_frame_strokes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The file */
+            200: {
+                headers: {
+                    /** @description SHA-256 of the file, in quotes */
+                    ETag?: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FrameStrokes"];
                 };
             };
             /** @description The part that Range requests */

@@ -77,6 +77,12 @@ def get_views(request: Request, resources: ResourcesOf, id: ModelId) -> Response
     return _drawing(request, resources, id, "views.json")
 
 
+@router.get("/frame_strokes.json", response_class=FileResponse, responses=file_responses(_JSON, "FrameStrokes"))
+def get_frame_strokes(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
+    """Download the strokes over a frame of a clip that the tree was made of."""
+    return _drawing(request, resources, id, "frame_strokes.json")
+
+
 @router.get("/edits.json", response_class=FileResponse, responses=file_responses(_JSON, "Edits"))
 def get_edits(request: Request, resources: ResourcesOf, id: ModelId) -> Response:
     """Download the edits of the visible branches of a capture that the tree was made of."""

@@ -54,6 +54,7 @@ _FILES = (
     "get_preview",
     "get_strokes",
     "get_views",
+    "get_frame_strokes",
     "get_edits",
     "get_sketch",
     "get_project",

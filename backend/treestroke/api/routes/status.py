@@ -10,8 +10,11 @@ from treestroke.api.deps import DispatcherOf, ResourcesOf, SettingsOf, WatcherOf
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
+from treestroke.codec.video_kinds import VIDEO_KINDS
 from treestroke.core.pipeline.settings import Allowed, Choice, ModelSettings, Several, Span, Toggle
 from treestroke.limits import (
+    MAX_CLIP_BYTES,
+    MAX_CLIP_SECONDS,
     MAX_EDIT_POINTS,
     MAX_EDITS,
     MAX_LEAF_BYTES,
@@ -22,6 +25,8 @@ from treestroke.limits import (
     MAX_SKETCH_BYTES,
     MAX_STROKES,
     MAX_TEXT_BYTES,
+    MIN_CLIP_FRAMES,
+    MIN_CLIP_SECONDS,
     MIN_PHOTOS,
 )
 from treestroke.schemas import Health, Limits, Version
@@ -66,6 +71,11 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
         sketch_bytes=MAX_SKETCH_BYTES,
         trace_seconds=settings.trace_seconds,
         capture_trace_seconds=settings.capture_trace_seconds,
+        clip_bytes=MAX_CLIP_BYTES,
+        clip_formats=[kind.media_type for kind in VIDEO_KINDS],
+        clip_seconds=MAX_CLIP_SECONDS,
+        clip_seconds_min=MIN_CLIP_SECONDS,
+        clip_frames_min=MIN_CLIP_FRAMES,
         edits=MAX_EDITS,
         edit_points=MAX_EDIT_POINTS,
         model_seconds=settings.model_seconds,
