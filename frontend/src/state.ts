@@ -138,6 +138,8 @@ export interface ShownModel extends OwnPictures {
   readonly strokes: Strokes
   /** The number of its tree that is shown, from 1. */
   readonly variant: number
+  /** The number of the sibling that is shown in the tree's place; 0 where none is. */
+  readonly sibling: number
   /** Its grown skeleton, once the service has sent it. */
   readonly growth: Grown | null
   /** The GLB of the tree that is shown. */
@@ -179,7 +181,7 @@ export interface State extends OwnPictures {
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
   /** The dialog that is open. */
-  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | 'clip' | 'filming' | null
+  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | 'clip' | 'filming' | 'grove' | null
   /** Photos that were chosen together, while it is asked what becomes of them. */
   readonly offer: Offer | null
   /** A video that was chosen, while it is said what becomes of it, and while it is sent. */

@@ -7,6 +7,7 @@ import { motionText } from './text/motion'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
 import { sheetsText } from './text/sheets'
+import { siblingsText } from './text/siblings'
 import { takenText } from './text/taken'
 import { treeText } from './text/tree'
 import { welcomeText } from './text/welcome'
@@ -19,6 +20,7 @@ export const text = {
   capture: captureText,
   clip: clipText,
   sheets: sheetsText,
+  siblings: siblingsText,
   settings: settingsText,
   taken: takenText,
   measured: measuredText,

@@ -127,7 +127,7 @@ export function captureAnswer(changes: Partial<CaptureTraceAnswer> = {}): Captur
 
 /** A model that is shown. */
 export function shownModel(info: Partial<Model> = {}, changes: Partial<ShownModel> = {}): ShownModel {
-  const made = { strokes: NO_STROKES, leaf: null, fruit: null, variant: 1, growth: null, glb: null }
+  const made = { strokes: NO_STROKES, leaf: null, fruit: null, variant: 1, sibling: 0, growth: null, glb: null }
   return { info: model(info), ...made, ...changes }
 }
 

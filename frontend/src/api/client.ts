@@ -1,4 +1,4 @@
-import { frameToWire, type Strokes, toWire, viewsToWire } from '../strokes'
+import { frameToWire, type Point, type Strokes, toWire, viewsToWire } from '../strokes'
 import type { components } from './schema'
 import type {
   CaptureInfo,
@@ -53,6 +53,16 @@ interface TraceRequest {
   readonly settings?: Partial<Settings>
   /** A sketch of the side, which sets the live tree's depth. */
   readonly side?: Sketches['side']
+}
+
+/** A request for siblings of a model's tree. */
+export interface SiblingsOrder {
+  readonly count: number
+  readonly seed: number
+  /** The outline that they fill: a shape by its name, or one that was drawn, px; absent for the tree's own. */
+  readonly envelope?: string | { readonly points: readonly Point[] }
+  /** Whether they are set in one scene, too. */
+  readonly scene: boolean
 }
 
 /** A request for a model. */
@@ -164,6 +174,11 @@ export class Client {
     const wireInputs = { ...inputs, ...drawnIn(inputs) }
     const pictures = { ...(leaf && { leaf: await base64(leaf) }), ...(fruit && { fruit: await base64(fruit) }) }
     return request('POST', '/v1/models', json({ ...wireInputs, ...rest, ...pictures }, { 'Idempotency-Key': key }))
+  }
+
+  /** Request siblings of a model's tree; requests with the same `key` lead to one model. */
+  growSiblings(id: string, order: SiblingsOrder & { readonly name: string }, key: string): Promise<Model> {
+    return request('POST', `/v1/models/${id}/siblings`, json(order, { 'Idempotency-Key': key }))
   }
 
   getModel(id: string): Promise<Model> {

@@ -10,7 +10,7 @@ export type StrokeSketch = Schemas['StrokeSketch']
 export type WireStrokes = Schemas['Strokes']
 export type Grown = Schemas['GrownSkeleton']
 export type PhotoFrame = Schemas['PhotoFrame']
-export type Model = Schemas['ModelInfo'] & { readonly clip?: string | null }
+export type Model = Schemas['ModelInfo']
 export type Limits = Schemas['Limits']
 export type Settings = Required<Schemas['ModelSettings']>
 export type WireCaptureStrokes = Schemas['CaptureStrokes']
@@ -21,33 +21,8 @@ export type CameraInfo = Schemas['CameraInfo']
 export type Cloud = Schemas['CloudInfo']
 
 export type CaptureTraceAnswer = Schemas['CaptureTraceAnswer']
-
-export type WireFrameStrokes = WireStrokes & { frame: number }
-
-/** A clip as the service has it. */
-export interface ClipInfo {
-  readonly id: string
-  readonly name: string
-  readonly width: number
-  readonly height: number
-  readonly frames: number
-  readonly frames_per_second: number
-  readonly seconds: number
-  readonly notes?: readonly StrokeWarning[]
-}
-
-/** A clip that is being sent: how many bytes have arrived, and the id of the clip that was made of them. */
-export interface UploadInfo {
-  readonly id: string
-  readonly offset: number
-  readonly clip: string | null
-}
-
-/** Points of a tree that were followed through the frames of a clip, px of the frame; null where one is not seen. */
-export interface Tracks {
-  readonly frames_per_second: number
-  readonly every: number
-  readonly points: readonly (readonly (readonly [number, number] | null)[])[]
-}
-
-export type ClipTraceAnswer = TraceAnswer & { readonly frame: number; readonly tracks: Tracks }
+export type WireFrameStrokes = Schemas['FrameStrokes']
+export type ClipInfo = Schemas['ClipInfo']
+export type ClipTraceAnswer = Schemas['ClipTraceAnswer']
+export type Tracks = Schemas['Tracks']
+export type UploadInfo = Schemas['UploadInfo']

@@ -34,7 +34,7 @@ export class Clips {
 
   /** Send a video; it goes on after a lost connection. Throws what the service refuses, and a `PageFault` where it was given up. */
   async send(file: File): Promise<ClipInfo> {
-    const most = (this.store.state.limits as { clip_bytes?: number } | null)?.clip_bytes ?? Number.POSITIVE_INFINITY
+    const most = this.store.state.limits?.clip_bytes ?? Number.POSITIVE_INFINITY
     if (file.size > most) throw new PageFault(text.clip.tooLarge(file.size, most))
     const send = ++this.#sends
     this.store.set({ sent: 0 })

@@ -1,6 +1,7 @@
 import { text } from '../../text'
 import { ShortcutsDialog } from '../drawing/ShortcutsDialog'
 import { useStore } from '../parts/useStore'
+import { GroveDialog } from '../siblings/GroveDialog'
 import { AdviceDialog } from './AdviceDialog'
 import { ClipDialog } from './ClipDialog'
 import { Dialog } from './Dialog'
@@ -14,6 +15,7 @@ const SHOWN = {
   advice: AdviceDialog,
   clip: ClipDialog,
   filming: FilmingDialog,
+  grove: GroveDialog,
   shortcuts: Shortcuts,
 } as const
 

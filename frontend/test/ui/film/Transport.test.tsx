@@ -42,7 +42,8 @@ test('a clip that was dragged goes on playing once it is let go', () => {
   const { playhead, host } = shown()
   playhead.play()
   const slider = host.querySelector<HTMLInputElement>('.transport-place')!
-  for (const type of ['pointerdown', 'input']) void act(() => void slider.dispatchEvent(new Event(type, { bubbles: true })))
+  for (const type of ['pointerdown', 'input'])
+    void act(() => void slider.dispatchEvent(new Event(type, { bubbles: true })))
   expect(playhead.playing).toBe(false)
   void act(() => void slider.dispatchEvent(new Event('pointerup', { bubbles: true })))
   expect(playhead.playing).toBe(true)
