@@ -31,8 +31,8 @@ from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import levels
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import Strokes
-from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
+from treestroke.core.sway.wind import wind_of
 from treestroke.service.loading import load_strokes
 from treestroke.service.model import Model
 from treestroke.service.trace import Trace

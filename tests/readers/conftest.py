@@ -18,8 +18,8 @@ from treestroke.codec.usd import encode_usdz
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import silent
-from treestroke.core.sway.clips import wind_of
 from treestroke.core.sway.skinning import skin
+from treestroke.core.sway.wind import wind_of
 from treestroke.service.files import tree_files
 
 ROOT = Path(__file__).parents[2]
@@ -84,9 +84,11 @@ def _files(tree: TreeModel) -> dict[str, bytes]:
     moving = [Part("bark", tree.bark, bark), Part("leaf", tree.leaf, leaf)]
     return {
         "plain.glb": encode_glb(still, tree.camera, provenance=Provenance("test")),
-        "wind.glb": encode_glb(moving, tree.camera, provenance=Provenance("test"), wind=wind),
+        "wind.glb": encode_glb(moving, tree.camera, provenance=Provenance("test"), motion=wind),
         "compressed.glb": encode_glb(still, tree.camera, provenance=Provenance("test"), compress=True),
-        "compressed_wind.glb": encode_glb(moving, tree.camera, provenance=Provenance("test"), wind=wind, compress=True),
+        "compressed_wind.glb": encode_glb(
+            moving, tree.camera, provenance=Provenance("test"), motion=wind, compress=True
+        ),
         "instanced.glb": encode_instanced(still[0], tree.cards, tree.atlas, tree.camera, provenance=Provenance("test")),
         **encode_gltf(still, tree.camera, provenance=Provenance("test"), stem="loose"),
         **encode_obj(tree.bark, tree.leaf, "tree"),

@@ -32,3 +32,8 @@ class Video:
     chosen: int
     picture: Picture
     notes: tuple[StrokeWarning, ...]
+
+    @property
+    def enlarged(self) -> float:
+        """Pixels of the picture for each pixel of the frames."""
+        return float(self.picture.shape[1] / self.frames.shape[2])

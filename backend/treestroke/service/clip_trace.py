@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from treestroke.core.pipeline.filming import ClipTrace, Tracks
+from treestroke.core.film.tracks import Tracks
+from treestroke.core.pipeline.filming import ClipTrace
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.strokes import FrameStrokes
 from treestroke.core.video import Video

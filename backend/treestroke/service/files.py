@@ -19,9 +19,9 @@ from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.pipeline.levels import Level, Levels, levels
 from treestroke.core.pipeline.settings import FILES, ModelSettings
 from treestroke.core.progress import Report
-from treestroke.core.sway.clips import wind_of
+from treestroke.core.sway.motion import Motion
 from treestroke.core.sway.skinning import skin
-from treestroke.core.sway.wind import Wind
+from treestroke.core.sway.wind import blown, wind_of
 
 Bundle = Mapping[str, bytes]
 """Files that belong together, by name; the first refers to the others."""
@@ -37,8 +37,8 @@ ENDINGS = {
     "csv": "skeleton.csv",
 }
 """Endings of the names of further files, by the setting's name for them."""
-CLIPS = {"none": (), "breeze": ("breeze",), "all": ("breeze", "gust")}
-"""Animation clips for each value of the setting ``wind``."""
+ANIMATIONS = {"none": (), "breeze": ("breeze",), "all": ("breeze", "gust")}
+"""Animations for each value of the setting ``wind``."""
 PLAIN = np.full((1, 1, 3), 128, dtype=np.uint8)
 """Texture (1, 1, 3), sRGB 0 to 255, of the collision solid, which is never drawn."""
 
@@ -50,7 +50,7 @@ def tree_files(
 
     All names begin with ``name``. ``report`` is called with the stages levels (if there are any) and write.
     """
-    writer = _Writer(tree, settings, name, generator, _wind(tree, settings))
+    writer = _Writer(tree, settings, name, generator, _motion(tree, settings))
     coarse = None if settings.lod == "none" else levels(tree, report)
     recipes = writer.glbs(coarse) | {f"{name}.{ENDINGS[kind]}": partial(writer.other, kind) for kind in settings.files}
     bundles = {}
@@ -78,9 +78,12 @@ def files_on_offer() -> tuple[str, ...]:
     return tuple(file for file in FILES if file != "usdz" or has_usd())
 
 
-def _wind(tree: TreeModel, settings: ModelSettings) -> Wind | None:
-    clips = CLIPS[settings.wind]
-    return wind_of(tree.grown.skeleton, clips, None if tree.cards is None else tree.cards.joints) if clips else None
+def _motion(tree: TreeModel, settings: ModelSettings) -> Motion | None:
+    """Return what moves a tree: as it was filmed, and as the setting ``wind`` wants it."""
+    names = ANIMATIONS[settings.wind]
+    if tree.motion is not None:
+        return Motion(tree.motion.rig, (tree.motion.animation, *blown(tree.motion.rig, names)))
+    return wind_of(tree.grown.skeleton, names, None if tree.cards is None else tree.cards.joints) if names else None
 
 
 def _with_coarser(fine: list[Part], coarser: list[list[Part]], impostor: Part) -> list[Part]:
@@ -95,10 +98,12 @@ def _with_coarser(fine: list[Part], coarser: list[list[Part]], impostor: Part) -
 class _Writer:
     """Writes the files of one tree; all their names begin alike."""
 
-    def __init__(self, tree: TreeModel, settings: ModelSettings, name: str, generator: str, wind: Wind | None) -> None:
+    def __init__(
+        self, tree: TreeModel, settings: ModelSettings, name: str, generator: str, motion: Motion | None
+    ) -> None:
         self._tree, self._settings, self._name = tree, settings, name
-        self._wind = wind
-        self._provenance = Provenance(generator, tree.captured)
+        self._motion = motion
+        self._provenance = Provenance(generator, tree.captured, tree.motion)
 
     def glbs(self, coarse: Levels | None) -> dict[str, Callable[[], Bundle]]:
         """Return functions that write the GLB and its levels of detail, as files of their own or in the one file."""
@@ -119,7 +124,7 @@ class _Writer:
         match kind:
             case "gltf":
                 parts = self._parts(Level(tree.bark, tree.leaf))
-                return encode_gltf(parts, tree.camera, provenance=self._provenance, stem=name, wind=self._wind)
+                return encode_gltf(parts, tree.camera, provenance=self._provenance, stem=name, motion=self._motion)
             case "obj":
                 return encode_obj(tree.bark, tree.leaf, name)
             case "usdz":
@@ -150,14 +155,14 @@ class _Writer:
         return {file: lambda: {file: self._encoded(parts)}}
 
     def _encoded(self, parts: list[Part]) -> bytes:
-        wind = self._wind if any(part.skin is not None for part in parts) else None
+        motion = self._motion if any(part.skin is not None for part in parts) else None
         compress = self._settings.compress
-        return encode_glb(parts, self._tree.camera, provenance=self._provenance, wind=wind, compress=compress)
+        return encode_glb(parts, self._tree.camera, provenance=self._provenance, motion=motion, compress=compress)
 
     def _parts(self, level: Level, suffix: str = "") -> list[Part]:
         surfaces: list[tuple[MaterialName, Surface | None]] = [("bark", level.bark), ("leaf", level.leaf)]
         return [self._part(material, surface, suffix) for material, surface in surfaces if surface is not None]
 
     def _part(self, material: MaterialName, surface: Surface, suffix: str) -> Part:
-        weights = None if self._wind is None else skin(self._wind.rig, surface.mesh, leaves=material == "leaf")
+        weights = None if self._motion is None else skin(self._motion.rig, surface.mesh, leaves=material == "leaf")
         return Part(material, surface, weights, suffix)

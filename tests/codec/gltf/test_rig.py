@@ -10,28 +10,30 @@ from treestroke.codec.gltf.tree import Part, Provenance, encode_glb
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import Surface
 from treestroke.core.mesh.tubes import tubes
-from treestroke.core.sway.clips import wind_of
+from treestroke.core.sway.motion import Motion
 from treestroke.core.sway.skinning import skin
-from treestroke.core.sway.wind import Wind
+from treestroke.core.sway.wind import wind_of
 
 CAMERA = OrthographicCamera(640, 480, 0.01, (320.5, 450.25))
 
 
 @pytest.fixture(scope="module")
-def wind() -> Wind:
+def wind() -> Motion:
     tree = oak()
     return wind_of(tree, ("breeze", "gust"), np.arange(60, len(tree)))
 
 
 @pytest.fixture(scope="module")
-def part(wind: Wind) -> Part:
+def part(wind: Motion) -> Part:
     mesh = tubes(oak())
     return Part("bark", Surface(mesh, np.full((8, 4, 3), 90, np.uint8)), skin(wind.rig, mesh, leaves=False))
 
 
 @pytest.fixture(scope="module")
-def gltf(wind: Wind, part: Part) -> pygltflib.GLTF2:
-    return pygltflib.GLTF2.load_from_bytes(encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), wind=wind))
+def gltf(wind: Motion, part: Part) -> pygltflib.GLTF2:
+    return pygltflib.GLTF2.load_from_bytes(
+        encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), motion=wind)
+    )
 
 
 def values(gltf: pygltflib.GLTF2, index: int) -> np.ndarray:
@@ -50,7 +52,7 @@ def test_the_scene_holds_the_mesh_and_the_root_bone_beside_it(gltf: pygltflib.GL
     assert gltf.skins[0].skeleton == gltf.scenes[0].nodes[1]
 
 
-def test_joints_stand_where_bones_start_and_inverse_binds_undo_them(gltf: pygltflib.GLTF2, wind: Wind) -> None:
+def test_joints_stand_where_bones_start_and_inverse_binds_undo_them(gltf: pygltflib.GLTF2, wind: Motion) -> None:
     joints = gltf.skins[0].joints
     place = {gltf.skins[0].skeleton: np.array(gltf.nodes[gltf.skins[0].skeleton].translation)}
     for index in joints:
@@ -65,7 +67,7 @@ def test_joints_stand_where_bones_start_and_inverse_binds_undo_them(gltf: pygltf
     assert np.array_equal(matrices[:, :, :3], np.tile(np.eye(4)[:, :3], (len(joints), 1, 1)))
 
 
-def test_branch_bones_have_their_radius(gltf: pygltflib.GLTF2, wind: Wind) -> None:
+def test_branch_bones_have_their_radius(gltf: pygltflib.GLTF2, wind: Motion) -> None:
     told = [(gltf.nodes[index].extras or {}).get("radius", 0.0) for index in gltf.skins[0].joints]
     assert told == pytest.approx(wind.rig.radii, abs=1e-6)
 
@@ -80,14 +82,14 @@ def test_vertices_name_bones_by_byte_and_carry_sway_and_phase(gltf: pygltflib.GL
     assert gltf.accessors[attributes.WEIGHTS_0].normalized
 
 
-def test_clips_become_animations_that_turn_joints(gltf: pygltflib.GLTF2, wind: Wind) -> None:
+def test_animations_turn_joints(gltf: pygltflib.GLTF2, wind: Motion) -> None:
     assert [animation.name for animation in gltf.animations] == ["breeze", "gust"]
-    for animation, clip in zip(gltf.animations, wind.clips, strict=True):
-        targets = [gltf.nodes[channel.target.node].name for channel in animation.channels]
-        assert targets == [wind.rig.names[bone] for bone in clip.bones]
-        assert {channel.target.path for channel in animation.channels} == {"rotation"}
-        for channel, times, turns in zip(animation.channels, clip.times, clip.rotations, strict=True):
-            sampler = animation.samplers[channel.sampler]
+    for written, animation in zip(gltf.animations, wind.animations, strict=True):
+        targets = [gltf.nodes[channel.target.node].name for channel in written.channels]
+        assert targets == [wind.rig.names[bone] for bone in animation.bones]
+        assert {channel.target.path for channel in written.channels} == {"rotation"}
+        for channel, times, turns in zip(written.channels, animation.times, animation.rotations, strict=True):
+            sampler = written.samplers[channel.sampler]
             assert np.array_equal(values(gltf, sampler.input)[:, 0], times.astype(np.float32))
             assert np.array_equal(values(gltf, sampler.output), turns.astype(np.float32))
 
@@ -110,6 +112,6 @@ def test_without_wind_the_file_is_that_of_a_mesh_without_attachment(part: Part) 
     assert "skins" not in json.loads(still[20 : 20 + int.from_bytes(still[12:16], "little")])
 
 
-def test_equal_wind_gives_equal_bytes(wind: Wind, part: Part) -> None:
-    first, second = (encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), wind=wind) for _ in range(2))
+def test_equal_wind_gives_equal_bytes(wind: Motion, part: Part) -> None:
+    first, second = (encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), motion=wind) for _ in range(2))
     assert first == second

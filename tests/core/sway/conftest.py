@@ -6,8 +6,8 @@ import pytest
 
 import treestroke
 from treestroke.core.pipeline.finishing import TreeModel
-from treestroke.core.sway.clips import wind_of
-from treestroke.core.sway.wind import Wind
+from treestroke.core.sway.motion import Motion
+from treestroke.core.sway.wind import wind_of
 
 
 @pytest.fixture(scope="session")
@@ -16,5 +16,5 @@ def maple(maple_photo: Path, maple_strokes: Path) -> TreeModel:
 
 
 @pytest.fixture(scope="session")
-def blown(maple: TreeModel) -> Wind:
+def blown(maple: TreeModel) -> Motion:
     return wind_of(maple.grown.skeleton, ("breeze", "gust"), maple.cards.joints)

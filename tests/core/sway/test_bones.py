@@ -10,7 +10,7 @@ from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import child_counts
 from treestroke.core.sway.bones import MOST_BRANCHES, MOST_FLUTTERS, rig_of
-from treestroke.core.sway.wind import Wind
+from treestroke.core.sway.motion import Motion
 
 
 def tips(tree: Skeleton) -> np.ndarray:
@@ -51,7 +51,7 @@ def test_flutter_bones_have_length_and_hang_on_branches(tree: Skeleton, leafy: b
     assert (rig.flutter[parents] == np.flatnonzero(flutters)).all()
 
 
-def test_a_photographed_tree_has_all_bones_it_may_have(blown: Wind) -> None:
+def test_a_photographed_tree_has_all_bones_it_may_have(blown: Motion) -> None:
     names = blown.rig.names
     assert len(set(names)) == len(names)
     assert len(branches(blown.rig)) == MOST_BRANCHES - 1
@@ -89,7 +89,7 @@ def test_limbs_with_leaves_get_bones_before_bare_ones() -> None:
     assert (leafy.ends[branches(leafy), 0] > 0).mean() > (bare.ends[branches(bare), 0] > 0).mean()
 
 
-def test_a_bone_is_as_thick_as_the_wood_at_its_head(maple: TreeModel, blown: Wind) -> None:
+def test_a_bone_is_as_thick_as_the_wood_at_its_head(maple: TreeModel, blown: Motion) -> None:
     tree, rig = maple.grown.skeleton, blown.rig
     for bone in branches(rig):
         starts = np.flatnonzero(np.linalg.norm(tree.points[np.maximum(tree.parents, 0)] - rig.heads[bone], axis=1) == 0)

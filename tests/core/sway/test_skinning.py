@@ -12,11 +12,11 @@ from treestroke.core.mesh.tubes import tubes
 from treestroke.core.pipeline.finishing import TreeModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.sway.bones import rig_of
-from treestroke.core.sway.clips import wind_of
+from treestroke.core.sway.motion import Animation, Motion
 from treestroke.core.sway.skinning import skin
-from treestroke.core.sway.wind import Clip, Wind
+from treestroke.core.sway.wind import wind_of
 
-REST = Clip("rest", (), (), ())
+REST = Animation("rest", (), (), ())
 
 
 def held_cards(tree: Skeleton, joints: np.ndarray) -> Mesh:
@@ -43,7 +43,7 @@ def test_weights_sum_to_255_and_bones_of_weight_0_are_bone_0(tree: Skeleton) -> 
         assert bound.bones.max() < len(rig.names)
 
 
-def test_bones_at_rest_leave_a_photographed_tree_as_it_was(maple: TreeModel, blown: Wind) -> None:
+def test_bones_at_rest_leave_a_photographed_tree_as_it_was(maple: TreeModel, blown: Motion) -> None:
     for mesh, leaves in ((maple.bark.mesh, False), (maple.leaf.mesh, True)):
         bound = skin(blown.rig, mesh, leaves=leaves)
         assert moved(blown.rig, REST, 0.0, bound, mesh.positions) == pytest.approx(mesh.positions, abs=1e-6)
@@ -66,21 +66,21 @@ def test_a_vertex_follows_the_joints_that_it_is_attached_to() -> None:
 
 
 @pytest.mark.parametrize("number", [0, 1])
-def test_the_foot_stands_still_and_bark_never_tears(maple: TreeModel, blown: Wind, number: int) -> None:
-    mesh, clip = maple.bark.mesh, blown.clips[number]
+def test_the_foot_stands_still_and_bark_never_tears(maple: TreeModel, blown: Motion, number: int) -> None:
+    mesh, animation = maple.bark.mesh, blown.animations[number]
     positions = mesh.positions.astype(np.float64)
     bound = skin(blown.rig, mesh, leaves=False)
     edges = mesh.triangles[:, [0, 1, 1, 2]].reshape(-1, 2)
     rest = np.linalg.norm(positions[edges[:, 0]] - positions[edges[:, 1]], axis=1)
-    for seconds in np.linspace(0, clip.times[0][-1], 6)[:-1]:
-        now = moved(blown.rig, clip, seconds, bound, positions)
+    for seconds in np.linspace(0, animation.times[0][-1], 6)[:-1]:
+        now = moved(blown.rig, animation, seconds, bound, positions)
         assert np.abs(now - positions)[positions[:, 1] < 0.02].max() < 1e-9
         stretched = np.linalg.norm(now[edges[:, 0]] - now[edges[:, 1]], axis=1) - rest
         assert (np.abs(stretched) < 0.002 + 0.05 * rest).all()
 
 
-def test_rings_stay_around_their_joints_in_a_gust(maple: TreeModel, blown: Wind) -> None:
-    tree, clip = maple.grown.skeleton, blown.clips[1]
+def test_rings_stay_around_their_joints_in_a_gust(maple: TreeModel, blown: Motion) -> None:
+    tree, animation = maple.grown.skeleton, blown.animations[1]
     positions = maple.bark.mesh.positions.astype(np.float64)
     joints = Mesh(
         tree.points.astype(np.float32),
@@ -91,8 +91,8 @@ def test_rings_stay_around_their_joints_in_a_gust(maple: TreeModel, blown: Wind)
     )
     attachment = maple.bark.mesh.attachment
     on_joint = attachment.joints[:, 0] == attachment.joints[:, 1]
-    wood = moved(blown.rig, clip, 3.0, skin(blown.rig, joints, leaves=False), joints.positions.astype(np.float64))
-    bark = moved(blown.rig, clip, 3.0, skin(blown.rig, maple.bark.mesh, leaves=False), positions)
+    wood = moved(blown.rig, animation, 3.0, skin(blown.rig, joints, leaves=False), joints.positions.astype(np.float64))
+    bark = moved(blown.rig, animation, 3.0, skin(blown.rig, maple.bark.mesh, leaves=False), positions)
     before = np.linalg.norm(positions - tree.points[attachment.joints[:, 0]], axis=1)
     after = np.linalg.norm(bark - wood[attachment.joints[:, 0]], axis=1)
     assert after[on_joint] == pytest.approx(before[on_joint], abs=0.004)
@@ -112,18 +112,18 @@ def test_outer_corners_of_leaves_flutter_and_inner_ones_follow_the_wood() -> Non
     assert (part[~own][:, 2:] < 0.2).all()
 
 
-def test_cards_keep_their_shape_within_reason(maple: TreeModel, blown: Wind) -> None:
-    mesh, clip = maple.leaf.mesh, blown.clips[0]
+def test_cards_keep_their_shape_within_reason(maple: TreeModel, blown: Motion) -> None:
+    mesh, animation = maple.leaf.mesh, blown.animations[0]
     bound = skin(blown.rig, mesh, leaves=True)
     rest = mesh.positions.astype(np.float64).reshape(-1, 4, 3)
-    now = moved(blown.rig, clip, 2.0, bound, mesh.positions.astype(np.float64)).reshape(-1, 4, 3)
+    now = moved(blown.rig, animation, 2.0, bound, mesh.positions.astype(np.float64)).reshape(-1, 4, 3)
     sides = [np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2) for corners in (rest, now)]
     stretched = np.abs(sides[1] / sides[0] - 1).max(axis=1)
     assert np.percentile(stretched, 95) < 0.15
     assert np.percentile(stretched, 50) > 0.001
 
 
-def test_sway_is_0_at_the_foot_and_grows_outward(maple: TreeModel, blown: Wind) -> None:
+def test_sway_is_0_at_the_foot_and_grows_outward(maple: TreeModel, blown: Motion) -> None:
     mesh, tree = maple.bark.mesh, maple.grown.skeleton
     bound = skin(blown.rig, mesh, leaves=False)
     assert bound.sway[mesh.positions[:, 1] < 0.02].max() == 0

@@ -12,7 +12,7 @@ from PIL import Image
 
 from treestroke.core.geometry.mesh import Mesh, Surface, submesh
 from treestroke.core.geometry.tangents import shows_normal_map, tangents
-from treestroke.core.sway.wind import Skin
+from treestroke.core.sway.motion import Skin
 from treestroke.core.types import Mask
 
 _COMPONENTS = {np.uint8: 5121, np.int16: 5122, np.uint16: 5123, np.uint32: 5125, np.float32: 5126}

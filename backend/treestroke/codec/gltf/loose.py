@@ -7,7 +7,7 @@ from urllib.parse import quote
 from treestroke.codec.gltf.document import Document
 from treestroke.codec.gltf.tree import Part, Provenance, build_document
 from treestroke.core.geometry.camera import OrthographicCamera
-from treestroke.core.sway.wind import Wind
+from treestroke.core.sway.motion import Motion
 
 _ENDINGS = {"image/jpeg": "jpg", "image/png": "png"}
 
@@ -18,13 +18,13 @@ def encode_gltf(
     *,
     provenance: Provenance,
     stem: str,
-    wind: Wind | None = None,
+    motion: Motion | None = None,
 ) -> dict[str, bytes]:
     """Encode a tree as ``stem.gltf``, ``stem.bin``, ``stem_bark.jpg``, ``stem_leaf.png`` ...: bytes by name.
 
     The content is that of `encode_glb`. Equal input gives equal bytes.
     """
-    document, head = build_document(parts, camera, provenance, wind)
+    document, head = build_document(parts, camera, provenance, motion)
     pictures = _take_pictures(document, stem)
     content = document.as_dict(head)
     content["buffers"][0]["uri"] = quote(f"{stem}.bin")

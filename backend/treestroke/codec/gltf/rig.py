@@ -1,4 +1,4 @@
-"""Wind in a glTF document: bones as nodes, a skin, and clips as animations."""
+"""Motion in a glTF document: bones as nodes, a skin, and animations."""
 
 from typing import Any
 
@@ -6,27 +6,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.codec.gltf.document import Document
-from treestroke.core.sway.wind import Clip, Rig, Wind
+from treestroke.core.sway.motion import Animation, Motion, Rig
 
 _DIGITS = 6
 """Decimals of a bone's position, metres: rounded, translations add up exactly to the inverse bind matrices."""
 
 
-def add_wind(document: Document, wind: Wind) -> int:
-    """Add bones, the document's only skin and the clips; return the index of the root bone's node.
+def add_motion(document: Document, motion: Motion) -> int:
+    """Add bones, the document's only skin and the animations; return the index of the root bone's node.
 
     That node belongs into the scene. Bones have no rotation at rest. A branch bone's ``extras.radius`` is that of its
     wood, metres.
     """
     first = len(document.tables.get("nodes", []))
-    rig = wind.rig
+    rig = motion.rig
     for node in _joints(rig, first):
         document.row("nodes", node)
     joints = list(range(first, first + len(rig.names)))
     bound = document.accessor(_inverse_binds(rig))
     document.row("skins", {"name": "wind", "inverseBindMatrices": bound, "skeleton": first, "joints": joints})
-    for clip in wind.clips:
-        document.row("animations", _animation(document, clip, first))
+    for animation in motion.animations:
+        document.row("animations", _animation(document, animation, first))
     return first
 
 
@@ -53,12 +53,12 @@ def _inverse_binds(rig: Rig) -> NDArray[np.float32]:
     return matrices.reshape(-1, 16)
 
 
-def _animation(document: Document, clip: Clip, first: int) -> dict[str, Any]:
-    """Add a clip's keyframes and return its animation; bones with the same times share them."""
+def _animation(document: Document, animation: Animation, first: int) -> dict[str, Any]:
+    """Add keyframes and return the row of an animation; bones with the same times share them."""
     inputs: dict[bytes, int] = {}
     samplers: list[dict[str, int]] = []
     channels: list[dict[str, Any]] = []
-    for bone, times, rotations in zip(clip.bones, clip.times, clip.rotations, strict=True):
+    for bone, times, rotations in zip(animation.bones, animation.times, animation.rotations, strict=True):
         seconds = times.astype(np.float32)
         key = seconds.tobytes()
         if key not in inputs:
@@ -66,4 +66,4 @@ def _animation(document: Document, clip: Clip, first: int) -> dict[str, Any]:
         target = {"node": first + bone, "path": "rotation"}
         channels.append({"sampler": len(samplers), "target": target})
         samplers.append({"input": inputs[key], "output": document.accessor(rotations.astype(np.float32))})
-    return {"name": clip.name, "channels": channels, "samplers": samplers}
+    return {"name": animation.name, "channels": channels, "samplers": samplers}

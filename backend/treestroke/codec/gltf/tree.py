@@ -2,18 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from treestroke.codec.cameras import plain_cameras
 from treestroke.codec.gltf.compression import compressed
 from treestroke.codec.gltf.document import TRANSLUCENT, Document, Material
 from treestroke.codec.gltf.levels import add_levels
-from treestroke.codec.gltf.rig import add_wind
+from treestroke.codec.gltf.rig import add_motion
+from treestroke.codec.motion import plain_motion
 from treestroke.codec.skeleton import plain_camera
 from treestroke.core.geometry.camera import OrthographicCamera
 from treestroke.core.geometry.mesh import ALPHA_CUT, Surface
 from treestroke.core.pipeline.grown_tree import CapturedViews
-from treestroke.core.sway.wind import Skin, Wind
+from treestroke.core.sway.motion import Motion, Skin
+
+if TYPE_CHECKING:
+    from treestroke.core.pipeline.measured_motion import MeasuredMotion
 
 _CLAMP, _REPEAT = 33071, 10497  # a sampler's wrapS and wrapT
 MaterialName = Literal["bark", "leaf", "impostor", "collision"]
@@ -47,10 +51,11 @@ MATERIALS: Mapping[MaterialName, Material] = {
 
 @dataclass(frozen=True, eq=False)
 class Provenance:
-    """Where a tree's file comes from: the program that wrote it, and the photos that the tree was measured from."""
+    """Where a tree's file comes from: the program that wrote it, the photos or the clip that it was measured from."""
 
     generator: str
     captured: CapturedViews | None = None
+    motion: "MeasuredMotion | None" = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +69,7 @@ class Part:
     surface
         Its triangles and textures.
     skin
-        How its vertices follow the wind's bones, or None where nothing moves.
+        How its vertices follow the bones, or None where nothing moves.
     suffix
         Added to the names of its node, mesh and material, such as ``_lod1``.
     coarser
@@ -83,47 +88,48 @@ def encode_glb(
     camera: OrthographicCamera,
     *,
     provenance: Provenance,
-    wind: Wind | None = None,
+    motion: Motion | None = None,
     compress: bool = False,
 ) -> bytes:
     """Encode a tree as a self-contained GLB.
 
     Nodes, meshes and materials are named by their material; the scene's ``extras.photo`` holds the camera,
-    ``extras.cameras`` those of a capture's photos. The bark's
+    ``extras.cameras`` those of a capture's photos, ``extras.motion`` what a clip showed. The bark's
     texture is a JPEG that repeats, the leaves' a PNG with alpha, cut at `ALPHA_CUT`. Texture coordinates within
     0 to 1 become 16 bit, shades a grey COLOR_0 of 8 bit. Compressed, the file is about a third as large and requires
     three extensions of its readers (`compression`). Equal input gives equal bytes.
     """
-    document, head = build_document(parts, camera, provenance, wind)
+    document, head = build_document(parts, camera, provenance, motion)
     return (compressed(document) if compress else document).glb(head)
 
 
 def build_document(
-    parts: Sequence[Part], camera: OrthographicCamera, provenance: Provenance, wind: Wind | None
+    parts: Sequence[Part], camera: OrthographicCamera, provenance: Provenance, motion: Motion | None
 ) -> tuple[Document, dict[str, Any]]:
     """Build the document of a tree, and the entries of its JSON that come before the tables."""
     document = Document()
-    roots = [_add(document, part, wind) for part in parts]
+    roots = [_add(document, part, motion) for part in parts]
     for part, node in zip(parts, roots, strict=True):
         if part.coarser:
             ends = part.coarser[-1].material == "impostor"
-            add_levels(document, node, [_add(document, level, wind) for level in part.coarser], ends)
-    if wind is not None:
+            add_levels(document, node, [_add(document, level, motion) for level in part.coarser], ends)
+    if motion is not None:
         # a skinned mesh stands beside its bones, for no other node may move it
-        roots.append(add_wind(document, wind))
+        roots.append(add_motion(document, motion))
     return document, head_of(roots, camera, provenance)
 
 
-def _add(document: Document, part: Part, wind: Wind | None) -> int:
+def _add(document: Document, part: Part, motion: Motion | None) -> int:
     """Add a part and return the index of its node."""
     name = part.material + part.suffix
     # An impostor is transparent between its leaves: readers that recognise leaves by name must cut it as they do those.
     material_name = f"leaf_{name}" if part.material == "impostor" else name
-    return document.add(name, part.surface, MATERIALS[part.material], part.skin if wind else None, material_name)
+    return document.add(name, part.surface, MATERIALS[part.material], part.skin if motion else None, material_name)
 
 
 def head_of(roots: list[int], camera: OrthographicCamera, provenance: Provenance) -> dict[str, Any]:
     """Return the entries before the tables: the asset, and one scene with the cameras."""
     cameras = {} if provenance.captured is None else {"cameras": plain_cameras(provenance.captured)}
-    scene = {"nodes": roots, "extras": {"photo": plain_camera(camera), **cameras}}
+    motion = {} if provenance.motion is None else {"motion": plain_motion(provenance.motion)}
+    scene = {"nodes": roots, "extras": {"photo": plain_camera(camera), **cameras, **motion}}
     return {"asset": {"version": "2.0", "generator": provenance.generator}, "scene": 0, "scenes": [scene]}

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -21,6 +22,9 @@ from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Measures, measure_tree
 from treestroke.core.types import Floats
+
+if TYPE_CHECKING:
+    from treestroke.core.pipeline.measured_motion import MeasuredMotion
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +47,8 @@ class TreeModel:
         What the tree is taken for.
     captured
         Where its photos were taken, of a tree that was measured from several.
+    motion
+        How it moves, of a tree that was filmed.
     """
 
     camera: OrthographicCamera
@@ -60,6 +66,7 @@ class TreeModel:
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
     captured: CapturedViews | None
+    motion: "MeasuredMotion | None"
 
 
 OnGrown = Callable[[LiveTree], None]
@@ -79,7 +86,7 @@ def finish(
 ) -> TreeModel:
     """Add leaves, fruit and bark to a grown tree, and measure it.
 
-    ``report(stage, fraction)`` is called with the stages leaf and mesh.
+    ``report(stage, fraction)`` is called with the stages leaf and mesh, and motion where it was filmed.
 
     Raises
     ------
@@ -108,7 +115,19 @@ def finish(
         reading=tree.reading,
         warnings=tree.warnings,
         captured=tree.captured,
+        motion=_motion(tree, leaf_cards, report),
     )
+
+
+def _motion(tree: GrownTree, leaves: Leaves | None, report: Report) -> "MeasuredMotion | None":
+    """Measure the motion of a tree that was filmed."""
+    if tree.filmed is None:
+        return None
+    from treestroke.core.pipeline.measured_motion import measured_motion  # with scipy, slow, and rarely of use
+
+    report("motion", 0.0)
+    joints = None if leaves is None else leaves.joints
+    return measured_motion(tree.grown.skeleton, joints, tree.filmed, tree.camera)
 
 
 def _measures(tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Measures:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from treestroke.core.appearance import Appearance
 from treestroke.core.capture import UnusedPhoto
+from treestroke.core.film.tracks import Tracks
 from treestroke.core.geometry.camera import Camera, OrthographicCamera, PerspectiveCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
@@ -72,6 +73,25 @@ class CapturedViews:
 
 
 @dataclass(frozen=True, eq=False)
+class Filmed:
+    """How a clip shows a tree move.
+
+    Attributes
+    ----------
+    tracks
+        Points of the tree in all frames, px of the chosen frame's picture at its own size.
+    frames_per_second
+        Of the frames.
+    chosen
+        Index of the frame that was drawn on, in which the tree is as it was grown.
+    """
+
+    tracks: Tracks
+    frames_per_second: float
+    chosen: int
+
+
+@dataclass(frozen=True, eq=False)
 class GrownTree:
     """A grown tree, whatever its source.
 
@@ -99,6 +119,8 @@ class GrownTree:
         What was mended or assumed.
     captured
         Where its photos were taken, of a tree that was measured from several.
+    filmed
+        How it moves, of a tree that was filmed.
     """
 
     taken: Taken
@@ -112,6 +134,7 @@ class GrownTree:
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
     captured: CapturedViews | None = None
+    filmed: Filmed | None = None
 
     @property
     def kind(self) -> FoliageKind:

@@ -11,12 +11,14 @@ import numpy as np
 from treestroke.core.skeleton.measure import edge_lengths, path_lengths
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.skeleton.traverse import accumulate_to_root, heaviest_children, limbs
-from treestroke.core.sway.wind import Rig
+from treestroke.core.sway.motion import Rig
 from treestroke.core.types import Floats, Indices
 
 MOST_BRANCHES = 48
 """Greatest number of bones in the wood, with the root: what a phone skins easily, with flutter bones on top."""
 MOST_FLUTTERS = 16
+MOST_MEASURED = 224
+"""The same where motion was measured: with flutter bones, what a byte can name."""
 _MOST_ON_A_LIMB = 8
 _STILL = 0.03  # share of a stem's length, from its base, in which nothing moves
 _RAMP = 0.6  # of a bone's length, over which weights blend from the bone before to this one: a bend, not a kink
@@ -39,7 +41,7 @@ class _Cuts:
     ends: Indices
 
 
-def rig_of(skeleton: Skeleton, leaf_joints: Indices | None) -> Rig:
+def rig_of(skeleton: Skeleton, leaf_joints: Indices | None, most: int = MOST_BRANCHES, *, tips: bool = False) -> Rig:
     """Rig a skeleton (metres, world): a root that stands still, branch bones, and flutter bones where most leaves hang.
 
     The weights of joints blend from the bone's parent to the bone on a smooth ramp from the bone's head on, so that
@@ -50,31 +52,39 @@ def rig_of(skeleton: Skeleton, leaf_joints: Indices | None) -> Rig:
     ----------
     leaf_joints
         (m,) index of the joint that each leaf hangs at, or None for a bare tree, which has no flutter bones.
+    most
+        Greatest number of bones in the wood, with the root.
+    tips
+        Whether a bone without weight marks the end of each last bone of a branch: programs that show bones as lines
+        from joint to joint need it.
 
     Notes
     -----
     Why bones, how many, and why they only turn: docs/decisions/0012.
     """
     hung = np.empty(0, dtype=np.int64) if leaf_joints is None else leaf_joints
-    cuts = _cuts(skeleton, np.bincount(hung, minlength=len(skeleton)).astype(np.float64))
+    cuts = _cuts(skeleton, np.bincount(hung, minlength=len(skeleton)).astype(np.float64), most)
     owner = _owners(skeleton, cuts)
     parents = np.append(-1, owner[cuts.heads])
     share = _shares(skeleton, cuts, parents, owner)
     heads, ends = (skeleton.points[np.append(0, joints)] for joints in (cuts.heads, cuts.ends))
     leafy = _leafiest(np.bincount(owner[hung], minlength=len(parents)), heads, ends)
+    last = np.setdiff1d(np.arange(1, len(parents)), parents) if tips else np.empty(0, dtype=np.int64)
+    ended = np.zeros(len(last))
     return Rig(
-        names=_names(len(parents), len(leafy)),
-        parents=np.append(parents, leafy),
-        heads=np.concatenate([heads, heads[leafy] + _FLUTTER_AT * (ends - heads)[leafy]]),
-        ends=np.concatenate([ends, ends[leafy]]),
-        radii=np.concatenate([skeleton.radii[:1], skeleton.radii[cuts.starts], np.zeros(len(leafy))]),
+        names=_names(len(parents), len(leafy), len(last)),
+        parents=np.concatenate([parents, leafy, last]),
+        heads=np.concatenate([heads, heads[leafy] + _FLUTTER_AT * (ends - heads)[leafy], ends[last]]),
+        ends=np.concatenate([ends, ends[leafy], ends[last]]),
+        radii=np.concatenate([skeleton.radii[:1], skeleton.radii[cuts.starts], np.zeros(len(leafy)), ended]),
         joint_bones=np.stack([np.maximum(parents, 0)[owner], owner], axis=1),
         joint_share=share,
-        flutter=_flutter(parents, leafy),
+        flutter=np.append(_flutter(parents, leafy), np.full(len(last), -1, dtype=np.int64)),
+        extent=max(float(np.ptp(skeleton.points, axis=0).max()), 1e-6),
     )
 
 
-def _cuts(skeleton: Skeleton, leaves: Floats) -> _Cuts:
+def _cuts(skeleton: Skeleton, leaves: Floats, most: int) -> _Cuts:
     """Cut the limbs of greatest value into bones: length times the share of wood and leaves (n,) that they carry."""
     wood = edge_lengths(skeleton)
     carried = accumulate_to_root(skeleton, wood / max(wood.sum(), 1e-9) + leaves / max(leaves.sum(), 1.0))
@@ -84,18 +94,18 @@ def _cuts(skeleton: Skeleton, leaves: Floats) -> _Cuts:
     value = lengths * carried[[int(path[1]) for path in paths]] if paths else lengths
     found = [
         cut
-        for path, count in zip(paths, _bone_counts(value).tolist(), strict=True)
+        for path, count in zip(paths, _bone_counts(value, most).tolist(), strict=True)
         for cut in _bones_of_limb(path, distance[path] - distance[path[0]], count, skeleton.parents[path[0]] < 0)
     ]
     table = np.array(sorted(found), dtype=np.int64).reshape(-1, 3)
     return _Cuts(*table.T)
 
 
-def _bone_counts(value: Floats) -> Indices:
+def _bone_counts(value: Floats, most: int) -> Indices:
     """Distribute bones among limbs (k,) by the value of each further one; limbs of value 0 get none."""
     order = np.arange(1, _MOST_ON_A_LIMB + 1)
     of_bones = (value[:, None] / order**2).reshape(-1)
-    best = np.argsort(-of_bones, kind="stable")[: MOST_BRANCHES - 1]
+    best = np.argsort(-of_bones, kind="stable")[: most - 1]
     return np.bincount(best[of_bones[best] > 0] // _MOST_ON_A_LIMB, minlength=len(value)).astype(np.int64)
 
 
@@ -152,7 +162,8 @@ def _flutter(parents: Indices, leafy: Indices) -> Indices:
     return found
 
 
-def _names(branches: int, flutters: int) -> tuple[str, ...]:
-    """Name the root, the branches after it and the flutter bones."""
+def _names(branches: int, flutters: int, tips: int) -> tuple[str, ...]:
+    """Name the root, the branches after it, the flutter bones and the tips."""
     branch = [f"branch_{number:02d}" for number in range(1, branches)]
-    return ("root", *branch, *(f"flutter_{number:02d}" for number in range(1, flutters + 1)))
+    flutter = [f"flutter_{number:02d}" for number in range(1, flutters + 1)]
+    return ("root", *branch, *flutter, *(f"tip_{number:02d}" for number in range(1, tips + 1)))

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from treestroke.core.geometry.mesh import Attachment, Mesh
+from treestroke.core.sway.motion import Rig, Skin
 from treestroke.core.sway.stiffness import softness
-from treestroke.core.sway.wind import Rig, Skin
 from treestroke.core.types import Floats, Indices
 
 FLUTTER = 0.5

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from treestroke.core.sway.wind import Rig
+from treestroke.core.sway.motion import Rig
 from treestroke.core.types import Floats
 
 _SLENDER = 1.25  # exponent of the radius by which angles fall: twigs move some centimetres where the trunk moves one
@@ -18,15 +18,20 @@ def thickness(rig: Rig) -> Floats:
 def softness(rig: Rig) -> Floats:
     """Return the relative angle (b,) by which each bone turns, a factor: 1 for the thickest wood, more for thinner.
 
-    The root and flutter bones have 0.
+    All others have 0.
     """
     soft = ((1.0 + _THIN) / (thickness(rig) + _THIN)) ** _SLENDER
     return np.where(moving_branches(rig), soft, 0.0)
 
 
 def moving_branches(rig: Rig) -> NDArray[np.bool_]:
-    """Return the mask (b,) of the bones that are branches: neither the root nor for flutter."""
+    """Return the mask (b,) of the bones that are branches: neither the root, nor for flutter, nor tips."""
     return np.array([name.startswith("branch") for name in rig.names])
+
+
+def fluttering(rig: Rig) -> NDArray[np.bool_]:
+    """Return the mask (b,) of the bones for the flutter of leaves."""
+    return np.array([name.startswith("flutter") for name in rig.names])
 
 
 def swing_amplitudes(rig: Rig, turns: Floats) -> Floats:
