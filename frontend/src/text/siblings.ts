@@ -32,8 +32,8 @@ export const siblingsText = {
   download: (name: string) => `Download ${name} as GLB`,
   scene: 'Download the grove, GLB',
   grove: {
+    title: 'Grove',
     open: 'Walk through a grove',
-    close: 'Back to the tree',
     label: 'A grove of the tree and its siblings. Drag or use the arrow keys to turn it, plus and minus to zoom.',
     count: 'Trees',
     loading: 'Planting the grove …',

@@ -82,7 +82,7 @@ function clipStep(state: State, pointer: PointerKind): Hint {
   const { crown, branches } = drawnOn(state, 'front')
   if (!crown) return state.tool === 'crown' ? stepTo(hints.crown, how.crown) : stepTo(text.hints.chooseCrown)
   if (state.model || branches.length) return laterStep(state, pointer)
-  return state.liveTree ? stepTo(hints.trunk, how.branch) : stepTo(hints.reading)
+  return state.traced ? stepTo(hints.trunk, how.branch) : stepTo(hints.reading)
 }
 
 /** Return the next step on paper; null once trunk and branches are drawn. */

@@ -2,17 +2,10 @@ import { frameUrl, videoUrl } from '../../api/addresses'
 import type { Playhead } from '../../playhead'
 import type { Clip } from '../../state'
 import { followPlayhead } from '../parts/usePlayhead'
-import { FrameLoader } from './frameLoader'
+import { FrameLoader, type Still } from './frameLoader'
 
 /** How far the video may be from the playhead while it plays, seconds, before it is set to its place. */
 const DRIFT = 0.15
-
-/** A picture that can be drawn, with its size, px. */
-export interface Still {
-  readonly image: CanvasImageSource
-  readonly width: number
-  readonly height: number
-}
 
 /**
  * Shows the frame of a clip that the playhead is at: by the browser's own player, or frame by frame from the service where

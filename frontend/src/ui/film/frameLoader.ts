@@ -1,9 +1,14 @@
-import type { Still } from './film'
-
 /** How many frames are fetched ahead of the one that is shown. */
 const AHEAD = 12
 /** How many are fetched at once: one comes after the other over a slow connection. */
 const AT_ONCE = 3
+
+/** A picture that can be drawn, with its size, px. */
+export interface Still {
+  readonly image: CanvasImageSource
+  readonly width: number
+  readonly height: number
+}
 
 /** Fetches the frames of a clip as pictures, those that are shown soon first, and keeps them. */
 export class FrameLoader {

@@ -37,8 +37,8 @@ function drawPath(ctx: CanvasRenderingContext2D, { track, way }: TrackPath, scal
   const colour = COLOURS[track % COLOURS.length]!
   const [x, y] = way.at(-1)!
   for (const [style, wide] of [
-    ['rgb(0 0 0 / 45%)', 3.5],
-    [colour, 1.75],
+    ['rgb(0 0 0 / 40%)', 3],
+    [colour, 1.5],
   ] as const) {
     ctx.strokeStyle = style
     ctx.lineWidth = wide * devicePixelRatio

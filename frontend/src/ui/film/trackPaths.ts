@@ -1,7 +1,9 @@
 import type { Tracks } from '../../api/types'
 
 /** How many frames of its way a point's tail shows. */
-const TAIL = 14
+const TAIL = 9
+/** How many points are shown at most: more would hide the tree. */
+const MOST = 260
 
 type Point = readonly [number, number]
 
@@ -12,11 +14,12 @@ export interface TrackPath {
   readonly way: readonly Point[]
 }
 
-/** Return the points that are seen in a frame of the clip, from 0, each with a short tail without gaps. */
+/** Return points that are seen in a frame of the clip, from 0, each with a short tail without gaps; of very many, a part. */
 export function pathsAt({ points, every }: Tracks, frame: number): TrackPath[] {
   const at = Math.floor(frame / Math.max(every, 1))
+  const step = Math.ceil(points.length / MOST)
   return points.flatMap((places, track) => {
-    if (!places[at]) return []
+    if (track % step || !places[at]) return []
     const way: Point[] = []
     for (let past = at; past >= Math.max(at - TAIL, 0) && places[past]; past--) way.unshift(places[past]!)
     return [{ track, way }]

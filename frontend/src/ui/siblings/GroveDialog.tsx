@@ -6,7 +6,7 @@ import { useStore, useStudio } from '../parts/useStore'
 import { Dialog } from '../start/Dialog'
 import './groveDialog.css'
 
-const { grove: words, title } = text.siblings
+const { grove: words } = text.siblings
 const [LEAST, MOST, STEP, FIRST] = [10, 200, 10, 60]
 const TURN = Math.PI / 18
 const ZOOM = 1.2
@@ -37,7 +37,7 @@ export function GroveDialog() {
     turn(view.current)
   }
   return (
-    <Dialog title={title} class="grove-dialog">
+    <Dialog title={words.title} class="grove-dialog">
       <div class="grove-stage">
         {/* biome-ignore lint/a11y/noInteractiveElementToNoninteractiveRole: keys turn what it shows */}
         <canvas

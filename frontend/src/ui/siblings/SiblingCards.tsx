@@ -1,3 +1,4 @@
+import { useLayoutEffect, useRef } from 'preact/hooks'
 import type { Model } from '../../api/types'
 import { fileName } from '../../studio/project'
 import { groveOf, siblingsOf, treeOf } from '../../studio/variants'
@@ -14,13 +15,16 @@ const { siblings: words } = text
 export function SiblingCards() {
   const model = useStore(state => state.model)
   const { store } = useStudio()
+  const list = useRef<HTMLUListElement>(null)
+  // The button that was pressed is far below.
+  useLayoutEffect(() => list.current?.closest('.panel')?.scrollTo?.({ top: 0 }), [model?.info.id])
   if (!model) return null
   const { info, sibling } = model
   const numbers = Array.from({ length: siblingsOf(info) + 1 }, (_, at) => at)
   const grove = groveOf(info)
   return (
     <>
-      <ul class="sibling-cards" aria-label={words.list}>
+      <ul class="sibling-cards" ref={list} aria-label={words.list}>
         {numbers.map(number => (
           <Card key={`${info.id}/${number}`} model={info} number={number} isShown={number === sibling} />
         ))}
