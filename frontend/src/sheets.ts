@@ -1,5 +1,6 @@
+import { frameUrl } from './api/addresses'
 import type { CapturePhoto } from './api/types'
-import type { Capture, CaptureSheet, PhotoSheet, Sheet, Sheets, State } from './state'
+import type { Capture, CaptureSheet, Clip, FrameSheet, PhotoSheet, Sheet, Sheets, State } from './state'
 import {
   type Line,
   lineOf,
@@ -72,6 +73,16 @@ export function captureOf({ sheets }: Open): Capture | null {
   return sheets?.source === 'capture' ? sheets.capture : null
 }
 
+/** Return the sheet of a clip's frame. */
+export function frameSheet({ id, width, height }: Clip, frame: number): FrameSheet {
+  return { id, width, height, file: null, url: id && frameUrl(id, frame), frame }
+}
+
+/** Return the clip that is open; null where the tree has another source. */
+export function clipOf({ sheets }: Open): Clip | null {
+  return sheets?.source === 'clip' ? sheets.clip : null
+}
+
 /** Return the name of the photo of many that is drawn on; null where the tree has another source. */
 export function photoDrawnOn({ sheets }: Open): string | null {
   return sheets?.source === 'capture' ? sheets.front.name : null
@@ -92,7 +103,7 @@ export function withDrawn(state: Open & Pick<State, 'history'>, name: SheetName,
 
 /** Return the sheets with one of them replaced; a photo's front is only replaced by another photo. */
 export function replaceSheet(sheets: Sheets, name: SheetName, sheet: Sheet): Sheets {
-  if (sheets.source === 'capture') return sheets
+  if (sheets.source === 'capture' || sheets.source === 'clip') return sheets
   if (name === 'side') return { ...sheets, side: sheet }
   if (sheets.source === 'sketch') return { ...sheets, front: sheet }
   return hasPhoto(sheet) ? { ...sheets, front: sheet } : sheets

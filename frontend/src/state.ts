@@ -4,6 +4,8 @@ import type {
   CapturePhoto,
   CaptureState,
   CaptureTraceAnswer,
+  ClipInfo,
+  ClipTraceAnswer,
   Cloud,
   Grown,
   Limits,
@@ -59,11 +61,21 @@ export interface Capture {
   readonly chosen: number
 }
 
-/** The open sheets, by the tree's source: a photo with strokes, sketches, or many photos. */
+/** The frame of a clip that is drawn on now. */
+export interface FrameSheet extends Sheet {
+  /** Its number in the clip, from 0. */
+  readonly frame: number
+}
+
+/** A video of one tree; its id is null where the service no longer has it. */
+export type Clip = Omit<ClipInfo, 'id'> & { readonly id: string | null }
+
+/** The open sheets, by the tree's source: a photo with strokes, sketches, many photos, or a clip. */
 export type Sheets =
   | { readonly source: 'photo'; readonly front: PhotoSheet; readonly side: Sheet | null }
   | { readonly source: 'sketch'; readonly front: Sheet; readonly side: Sheet | null }
   | { readonly source: 'capture'; readonly front: CaptureSheet; readonly side: null; readonly capture: Capture }
+  | { readonly source: 'clip'; readonly front: FrameSheet; readonly side: null; readonly clip: Clip }
 
 export type Source = Sheets['source']
 
@@ -77,7 +89,7 @@ export type BranchTool = 'move' | 'add' | 'join'
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
 /** Where a fault is shown on the page. */
-export type Place = 'photo' | 'capture' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
+export type Place = 'photo' | 'capture' | 'clip' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
 
 /** A sentence that says what is wrong and what to do. */
 export interface Fault {
@@ -108,7 +120,7 @@ export interface Notice {
 /** What was traced, and from which strokes. */
 export interface Traced {
   readonly of: Strokes
-  readonly answer: TraceAnswer | CaptureTraceAnswer
+  readonly answer: TraceAnswer | CaptureTraceAnswer | ClipTraceAnswer
   /** The crown on each sheet, drawn or assumed, where sketches were traced; sheet px. */
   readonly crowns?: Readonly<Partial<Record<SheetName, Line>>>
 }
@@ -126,6 +138,8 @@ export interface ShownModel extends OwnPictures {
   readonly strokes: Strokes
   /** The number of its tree that is shown, from 1. */
   readonly variant: number
+  /** The number of the sibling that is shown in the tree's place; 0 where none is. */
+  readonly sibling: number
   /** Its grown skeleton, once the service has sent it. */
   readonly growth: Grown | null
   /** The GLB of the tree that is shown. */
@@ -154,6 +168,8 @@ export interface State extends OwnPictures {
   readonly solve: CaptureState | null
   /** Whether photos of many are being sent. */
   readonly sending: boolean
+  /** How much of a clip has been sent, 0 to 1; null while none is. */
+  readonly sent: number | null
   readonly traced: Traced | null
   /** What was corrected while pictures were read, as sentences, and the strokes that these are about. */
   readonly corrections: { readonly of: Strokes; readonly text: string } | null
@@ -165,9 +181,11 @@ export interface State extends OwnPictures {
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
   /** The dialog that is open. */
-  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | null
+  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | 'clip' | 'filming' | 'grove' | null
   /** Photos that were chosen together, while it is asked what becomes of them. */
   readonly offer: Offer | null
+  /** A video that was chosen, while it is said what becomes of it, and while it is sent. */
+  readonly clipOffer: File | null
   /** The service's limits, once it has told them. */
   readonly limits: Limits | null
   /** False while the browser cannot save the drawing. */
@@ -197,6 +215,7 @@ export const EMPTY: State = {
   tracing: false,
   solve: null,
   sending: false,
+  sent: null,
   traced: null,
   corrections: null,
   liveTree: null,
@@ -205,6 +224,7 @@ export const EMPTY: State = {
   shows: 'live',
   dialog: null,
   offer: null,
+  clipOffer: null,
   limits: null,
   kept: true,
   online: true,

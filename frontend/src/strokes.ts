@@ -1,4 +1,4 @@
-import type { WireCaptureStrokes, WireStrokes } from './api/types'
+import type { WireCaptureStrokes, WireFrameStrokes, WireStrokes } from './api/types'
 import type { Edit } from './edits'
 
 /** A point of a sheet, px from its top left corner, x right, y down; a pixel's centre is at .5. */
@@ -51,6 +51,8 @@ export interface Strokes extends Side {
   readonly views?: readonly PhotoStrokes[]
   /** Edits of the branches that many photos show, in the order in which they were made. */
   readonly edits?: readonly Edit[]
+  /** The frame of a clip that is drawn over, from 0; absent where no clip is open. */
+  readonly frame?: number
   /** What sets the scale of a tree of many photos in place of a measured line. */
   readonly distance?: PhotoDistance
 }
@@ -103,6 +105,16 @@ export function withPhoto(strokes: Strokes, photo: string, { crown, branches, er
 /** Return the strokes with the distance between two photos as their scale; without one (null) the height counts. */
 export function withDistance({ distance: _, ...strokes }: Strokes, distance: PhotoDistance | null): Strokes {
   return distance ? { ...strokes, scale: null, distance } : strokes
+}
+
+/** Return the strokes drawn over a frame of a clip, from 0, in place of another. */
+export function withFrame(strokes: Strokes, frame: number): Strokes {
+  return { ...strokes, frame }
+}
+
+/** Return no strokes, over the same frame of a clip. */
+export function cleared({ frame }: Strokes): Strokes {
+  return frame === undefined ? NO_STROKES : { ...NO_STROKES, frame }
 }
 
 /** Return the strokes with one more edit of the branches. */
@@ -187,6 +199,17 @@ export function toWire({ crown, branches, erase, scale }: Strokes): Partial<Wire
     erase: erase.map(points => ({ points: points.map(toPair) })),
     ...(scale && { scale: { points: scale.points.map(toPair), metres: scale.metres } }),
   }
+}
+
+/** Return the strokes over a frame of a clip in the form of files and requests. */
+export function frameToWire({ frame = 0, ...strokes }: Strokes): Partial<WireFrameStrokes> {
+  return { frame, ...toWire(strokes) }
+}
+
+/** Return the strokes over a frame of a clip that a file holds; throws a TypeError where it has another form. */
+export function frameFromWire(value: unknown): Strokes {
+  const { frame } = fields(value)
+  return withFrame(fromWire(value), typeof frame === 'number' ? frame : 0)
 }
 
 /** Return the strokes over many photos in the form of files and requests: those over photos with a crown. */

@@ -1,10 +1,13 @@
 import { captureText } from './text/capture'
+import { clipText } from './text/clip'
 import { drawingText } from './text/drawing'
 import { filesText } from './text/files'
 import { measuredText } from './text/measured'
+import { motionText } from './text/motion'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
 import { sheetsText } from './text/sheets'
+import { siblingsText } from './text/siblings'
 import { takenText } from './text/taken'
 import { treeText } from './text/tree'
 import { welcomeText } from './text/welcome'
@@ -15,10 +18,13 @@ export const text = {
   ...drawingText,
   ...treeText,
   capture: captureText,
+  clip: clipText,
   sheets: sheetsText,
+  siblings: siblingsText,
   settings: settingsText,
   taken: takenText,
   measured: measuredText,
+  motion: motionText,
   score: scoreText,
   files: filesText,
 } as const

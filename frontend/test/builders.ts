@@ -4,14 +4,16 @@ import type {
   CapturePhoto,
   CaptureState,
   CaptureTraceAnswer,
+  ClipInfo,
+  ClipTraceAnswer,
   Grown,
   Model,
   SketchTraceAnswer,
   Taken,
   TraceAnswer,
 } from '../src/api/types'
-import { captureSheet } from '../src/sheets'
-import type { Capture, PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
+import { captureSheet, frameSheet } from '../src/sheets'
+import type { Capture, Clip, PhotoSheet, Sheet, Sheets, ShownModel } from '../src/state'
 import { type Line, NO_STROKES } from '../src/strokes'
 
 /** The first bytes of a PNG: all that the page itself reads of one. */
@@ -60,6 +62,28 @@ export function captureSheets(names = ['00.jpg', '01.jpg'], changes: Partial<Cap
   return { source: 'capture', front: captureSheet(capture.photos[0]!), side: null, capture }
 }
 
+/** A clip of two seconds as the service has it. */
+export function clipInfo(changes: Partial<ClipInfo> = {}): ClipInfo {
+  const size = { width: 100, height: 100, frames: 60, frames_per_second: 30, seconds: 2 }
+  return { id: 'clp_1', name: 'ash.mp4', ...size, notes: [], ...changes } as ClipInfo
+}
+
+/** A clip that is open, drawn over at a frame. */
+export function clipSheets(changes: Partial<Clip> = {}, frame = 0): Sheets {
+  const clip = { ...clipInfo(), ...changes }
+  return { source: 'clip', front: frameSheet(clip, frame), side: null, clip }
+}
+
+/** An answer about a clip: one point is followed through three frames. */
+export function clipAnswer(changes: Partial<ClipTraceAnswer> = {}): ClipTraceAnswer {
+  const points: [number, number][] = [
+    [50, 40],
+    [52, 40],
+    [54, 41],
+  ]
+  return { ...answer(), frame: 0, tracks: { frames_per_second: 30, every: 1, points: [points] }, ...changes }
+}
+
 /** A camera 10 units before the origin that looks along +Z, up being -Y. */
 export function camera(photo: string): CameraInfo {
   return {
@@ -103,7 +127,7 @@ export function captureAnswer(changes: Partial<CaptureTraceAnswer> = {}): Captur
 
 /** A model that is shown. */
 export function shownModel(info: Partial<Model> = {}, changes: Partial<ShownModel> = {}): ShownModel {
-  const made = { strokes: NO_STROKES, leaf: null, fruit: null, variant: 1, growth: null, glb: null }
+  const made = { strokes: NO_STROKES, leaf: null, fruit: null, variant: 1, sibling: 0, growth: null, glb: null }
   return { info: model(info), ...made, ...changes }
 }
 

@@ -12,10 +12,10 @@ const LAYERS = [
   ['api', 'text', 'tracedBranch', 'tracedOn', 'doubts', 'taken'],
   ['sheets'],
   ['state'],
-  ['plane', 'cameras', 'branches'],
+  ['plane', 'cameras', 'branches', 'outlineOf'],
   ['history', 'strokes'],
-  ['edits'],
-  ['api/defaults', 'api/types'],
+  ['edits', 'playhead'],
+  ['api/defaults', 'api/types', 'api/addresses'],
   ['api/schema'],
 ]
 
@@ -75,5 +75,5 @@ test('only panels use Preact, and the preview knows nothing of the page’s stat
   const users = PACKAGES.filter(([, to]) => /^preact\b/.test(to)).map(([from]) => layerOf(from))
   expect([...new Set(users)].filter(layer => !['main', 'ui'].includes(layer))).toEqual([])
   const seen = OWN.filter(([from]) => from.startsWith('preview/')).map(([, to]) => layerOf(to))
-  expect([...new Set(seen)].toSorted()).toEqual(['api/types', 'branches', 'preview'])
+  expect([...new Set(seen)].toSorted()).toEqual(['api/types', 'branches', 'playhead', 'preview'])
 })

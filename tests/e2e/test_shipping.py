@@ -67,7 +67,7 @@ def test_wind_is_chosen_grown_and_blows_until_it_is_still(visitor: Visitor, serv
     settings(visitor, "File").get_by_label("Wind").select_option("all")
     expect(page.get_by_text("the tree stays the same").first).to_be_visible()
     grow_again(visitor, service)
-    winds = page.get_by_role("group", name="Wind")
+    winds = page.get_by_role("group", name="Motion")
     winds.get_by_role("button", name="Breeze").click()
     expect(winds.get_by_role("button", name="Breeze")).to_have_attribute("aria-pressed", "true")
     frames, _ = visitor.drawn()

@@ -1,14 +1,17 @@
-import { type Strokes, toWire, viewsToWire } from '../strokes'
+import { frameToWire, type Point, type Strokes, toWire, viewsToWire } from '../strokes'
 import type { components } from './schema'
 import type {
   CaptureInfo,
   CapturePhoto,
   CaptureTraceAnswer,
+  ClipInfo,
+  ClipTraceAnswer,
   Limits,
   Model,
   Settings,
   SketchTraceAnswer,
   TraceAnswer,
+  UploadInfo,
 } from './types'
 
 type Schemas = components['schemas']
@@ -33,10 +36,11 @@ export class Unreachable extends Error {}
 
 type Sketches = Schemas['Sketches']
 
-/** What a tree is made of: strokes over a photo, sketches, or both; or strokes over the photos of a capture. */
+/** What a tree is made of: strokes over a photo, sketches, or both; or strokes over the photos of a capture, or over a frame of a clip. */
 export interface Inputs {
   readonly photo?: string
   readonly capture?: string
+  readonly clip?: string
   readonly strokes?: Strokes
   readonly sketches?: Sketches
 }
@@ -49,6 +53,16 @@ interface TraceRequest {
   readonly settings?: Partial<Settings>
   /** A sketch of the side, which sets the live tree's depth. */
   readonly side?: Sketches['side']
+}
+
+/** A request for siblings of a model's tree. */
+export interface SiblingsOrder {
+  readonly count: number
+  readonly seed: number
+  /** The outline that they fill: a shape by its name, or one that was drawn, px; absent for the tree's own. */
+  readonly envelope?: string | { readonly points: readonly Point[] }
+  /** Whether they are set in one scene, too. */
+  readonly scene: boolean
 }
 
 /** A request for a model. */
@@ -120,6 +134,31 @@ export class Client {
     return request('POST', `/v1/captures/${id}/trace`, json({ ...viewsToWire(strokes), ...editsIn(strokes), ...asked }))
   }
 
+  /** Begin to send a clip in parts. */
+  beginClip(name: string): Promise<UploadInfo> {
+    return request('POST', `/v1/clips?name=${encodeURIComponent(name)}`, { headers: { 'Upload-Complete': '?0' } })
+  }
+
+  /** Return how much of a clip has arrived. */
+  getUpload(id: string): Promise<UploadInfo> {
+    return request('GET', `/v1/uploads/${id}`)
+  }
+
+  /** Send the part of a clip that begins at `offset` bytes; the last one gives the clip. */
+  sendPart(id: string, part: Blob, offset: number, isLast: boolean): Promise<UploadInfo | ClipInfo> {
+    const headers = { 'Upload-Offset': String(offset), 'Upload-Complete': isLast ? '?1' : '?0' }
+    return request('PATCH', `/v1/uploads/${id}`, { body: part, headers })
+  }
+
+  getClip(id: string): Promise<ClipInfo> {
+    return request('GET', `/v1/clips/${id}`)
+  }
+
+  /** Follow the points of a tree through a clip and trace its branches, and grow the live tree where it is asked for. */
+  traceClip(id: string, strokes: Strokes, asked: Omit<TraceRequest, 'side'>): Promise<ClipTraceAnswer> {
+    return request('POST', `/v1/clips/${id}/trace`, json({ ...frameToWire(strokes), ...asked }))
+  }
+
   /** Trace sketches; with `grow` the live tree too. */
   traceSketches(sketches: Sketches, grow: boolean): Promise<SketchTraceAnswer> {
     return request('POST', '/v1/sketches/trace', json({ ...sketches, grow }))
@@ -135,6 +174,11 @@ export class Client {
     const wireInputs = { ...inputs, ...drawnIn(inputs) }
     const pictures = { ...(leaf && { leaf: await base64(leaf) }), ...(fruit && { fruit: await base64(fruit) }) }
     return request('POST', '/v1/models', json({ ...wireInputs, ...rest, ...pictures }, { 'Idempotency-Key': key }))
+  }
+
+  /** Request siblings of a model's tree; requests with the same `key` lead to one model. */
+  growSiblings(id: string, order: SiblingsOrder & { readonly name: string }, key: string): Promise<Model> {
+    return request('POST', `/v1/models/${id}/siblings`, json(order, { 'Idempotency-Key': key }))
   }
 
   getModel(id: string): Promise<Model> {
@@ -168,8 +212,9 @@ export class Client {
 }
 
 /** Return the strokes of a request for a model, in its form. */
-function drawnIn({ strokes, capture }: Inputs) {
+function drawnIn({ strokes, capture, clip }: Inputs) {
   if (!strokes) return {}
+  if (clip) return { strokes: frameToWire(strokes) }
   return capture
     ? { strokes: undefined, views: viewsToWire(strokes), ...editsIn(strokes) }
     : { strokes: toWire(strokes) }

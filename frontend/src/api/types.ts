@@ -21,3 +21,8 @@ export type CameraInfo = Schemas['CameraInfo']
 export type Cloud = Schemas['CloudInfo']
 
 export type CaptureTraceAnswer = Schemas['CaptureTraceAnswer']
+export type WireFrameStrokes = Schemas['FrameStrokes']
+export type ClipInfo = Schemas['ClipInfo']
+export type ClipTraceAnswer = Schemas['ClipTraceAnswer']
+export type Tracks = Schemas['Tracks']
+export type UploadInfo = Schemas['UploadInfo']

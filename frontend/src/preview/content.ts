@@ -16,6 +16,12 @@ import { restMatrix } from './resting'
 import { SUN } from './sun'
 import type { Sway } from './sway'
 
+/** The motion that was filmed: the animation's first frames are those of the clip, then it leads back to the first. */
+export interface MotionInfo {
+  readonly frames: number
+  readonly frames_per_second: number
+}
+
 /** A tree that the preview shows, in the preview's world, where 1 unit is the photo's height. */
 export interface Content {
   readonly kind: 'live' | 'model'
@@ -25,8 +31,10 @@ export interface Content {
   readonly triangles: number
   /** Its leaves; null where it has none. */
   readonly leaves: Mesh | null
-  /** Its animations by wind; null where its file has none. */
+  /** Its animations; null where its file has none. */
   readonly sway: Sway | null
+  /** What the file says of the motion that was filmed; null where none was. */
+  readonly motion: MotionInfo | null
   /** The cameras of the photos that it was measured from, in its own frame, metres; absent for other trees. */
   readonly cameras?: readonly CameraInfo[]
   /** Show it at a share of its growth, 0..1: the branches of the live tree, the leaves of a model. */

@@ -28,6 +28,7 @@ export function liveTreeContent(grown: Grown, uniforms: TreeUniforms): Content {
     triangles: trianglesOf(mesh.geometry),
     leaves: null,
     sway: null,
+    motion: null,
     showGrowth: share => showGrowth(mesh, tube, uniforms, share),
     dispose: () => disposeMesh(mesh),
   }

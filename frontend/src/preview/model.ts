@@ -10,7 +10,7 @@ import {
 import type { CameraInfo, PhotoFrame } from '../api/types'
 import { type Box, unitsPerMetre } from './camera'
 import { canopyOf, lightAt } from './canopy'
-import { type Content, disposeMesh, placeInWorld, trianglesOf } from './content'
+import { type Content, disposeMesh, type MotionInfo, placeInWorld, trianglesOf } from './content'
 import { readGlb } from './glb'
 import { expandBox, restingVertices } from './resting'
 import { barkMaterial, leafMaterial, type TreeUniforms } from './shading'
@@ -41,6 +41,7 @@ export async function modelContent(glb: ArrayBuffer, uniforms: TreeUniforms, ant
     triangles: meshes.reduce((sum, mesh) => sum + trianglesOf(mesh.geometry), 0),
     leaves,
     sway,
+    motion: (scene.userData.motion as MotionInfo | undefined) ?? null,
     ...(cameras && { cameras }),
     showGrowth: share => {
       uniforms.leafShare.value = share

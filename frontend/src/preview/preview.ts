@@ -1,5 +1,6 @@
 import './preview.css'
 import type { Grown } from '../api/types'
+import type { Playhead } from '../playhead'
 import type { Measured, Part } from './capture/measured'
 import type { EditEvents, Editing } from './edit/editLayer'
 import { pressKey } from './keys'
@@ -11,6 +12,8 @@ export interface PreviewOptions {
   /** Names of the wipe and of the canvas, for screen readers. */
   labels: { wipe: string; canvas: string }
   reducedMotion: () => boolean
+  /** The place in time of what moves. */
+  playhead: Playhead
   onStatus: (status: PreviewStatus) => void
   /** Called with the name of the photo whose camera was clicked on, where a tree was measured from many. */
   onPhoto: (photo: string) => void
@@ -42,6 +45,11 @@ export class Preview {
   /** Show the upright photo at this address in the wipe; null removes it. */
   showPhoto(url: string | null): void {
     this.viewer?.showPhoto(url)
+  }
+
+  /** Show a canvas with a video's frame in the wipe, in the photo's place; null shows the photo again. */
+  showFilm(canvas: HTMLCanvasElement | null): void {
+    this.viewer?.showFilm(canvas)
   }
 
   /** Show what many photos say about a tree, beside the tree; null shows none of it. */
@@ -99,9 +107,14 @@ export class Preview {
     this.viewer?.setLeaves(on)
   }
 
-  /** Play a wind of the file, by its name; null for none. */
-  setWind(wind: string | null): void {
-    this.viewer?.setWind(wind)
+  /** Play an animation of the file, by its name; null for none. */
+  setAnimation(name: string | null): void {
+    this.viewer?.setAnimation(name)
+  }
+
+  /** Turn branches by this factor of how far they turn from their means: 0 is calm, 1 as in the file. */
+  setGain(gain: number): void {
+    this.viewer?.setGain(gain)
   }
 
   /** Turn the camera by radians: `azimuth` to the right, `polar` downwards. */

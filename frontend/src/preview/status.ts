@@ -11,10 +11,12 @@ export interface PreviewStatus {
   shows: 'empty' | 'measured' | 'live' | 'growing' | 'model'
   leaves: boolean
   triangles: number
-  /** The names of the file's winds. */
-  winds: readonly string[]
-  /** The wind that is played. */
-  wind: string | null
+  /** The names of the file's animations. */
+  animations: readonly string[]
+  /** The animation that is played; null where the tree stands still. */
+  animation: string | null
+  /** How far branches turn from their means, as a factor. */
+  gain: number
   /** The parts of what many photos say, and whether they are shown; null where there are none. */
   parts: Readonly<Partial<Record<Part, boolean>>> | null
   /** Whether there is a photo's view: a photo of many has one where its camera was found. */
@@ -28,8 +30,9 @@ export const NOTHING_SHOWN: PreviewStatus = {
   shows: 'empty',
   leaves: true,
   triangles: 0,
-  winds: [],
-  wind: null,
+  animations: [],
+  animation: null,
+  gain: 1,
   parts: null,
   hasPhotoView: true,
 }

@@ -1,4 +1,5 @@
 import type { Grown } from '../api/types'
+import type { Playhead } from '../playhead'
 import { CaptureLayer } from './capture/layer'
 import type { Measured, Part } from './capture/measured'
 import { listenToClicks } from './clicks'
@@ -8,8 +9,9 @@ import { GrowthAnimation } from './growthAnimation'
 import { liveTreeContent } from './liveTree'
 import { Look } from './look'
 import { modelContent } from './model'
+import { Motion } from './motion'
+import { Pace } from './pace'
 import { Rig } from './rig'
-import { softwarePixelRatio } from './software'
 import { Stage } from './stage'
 import type { PreviewStatus, View } from './status'
 import { Wipe } from './wipe'
@@ -22,6 +24,8 @@ export interface ViewerOptions {
   /** The wipe's name, for screen readers. */
   label: string
   reducedMotion: () => boolean
+  /** The place in time of what moves. */
+  playhead: Playhead
   onStatus: (status: PreviewStatus) => void
   /** Called with the name of the photo whose camera was clicked on. */
   onPhoto: (photo: string) => void
@@ -31,12 +35,6 @@ export interface ViewerOptions {
 /** Durations in seconds: the growth of branches, that of leaves. */
 const GROWTH = 2.5
 const LEAF_GROWTH = 0.6
-/** The wind that is played first, unless the processor draws or the user wants reduced motion. */
-const FIRST_WIND = 'breeze'
-/** A frame that takes longer (ms) is drawn by the processor, whatever the renderer's name says. */
-const SLOW_FRAME = 150
-/** How many frames with a tree are timed; the first one also compiles the shaders. */
-const TIMED_FRAMES = 3
 /** How much a photo grows by each px that the wheel turns, as a logarithm. */
 const WHEEL_RATE = 0.0015
 /** How long nothing must move before the picture is drawn at full resolution, ms. */
@@ -58,11 +56,10 @@ export class Viewer {
   /** Counts contents, so that a model that was read too late is not shown. */
   private contentCount = 0
   private leaves = true
-  private wind: string | null
   private lost = false
-  private software: boolean
+  private readonly pace: Pace
+  private readonly motion: Motion
   private frames = 0
-  private timedFrames = 0
   private pendingFrame = 0
   private restTimer: ReturnType<typeof setTimeout> | undefined
   private lastFrameTime: number | null = null
@@ -73,19 +70,23 @@ export class Viewer {
     private readonly canvas: HTMLCanvasElement,
     private readonly options: ViewerOptions,
   ) {
-    this.software = options.software
-    this.wind = options.reducedMotion() || options.software ? null : FIRST_WIND
-    if (options.softwareIsKnown) this.timedFrames = TIMED_FRAMES
-    this.stage = new Stage(canvas, this.software, this.capture)
+    const { software, playhead } = options
+    this.pace = new Pace(software, options.softwareIsKnown)
+    this.motion = new Motion(playhead, software || options.reducedMotion())
+    this.stage = new Stage(canvas, software, this.capture)
     this.rig = new Rig(canvas, {
       reducedMotion: options.reducedMotion,
-      damped: () => !this.software && !options.reducedMotion(),
+      damped: () => !this.pace.software && !options.reducedMotion(),
       onTurn: () => this.look.leaveView(),
       onMove: () => this.requestFrame(),
     })
     this.look = new Look(this.rig, this.capture, () => this.onLook())
     this.wipe = new Wipe(host, options.label)
     const { signal } = this.listening
+    signal.addEventListener(
+      'abort',
+      playhead.watch(() => this.requestFrame()),
+    )
     this.edit = new EditLayer(host, canvas, options.edits, {
       changed: () => this.requestFrame(),
       pan: (across, down) => this.look.pan(across, down),
@@ -104,6 +105,11 @@ export class Viewer {
 
   showPhoto(url: string | null): void {
     this.wipe.show(url)
+    this.requestFrame()
+  }
+
+  showFilm(canvas: HTMLCanvasElement | null): void {
+    this.wipe.showFilm(canvas)
     this.requestFrame()
   }
 
@@ -169,6 +175,7 @@ export class Viewer {
     this.growth.stop()
     this.contentCount++
     this.content = null
+    this.motion.show(null)
     this.stage.show(null)
     this.look.at(null)
   }
@@ -199,12 +206,16 @@ export class Viewer {
     this.requestFrame()
   }
 
-  setWind(wind: string | null): void {
-    this.wind = wind
-    this.applyWind()
+  /** Play an animation of the tree, by its name; null for none. */
+  setAnimation(name: string | null): void {
+    this.motion.choose(name)
     this.stage.updateShadow()
-    this.reportStatus()
-    this.requestFrame()
+    this.onLook()
+  }
+
+  setGain(gain: number): void {
+    this.motion.setGain(gain)
+    this.onLook()
   }
 
   orbit(azimuth: number, polar: number): void {
@@ -235,16 +246,8 @@ export class Viewer {
     this.content = content
     this.stage.show(content)
     this.applyLeaves()
-    this.applyWind()
+    this.motion.show(content)
     this.look.at(content)
-  }
-
-  /** Play the chosen wind on the tree, or its first one where it has no such wind. */
-  private applyWind(): void {
-    const sway = this.content?.sway
-    if (!sway) return
-    if (this.wind !== null && !sway.winds.includes(this.wind)) this.wind = sway.winds[0] ?? null
-    sway.setWind(this.wind)
   }
 
   private applyLeaves(): void {
@@ -266,7 +269,7 @@ export class Viewer {
 
   private showGrowth(share: number): void {
     this.content?.showGrowth(share)
-    if (share === 1 || !this.software) this.stage.updateShadow()
+    if (share === 1 || !this.pace.software) this.stage.updateShadow()
     if (share === 1) this.reportStatus()
     this.requestFrame()
   }
@@ -305,26 +308,26 @@ export class Viewer {
     if (this.lost || !this.hasRoom) return
     const seconds = this.lastFrameTime === null ? 1 / 60 : Math.min((now - this.lastFrameTime) / 1000, 0.25)
     const moved = this.rig.step(seconds)
-    const swaying = this.stepWind(seconds)
+    const swaying = this.sway(seconds)
     const moving = this.growth.step(seconds) || moved || swaying
     this.lastFrameTime = moving ? now : null
     this.draw(moving)
     if (moving) this.requestFrame()
   }
 
-  /** Advance the wind; returns whether anything moves. The processor is too slow for shadows that move with it. */
-  private stepWind(seconds: number): boolean {
-    const moves = this.content?.sway?.step(seconds) ?? false
-    if (moves && !this.software) this.stage.updateShadow()
+  /** Move the tree by its animation; returns whether anything moves. The processor is too slow for shadows that move with it. */
+  private sway(seconds: number): boolean {
+    const moves = this.motion.step(seconds)
+    if (moves && !this.pace.software) this.stage.updateShadow()
     return moves
   }
 
   private draw(moving: boolean): void {
     this.capture.standsInPhoto = this.look.isFromPhoto
-    this.stage.size(this.look.viewport, this.pixelRatio(moving))
+    this.stage.size(this.look.viewport, this.pace.pixelRatio(this.look.viewport, moving))
     const start = performance.now()
     const calls = this.stage.draw(this.rig)
-    if (!this.software && this.content && this.timedFrames++ < TIMED_FRAMES) this.detectSoftware(start)
+    if (this.content && this.pace.isFoundSlow(start, () => this.stage.finish())) this.onSlow()
     this.frames++
     Object.assign(this.host.dataset, { calls: String(calls), frames: String(this.frames) })
     this.edit.draw(this.rig.pose, this.look.viewport, this.capture.toWorld)
@@ -332,43 +335,35 @@ export class Viewer {
     this.rig.grabbable = !(this.edit.isOn && this.rig.holds)
     this.wipe.place(this.look.photoRect(), this.look.viewport)
     clearTimeout(this.restTimer)
-    if (moving && this.software) this.restTimer = setTimeout(() => this.requestFrame(), REST)
+    if (moving && this.pace.software) this.restTimer = setTimeout(() => this.requestFrame(), REST)
   }
 
   private get hasRoom(): boolean {
     return this.look.viewport.width > 0 && this.look.viewport.height > 0
   }
 
-  private pixelRatio(moving: boolean): number {
-    if (this.software) return softwarePixelRatio(this.look.viewport, moving)
-    return Math.min(devicePixelRatio, 2)
-  }
-
-  /** Change to software rendering where a frame was slow: some renderers do not tell that they use the processor. */
-  private detectSoftware(start: number): void {
-    this.stage.finish()
-    if (this.timedFrames === 1 || performance.now() - start < SLOW_FRAME) return
-    this.software = true
+  /** Some renderers do not tell that they use the processor: it draws nothing that moves by itself. */
+  private onSlow(): void {
     this.stage.setSoftware(true)
-    this.setWind(null)
-    this.reportStatus()
-    this.requestFrame()
+    this.motion.calm()
+    this.onLook()
   }
 
   private reportStatus(): void {
     const without = this.capture.isEmpty ? 'empty' : 'measured'
     const shows = this.growth.running && this.content?.kind === 'live' ? 'growing' : (this.content?.kind ?? without)
-    const webgl = this.lost ? 'lost' : this.software ? 'software' : 'ok'
+    const webgl = this.lost ? 'lost' : this.pace.software ? 'software' : 'ok'
     const { leaves, content } = this
-    const [triangles, winds] = [content?.triangles ?? 0, content?.sway?.winds ?? []]
+    const { animations, animation, gain } = this.motion
     const status: PreviewStatus = {
       webgl,
       view: this.look.view,
       shows,
       leaves,
-      triangles,
-      winds,
-      wind: winds.length ? this.wind : null,
+      triangles: content?.triangles ?? 0,
+      animations,
+      animation,
+      gain,
       parts: this.capture.shownParts,
       hasPhotoView: this.look.hasPhotoView,
     }

@@ -3,9 +3,13 @@ import type { Rect, Viewport } from './camera'
 /** How far the keys move the handle, as shares of the photo's shown width. */
 const STEPS: Record<string, number> = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02 }
 
-/** The photo over the canvas, visible left of a handle that can be dragged across it. */
+const PICTURE = 'preview-photo'
+
+/** The photo, or a video's frame, over the canvas, visible left of a handle that can be dragged across it. */
 export class Wipe {
   private readonly photo = document.createElement('img')
+  /** A video's frame, which takes the photo's place. */
+  private film: HTMLCanvasElement | null = null
   private readonly handle = document.createElement('div')
   /** How much of the photo is visible, 0..1 from the left. */
   private share = 0.5
@@ -13,7 +17,7 @@ export class Wipe {
   private viewport: Viewport = { width: 0, height: 0 }
 
   constructor(host: HTMLElement, label: string) {
-    this.photo.className = 'preview-photo'
+    this.photo.className = PICTURE
     this.photo.alt = ''
     this.handle.className = 'preview-wipe'
     for (const [name, value] of Object.entries({ role: 'slider', tabindex: '0', 'aria-label': label }))
@@ -34,6 +38,18 @@ export class Wipe {
     this.update()
   }
 
+  /** Show a video's frame in the photo's place; null shows the photo again. */
+  showFilm(canvas: HTMLCanvasElement | null): void {
+    this.film?.remove()
+    this.film = canvas
+    if (canvas) {
+      canvas.className = PICTURE
+      this.photo.after(canvas)
+    }
+    this.photo.hidden = canvas !== null
+    this.update()
+  }
+
   /** Set how much of the tree is visible: only the tree (1), only the photo (0) or a part of both. */
   set(fraction: number): void {
     this.share = 1 - Math.min(Math.max(fraction, 0), 1)
@@ -49,14 +65,15 @@ export class Wipe {
 
   /** Draw the visible part of the photo, with `scale` pixels per CSS px. */
   draw(ctx: OffscreenCanvasRenderingContext2D, scale: number): void {
-    if (!this.rect || !this.photo.complete || !this.photo.naturalWidth) return
+    const picture = this.film ?? this.photo
+    if (!this.rect || !(this.film?.width || (this.photo.complete && this.photo.naturalWidth))) return
     const { x, y, width, height } = this.rect
     ctx.save()
     ctx.scale(scale, scale)
     ctx.beginPath()
     ctx.rect(0, 0, this.edgeOf(this.rect), this.viewport.height)
     ctx.clip()
-    ctx.drawImage(this.photo, x, y, width, height)
+    ctx.drawImage(picture, x, y, width, height)
     ctx.restore()
   }
 
@@ -72,8 +89,9 @@ export class Wipe {
   }
 
   private update(): void {
-    const shown = this.rect !== null && this.photo.hasAttribute('src')
-    this.photo.classList.toggle('preview-gone', !shown)
+    const picture = this.film ?? this.photo
+    const shown = this.rect !== null && (this.film !== null || this.photo.hasAttribute('src'))
+    picture.classList.toggle('preview-gone', !shown)
     this.handle.hidden = !shown
     const percent = Math.round(this.share * 100)
     this.handle.setAttribute('aria-valuenow', String(percent))
@@ -81,8 +99,8 @@ export class Wipe {
     if (!this.rect) return
     const edge = this.edgeOf(this.rect)
     const { x, y, width, height } = this.rect
-    Object.assign(this.photo.style, { left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px` })
-    this.photo.style.clipPath = `inset(0 ${Math.max(x + width - edge, 0)}px 0 0)`
+    Object.assign(picture.style, { left: `${x}px`, top: `${y}px`, width: `${width}px`, height: `${height}px` })
+    picture.style.clipPath = `inset(0 ${Math.max(x + width - edge, 0)}px 0 0)`
     this.handle.style.left = `${edge}px`
   }
 

@@ -1,8 +1,8 @@
 import { type DBSchema, type IDBPDatabase, openDB } from 'idb'
 import type { Settings } from '../api/types'
 import type { History } from '../history'
-import { captureOf, type Extent } from '../sheets'
-import type { Capture, Sheets, Source, State, Store } from '../state'
+import { captureOf, clipOf, type Extent } from '../sheets'
+import type { Capture, Clip, Sheets, Source, State, Store } from '../state'
 import { isEmpty, type Strokes } from '../strokes'
 import { Rounds } from './rounds'
 
@@ -23,6 +23,8 @@ export interface Draft {
   readonly side?: Extent | null
   /** Many photos, of which `photo` is the one that was drawn on. */
   readonly capture?: DraftCapture
+  /** A clip, of which `photo` is the frame that was drawn on. */
+  readonly clip?: Clip
   readonly history: History<Strokes>
   readonly settings: Settings
   readonly seed: number
@@ -82,19 +84,19 @@ export class DraftStore {
     this.#saved = null
   }
 
-  /** Return the drafts that have strokes or many photos, the latest first. */
+  /** Return the drafts that have strokes, many photos or a clip, the latest first. */
   async list(): Promise<Draft[]> {
     const drafts = await (await this.database).getAllFromIndex('drafts', 'saved')
-    return drafts.filter(({ history, capture }) => capture || !isEmpty(history.present)).reverse()
+    return drafts.filter(({ history, capture, clip }) => capture || clip || !isEmpty(history.present)).reverse()
   }
 
-  /** Return a draft with its pictures, of many photos a thumbnail; null where it is gone. */
+  /** Return a draft with its pictures, of many photos and clips a thumbnail; null where it is gone. */
   async find(id: string): Promise<DraftWithPictures | null> {
     const database = await this.database
     const stored = PICTURES.map(async what => [what, (await database.get('photos', keyOf(id, what))) ?? null] as const)
     const [draft, ...pictures] = await Promise.all([database.get('drafts', id), ...stored])
     const found = Object.fromEntries(pictures) as Pictures
-    if (draft?.capture) return { draft, ...found, photo: await this.thumbnail(draft.photo.id ?? '', id) }
+    if (draft?.capture || draft?.clip) return { draft, ...found, photo: await this.thumbnail(draft.photo.id ?? '', id) }
     return draft && (found.photo || draft.source === 'sketch') ? { draft, ...found } : null
   }
 
@@ -147,12 +149,13 @@ export class DraftStore {
 function draftOf(state: State & { readonly sheets: Sheets }, id: string): Draft {
   const { name, history, settings, seed, model } = state
   const { source, front, side } = state.sheets
-  const capture = captureOf(state)
+  const [capture, clip] = [captureOf(state), clipOf(state)]
   return {
     ...{ id, saved: Date.now(), source, name, history, settings, seed },
     photo: { id: front.id, width: front.width, height: front.height },
     side: side && { width: side.width, height: side.height },
     ...(capture && { capture: { id: capture.id, photos: capture.photos, chosen: capture.chosen } }),
+    ...(clip && { clip }),
     model: model?.info.id ?? null,
     modelOf: model?.strokes ?? null,
     modelHadOtherLeaf: (model?.leaf ?? null) !== state.leaf,

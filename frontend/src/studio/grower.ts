@@ -1,4 +1,4 @@
-import { type Client, Unreachable } from '../api/client'
+import { type Client, type SiblingsOrder, Unreachable } from '../api/client'
 import { follow, isFinished } from '../api/follow'
 import type { Model } from '../api/types'
 import type { OwnPictures, Store } from '../state'
@@ -64,7 +64,10 @@ export class Grower {
   show(info: Model, strokes: Strokes, { leaf, fruit }: OwnPictures): void {
     this.stopFollowing()
     this.#trees.clear()
-    this.store.set({ model: { info, strokes, leaf, fruit, variant: 1, growth: null, glb: null }, shows: 'model' })
+    this.store.set({
+      model: { info, strokes, leaf, fruit, variant: 1, sibling: 0, growth: null, glb: null },
+      shows: 'model',
+    })
     this.#stopFollowing = follow(info.id, {
       changed: now => this.#update(now),
       grew: growth => {
@@ -76,12 +79,35 @@ export class Grower {
     })
   }
 
-  /** Show another of the model's trees, by its number from 1; the present one stays until it is fetched. */
-  async choose(variant: number): Promise<void> {
+  /** Show another of the model's trees, by its number from 1, or a sibling; the present one stays until it is fetched. */
+  async choose(variant: number, sibling = 0): Promise<void> {
     const { model } = this.store.state
-    if (!model || !treeOf(model.info, variant)) return
-    this.store.set({ model: { ...model, variant }, shows: 'model' })
+    if (!model || !treeOf(model.info, variant, sibling)) return
+    this.store.set({ model: { ...model, variant, sibling }, shows: 'model' })
     await this.#fetch(model.info)
+  }
+
+  /** Request siblings of the shown tree, which come with a model of the same inputs. */
+  async growSiblings(order: SiblingsOrder): Promise<void> {
+    const { model, name } = this.store.state
+    if (!model || this.isGrowing) return
+    this.store.fault('grow', null)
+    this.store.set({ asking: true })
+    try {
+      const info = await retrying(key => this.client.growSiblings(model.info.id, { ...order, name }, key))
+      this.show(info, model.strokes, model)
+      const { settings } = this.store.state
+      this.store.set({ settings: { ...settings, ...info.settings }, seed: info.seed })
+    } catch (error) {
+      this.store.fault('grow', faultOf(error))
+    } finally {
+      this.store.set({ asking: false })
+    }
+  }
+
+  /** Return a file of the shown model, which is kept while the model is shown. */
+  file(url: string): Promise<ArrayBuffer> {
+    return this.#download(url)
   }
 
   /** Stop following the model. */
@@ -110,11 +136,11 @@ export class Grower {
 
   /** Fetch and show the chosen tree of the finished model. */
   async #fetch(info: Model): Promise<void> {
-    const variant = this.store.state.model?.variant ?? 1
+    const { variant = 1, sibling = 0 } = this.store.state.model ?? {}
     try {
-      const glb = await this.#download(treeOf(info, variant)!)
+      const glb = await this.#download(treeOf(info, variant, sibling)!)
       const { model } = this.store.state
-      if (model?.info.id !== info.id || model.variant !== variant) return
+      if (model?.info.id !== info.id || model.variant !== variant || model.sibling !== sibling) return
       this.store.set({ model: { ...model, glb }, shows: 'model' })
       this.store.fault('grow', null)
     } catch (error) {

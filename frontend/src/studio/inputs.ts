@@ -14,7 +14,7 @@ type LiveSettings = Pick<Settings, (typeof LIVE_SETTINGS)[number]>
 /** Return the inputs for a model; null where too little is drawn. */
 export function inputsOf({ sheets, history }: Drawn): Inputs | null {
   const strokes = history.present
-  if (!sheets || !hasTrunk(strokes)) return null
+  if (!sheets || !isEnough({ sheets, history })) return null
   const side = sideSketch({ sheets, history })
   if (sheets.source === 'sketch') {
     const sketches = { front: sketchToWire(strokes, 'front', sheets.front), ...(side && { side }) }
@@ -22,6 +22,7 @@ export function inputsOf({ sheets, history }: Drawn): Inputs | null {
   }
   if (sheets.source === 'capture')
     return canTrace({ sheets, history }) ? { capture: sheets.capture.id!, strokes } : null
+  if (sheets.source === 'clip') return canTrace({ sheets, history }) ? { clip: sheets.clip.id!, strokes } : null
   const drawn = onSheet(strokes, 'front')
   return drawn.crown && { photo: sheets.front.id, strokes: drawn, ...(side && { sketches: { side } }) }
 }
@@ -29,6 +30,11 @@ export function inputsOf({ sheets, history }: Drawn): Inputs | null {
 /** Return whether a branch is drawn on the front; the first is the trunk. Of many photos, on one with a crown. */
 export function hasTrunk({ branches, views = [] }: Strokes): boolean {
   return branches.length > 0 || views.some(view => view.crown && view.branches.length > 0)
+}
+
+/** Return whether enough is drawn for a whole tree: a trunk, or over a clip a crown. */
+export function isEnough({ sheets, history }: Drawn): boolean {
+  return sheets?.source === 'clip' ? history.present.crown !== null : hasTrunk(history.present)
 }
 
 /**
@@ -39,6 +45,7 @@ export function canTrace({ sheets, history }: Drawn): boolean {
   if (sheets?.source === 'capture')
     return sheets.capture.id !== null && sheets.capture.cameras.length > 0 && hasTrunk(history.present)
   const { crown, branches } = history.present
+  if (sheets?.source === 'clip' && sheets.clip.id === null) return false
   return sheets?.source === 'sketch' ? branches.length > 0 : sheets !== null && crown !== null
 }
 
@@ -56,14 +63,13 @@ export async function traced(
 ): Promise<Omit<Traced, 'of'>> {
   const side = sideSketch({ sheets, history })
   const chosen = grow ? liveSettings({ sheets, settings }) : null
-  if (sheets!.source === 'capture') {
-    const asked = { grow, ...(chosen && { settings: chosen }) }
+  const asked = { grow, ...(chosen && { settings: chosen }) }
+  const drawn = onSheet(history.present, 'front')
+  if (sheets!.source === 'capture')
     return { answer: await client.traceCapture(sheets!.capture.id!, history.present, asked) }
-  }
-  if (sheets!.source === 'photo') {
-    const asked = { grow, ...(chosen && { settings: chosen }), ...(side && { side }) }
-    return { answer: await client.trace(sheets!.front.id!, onSheet(history.present, 'front'), asked) }
-  }
+  if (sheets!.source === 'clip') return { answer: await client.traceClip(sheets!.clip.id!, drawn, asked) }
+  if (sheets!.source === 'photo')
+    return { answer: await client.trace(sheets!.front.id!, drawn, { ...asked, ...(side && { side }) }) }
   const sketches = { front: sketchToWire(history.present, 'front', sheets!.front), ...(side && { side }) }
   const { front, side: other, ...answer } = await client.traceSketches(sketches, grow)
   const crowns = { front: front.crown, ...(other && { side: other.crown }) }

@@ -3,13 +3,14 @@ import { DEFAULT_SETTINGS } from '../api/defaults'
 import type { CaptureInfo, Model } from '../api/types'
 import { begin, type History } from '../history'
 import { captureSheet, drawnOn, fittedTo, paper, sheetOf, sheetOfSize } from '../sheets'
-import { closed, type PhotoSheet, type Sheet, type Sheets, type State, type Store } from '../state'
+import { type Clip, closed, type PhotoSheet, type Sheet, type Sheets, type State, type Store } from '../state'
 import { fromWire, NO_STROKES, onSheet, type SheetName, type Strokes, viewsFromWire, withSheet } from '../strokes'
 import { text } from '../text'
 import type { Captures } from './captures'
+import type { Clips } from './clips'
 import type { Draft, DraftStore, DraftWithPictures } from './draftStore'
 import type { Example, PhotosExample, SketchExample } from './examples'
-import { faultOf, PageFault } from './faultText'
+import { faultOf, PageFault, sentenceOf } from './faultText'
 import type { Grower } from './grower'
 import { pictureOf, upload } from './photos'
 import { isProject, type Project, readProject } from './project'
@@ -46,6 +47,7 @@ export class Opener {
     private readonly drafts: DraftStore,
     private readonly grower: Grower,
     private readonly captures: Captures,
+    private readonly clips: Clips,
   ) {}
 
   /** Open a photo or a project that was chosen, dropped or pasted. */
@@ -69,6 +71,11 @@ export class Opener {
       const history = begin(viewsFromWire(await jsonOf(await this.client.getFile(strokes))))
       return this.#readPhotos(await Promise.all(fetched), { name: text.examples[name] ?? name, history })
     })
+  }
+
+  /** Send a video of a tree and open it. */
+  openClip(file: File): Promise<void> {
+    return this.#opening(() => this.#readClip(file, { name: stem(file.name), history: begin(NO_STROKES) }))
   }
 
   /** Open two white sheets. */
@@ -131,9 +138,7 @@ export class Opener {
       if (!found) throw new PageFault(text.faults.draftGone)
       const { draft, leaf, fruit } = found
       const settings = { ...DEFAULT_SETTINGS, ...draft.settings }
-      const { sheets, solve } = draft.capture
-        ? await this.#captureOf(draft, draft.capture)
-        : await this.#sheetsOf(found)
+      const { sheets, solve } = await this.#keptOf(found)
       const own = {
         leaf: draft.modelHadOtherLeaf ? UNKNOWN_PICTURE : leaf,
         fruit: draft.modelHadOtherFruit ? UNKNOWN_PICTURE : fruit,
@@ -141,6 +146,7 @@ export class Opener {
       return async () => {
         this.#show({ name: draft.name, history: draft.history, seed: draft.seed, sheets, settings, leaf, fruit }, id)
         if (solve) this.captures.goOn(solve)
+        this.clips.keepThumbnail()
         const model = draft.model && (await this.#find(draft.model))
         if (model && draft.modelOf && this.drafts.id === id) this.grower.show(model, draft.modelOf, own)
       }
@@ -153,6 +159,7 @@ export class Opener {
       const model = await this.#find(id)
       if (!model) throw new PageFault(text.faults.modelGone)
       if (model.capture) return this.#readCaptureModel(model, model.capture)
+      if (model.clip) return this.#readClipModel(model, model.clip)
       const project = await this.#readProject(await this.client.getFile(model.files.project!))
       const settings = { ...DEFAULT_SETTINGS, ...model.settings }
       const { leaf, fruit = null } = project
@@ -168,6 +175,7 @@ export class Opener {
   close(): void {
     this.grower.stopFollowing()
     this.captures.stop()
+    this.clips.stop()
     this.drafts.begin(null)
     this.store.set(closed(this.store.state))
   }
@@ -221,8 +229,35 @@ export class Opener {
     }
   }
 
+  /** Send a video; return what opens it with a drawing. */
+  async #readClip(file: File, drawing: Omit<Drawing, 'sheets'>): Promise<() => void> {
+    const info = await this.clips.send(file)
+    return () => this.#showClip(info, drawing)
+  }
+
+  #showClip(clip: Clip, drawing: Omit<Drawing, 'sheets'>, draft: string | null = null): void {
+    const notes = clip.notes?.map(({ detail }) => sentenceOf(detail)).join(' ')
+    this.#show({ corrections: notes, ...drawing, sheets: this.clips.opened(clip, frameIn(drawing.history)) }, draft)
+    this.clips.keepThumbnail()
+  }
+
+  /** Read a model of a clip; where the service no longer has it, it comes from the model's project and is sent again. */
+  async #readClipModel(model: Model, id: string): Promise<() => void> {
+    const info = await this.#orNull(this.client.getClip(id))
+    const project = await this.#readProject(await this.client.getFile(model.files.project!))
+    const { strokes, clip, leaf, fruit = null } = project
+    const named = { name: model.name, settings: { ...DEFAULT_SETTINGS, ...model.settings }, seed: model.seed }
+    const drawing = { ...named, history: begin(strokes), leaf, fruit }
+    const open = info ? () => this.#showClip(info, drawing) : await this.#readClip(clip!, drawing)
+    return () => {
+      open()
+      this.grower.show(model, strokes, { leaf, fruit })
+    }
+  }
+
   async #openProject(project: Project, name: string): Promise<() => void> {
-    const { settings, seed, leaf, fruit = null, photos, strokes } = project
+    const { settings, seed, leaf, fruit = null, photos, clip, strokes } = project
+    if (clip) return this.#readClip(clip, { name, history: begin(strokes), settings, seed, leaf, fruit })
     if (photos) return this.#readPhotos(photos, { name, history: begin(strokes), settings, seed, leaf, fruit })
     const drawn = await this.#onSheets(project)
     return () => this.#show({ ...drawn, name, settings, seed, leaf, fruit })
@@ -238,6 +273,19 @@ export class Opener {
 
   #upload(file: Blob): Promise<PhotoSheet> {
     return upload(file, this.client, this.store.state.limits)
+  }
+
+  /** Return a draft's sheets, by its source. */
+  #keptOf(found: DraftWithPictures): Promise<Kept> {
+    const { draft } = found
+    if (draft.clip) return this.#clipOf(draft, draft.clip)
+    return draft.capture ? this.#captureOf(draft, draft.capture) : this.#sheetsOf(found)
+  }
+
+  /** Return a draft's clip as the service has it; where it has lost it, as the draft does. */
+  async #clipOf({ history }: Draft, clip: Clip): Promise<Kept> {
+    const info = clip.id && (await this.#orNull(this.client.getClip(clip.id)))
+    return { sheets: this.clips.opened(info || { ...clip, id: null }, frameIn(history)) }
   }
 
   /** Return a draft's sheets; if the service no longer has the photo, tracing will notice. */
@@ -328,6 +376,11 @@ export class Opener {
 
 function onPhoto(front: PhotoSheet, side: Sheet | null = null): Sheets {
   return { source: 'photo', front, side }
+}
+
+/** Return the frame of a clip that is drawn over. */
+function frameIn({ present }: History<Strokes>): number {
+  return present.frame ?? 0
 }
 
 async function jsonOf(file: Blob): Promise<unknown> {

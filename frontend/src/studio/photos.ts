@@ -3,6 +3,7 @@ import type { Limits } from '../api/types'
 import type { PhotoSheet } from '../state'
 import { text } from '../text'
 import { PageFault, sentenceOf } from './faultText'
+import { isVideo } from './videos'
 
 /** Media types of the photos that the service reads, by file ending; each type's usual ending comes first. */
 export const TYPES: Readonly<Record<string, string>> = {
@@ -18,9 +19,9 @@ export const TYPES: Readonly<Record<string, string>> = {
   tiff: 'image/tiff',
 }
 
-/** Return whether a file is a picture; whether it is a photo that can be read the service decides. */
+/** Return whether a file is a picture; whether it is a photo that can be read the service decides. A GIF is a video. */
 export function isPicture(file: File): boolean {
-  return typeOf(file).startsWith('image/')
+  return typeOf(file).startsWith('image/') && !isVideo(file)
 }
 
 /** Return a file's media type, by its ending where the browser knows none (HEIC, in most). */

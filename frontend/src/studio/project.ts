@@ -3,11 +3,22 @@ import { DEFAULT_SETTINGS } from '../api/defaults'
 import type { Settings } from '../api/types'
 import type { Edit } from '../edits'
 import { isDrawn } from '../sheets'
-import { fromWire, onSheet, type SheetName, type Strokes, toWire, viewsFromWire, viewsToWire } from '../strokes'
+import {
+  frameFromWire,
+  frameToWire,
+  fromWire,
+  onSheet,
+  type SheetName,
+  type Strokes,
+  toWire,
+  viewsFromWire,
+  viewsToWire,
+} from '../strokes'
 import { text } from '../text'
 import { PageFault } from './faultText'
 import { TYPES } from './photos'
 import { type Drawn, pairSketches, type SketchFile, sketchFrom, sketchToWire } from './sketches'
+import { VIDEO_TYPES } from './videos'
 
 /** What a project file holds. */
 export interface Project extends Drawn {
@@ -15,6 +26,8 @@ export interface Project extends Drawn {
   readonly photo: Blob | null
   /** Many photos of one tree, in place of one. */
   readonly photos?: readonly File[]
+  /** A video of the tree, in place of a photo. */
+  readonly clip?: File
   readonly settings: Settings
   readonly seed: number
   /** The own pictures of a leaf and a fruit. */
@@ -43,13 +56,13 @@ export function fileName(name: string, ending: string): string {
 
 /** Return a project file as the command line and the service write it: a ZIP of pictures, strokes and settings.json. */
 export async function writeProject(project: Project): Promise<Blob> {
-  const { photo, photos, strokes, sizes = {}, settings, seed, ...own } = project
+  const { photo, settings, seed, ...own } = project
   const ending = Object.keys(TYPES).find(key => TYPES[key] === photo?.type) ?? 'jpg'
   const archive = zipSync({
     ...(await member(`photo.${ending}`, photo)),
     ...(await member(PICTURES.leaf, own.leaf)),
     ...(await member(PICTURES.fruit, own.fruit ?? null)),
-    ...(photos ? await photosWithStrokes(photos, strokes) : drawings(strokes, sizes)),
+    ...(await drawnIn(project)),
     'settings.json': strToU8(JSON.stringify({ ...settings, seed }, null, 2)),
   })
   return new Blob([archive], { type: 'application/zip' })
@@ -58,6 +71,14 @@ export async function writeProject(project: Project): Promise<Blob> {
 /** Return a picture as an uncompressed member of the archive. */
 async function member(name: string, picture: Blob | null): Promise<Record<string, [Uint8Array, { level: 0 }]>> {
   return picture ? { [name]: [new Uint8Array(await picture.arrayBuffer()), { level: 0 }] } : {}
+}
+
+/** Return what is drawn as members, with the photos or the video that it is drawn over, where these are no single photo. */
+async function drawnIn({ photos, clip, strokes, sizes = {} }: Project): Promise<Zippable> {
+  if (photos) return photosWithStrokes(photos, strokes)
+  if (!clip) return drawings(strokes, sizes)
+  const ending = /\.\w+$/.exec(clip.name)?.[0].toLowerCase() ?? '.mp4'
+  return { ...(await member(`clip${ending}`, clip)), 'frame_strokes.json': jsonBytes(frameToWire(strokes)) }
 }
 
 /** Return many photos as members, with the strokes over them and the edits of what they show. */
@@ -103,14 +124,26 @@ export async function readProject(file: Blob, readPicture: ReadPicture): Promise
   const { seed, ...settings } = settingsOf(members['settings.json'])
   return {
     photo: photo ? picture(members[photo], TYPES[photo.split('.')[1]!]) : null,
-    ...(members['views.json']
-      ? { photos: photosIn(members), strokes: viewsIn(members) }
-      : await drawingOf(members, photo !== undefined, readPicture)),
+    ...(await sourceIn(members, photo !== undefined, readPicture)),
     settings: { ...DEFAULT_SETTINGS, ...settings },
     seed: seed ?? 0,
     leaf: picture(members[PICTURES.leaf]),
     fruit: picture(members[PICTURES.fruit]),
   }
+}
+
+/** Return the drawing in a project, with the photos or the video that it is drawn over, where these are no single photo. */
+async function sourceIn(
+  members: Record<string, Uint8Array>,
+  hasPhoto: boolean,
+  readPicture: ReadPicture,
+): Promise<Drawn & Pick<Project, 'photos' | 'clip'>> {
+  if (members['views.json']) return { photos: photosIn(members), strokes: viewsIn(members) }
+  const name = Object.keys(members).find(member => /^clip\.\w+$/.test(member))
+  const drawn = members['frame_strokes.json']
+  if (!name || !drawn) return drawingOf(members, hasPhoto, readPicture)
+  const type = VIDEO_TYPES[name.split('.')[1]!] ?? ''
+  return { clip: new File([new Uint8Array(members[name]!)], name, { type }), strokes: parsed(drawn, frameFromWire) }
 }
 
 /** Return the many photos in a project by their own names, of which the service's pictures have one ending more. */

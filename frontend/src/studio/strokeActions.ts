@@ -3,9 +3,9 @@ import { advance, type History, redo, undo } from '../history'
 import { brushWidth, drawnOn, isDrawn, isPaper, paper, photoDrawnOn, replaceSheet, sheetOf, withDrawn } from '../sheets'
 import type { Selection, Store, Tool, Traced } from '../state'
 import {
+  cleared,
   isEmpty,
   type Line,
-  NO_STROKES,
   type PhotoDistance,
   type SheetName,
   type StrokeKind,
@@ -13,6 +13,7 @@ import {
   type Strokes,
   withDistance,
   withEdit,
+  withFrame,
   withoutStroke,
   withScale,
   withStroke,
@@ -72,8 +73,13 @@ export class StrokeActions {
     this.#advance(withDistance(this.store.strokes, distance))
   }
 
+  /** Draw over another frame of the clip, from 0; the strokes stay. */
+  chooseFrame(frame: number): void {
+    if (frame !== this.store.strokes.frame) this.#advance(withFrame(this.store.strokes, frame))
+  }
+
   clear(): void {
-    if (!isEmpty(this.store.strokes)) this.#advance(NO_STROKES)
+    if (!isEmpty(this.store.strokes)) this.#advance(cleared(this.store.strokes))
   }
 
   undo(): void {

@@ -1,6 +1,8 @@
 import { Client } from '../api/client'
+import { Playhead } from '../playhead'
 import { Store } from '../state'
 import { Captures } from './captures'
+import { Clips } from './clips'
 import { DraftStore } from './draftStore'
 import { BranchEdits } from './edits'
 import { Grower } from './grower'
@@ -15,6 +17,7 @@ import { Tracer } from './tracer'
 /** Everything that can be done on the page, apart from how it looks. */
 export class Studio {
   readonly store = new Store()
+  readonly playhead = new Playhead()
   readonly client = new Client()
   readonly drafts = new DraftStore(this.store)
   readonly strokes = new StrokeActions(this.store)
@@ -25,6 +28,7 @@ export class Studio {
   readonly taken = new TakenActions(this.store, this.grower)
   readonly thumbnails = new Thumbnails(this.client, this.drafts)
   readonly captures = new Captures(this.store, this.client, this.thumbnails)
-  readonly opener = new Opener(this.store, this.client, this.drafts, this.grower, this.captures)
+  readonly clips = new Clips(this.store, this.client, this.thumbnails)
+  readonly opener = new Opener(this.store, this.client, this.drafts, this.grower, this.captures, this.clips)
   readonly tracer = new Tracer(this.store, this.client)
 }

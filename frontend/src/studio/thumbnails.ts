@@ -6,6 +6,9 @@ import type { DraftStore } from './draftStore'
 const SIDE = 192
 const QUALITY = 0.8
 
+/** What has a picture on the service. */
+type Pictured = Pick<CapturePhoto, 'id' | 'name' | 'image'>
+
 /** Small pictures of the photos of many: each is made once, and kept with the drawing. */
 export class Thumbnails {
   /** Addresses by the photos' ids. */
@@ -20,7 +23,7 @@ export class Thumbnails {
   ) {}
 
   /** Return the address of a photo's thumbnail; it is made of `file` where that is at hand. Null where it cannot be made. */
-  of(photo: CapturePhoto, file: Blob | null = null): Promise<string | null> {
+  of(photo: Pictured, file: Blob | null = null): Promise<string | null> {
     const known = this.#urls.get(photo.id)
     if (known) return known
     const made = this.#last.then(() => this.#make(photo, file)).catch(() => null)
@@ -29,7 +32,7 @@ export class Thumbnails {
     return made
   }
 
-  async #make({ id, image }: CapturePhoto, file: Blob | null): Promise<string> {
+  async #make({ id, image }: Pictured, file: Blob | null): Promise<string> {
     const kept = await this.drafts.thumbnail(id)
     const thumbnail = kept ?? (await this.#from(file, image))
     if (!kept) await this.drafts.keepThumbnail(id, thumbnail)

@@ -4,7 +4,7 @@ import { captureOf, hasPhoto, replaceSheet } from '../sheets'
 import type { PhotoSheet, Sheets, Store, Traced } from '../state'
 import type { Strokes } from '../strokes'
 import { faultOf } from './faultText'
-import { canTrace, hasTrunk, liveSettings, traced } from './inputs'
+import { canTrace, isEnough, liveSettings, traced } from './inputs'
 import { Rounds } from './rounds'
 
 const RETRY_MS = 1500
@@ -71,14 +71,15 @@ export class Tracer {
     const { sheets, traced: found, liveTree } = this.store.state
     const basis = this.#basis()
     const { strokes } = basis
-    if (!hasTrunk(strokes) && liveTree) this.store.set({ liveTree: null })
-    if (!hasTrunk(strokes) || !found) this.#grownOf = null
+    const grows = isEnough(this.store.state)
+    if (!grows && liveTree) this.store.set({ liveTree: null })
+    if (!grows || !found) this.#grownOf = null
     if (!isSame(basis, this.#refused)) this.#refused = null
     const traceable = canTrace(this.store.state)
     if (!traceable && found) this.store.set({ traced: null, liveTree: null })
     if (!sheets || !traceable || this.#refused) return false
     const isTraced = found?.of === strokes
-    if (isTraced && (!hasTrunk(strokes) || isSame(basis, this.#grownOf))) return false
+    if (isTraced && (!grows || isSame(basis, this.#grownOf))) return false
     try {
       await this.#request(sheets, basis, isTraced)
     } catch (error) {
@@ -137,6 +138,8 @@ export class Tracer {
       await this.#uploadAgain(sheets.front)
     } else if (isGone && sheets.source === 'capture') {
       if (!this.#isStale(sheets, basis.strokes)) this.store.set({ sheets: withoutCapture(sheets), solve: null })
+    } else if (isGone && sheets.source === 'clip') {
+      if (!this.#isStale(sheets, basis.strokes)) this.store.set({ sheets: withoutClip(sheets) })
     } else {
       this.#refused = basis
       if (!this.#isStale(sheets, basis.strokes)) this.store.fault('strokes', faultOf(error, basis.strokes.views))
@@ -159,6 +162,11 @@ export class Tracer {
 /** Return the sheets of many photos that the service no longer has. */
 function withoutCapture(sheets: Sheets & { readonly source: 'capture' }): Sheets {
   return { ...sheets, capture: { ...sheets.capture, id: null } }
+}
+
+/** Return the sheets of a clip that the service no longer has. */
+function withoutClip(sheets: Sheets & { readonly source: 'clip' }): Sheets {
+  return { ...sheets, clip: { ...sheets.clip, id: null } }
 }
 
 function isSame(one: Basis, other: Basis | null): boolean {

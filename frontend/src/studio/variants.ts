@@ -1,6 +1,8 @@
 import type { Model } from '../api/types'
 
-const TREE = /^tree\.(?:v(\d+)\.)?(.+)$/
+const TREE = /^tree\.(?:v(\d+)\.)?(?:s(\d+)\.)?(.+)$/
+/** The file of all siblings as one scene. */
+const GROVE = 'tree.grove.glb'
 
 /** The part of a model's report about its trees and their files. */
 interface Report {
@@ -8,10 +10,11 @@ interface Report {
   readonly files?: Readonly<Record<string, number>>
 }
 
-/** A file of one of a model's trees: the tree's number, from 1, and the rest of its name, such as `lod1.glb`. */
+/** A file of one of a model's trees: the tree's number, from 1, its sibling's (0: its own), and the rest of its name, such as `lod1.glb`. */
 export interface TreeFile {
   readonly name: string
   readonly variant: number
+  readonly sibling: number
   readonly what: string
   readonly url: string
 }
@@ -20,18 +23,30 @@ export interface TreeFile {
 export function treeFiles({ files }: Model): TreeFile[] {
   return Object.entries(files).flatMap(([name, url]) => {
     const found = TREE.exec(name)
-    return found ? [{ name, variant: Number(found[1] ?? 1), what: found[2]!, url }] : []
+    if (!found) return []
+    const [, variant = 1, sibling = 0, what] = found
+    return [{ name, variant: Number(variant), sibling: Number(sibling), what: what!, url }]
   })
 }
 
 /** Return how many trees a model has: as many as there are GLBs. */
 export function variantsOf(model: Model): number {
-  return treeFiles(model).filter(({ what }) => what === 'glb').length
+  return treeFiles(model).filter(({ what, sibling }) => what === 'glb' && sibling === 0).length
 }
 
-/** Return the address of a tree's GLB, by its number from 1; undefined where there is none. */
-export function treeOf(model: Model, variant: number): string | undefined {
-  return model.files[nameOf(variant)]
+/** Return how many siblings a model's tree has. */
+export function siblingsOf(model: Model): number {
+  return treeFiles(model).filter(({ what, sibling }) => what === 'glb' && sibling > 0).length
+}
+
+/** Return the address of the scene that all siblings stand in; undefined where there is none. */
+export function groveOf(model: Model): string | undefined {
+  return model.files[GROVE]
+}
+
+/** Return the address of a tree's GLB, by its number from 1, or of its sibling's; undefined where there is none. */
+export function treeOf(model: Model, variant: number, sibling = 0): string | undefined {
+  return model.files[sibling ? `tree.s${sibling}.glb` : nameOf(variant)]
 }
 
 /** Return a model with the score and counts of one of its trees, by its number from 1. */

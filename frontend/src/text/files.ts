@@ -28,6 +28,7 @@ export const filesText = {
     'lod1.glb': ['Middle distance', 'GLB with a third of the triangles'],
     'lod2.glb': ['Far away', 'GLB with a twelfth of the triangles'],
     'impostor.glb': ['At the horizon', 'GLB with pictures of the tree on crossed planes'],
+    'grove.glb': ['Grove', 'GLB with the tree and its siblings as one scene'],
     'gltf.zip': ['glTF', 'ZIP with the scene as text, its buffer and its pictures'],
     'obj.zip': ['Wavefront OBJ', 'ZIP with materials and pictures, also for older programs'],
     usdz: ['USDZ', 'For iPhone, iPad and Vision Pro: see the tree in your room'],

@@ -19,6 +19,7 @@ export const treeText = {
       noTrunk: 'Now draw a stroke up the trunk.',
       noFront: 'First draw the trunk on the front sheet.',
       noCameras: 'Grow once it is known where the photos were taken.',
+      noClip: 'Choose the video again to grow the tree.',
       badStroke: 'A stroke cannot be used. Change it, then grow the tree.',
       ready: 'Ready to grow bark, twigs and leaves.',
       asking: 'Sending the request',
@@ -76,12 +77,6 @@ export const treeText = {
     showing: {
       live: { long: 'Live skeleton', short: 'Live' },
       model: { long: 'Grown tree', short: 'Grown' },
-    },
-    wind: {
-      group: 'Wind',
-      names: { still: 'Still', breeze: 'Breeze', gust: 'Gust' } as Readonly<Record<string, string>>,
-      add: 'Add wind',
-      addHow: 'No wind yet. Choose it in Settings, File, then grow again.',
     },
     variants: {
       group: 'Tree',

@@ -27,7 +27,7 @@ export const welcomeText = {
     undo: 'Undo',
     grown: 'Trees you have grown',
     drop: 'Drop to open',
-    unknownFile: 'This file cannot be opened. Drop a photo, a drawing or a .treestroke project.',
+    unknownFile: 'This file cannot be opened. Drop a photo, a video, a drawing or a .treestroke project.',
     pasted: 'Pasted photo',
     opening: 'Opening …',
   },
@@ -92,7 +92,7 @@ export const welcomeText = {
     unreachable: 'The service does not answer. Your drawing is safe. Try again in a moment.',
     modelGone: 'This tree is no longer there: it was deleted. Grow it again from its strokes.',
     draftGone: 'This drawing is no longer saved in this browser.',
-    projectIncomplete: 'This project has no photo or no strokes. Save it again where you made it.',
+    projectIncomplete: 'This project has no photo or video, or no strokes. Save it again where you made it.',
     projectUnreadable: 'This project file is damaged. Save it again where you made it.',
     sketchUnreadable:
       'This drawing cannot be read. Save it as a PNG: dark strokes on white, a closed red line for the crown.',

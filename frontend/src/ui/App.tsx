@@ -2,15 +2,10 @@ import type { ComponentType, TargetedMouseEvent } from 'preact'
 import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
-import { ShortcutsDialog } from './drawing/ShortcutsDialog'
 import { StudioProvider, useStore, useStudio } from './parts/useStore'
-import { AdviceDialog } from './start/AdviceDialog'
-import { Dialog } from './start/Dialog'
 import { DropArea } from './start/DropArea'
-import { GalleryDialog } from './start/GalleryDialog'
 import { Header } from './start/Header'
 import { Notices } from './start/Notices'
-import { PhotosDialog } from './start/PhotosDialog'
 import { followSession, hasSession, resume } from './start/session'
 import { Welcome } from './start/Welcome'
 import './app.css'
@@ -24,7 +19,7 @@ export function App({ studio }: { readonly studio: Studio }) {
       <Opening />
       <DropArea />
       <LiveRegion />
-      <Dialogs />
+      <Overlaid />
     </StudioProvider>
   )
 }
@@ -99,16 +94,12 @@ function LiveRegion() {
   )
 }
 
-/** The open dialog; it lies over everything else, so notices are shown within it. */
-function Dialogs() {
-  const dialog = useStore(state => state.dialog)
-  if (dialog === 'gallery') return <GalleryDialog />
-  if (dialog === 'photos') return <PhotosDialog />
-  if (dialog === 'advice') return <AdviceDialog />
-  if (dialog === null) return <Notices />
-  return (
-    <Dialog title={text.shortcuts.title}>
-      <ShortcutsDialog />
-    </Dialog>
-  )
+/** The open dialog, loaded before the first is opened; it lies over everything else, so notices are shown within it. */
+function Overlaid() {
+  const isOpen = useStore(({ dialog }) => dialog !== null)
+  const [Dialogs, setDialogs] = useState<ComponentType | null>(null)
+  useEffect(() => {
+    void import('./start/Dialogs').then(module => setDialogs(() => module.Dialogs))
+  }, [])
+  return isOpen && Dialogs ? <Dialogs /> : <Notices />
 }

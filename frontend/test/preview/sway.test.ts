@@ -14,45 +14,67 @@ beforeEach(() => {
   bone = new Bone()
   bone.name = 'branch_01'
   const tree = new Group().add(bone)
-  sway = new Sway(tree, [clip('breeze', [0, 0, HALF, HALF]), clip('gust', [HALF, 0, 0, HALF])])
+  sway = new Sway(tree, [clip('breeze', [0, 0, HALF, HALF]), clip('measured', [HALF, 0, 0, HALF])])
 })
 
-test('a still tree does not move, and one in the wind does', () => {
-  expect(sway.winds).toEqual(['breeze', 'gust'])
-  expect([sway.step(1), bone.quaternion.z]).toEqual([false, 0])
-  sway.setWind('breeze')
-  expect(sway.step(1)).toBe(true)
+test('a still tree does not move, and one that plays is at its place', () => {
+  expect([sway.show(1, 0.1), bone.quaternion.z]).toEqual([false, 0])
+  sway.choose('breeze', false)
+  expect(sway.show(1, 0.1)).toBe(true)
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
+  sway.show(2, 0.1)
+  expect(bone.quaternion.z).toBeCloseTo(0, 6)
 })
 
-test('wind repeats', () => {
-  sway.setWind('breeze')
-  sway.step(1)
-  sway.step(2)
-  expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
+test('what was measured comes first, and tells how long it is', () => {
+  expect(sway.animations).toEqual(['measured', 'breeze'])
+  expect([sway.lengthOf('measured'), sway.lengthOf('storm')]).toEqual([2, 0])
 })
 
-test('without wind the tree stands as it was', () => {
-  sway.setWind('breeze')
-  sway.step(1)
-  sway.setWind(null)
-  expect([sway.step(0.1), bone.quaternion.toArray()]).toEqual([false, [0, 0, 0, 1]])
+test('nothing moves while the place stays', () => {
+  sway.choose('breeze', false)
+  expect([sway.show(1, 0.1), sway.show(1, 0.1), sway.show(0.5, 0.1)]).toEqual([true, false, true])
 })
 
-test('one wind changes to another, and back', () => {
-  sway.setWind('breeze')
-  sway.step(1)
-  sway.setWind('gust')
-  sway.step(0.7)
-  sway.step(0.3)
+test('without an animation the tree stands as it was', () => {
+  sway.choose('breeze', false)
+  sway.show(1, 0.1)
+  sway.choose(null, true)
+  expect([sway.show(0.5, 0.1), bone.quaternion.toArray()]).toEqual([false, [0, 0, 0, 1]])
+})
+
+test('one animation changes to another gradually, and back at once', () => {
+  sway.choose('breeze', false)
+  sway.show(1, 0.1)
+  sway.choose('measured', true)
+  sway.show(1, 0.3)
+  expect(bone.quaternion.x).toBeGreaterThan(0.1)
+  expect(bone.quaternion.z).toBeGreaterThan(0.1)
+  sway.show(1, 0.4)
   expect(bone.quaternion.x).toBeCloseTo(HALF, 6)
-  sway.setWind('breeze')
-  sway.step(0.7)
-  sway.step(0.3)
+  sway.choose('breeze', false)
+  sway.show(1, 0.1)
   expect(bone.quaternion.z).toBeCloseTo(HALF, 6)
 })
 
-test('a wind that the file does not have moves nothing', () => {
-  sway.setWind('storm')
-  expect(sway.step(1)).toBe(false)
+test('an animation that the file does not have moves nothing', () => {
+  sway.choose('storm', false)
+  expect(sway.show(1, 0.1)).toBe(false)
+})
+
+test('a gain changes how far a branch turns from its mean, and one brings it back', () => {
+  const angle = () => (2 * Math.asin(bone.quaternion.z) * 180) / Math.PI
+  sway.choose('breeze', false)
+  sway.show(1, 0.1)
+  const own = angle()
+  sway.setGain(0)
+  expect(sway.show(1, 0.1)).toBe(true)
+  const mean = angle()
+  expect([mean > 20, mean < 40]).toEqual([true, true])
+  sway.setGain(1.5)
+  sway.show(1, 0.1)
+  expect(angle() - mean).toBeCloseTo(1.5 * (own - mean), 3)
+  sway.setGain(1)
+  sway.show(1, 0.1)
+  expect(angle()).toBeCloseTo(own, 3)
 })

@@ -49,6 +49,34 @@ test('a model is requested with what was drawn, followed, and its tree fetched',
   expect(Events.last.readyState).toBe(Events.CLOSED)
 })
 
+test('siblings come with a model of the same strokes, whose settings are taken over', async () => {
+  const calls = service(call =>
+    call.path.endsWith('.glb')
+      ? new Response(GLB)
+      : Response.json(model({ id: 'mdl_2', status: 'queued', seed: 9, settings: { siblings: 3 } as never })),
+  )
+  const { store, grower } = begin()
+  grower.show(finished(), store.strokes, { leaf: null, fruit: null })
+  await grower.growSiblings({ count: 3, seed: 5, scene: true, envelope: 'heart' })
+  expect(calls.at(-1)).toMatchObject({
+    path: '/v1/models/mdl_1/siblings',
+    body: { count: 3, seed: 5, scene: true, envelope: 'heart', name: 'Oak' },
+  })
+  expect(store.state).toMatchObject({ model: { info: { id: 'mdl_2' }, strokes: store.strokes, sibling: 0 }, seed: 9 })
+  expect(store.state.settings).toMatchObject({ siblings: 3 })
+})
+
+test('a sibling is shown in the place of the tree', async () => {
+  service(({ path }) => new Response(path.includes('s2') ? new Uint8Array([2]) : GLB))
+  const { store, grower } = begin()
+  const files = { 'tree.glb': '/tree.glb', 'tree.s2.glb': '/tree.s2.glb' }
+  grower.show(model({ status: 'succeeded', files }), store.strokes, { leaf: null, fruit: null })
+  await grower.choose(1, 2)
+  expect([store.state.model?.sibling, new Uint8Array(store.state.model!.glb!)]).toEqual([2, new Uint8Array([2])])
+  await grower.choose(1, 7)
+  expect(store.state.model?.sibling).toBe(2)
+})
+
 test('while a tree grows, growing again requests nothing', async () => {
   const calls = service(serve)
   const { grower } = begin()

@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { treeFiles, treeOf, variantsOf, withVariant } from '../../src/studio/variants'
+import { groveOf, siblingsOf, treeFiles, treeOf, variantsOf, withVariant } from '../../src/studio/variants'
 import { model } from '../builders'
 
 const files = {
@@ -27,6 +27,14 @@ test('files of trees are found among others, with their tree’s number', () => 
     '/12',
     undefined,
   ])
+})
+
+test('siblings are told from the tree and its variants', () => {
+  const grown = model({
+    files: { 'tree.glb': '/1', 'tree.s1.glb': '/s1', 'tree.s12.glb': '/s12', 'tree.grove.glb': '/g' },
+  })
+  expect([variantsOf(grown), siblingsOf(grown), groveOf(grown)]).toEqual([1, 2, '/g'])
+  expect([treeOf(grown, 1), treeOf(grown, 1, 12), treeOf(grown, 1, 2)]).toEqual(['/1', '/s12', undefined])
 })
 
 test('one of several trees has its own score and counts, and what they have in common', () => {

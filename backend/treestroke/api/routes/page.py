@@ -21,7 +21,7 @@ The page has not been built. Run
 
 in treestroke's source folder and reload. The API works without it: see /openapi.json.
 """
-_PAGE_POLICY = f"{CONTENT_SECURITY_POLICY}; script-src 'self' 'wasm-unsafe-eval'"
+_PAGE_POLICY = f"{CONTENT_SECURITY_POLICY}; media-src 'self' blob:; script-src 'self' 'wasm-unsafe-eval'"
 """The page may also run WebAssembly, which decompresses trees."""
 # The system's table of media types may be wrong or incomplete, and browsers are told not to guess.
 _MEDIA_TYPES = {

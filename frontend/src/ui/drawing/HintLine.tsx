@@ -1,6 +1,7 @@
 import { useLayoutEffect, useState } from 'preact/hooks'
-import { captureOf, photoDrawnOn } from '../../sheets'
+import { captureOf, clipOf, photoDrawnOn } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
+import type { State } from '../../state'
 import { text } from '../../text'
 import { useStore, useStudio } from '../parts/useStore'
 import { type Hint, hintOf } from './hint'
@@ -14,7 +15,7 @@ export function HintLine() {
     pointer,
   )
   const isTracing = useStore(state => state.tracing)
-  const cameras = useStore(state => captureOf(state)?.cameras.length)
+  const words = useStore(tracingWords)
   return (
     <div class={isTracing ? 'hint-row is-tracing' : 'hint-row'}>
       <div class="hint-over">
@@ -27,11 +28,18 @@ export function HintLine() {
           <HintActions hint={hint} />
         </div>
         <p class="hint-tracing" aria-hidden="true">
-          {cameras === undefined ? text.hints.tracing : text.capture.tracing(cameras)}
+          {words}
         </p>
       </div>
     </div>
   )
+}
+
+/** Say what is being traced. */
+function tracingWords(state: State): string {
+  if (clipOf(state)) return text.clip.tracing
+  const cameras = captureOf(state)?.cameras.length
+  return cameras === undefined ? text.hints.tracing : text.capture.tracing(cameras)
 }
 
 /** Return the kind of pointer that was used last; before that, the device's main one. */

@@ -1,8 +1,9 @@
 import type { RefObject } from 'preact'
 import { useLayoutEffect, useRef, useState } from 'preact/hooks'
-import { captureOf } from '../../sheets'
+import { captureOf, clipOf } from '../../sheets'
 import type { SheetName } from '../../strokes'
 import { text } from '../../text'
+import { useFilm } from '../film/useFilm'
 import { useStore, useStudio } from '../parts/useStore'
 import { TreePane } from '../tree/TreePane'
 import { announceDrawing } from './announcements'
@@ -31,8 +32,9 @@ export function Workspace() {
   const { store } = useStudio()
   const isOpen = useStore(({ sheets }) => sheets !== null)
   const hasSide = useStore(({ sheets }) => Boolean(sheets?.side))
-  const isCapture = useStore(state => captureOf(state) !== null)
-  const [shown, show] = useShown(hasSide || isCapture)
+  const hasStrip = useStore(state => captureOf(state) !== null || clipOf(state) !== null)
+  const [shown, show] = useShown(hasSide || hasStrip)
+  const filmed = useFilm()
   const [split, setSplit] = useState<number | null>(null)
   const element = useRef<HTMLDivElement>(null)
   useLayoutEffect(() => announceDrawing(store), [store])
@@ -46,12 +48,12 @@ export function Workspace() {
       ref={element}
     >
       <section class="pane drawing-pane" aria-label={text.workspace.drawing}>
-        <DrawingPane />
+        <DrawingPane filmed={filmed} />
       </section>
       <Divider split={split} move={setSplit} />
       <PaneChooser shown={shown} hasSide={hasSide} show={show} />
       <section class="pane tree-pane" aria-label={text.workspace.tree}>
-        <TreePane />
+        <TreePane filmed={filmed} />
       </section>
     </div>
   )

@@ -60,6 +60,7 @@ export function editText(before: History<Strokes>, now: History<Strokes>): strin
   if (now.past.at(-1) !== before.present) return null
   if (before.future[0] === now.present) return text.strokes.redone
   if (isEmpty(now.present)) return text.strokes.cleared
+  if (before.present.frame !== now.present.frame) return text.clip.frameChosen(now.present.frame ?? 0)
   if (before.present.edits !== now.present.edits) return text.capture.edited
   if (before.present.distance !== now.present.distance && now.present.distance) return text.capture.scaled
   const scaleText = scaleEditText(before.present.scale, now.present.scale)

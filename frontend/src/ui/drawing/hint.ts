@@ -1,6 +1,6 @@
 import { isFinished, isSolving } from '../../api/follow'
 import { doubtIn, remarksOn, type StrokeRemark } from '../../doubts'
-import { captureOf, drawnOn, isPaper, photoDrawnOn } from '../../sheets'
+import { captureOf, clipOf, drawnOn, isPaper, photoDrawnOn } from '../../sheets'
 import type { PointerKind } from '../../sketch/gesture'
 import type { State } from '../../state'
 import { lineOf, type StrokeRef } from '../../strokes'
@@ -54,6 +54,7 @@ function step(state: State, pointer: PointerKind): Hint {
   if (tool === 'scale') return stepTo(text.hints.measure, text.hints.measureNear)
   if (isPaper(state, state.active)) return sketchStep(state, pointer) ?? laterStep(state, pointer)
   if (hasTrunk(state.history.present) && captureOf(state)) return captureStep(state, pointer)
+  if (clipOf(state)) return clipStep(state, pointer)
   if (!crown) return tool === 'crown' ? stepTo(text.hints.crown, how.crown) : stepTo(text.hints.chooseCrown)
   if (!branches.length)
     return tool === 'branch' ? stepTo(text.hints.trunk, how.branch) : stepTo(text.hints.chooseBranch)
@@ -72,6 +73,16 @@ function captureStep(state: State, pointer: PointerKind): Hint {
   if (!state.traced) return stepTo(hints.reading)
   const later = laterStep(state, pointer)
   return later.text === text.hints.refine ? stepTo(hints.refine) : later
+}
+
+/** Return the next step over a frame of a clip: its outline is enough, and a trunk is welcome. */
+function clipStep(state: State, pointer: PointerKind): Hint {
+  const { hints } = text.clip
+  const how = text.hints.how[pointer]
+  const { crown, branches } = drawnOn(state, 'front')
+  if (!crown) return state.tool === 'crown' ? stepTo(hints.crown, how.crown) : stepTo(text.hints.chooseCrown)
+  if (state.model || branches.length) return laterStep(state, pointer)
+  return state.traced ? stepTo(hints.trunk, how.branch) : stepTo(hints.reading)
 }
 
 /** Return the next step on paper; null once trunk and branches are drawn. */

@@ -2,11 +2,13 @@ import { isEmpty } from '../../strokes'
 import { isPicture, TYPES } from '../../studio/photos'
 import { isProject } from '../../studio/project'
 import type { Studio } from '../../studio/studio'
+import { isVideo, VIDEO_TYPES } from '../../studio/videos'
 import { text } from '../../text'
 
 const PHOTOS = [...new Set(Object.values(TYPES)), ...Object.keys(TYPES).map(ending => `.${ending}`)].join()
 /** What systems put into folders. */
 const HIDDEN = /^\.|^(Thumbs\.db|desktop\.ini)$/i
+const VIDEOS = ['video/*', 'image/gif', ...Object.keys(VIDEO_TYPES).map(ending => `.${ending}`)].join()
 const PROJECTS = '.treestroke'
 const SKETCHES = 'image/png,application/json,.json'
 
@@ -17,7 +19,9 @@ export function mayLeave({ store }: Studio): boolean {
 
 /** Let the user choose photos or a project on the disk, and open them. */
 export function choose(studio: Studio, what: 'photo' | 'any' = 'any'): void {
-  fromDisk(what === 'photo' ? PHOTOS : `${PHOTOS},${PROJECTS}`, files => openFiles(studio, files), { multiple: true })
+  fromDisk(what === 'photo' ? PHOTOS : `${PHOTOS},${VIDEOS},${PROJECTS}`, files => openFiles(studio, files), {
+    multiple: true,
+  })
 }
 
 /** Let the user choose many photos of one tree. */
@@ -39,6 +43,17 @@ export function chooseMore({ captures }: Studio): void {
   fromDisk(PHOTOS, files => void captures.add(files.filter(isPicture)), { multiple: true })
 }
 
+/** Let the user choose a video of a tree. */
+export function chooseVideo(take: (file: File) => void): void {
+  fromDisk(VIDEOS, ([file]) => take(file!))
+}
+
+/** Say what becomes of a video that was chosen, before it is sent. */
+export function offerVideo({ store }: Studio, clipOffer: File): void {
+  store.fault('photo', null)
+  store.set({ dialog: 'clip', clipOffer })
+}
+
 /** Let the user choose a picture on the disk. */
 export function choosePicture(take: (file: File) => void): void {
   fromDisk(PHOTOS, ([file]) => take(file!))
@@ -49,11 +64,13 @@ export function chooseSketch(take: (file: File) => void): void {
   fromDisk(SKETCHES, ([file]) => take(file!))
 }
 
-/** Open what was chosen or dropped together: a project or a photo, or many photos after it is said what becomes of them. */
+/** Open what was chosen or dropped together: a project or a photo, or many photos or a video after it is said what becomes of them. */
 export function openFiles(studio: Studio, files: readonly File[], folder = ''): void {
   const photos = files.filter(isPicture)
   const one = files.find(isProject) ?? (photos.length === 1 ? photos[0] : undefined)
+  const video = files.find(isVideo)
   if (one) openFile(studio, one)
+  else if (video && !photos.length) offerVideo(studio, video)
   else if (photos.length) offerPhotos(studio, photos, files, folder)
   else if (files.length) studio.store.fault('photo', { text: text.welcome.unknownFile })
 }

@@ -22,12 +22,14 @@ export async function copyText(text: string): Promise<boolean> {
 }
 
 /** Save the drawing as a project file among the browser's downloads. */
-export async function saveProject({ store, captures }: Studio): Promise<void> {
+export async function saveProject({ store, captures, clips }: Studio): Promise<void> {
   const { sheets, name, settings, seed, leaf, fruit } = store.state
   if (!sheets) return
   const { source, front, side } = sheets
   const sizes = { ...(source === 'sketch' && { front }), ...(side && { side }) }
-  const pictures = source === 'capture' ? { photo: null, photos: await captures.files() } : { photo: front.file }
+  const clip = source === 'clip' ? await clips.file() : null
+  const photos = source === 'capture' ? await captures.files() : null
+  const pictures = { photo: front.file, ...(photos && { photos }), ...(clip && { clip }) }
   const project = { ...pictures, strokes: store.strokes, sizes, settings, seed, leaf, fruit }
   const file = projectName(name)
   saveFile(await writeProject(project), file)

@@ -3,6 +3,7 @@ import { isPaper } from '../../sheets'
 import type { SheetName } from '../../strokes'
 import { isPicture, typeOf } from '../../studio/photos'
 import type { Studio } from '../../studio/studio'
+import { isVideoType } from '../../studio/videos'
 import { text } from '../../text'
 import { droppedIn } from '../parts/dropped'
 import { openFile, openFiles, openSketch } from '../parts/files'
@@ -105,8 +106,9 @@ function targetOf(studio: Studio, event: DragEvent, types: readonly string[]): T
 /** What can be done with files dropped on the page, by their types: a PNG may be a photo or a drawing, which only the user knows. */
 function usesOnPage(studio: Studio, types: readonly string[]): readonly Use[] {
   const { drop } = text.sheets
-  const images = types.filter(type => type.startsWith('image/')).length
+  const images = types.filter(type => type.startsWith('image/') && !isVideoType(type)).length
   if (images > 1) return [{ words: [text.capture.offer.drop] }]
+  if (!images && types.some(isVideoType)) return [{ words: [text.clip.drop] }]
   const photo: Use = { words: drop.photo, take: file => openFile(studio, file) }
   const drawing: Use = { words: drop.drawing, take: file => openSketch(studio, file) }
   return usesOf(types, photo, drawing) ?? [{ words: [text.welcome.drop] }]

@@ -10,6 +10,7 @@ import { ICONS } from '../parts/icons'
 import { useStore, useStudio } from '../parts/useStore'
 import { DraftCard } from './DraftCard'
 import { ExampleCard, SketchCard } from './ExampleCards'
+import { FilmStart } from './FilmStart'
 import { Illustration } from './Illustration'
 import { ManyPhotos } from './ManyPhotos'
 import './welcome.css'
@@ -35,6 +36,9 @@ export function Welcome({ late }: { readonly late: boolean }) {
       </Section>
       <Section id="many" title={text.capture.welcome.title} hint={text.capture.welcome.hint}>
         <ManyPhotos />
+      </Section>
+      <Section id="clip" title={text.clip.welcome.title} hint={text.clip.welcome.hint}>
+        <FilmStart />
       </Section>
       <Section id="sketches" title={sheets.welcome.examples} hint={sheets.welcome.examplesHint}>
         <ul class="picks pairs">

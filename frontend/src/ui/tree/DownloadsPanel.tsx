@@ -3,7 +3,7 @@ import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
 import type { Model } from '../../api/types'
 import { isDrawn, isPaper, SHEET_NAMES, sheetOf } from '../../sheets'
 import type { State } from '../../state'
-import { onSheet, toWire, viewsToWire } from '../../strokes'
+import { frameToWire, onSheet, toWire, viewsToWire } from '../../strokes'
 import { canTrace } from '../../studio/inputs'
 import { fileName } from '../../studio/project'
 import { sketchToWire } from '../../studio/sketches'
@@ -218,6 +218,7 @@ function saveStrokes({ store }: Studio): void {
   const save = (what: string, value: unknown) =>
     saveFile(new Blob([JSON.stringify(value)], { type: 'application/json' }), fileName(name, `.${what}.json`))
   if (sheets?.source === 'capture') save('views', viewsToWire(store.strokes))
+  if (sheets?.source === 'clip') save('strokes', frameToWire(store.strokes))
   if (sheets?.source === 'photo') save('strokes', toWire(onSheet(store.strokes, 'front')))
   for (const sheetName of SHEET_NAMES) {
     const sheet = sheetOf(store.state, sheetName)

@@ -5,6 +5,7 @@ import { text } from '../../text'
 import { Icon } from '../parts/Icon'
 import { ICONS } from '../parts/icons'
 import { useStore, useStudio } from '../parts/useStore'
+import { SiblingsPanel } from '../siblings/SiblingsPanel'
 import { DownloadsPanel, hasDownloads, TreeLink } from './DownloadsPanel'
 import { AnotherButton, GrowButton } from './growButtons'
 import { canGrow, growthStatusOf, isBusy } from './growthStatus'
@@ -26,6 +27,7 @@ interface Props {
 /** The bar below the preview: where growing stands, Grow with its settings, and the downloads. */
 export function GrowBar({ settings, picture }: Props) {
   const canDownload = useStore(hasDownloads)
+  const hasTree = useStore(({ model }) => model?.info.status === 'succeeded')
   const grow = useRef<HTMLButtonElement>(null)
   return (
     <div class="growbar">
@@ -34,6 +36,9 @@ export function GrowBar({ settings, picture }: Props) {
       <div class="grow-actions">
         <GrowButton describedBy={STATUS} buttonRef={grow} />
         <AnotherButton />
+        <Opener panel="siblings" label={text.siblings.title} hidden={!hasTree}>
+          <Icon path={ICONS.trees} />
+        </Opener>
         <Opener panel="settings" label={text.grow.settings}>
           <Icon path={ICONS.sliders} />
         </Opener>
@@ -45,13 +50,14 @@ export function GrowBar({ settings, picture }: Props) {
       </div>
       <SettingsPanel {...settings} />
       <ScorePanel />
+      <SiblingsPanel />
       <DownloadsPanel picture={picture} moreFormats={() => settings.open('file')} />
     </div>
   )
 }
 
 interface OpenerProps {
-  readonly panel: 'settings' | 'downloads'
+  readonly panel: 'settings' | 'downloads' | 'siblings'
   readonly label: string
   readonly hidden?: boolean
   readonly children: ComponentChildren

@@ -11,17 +11,15 @@ import { ICONS } from '../parts/icons'
 import { Popover } from '../parts/Popover'
 import { useStore, useStudio } from '../parts/useStore'
 import { isBareDrawing } from './previewContent'
-import { readable } from './settingGroups'
 
 const VIEWS: readonly View[] = ['photo', 'front', 'side', 'back', 'top']
 const STEP = 1.25
-const STILL = 'still'
 /** More trees than these are chosen from a list. */
 const MOST_BUTTONS = 6
 
 interface Props {
   readonly status: PreviewStatus
-  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'setWind' | 'setPart'>
+  preview(): Pick<Preview, 'view' | 'setLeaves' | 'zoom' | 'setPart'>
 }
 
 /** The buttons that turn the tree to its views, hide its leaves and zoom; hidden while there is no tree. */
@@ -215,49 +213,4 @@ export function VariantChoice() {
 
 function countOf({ model }: State): number {
   return model?.glb ? variantsOf(model.info) : 0
-}
-
-/** The choice between no wind and the winds of the file; where it has none, a button that leads to their settings. */
-export function WindSwitch({ status, preview, toSettings }: Props & { toSettings(): void }) {
-  const { wind: words } = text.preview
-  const isTree = status.shows === 'model' && status.webgl !== 'absent'
-  const hasWind = isTree && status.winds.length > 0
-  const names = [STILL, ...status.winds]
-  const chosen = status.wind ?? STILL
-  const setWind = (name: string) => preview().setWind(name === STILL ? null : name)
-  return (
-    <div class="wind">
-      <div class="overlay winds" role="group" aria-label={words.group} hidden={!hasWind}>
-        <Icon path={ICONS.wind} />
-        {names.map(name => (
-          <button type="button" class="button" key={name} aria-pressed={name === chosen} onClick={() => setWind(name)}>
-            {windName(name)}
-          </button>
-        ))}
-      </div>
-      <select
-        class="overlay wind-choice"
-        aria-label={words.group}
-        hidden={!hasWind}
-        value={chosen}
-        onChange={event => setWind(event.currentTarget.value)}
-      >
-        {names.map(name => (
-          <option value={name} key={name}>
-            {windName(name)}
-          </option>
-        ))}
-      </select>
-      <div class="overlay no-wind" hidden={!isTree || hasWind}>
-        <button type="button" class="button" title={words.addHow} aria-label={words.add} onClick={toSettings}>
-          <Icon path={ICONS.wind} />
-          <span class="roomy">{words.add}</span>
-        </button>
-      </div>
-    </div>
-  )
-}
-
-function windName(wind: string): string {
-  return text.preview.wind.names[wind] ?? readable(wind)
 }

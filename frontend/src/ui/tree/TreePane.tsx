@@ -7,11 +7,14 @@ import { text } from '../../text'
 import { CoverageRing } from '../capture/CoverageRing'
 import { EditTools } from '../capture/EditTools'
 import { followMeasured } from '../capture/followMeasured'
+import { Transport } from '../film/Transport'
+import type { Filmed } from '../film/useFilm'
 import { Sapling } from '../parts/Sapling'
 import { useStore, useStudio } from '../parts/useStore'
+import { AnimationSwitch } from './AnimationSwitch'
 import { announceGrowth } from './announceGrowth'
 import { GrowBar } from './GrowBar'
-import { PreviewButtons, ShowsSwitch, VariantChoice, WindSwitch } from './PreviewButtons'
+import { PreviewButtons, ShowsSwitch, VariantChoice } from './PreviewButtons'
 import { followState } from './previewContent'
 import { useSettingsView } from './SettingsPanel'
 import { TakenChip } from './TakenChip'
@@ -21,10 +24,10 @@ import './treePane.css'
 const ASSUMED = 'side_assumed'
 
 /** The tree's side of the page: the preview with its buttons, and the bar that has it grown. */
-export function TreePane() {
-  const { client, store } = useStudio()
+export function TreePane({ filmed }: { readonly filmed: Filmed }) {
+  const { client, store, playhead } = useStudio()
   const scene = useRef<HTMLDivElement>(null)
-  const { preview, status } = usePreview(scene)
+  const { preview, status } = usePreview(scene, filmed)
   const settings = useSettingsView()
   const picture = async () => {
     const url = store.state.model?.info.files['preview.png']
@@ -43,24 +46,28 @@ export function TreePane() {
           <AssumedNote />
           <ShowsSwitch webgl={status.webgl} />
           <VariantChoice />
-          <WindSwitch status={status} preview={preview} toSettings={() => settings.open('file')} />
+          <AnimationSwitch status={status} preview={preview} toSettings={() => settings.open('file')} />
         </div>
       </div>
+      {status.animation !== null && (
+        <Transport playhead={playhead} gain={{ now: status.gain, set: gain => preview().setGain(gain) }} />
+      )}
       <GrowBar settings={settings} picture={picture} />
     </div>
   )
 }
 
 /** Show the tree in an element as long as it is there; return the preview and what it shows. */
-function usePreview(scene: RefObject<HTMLDivElement | null>) {
+function usePreview(scene: RefObject<HTMLDivElement | null>, { parts, film }: Filmed) {
   const studio = useStudio()
-  const { store, edits, captures } = studio
+  const { store, edits, captures, playhead } = studio
   const preview = useRef<Preview>(null)
   const [status, setStatus] = useState(NOTHING_SHOWN)
   useLayoutEffect(() => {
     const made = new Preview(scene.current!, {
       labels: { wipe: text.preview.wipe, canvas: text.preview.canvas },
       reducedMotion: () => matchMedia('(prefers-reduced-motion: reduce)').matches,
+      playhead,
       onStatus: setStatus,
       onPhoto: photo => captures.choose(photo),
       edits: {
@@ -76,6 +83,16 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
       made.end()
     }
   }, [store, scene])
+  useLayoutEffect(() => {
+    if (!film || !parts) return
+    const canvas = document.createElement('canvas')
+    const end = parts.showFilm(canvas, film)
+    preview.current!.showFilm(canvas)
+    return () => {
+      end()
+      preview.current?.showFilm(null)
+    }
+  }, [film, parts])
   return { preview: () => preview.current!, status }
 }
 
@@ -83,7 +100,7 @@ function usePreview(scene: RefObject<HTMLDivElement | null>) {
 function StageMessage({ status: { webgl, shows } }: { readonly status: PreviewStatus }) {
   const url = useStore(({ model }) => (model?.glb ? model.info.files['preview.png'] : undefined))
   const fault = useStore(state => state.faults.preview?.text)
-  const isRead = useStore(({ sheets, tracing }) => sheets?.source === 'capture' && tracing)
+  const invitation = useStore(invitationOf)
   const isAbsent = webgl === 'absent'
   const hasPicture = isAbsent && url !== undefined
   const notice = fault ?? webglNotice(webgl)
@@ -91,7 +108,7 @@ function StageMessage({ status: { webgl, shows } }: { readonly status: PreviewSt
     <div class="stage-message">
       <div class="invitation" hidden={isAbsent ? hasPicture : shows !== 'empty'}>
         <Sapling />
-        <p>{isRead ? text.preview.reading : text.preview.empty}</p>
+        <p>{invitation}</p>
       </div>
       <img class="tree-picture" alt={text.preview.picture} src={hasPicture ? url : undefined} hidden={!hasPicture} />
       <p class={fault ? 'stage-notice fault' : 'stage-notice'} hidden={notice === ''}>
@@ -99,6 +116,12 @@ function StageMessage({ status: { webgl, shows } }: { readonly status: PreviewSt
       </p>
     </div>
   )
+}
+
+/** Say what brings a tree, or that it is on its way. */
+function invitationOf({ sheets, tracing }: State): string {
+  if (sheets?.source === 'clip') return text.clip.empty
+  return sheets?.source === 'capture' && tracing ? text.preview.reading : text.preview.empty
 }
 
 function webglNotice(webgl: PreviewStatus['webgl']): string {

@@ -27,7 +27,7 @@ const ELSEWHERE = ['preview.png', 'strokes.json', 'project', 'leaf.png']
 
 /** List the files of one of a model's trees, the tree itself first and each group together. */
 export function downloadsOf(model: Model, variant: number): Download[] {
-  const files = treeFiles(model).filter(file => file.variant === variant)
+  const files = treeFiles(model).filter(file => file.variant === variant && file.sibling === 0)
   const place = variantsOf(model) > 1 ? `.v${variant}` : ''
   const known = files.map(({ what, url }): Download => {
     const [label, about] = what === 'glb' ? text.files.glb : (text.files.known[what] ?? [what, text.files.other])

@@ -11,6 +11,7 @@ export type GrowthStatus =
   | 'noTrunk'
   | 'noFront'
   | 'noCameras'
+  | 'noClip'
   | 'badStroke'
   | 'ready'
   | 'asking'
@@ -25,7 +26,15 @@ export type GrowthStatus =
   | 'canceled'
 
 const BUSY: readonly GrowthStatus[] = ['asking', 'queued', 'growing']
-const INCOMPLETE: readonly GrowthStatus[] = ['noPhoto', 'noCrown', 'noTrunk', 'noFront', 'noCameras', 'badStroke']
+const INCOMPLETE: readonly GrowthStatus[] = [
+  'noPhoto',
+  'noCrown',
+  'noTrunk',
+  'noFront',
+  'noCameras',
+  'noClip',
+  'badStroke',
+]
 
 /** Return where growing stands. */
 export function growthStatusOf(state: State): GrowthStatus {
@@ -44,6 +53,7 @@ function lackOf(sheets: Sheets, strokes: Strokes): GrowthStatus | null {
   const { crown, views = [] } = strokes
   if (sheets.source === 'sketch') return hasTrunk(strokes) ? null : 'noFront'
   if (!crown && !views.some(view => view.crown)) return 'noCrown'
+  if (sheets.source === 'clip') return sheets.clip.id === null ? 'noClip' : null
   if (!hasTrunk(strokes)) return 'noTrunk'
   return sheets.source === 'capture' && !sheets.capture.cameras.length ? 'noCameras' : null
 }

@@ -1,11 +1,11 @@
 // @vitest-environment jsdom
 import 'fake-indexeddb/auto'
 import { act } from 'preact/test-utils'
-import { beforeEach, expect, test, vi } from 'vitest'
+import { expect, test, vi } from 'vitest'
 import { NOTHING_SHOWN, type PreviewStatus } from '../../../src/preview/status'
 import { paper } from '../../../src/sheets'
 import { Studio } from '../../../src/studio/studio'
-import { PreviewButtons, ShowsSwitch, VariantChoice, WindSwitch } from '../../../src/ui/tree/PreviewButtons'
+import { PreviewButtons, ShowsSwitch, VariantChoice } from '../../../src/ui/tree/PreviewButtons'
 import { grown, shownModel, sketchSheets } from '../../builders'
 import { mount, redraw } from '../mount'
 
@@ -41,66 +41,8 @@ test('many trees are chosen from a list', () => {
   expect([list.options.length, choose.mock.calls]).toEqual([9, [[7]]])
 })
 
-const TREE = { ...NOTHING_SHOWN, shows: 'model', winds: ['breeze', 'gust'], wind: null } as const
-let blown: (string | null)[]
-const preview = {
-  view: () => {},
-  setLeaves: () => {},
-  setPart: () => {},
-  zoom: () => {},
-  setWind: (wind: string | null) => blown.push(wind),
-}
-let settings: number
-let host: HTMLElement
+const preview = { view: () => {}, setLeaves: () => {}, setPart: () => {}, zoom: () => {} }
 const studio = new Studio()
-const winds = () => [...host.querySelectorAll<HTMLElement>('.winds button')]
-const pressed = () =>
-  winds()
-    .filter(one => one.getAttribute('aria-pressed') === 'true')
-    .map(one => one.textContent)
-const hidden = () => ['.winds', '.no-wind'].map(name => host.querySelector<HTMLElement>(name)!.hidden)
-
-function show(status: PreviewStatus): void {
-  const preview = {
-    view: () => {},
-    setLeaves: () => {},
-    setPart: () => {},
-    zoom: () => {},
-    setWind: (wind: string | null) => blown.push(wind),
-  }
-  redraw(host, studio, <WindSwitch status={status} preview={() => preview} toSettings={() => settings++} />)
-}
-
-beforeEach(() => {
-  blown = []
-  settings = 0
-  host = mount(studio, null)
-})
-
-test('a file with wind has a button for each, and one for none', () => {
-  show(TREE)
-  expect([winds().map(one => one.textContent), pressed(), hidden()]).toEqual([
-    ['Still', 'Breeze', 'Gust'],
-    ['Still'],
-    [false, true],
-  ])
-  for (const one of winds()) one.click()
-  expect(blown).toEqual([null, 'breeze', 'gust'])
-  show({ ...TREE, wind: 'gust' })
-  expect(pressed()).toEqual(['Gust'])
-})
-
-test('a file without wind leads to the settings instead', () => {
-  show({ ...TREE, winds: [] })
-  expect(hidden()).toEqual([true, false])
-  host.querySelector<HTMLElement>('.no-wind button')!.click()
-  expect(settings).toBe(1)
-})
-
-test('where no tree is shown there is neither', () => {
-  show({ ...TREE, shows: 'live', winds: [] })
-  expect(hidden()).toEqual([true, true])
-})
 
 test('live skeleton and grown tree can be switched where there are both', () => {
   const both = new Studio()
@@ -120,6 +62,7 @@ test('live skeleton and grown tree can be switched where there are both', () => 
 })
 
 test('views and tools are hidden without a tree; the first view is named after what lies under it', () => {
+  const host = mount(studio, null)
   const status = { ...NOTHING_SHOWN, shows: 'live', view: 'side' } as const
   const tools = (shown: PreviewStatus) =>
     redraw(
