@@ -38,7 +38,7 @@ def test_a_filmed_tree_has_an_animation_of_all_its_frames(video: Video) -> None:
 
 def test_a_photo_has_no_motion(video: Video) -> None:
     tree = grow_clip(read_clip(video, STROKES), SETTINGS, np.random.default_rng(0))
-    assert finish(replace(tree, filmed=None), SETTINGS, np.random.default_rng(0)).motion is None
+    assert finish(replace(tree, moves=None), SETTINGS, np.random.default_rng(0)).motion is None
 
 
 def test_a_further_stroke_keeps_the_tracks(video: Video) -> None:

@@ -4,7 +4,15 @@ from tests.builders import fork, oak, stick
 from tests.core.sway.posing import posed
 
 from treestroke.core.sway.bones import rig_of
-from treestroke.core.sway.measured import MOST_RAD, MOST_RAD_S, Seen, heads_in_motion, looped, turns_of
+from treestroke.core.sway.measured import (
+    MOST_RAD,
+    MOST_RAD_S,
+    Seen,
+    fluttered,
+    heads_in_motion,
+    looped,
+    turns_of,
+)
 from treestroke.core.sway.motion import Rig
 from treestroke.core.sway.stiffness import fluttering, moving_branches
 
@@ -88,7 +96,7 @@ def test_where_nothing_is_seen_nothing_moves() -> None:
 
 def test_leaves_flutter_where_their_branch_moves() -> None:
     rig = rigged(oak(), leaves=True)
-    turns = turns_of(rig, seen(rig, truly_turning(rig)))
+    turns = fluttered(rig, turns_of(rig, seen(rig, truly_turning(rig))), RATE)
     assert fluttering(rig).any()
     assert (np.abs(turns[:, fluttering(rig)]).max(axis=(0, 2)) > 0).all()
 

@@ -17,7 +17,7 @@ from treestroke.core.pipeline.grown_tree import CapturedViews
 from treestroke.core.sway.motion import Motion, Skin
 
 if TYPE_CHECKING:
-    from treestroke.core.pipeline.measured_motion import MeasuredMotion
+    from treestroke.core.pipeline.tree_motion import TreeMotion
 
 _CLAMP, _REPEAT = 33071, 10497  # a sampler's wrapS and wrapT
 MaterialName = Literal["bark", "leaf", "impostor", "collision"]
@@ -55,7 +55,7 @@ class Provenance:
 
     generator: str
     captured: CapturedViews | None = None
-    motion: "MeasuredMotion | None" = None
+    motion: "TreeMotion | None" = None
 
 
 @dataclass(frozen=True, eq=False)

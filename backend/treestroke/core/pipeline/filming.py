@@ -82,7 +82,7 @@ def grow_clip(
 ) -> GrownTree:
     """Grow the tree of a clip."""
     tree = grow_tree(evidence.photo, settings, rng, report)
-    return replace(tree, filmed=evidence.filmed, warnings=(*tree.warnings, *evidence.warnings))
+    return replace(tree, moves=evidence.filmed, warnings=(*tree.warnings, *evidence.warnings))
 
 
 def _tree_of(evidence: PhotoEvidence) -> Mask:

@@ -14,7 +14,7 @@ from treestroke.core.leaf.leaves import Leaves, fruit_among, leaf_area
 from treestroke.core.paint.atlas import Atlas
 from treestroke.core.pipeline.clear_views import clear_views
 from treestroke.core.pipeline.dressing import NO_PICTURES, OwnPictures, bark_surface, leaf_surface
-from treestroke.core.pipeline.grown_tree import CapturedViews, GrownTree, LiveTree, Reading
+from treestroke.core.pipeline.grown_tree import CapturedViews, Filmed, GrownTree, LiveTree, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.taken import Taken
 from treestroke.core.progress import Report, silent
@@ -24,7 +24,7 @@ from treestroke.core.survey.measures import Measures, measure_tree
 from treestroke.core.types import Floats
 
 if TYPE_CHECKING:
-    from treestroke.core.pipeline.measured_motion import MeasuredMotion
+    from treestroke.core.pipeline.tree_motion import TreeMotion
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class TreeModel:
     captured
         Where its photos were taken, of a tree that was measured from several.
     motion
-        How it moves, of a tree that was filmed.
+        How it moves, of a tree that was filmed or whose example was.
     """
 
     camera: OrthographicCamera
@@ -66,7 +66,7 @@ class TreeModel:
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
     captured: CapturedViews | None
-    motion: "MeasuredMotion | None"
+    motion: "TreeMotion | None"
 
 
 OnGrown = Callable[[LiveTree], None]
@@ -115,19 +115,21 @@ def finish(
         reading=tree.reading,
         warnings=tree.warnings,
         captured=tree.captured,
-        motion=_motion(tree, leaf_cards, report),
+        motion=_motion(tree, leaf_cards, rng, report),
     )
 
 
-def _motion(tree: GrownTree, leaves: Leaves | None, report: Report) -> "MeasuredMotion | None":
-    """Measure the motion of a tree that was filmed."""
-    if tree.filmed is None:
+def _motion(tree: GrownTree, leaves: Leaves | None, rng: np.random.Generator, report: Report) -> "TreeMotion | None":
+    """Move a tree that was filmed, or whose example was."""
+    if tree.moves is None:
         return None
-    from treestroke.core.pipeline.measured_motion import measured_motion  # with scipy, slow, and rarely of use
+    from treestroke.core.pipeline.tree_motion import drawn_motion, filmed_motion  # with scipy, slow, and rarely of use
 
     report("motion", 0.0)
     joints = None if leaves is None else leaves.joints
-    return measured_motion(tree.grown.skeleton, joints, tree.filmed, tree.camera)
+    if isinstance(tree.moves, Filmed):
+        return filmed_motion(tree.grown.skeleton, joints, tree.moves, tree.camera)
+    return drawn_motion(tree.grown.skeleton, joints, tree.moves, rng.spawn(1)[0])
 
 
 def _measures(tree: GrownTree, leaves: Leaves | None, atlas: Atlas | None) -> Measures:

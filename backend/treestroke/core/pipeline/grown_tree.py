@@ -9,6 +9,7 @@ from treestroke.core.geometry.camera import Camera, OrthographicCamera, Perspect
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.pipeline.taken import Taken
+from treestroke.core.siblings.motion_model import MotionModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Stature
@@ -92,6 +93,14 @@ class Filmed:
 
 
 @dataclass(frozen=True, eq=False)
+class LearntMotion:
+    """How a sibling moves, as was learnt of its example, at so many frames a second."""
+
+    model: MotionModel
+    frames_per_second: float
+
+
+@dataclass(frozen=True, eq=False)
 class GrownTree:
     """A grown tree, whatever its source.
 
@@ -119,8 +128,8 @@ class GrownTree:
         What was mended or assumed.
     captured
         Where its photos were taken, of a tree that was measured from several.
-    filmed
-        How it moves, of a tree that was filmed.
+    moves
+        How it moves: as it was filmed, or as was learnt of a filmed example.
     """
 
     taken: Taken
@@ -134,7 +143,7 @@ class GrownTree:
     reading: Reading
     warnings: tuple[StrokeWarning, ...]
     captured: CapturedViews | None = None
-    filmed: Filmed | None = None
+    moves: Filmed | LearntMotion | None = None
 
     @property
     def kind(self) -> FoliageKind:

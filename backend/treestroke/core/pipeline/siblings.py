@@ -22,7 +22,7 @@ from treestroke.core.lift.imagined import imagined_crown
 from treestroke.core.pipeline.clear_views import clear_views
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
 from treestroke.core.pipeline.growing import BULGE
-from treestroke.core.pipeline.grown_tree import GrownTree, Reading
+from treestroke.core.pipeline.grown_tree import Filmed, GrownTree, LearntMotion, Reading
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.progress import Report, silent
 from treestroke.core.siblings.branching_model import BranchingModel, learn_branching
@@ -60,17 +60,20 @@ class Example:
         How it branches.
     front
         Its front, `HEIGHT_PX` high.
+    moves
+        How it moves, if it was filmed.
     """
 
     tree: GrownTree
     branching: BranchingModel
     front: FrontPicture
+    moves: LearntMotion | None
 
 
 def learn(tree: GrownTree, light: str) -> Example:
     """Learn from a grown tree what its siblings are to be like; ``light`` is one of the setting's values."""
     clear = replace(tree, appearance=clear_views(tree.appearance, light))
-    return Example(clear, learn_branching(tree.grown.skeleton), _front(clear))
+    return Example(clear, learn_branching(tree.grown.skeleton), _front(clear), _moves(tree))
 
 
 def grow_sibling(
@@ -83,7 +86,7 @@ def grow_sibling(
     """Grow another tree of the example's kind, in a crown like the example's or in an ``envelope``.
 
     It has limbs, crown and front of its own; colours, bark and the kind of its foliage are the example's. In an
-    envelope it is as high as the example, else a little higher or lower.
+    envelope it is as high as the example, else a little higher or lower. If the example was filmed, it moves alike.
     """
     report("grow", 0.0)
     room = _room(example, rng, envelope)
@@ -105,7 +108,17 @@ def grow_sibling(
         score={"attractors_reached": grown.attractors_reached},
         reading=READ,
         warnings=(),
+        moves=example.moves,
     )
+
+
+def _moves(tree: GrownTree) -> LearntMotion | None:
+    """Learn how a tree moves that was filmed."""
+    if not isinstance(tree.moves, Filmed):
+        return None
+    from treestroke.core.pipeline.tree_motion import learnt_motion  # of no use for trees that were not filmed
+
+    return learnt_motion(tree.grown.skeleton, tree.moves, tree.camera)
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,26 +64,34 @@ def turns_of(rig: Rig, seen: Seen) -> Floats:
     """Return the rotation vectors (f, b, 3), radians, world axes at rest, by which bones turn about their heads.
 
     Those of highest posterior, bounded in angle and speed. Branches of which nothing is seen follow their parents later
-    and less, as thick as they are. Flutter bones swing as fast as their branch moves.
+    and less, as thick as they are.
     """
-    axes = _axes(rig)
+    _, axes = across_bones(rig)
     solve = _Posterior(rig, axes, seen.error)
     turns = solve(seen.moved)
     for _ in range(_CORRECTIONS):
         bent = heads_in_motion(rig, turns)[:, :, :2] - rig.heads[:, :2]
         turns = _bounded(solve(seen.moved - (bent - solve.straight(turns))), seen.frames_per_second)
-    turns = _followed(rig, turns, solve.known, seen.frames_per_second)
-    return turns + _flutter(rig, turns, seen.frames_per_second)
+    return _followed(rig, turns, solve.known, seen.frames_per_second)
 
 
 def looped(turns: Floats, frames_per_second: float) -> Animation:
     """Make an animation ``measured`` of the turns (f, b, 3) of each frame, which then leads back to the first."""
     back = max(2, round(RETURN_SECONDS * frames_per_second))
-    whole = np.concatenate([turns, _return(turns, back)])
+    return _animation("measured", np.concatenate([turns, _return(turns, back)]), frames_per_second)
+
+
+def repeated(turns: Floats, frames_per_second: float) -> Animation:
+    """Make an animation ``drawn`` of the turns (f, b, 3) of one period."""
+    return _animation("drawn", np.concatenate([turns, turns[:1]]), frames_per_second)
+
+
+def _animation(name: str, whole: Floats, frames_per_second: float) -> Animation:
+    """Make an animation of turns (f, b, 3) at even times, the last those of the first."""
     bones = tuple(np.flatnonzero(np.abs(whole).max(axis=(0, 2)) > 0).tolist())
     times = np.arange(len(whole)) / frames_per_second
     rotations = tuple(quaternions(whole[:, bone]) for bone in bones)
-    return Animation("measured", bones, (times,) * len(bones), rotations, many=True)
+    return Animation(name, bones, (times,) * len(bones), rotations, many=True)
 
 
 def heads_in_motion(rig: Rig, turns: Floats) -> Floats:
@@ -135,12 +143,15 @@ class _Posterior:
         return turns
 
 
-def _axes(rig: Rig) -> Floats:
-    """Return the two axes (b, 2, 3) about which each bone turns: across it, the first as near to the view as can be."""
+def across_bones(rig: Rig) -> tuple[Floats, Floats]:
+    """Return the direction (b, 3) of each bone, and the two axes (b, 2, 3) about which it turns, unit length.
+
+    These are across it, the first as near to the line of sight as can be.
+    """
     along = unit(rig.ends - rig.heads, np.array([0.0, 1.0, 0.0]))
     view = np.array([0.0, 0.0, 1.0])
     first = unit(view - along * (along @ view)[:, None], np.array([1.0, 0.0, 0.0]))
-    return np.stack([first, np.cross(along, first)], axis=1)
+    return along, np.stack([first, np.cross(along, first)], axis=1)
 
 
 def _ancestors(rig: Rig) -> NDArray[np.bool_]:
@@ -176,12 +187,15 @@ def _followed(rig: Rig, turns: Floats, known: NDArray[np.bool_], frames_per_seco
     return turns
 
 
-def _flutter(rig: Rig, turns: Floats, frames_per_second: float) -> Floats:
-    """Return the turns (f, b, 3) of flutter bones alone (Li et al. 2011, appendix B.2)."""
-    out = np.zeros_like(turns)
+def fluttered(rig: Rig, turns: Floats, frames_per_second: float) -> Floats:
+    """Return turns (f, b, 3) with those of flutter bones, that swing as fast as their branch moves.
+
+    Source: Li et al. 2011, appendix B.2.
+    """
     bones: Indices = np.flatnonzero(fluttering(rig))
     if not len(bones):
-        return out
+        return turns
+    out = turns.copy()
     heads = heads_in_motion(rig, turns)[:, bones]
     speed = np.linalg.norm(np.gradient(heads, axis=0), axis=2) * frames_per_second
     seconds = np.arange(len(turns)) / frames_per_second
