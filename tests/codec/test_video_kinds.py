@@ -33,7 +33,7 @@ def test_videos_are_told_by_their_first_bytes(beginning: bytes, ending: str) -> 
         (b"", "the file is empty"),
         (b"\xff\xd8\xff\xe0\0\x10JFIF", "still picture.*treestroke model"),
         (b"\0\0\0\x18ftypheic\0\0\0\0mif1heic", "still picture"),
-        (b"#EXTM3U\nhttp://example.org/a.ts", "save it as MP4, MOV, WebM, AVI or GIF"),
+        (b"#EXTM3U\n#EXTINF:3\n/etc/passwd", "save it as MP4, MOV, WebM, AVI or GIF"),
         (b"ffconcat version 1.0\nfile /etc/passwd", "save it as MP4"),
     ],
 )
