@@ -36,6 +36,7 @@ from treestroke.wire_requests import (
     CaptureTraceRequest,
     ModelRequest,
     Rename,
+    SiblingsRequest,
     SketchTraceRequest,
     TraceRequest,
 )
@@ -55,6 +56,7 @@ _BODIES = (
     ModelRequest,
     Edits,
     Rename,
+    SiblingsRequest,
     CaptureRequest,
     Problem,
 )
