@@ -9,11 +9,13 @@ from pydantic.json_schema import SkipJsonSchema
 
 from treestroke.core.pipeline import settings as table
 from treestroke.core.pipeline.settings import MAX_SEED, Choice, Several, Span, Toggle
+from treestroke.core.siblings.outlines import SHAPES
 from treestroke.limits import MAX_ID, MAX_LEAF_BYTES, MAX_NAME, MAX_REV
 from treestroke.wire_edits import EDITS_EXAMPLE, EditList
 from treestroke.wire_strokes import (
     STROKES_EXAMPLE,
     CaptureStrokes,
+    CrownStroke,
     FrameStrokes,
     RequestPart,
     Sketch,
@@ -230,6 +232,27 @@ class FormRequest(TreeRequest):
     side: _SideFile = None
     leaf: _LeafFile = None
     fruit: _FruitFile = None
+
+
+_OUTLINE: dict[str, JsonValue] = {
+    "anyOf": [{"type": "string", "enum": list(SHAPES)}, {"$ref": "#/components/schemas/CrownStroke"}]
+}
+
+
+class SiblingsRequest(RequestPart):
+    """Siblings of a model's tree to be made."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {"count": 3, "envelope": "heart", "scene": True}})
+
+    count: Annotated[int, Strict(), Field(ge=1, le=16)] = 1
+    envelope: Annotated[str | CrownStroke | SkipJsonSchema[None], WithJsonSchema(_OUTLINE)] = Field(
+        default=None, description="what they fill: a name, or a line, y down, in any unit", json_schema_extra=no_default
+    )
+    scene: Annotated[bool, Strict()] = Field(default=False, description="one more file with all beside each other")
+    seed: Seed | SkipJsonSchema[None] = Field(
+        default=None, description="the model's own where absent", json_schema_extra=no_default
+    )
+    name: Name = ""
 
 
 class Rename(RequestPart):

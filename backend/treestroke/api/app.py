@@ -38,6 +38,7 @@ from treestroke.wire_requests import (
     ClipTraceRequest,
     ModelRequest,
     Rename,
+    SiblingsRequest,
     SketchTraceRequest,
     TraceRequest,
 )
@@ -62,6 +63,7 @@ _BODIES = (
     ModelRequest,
     Edits,
     Rename,
+    SiblingsRequest,
     CaptureRequest,
     Problem,
 )

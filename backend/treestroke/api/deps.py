@@ -17,6 +17,17 @@ from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 
 MAX_PAGE = 100
+SIBLINGS_BODY: dict[str, Any] = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "application/json": {
+                "schema": {"$ref": "#/components/schemas/SiblingsRequest"},
+                "example": {"count": 3, "envelope": "heart", "scene": True},
+            }
+        },
+    }
+}
 RENAME_BODY: dict[str, Any] = {
     "requestBody": {
         "required": True,

@@ -42,9 +42,13 @@ class ProgressEstimate:
 
 
 def model_phases(settings: ModelSettings, source: SourceName) -> list[tuple[str, float]]:
-    """Return the phases of one model; those of growth are repeated for each variant."""
+    """Return the phases of one model; those of growth are repeated for each variant and sibling."""
     each = {**_GROWING[source], "levels": 0.0 if settings.lod == "none" else _LEVELS, "write": _writing(settings)}
-    return [*_READING[source].items(), *(list(each.items()) * settings.variants), ("preview", _PREVIEW)]
+    return [
+        *_READING[source].items(),
+        *(list(each.items()) * (settings.variants + settings.siblings)),
+        ("preview", _PREVIEW),
+    ]
 
 
 def _writing(settings: ModelSettings) -> float:

@@ -99,10 +99,10 @@ def accept_model(
         return before
     photo = sent_photo or (None if order.photo is None else _photo_for(resources, order.photo, key))
     base = _base(resources, order, photo)
-    inputs = Inputs.of({**base.parts, **_sent_parts(resources, order)})
-    row = _new_row(order, photo, _fingerprint(order, base, inputs))
+    inputs = Inputs.of({**base.parts, **sent_parts(resources, order)})
+    row = new_row(order, photo, _fingerprint(order, base, inputs))
     request = _request_digest(order, row, photo)
-    equal = _finished_model(resources, row)
+    equal = finished_model(resources, row)
     with resources.database.writing() as session:
         answered = _answered_before(session, key, request)
         if answered is None:
@@ -112,7 +112,7 @@ def accept_model(
                 part.model = row.id
                 session.add(part)
             if equal is not None:
-                _copy_files(session, equal, row)
+                copy_files(session, equal, row)
             if key:
                 session.merge(Replay(key=key, fingerprint=request, model=row.id, created=time.time(), seen=None))
     # What the queue and the files tell needs no lock.
@@ -279,7 +279,7 @@ def _picture(name: str, blob: str) -> ModelPart:
     return ModelPart(name=name, blob=blob, media_type="image/png")
 
 
-def _sent_parts(resources: Resources, order: ModelOrder) -> dict[str, ModelPart]:
+def sent_parts(resources: Resources, order: ModelOrder) -> dict[str, ModelPart]:
     """Store the parts' files that came with the request."""
     return {
         name: ModelPart(
@@ -289,7 +289,8 @@ def _sent_parts(resources: Resources, order: ModelOrder) -> dict[str, ModelPart]
     }
 
 
-def _new_row(order: ModelOrder, photo: PhotoRow | None, fingerprint: str) -> ModelRow:
+def new_row(order: ModelOrder, photo: PhotoRow | None, fingerprint: str) -> ModelRow:
+    """Return the row of a new model, which waits."""
     return ModelRow(
         id=queries.new_id("mdl"),
         name=order.name,
@@ -359,7 +360,7 @@ def _answered_before(session: Session, key: str | None, request: str) -> ModelRo
     return queries.model(session, replay.model, deleted=True)
 
 
-def _finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
+def finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
     """Find a model that this engine has made from equal inputs; None also where one of its files is damaged."""
     with resources.database.reading() as session:
         equal = queries.finished(session, ModelRow, row.fingerprint, row.engine)
@@ -373,7 +374,7 @@ def _finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:
     return equal
 
 
-def _copy_files(session: Session, equal: ModelRow, row: ModelRow) -> None:
+def copy_files(session: Session, equal: ModelRow, row: ModelRow) -> None:
     """Finish a model with the files of an equal one, which would be the same, unless these were just removed."""
     files = queries.files(session, [equal.id])[equal.id]
     if files:

@@ -15,6 +15,7 @@ from starlette.datastructures import UploadFile
 
 from treestroke.api.deps import (
     RENAME_BODY,
+    SIBLINGS_BODY,
     Cursor,
     DispatcherOf,
     JsonBody,
@@ -33,9 +34,10 @@ from treestroke.api.views import model_view
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.limits import MAX_TEXT_BYTES
 from treestroke.schemas import ModelInfo, ModelPage
-from treestroke.service import photos, stored_models
+from treestroke.service import photos, stored_models, stored_siblings
 from treestroke.service.model_request import ModelOrder, read_form, read_name, read_order
 from treestroke.service.photos import Resources
+from treestroke.service.sibling_request import read_siblings
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
 from treestroke.store.tables import PhotoRow
@@ -170,6 +172,25 @@ async def _finished(watcher: Watcher, model: StoredModel, seconds: float) -> Sto
             while model.row.status not in TERMINAL and (news := await follower.next_change()) is not None:
                 model = news
     return model
+
+
+@router.post(
+    "/{id}/siblings",
+    status_code=HTTPStatus.ACCEPTED,
+    response_model=ModelInfo,
+    responses={
+        HTTPStatus.OK: {"model": ModelInfo, "description": "finished already", "headers": _LOCATION, "links": _LINKS},
+        HTTPStatus.ACCEPTED: {"model": ModelInfo, "headers": _LOCATION, "links": _LINKS},
+        **documented(*BODY, "not_found", "storage_full"),
+    },
+    openapi_extra=SIBLINGS_BODY,
+)
+def ask_for_siblings(resources: ResourcesOf, dispatcher: DispatcherOf, id: ModelId, body: JsonBody) -> Response:
+    """Ask for siblings of a model's tree: a new model of the same inputs, the siblings among its files."""
+    model = stored_siblings.accept_siblings(resources, id, resources.tracers("", read_siblings, body))
+    dispatcher.notify()
+    status = HTTPStatus.OK if model.row.status in TERMINAL else HTTPStatus.ACCEPTED
+    return JSONResponse(model_view(model).model_dump(), status, {"Location": f"/v1/models/{model.row.id}"})
 
 
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
