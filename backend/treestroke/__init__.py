@@ -2,8 +2,8 @@
 
 The functions are ``treestroke.trace(photo, strokes)``, ``treestroke.model(photo, strokes, settings, seed, report)``,
 ``treestroke.model_views(photos, views, settings, seed, report)``,
-``treestroke.model_video(clip, strokes, settings, seed, report)`` and
-``treestroke.sketch(front, side, settings, seed, report)``.
+``treestroke.model_video(clip, strokes, settings, seed, report)``,
+``treestroke.sketch(front, side, settings, seed, report)`` and ``treestroke.siblings(project, count, settings, seed)``.
 They are imported at first use, so that ``treestroke --version`` and a wrong command respond at once.
 """
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from treestroke.core.errors import (
         CaptureError,
         ClipError,
+        EnvelopeError,
         FruitError,
         LeafError,
         PhotoError,
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Stroke, Strokes
     from treestroke.engines.solving import SolveEnded
     from treestroke.service.model import Model, model, model_video, model_views, sketch
+    from treestroke.service.sibling_models import siblings
     from treestroke.service.trace import Trace, trace
 
 __version__ = "0.1.0"
@@ -34,6 +36,7 @@ __all__ = [
     "CaptureError",
     "CaptureStrokes",
     "ClipError",
+    "EnvelopeError",
     "FrameStrokes",
     "FruitError",
     "LeafError",
@@ -52,6 +55,7 @@ __all__ = [
     "model",
     "model_video",
     "model_views",
+    "siblings",
     "sketch",
     "trace",
 ]
@@ -60,6 +64,7 @@ _HOMES = {
     "treestroke.core.errors": (
         "CaptureError",
         "ClipError",
+        "EnvelopeError",
         "FruitError",
         "LeafError",
         "PhotoError",
@@ -72,6 +77,7 @@ _HOMES = {
     "treestroke.core.strokes": ("CaptureStrokes", "FrameStrokes", "Sketch", "Stroke", "Strokes"),
     "treestroke.engines.solving": ("SolveEnded",),
     "treestroke.service.model": ("Model", "model", "model_video", "model_views", "sketch"),
+    "treestroke.service.sibling_models": ("siblings",),
     "treestroke.service.trace": ("Trace", "trace"),
 }
 

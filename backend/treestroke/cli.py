@@ -11,11 +11,12 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import fields
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from treestroke import __version__
-from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, read_by
-from treestroke.codec.inputs import CUTOUTS, PARTS, SOURCES, Source
+from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, project_stem, whole
+from treestroke.cli_outputs import ProgressLine, check_further, outputs_of, stem
+from treestroke.codec.inputs import BESIDE, PARTS, SOURCES, Source
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Toggle
@@ -42,25 +43,6 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Raise the message as a `UsageError`."""
         raise UsageError(f"{message}; see {self.prog} --help")
-
-
-class ProgressLine:
-    """One line on a terminal that is rewritten as the work goes on."""
-
-    def __init__(self, stream: TextIO, iterations: int) -> None:
-        self._stream = stream
-        self._iterations = iterations
-
-    def __call__(self, stage: str, fraction: float) -> None:
-        """Show the stage, its per cent and, in growth, its iterations."""
-        rounds = f" ({round(fraction * self._iterations)} of {self._iterations} iterations)" if stage == "grow" else ""
-        self._stream.write(f"\r\x1b[K{stage} {fraction:.0%}{rounds}")
-        self._stream.flush()
-
-    def clear(self) -> None:
-        """Clear the line."""
-        self._stream.write("\r\x1b[K")
-        self._stream.flush()
 
 
 def run() -> NoReturn:
@@ -100,7 +82,7 @@ def _parser() -> Parser:
     )
     parser.add_argument("--version", action="version", version=f"treestroke {__version__}")
     commands = parser.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for add in (_add_model, _add_views, _add_video, _add_sketch, _add_trace, _add_service):
+    for add in (_add_model, _add_views, _add_video, _add_sketch, _add_siblings, _add_trace, _add_service):
         add(commands)
     return parser
 
@@ -118,7 +100,7 @@ def _add_views(commands: "Commands") -> None:
     about = f"photos of the tree from all sides, {ACCEPTED_FORMATS}, or their folder; or a NAME.treestroke project"
     command.add_argument("photos", metavar="PHOTO", nargs="+", help=about)
     command.add_argument("--strokes", metavar="VIEWS.json", dest="views", help=PARTS["views"].help)
-    for name in CUTOUTS:
+    for name in BESIDE:
         _add_part(command, name)
     _add_outputs(command)
     _add_settings(command)
@@ -129,7 +111,7 @@ def _add_video(commands: "Commands") -> None:
     command.set_defaults(first="clip")
     command.add_argument("clip", metavar="CLIP", help=f"{PARTS['clip'].help}; or a NAME.treestroke project")
     command.add_argument("--strokes", metavar="STROKES.json", dest="frame_strokes", help=PARTS["frame_strokes"].help)
-    for name in CUTOUTS:
+    for name in BESIDE:
         _add_part(command, name)
     _add_outputs(command)
     _add_settings(command)
@@ -140,6 +122,19 @@ def _add_sketch(commands: "Commands") -> None:
     _add_inputs(command, SOURCES["sketches"], ("front", "side"))
     _add_outputs(command)
     _add_settings(command)
+
+
+def _add_siblings(commands: "Commands") -> None:
+    command = _add_command(commands, "siblings", _siblings, "make other trees of the same kind")
+    command.set_defaults(first="project")
+    command.add_argument("project", metavar="TREE.treestroke", help="project of the tree")
+    command.add_argument("--count", metavar="N", default="1", help="how many (default 1)")
+    command.add_argument("--out", metavar="DIR", type=Path, required=True, help="folder for TREE.s1.glb and so on")
+    command.add_argument("--outline", metavar="OUTLINE", dest="envelope", help=PARTS["envelope"].help)
+    command.add_argument("--scene", metavar="SCENE.glb", type=Path, help="all of them beside each other")
+    command.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts and score of each")
+    command.add_argument("--preview", metavar="PICTURE.png", type=Path, help="a sheet of all of them")
+    _add_settings(command, ("variants", "siblings", "grove"))
 
 
 def _add_trace(commands: "Commands") -> None:
@@ -168,7 +163,7 @@ def _add_command(
 ) -> argparse.ArgumentParser:
     command = commands.add_parser(name, help=about, allow_abbrev=False)
     command.add_argument("--debug", action="store_true", help="show the trace of an error")
-    command.set_defaults(command=action, reads=action in (_make, _trace))
+    command.set_defaults(command=action, reads=action in (_make, _siblings, _trace))
     return command
 
 
@@ -200,9 +195,9 @@ def _add_outputs(command: argparse.ArgumentParser) -> None:
     command.add_argument("--preview", metavar="PICTURE.png", type=Path, help="front view and 3/4 view")
 
 
-def _add_settings(command: argparse.ArgumentParser) -> None:
+def _add_settings(command: argparse.ArgumentParser, without: Collection[str] = ()) -> None:
     command.add_argument("--seed", metavar="N", help="a whole number from 0 (default 0)")
-    for entry in fields(ModelSettings):
+    for entry in (entry for entry in fields(ModelSettings) if entry.name not in without):
         names = dict.fromkeys(f"--{entry.name.replace('_', mark)}" for mark in "-_")
         allowed, meaning = entry.metadata["allowed"], entry.metadata["meaning"]
         if isinstance(allowed, Toggle):
@@ -214,7 +209,7 @@ def _add_settings(command: argparse.ArgumentParser) -> None:
 
 
 def _make(options: argparse.Namespace) -> None:
-    outputs = _outputs(options, ("out", "report", "preview"))
+    outputs = outputs_of(options, ("out", "report", "preview"))
     inputs, settings = inputs_of(options)
     settings |= chosen_settings(options)
     from treestroke.codec.image import encode_png
@@ -223,7 +218,7 @@ def _make(options: argparse.Namespace) -> None:
     from treestroke.store.atomic_write import write_atomically
 
     seed = settings.pop("seed", 0)
-    wanted = Options.of(settings, seed, _stem(options.out))
+    wanted = Options.of(settings, seed, stem(options.out))
     line = ProgressLine(sys.stderr, wanted.settings.iterations) if sys.stderr.isatty() else None
     try:
         result = make_tree(inputs, wanted, line or silent)
@@ -238,9 +233,48 @@ def _make(options: argparse.Namespace) -> None:
         "preview": lambda: encode_png(result.preview()),
     }
     further = {options.out.with_name(name): content for name, content in list(result.files.items())[1:]}
-    _check_further(options, further)
+    check_further(options, further)
     write_atomically({path: makers[name]() for name, path in outputs.items()} | further)
     _print_warnings(result.report["warnings"])
+
+
+def _siblings(options: argparse.Namespace) -> None:
+    outputs = outputs_of(options, ("scene", "report", "preview"))
+    if options.out.exists() and not options.out.is_dir():
+        raise UsageError(f"--out {options.out}: it is a file; name a folder")
+    settings = chosen_settings(options)
+    from treestroke.codec.image import encode_png
+    from treestroke.service.sibling_models import siblings
+    from treestroke.store.atomic_write import write_atomically
+
+    name, seed = project_stem(options.project), settings.pop("seed", None)
+    line = ProgressLine(sys.stderr, ModelSettings().iterations) if sys.stderr.isatty() else None
+    try:
+        made = siblings(
+            options.project,
+            whole(options.count),
+            settings,
+            seed,
+            outline=options.envelope,
+            scene=options.scene is not None,
+            report=line or silent,
+            name=name,
+        )
+    finally:
+        if line:
+            line.clear()
+    files = dict(made.files)
+    makers: dict[str, Callable[[], bytes]] = {
+        "scene": lambda: files.pop(f"{name}.grove.glb"),
+        "report": lambda: json.dumps(made.report, indent=2).encode() + b"\n",
+        "preview": lambda: encode_png(made.preview()),
+    }
+    written = {path: makers[name]() for name, path in outputs.items()}
+    further = {options.out / name: content for name, content in files.items()}
+    check_further(options, further)
+    options.out.mkdir(parents=True, exist_ok=True)
+    write_atomically(written | further)
+    _print_warnings(made.report["warnings"])
 
 
 def _print_warnings(warnings: Sequence[Mapping[str, str]]) -> None:
@@ -249,22 +283,8 @@ def _print_warnings(warnings: Sequence[Mapping[str, str]]) -> None:
             print(f"treestroke: {warning['stroke']}: {warning['detail']}", file=sys.stderr)
 
 
-def _stem(out: Path) -> str:
-    """Return what the names of all files beside OUT begin with."""
-    return out.stem if out.suffix.lower() == ".glb" else out.name
-
-
-def _check_further(options: argparse.Namespace, further: Collection[Path]) -> None:
-    """Refuse to write over a file that the command reads."""
-    read = read_by(options)
-    for path in further:
-        if os.path.realpath(path) in read or path.is_dir():
-            problem = "the command reads it" if path.is_file() else "it is a folder"
-            raise UsageError(f"{path}: a file of this name is to be written, but {problem}; choose another --out")
-
-
 def _trace(options: argparse.Namespace) -> None:
-    outputs = _outputs(options, ("out", "overlay"))
+    outputs = outputs_of(options, ("out", "overlay"))
     from treestroke.codec.image import encode_png
     from treestroke.service.trace import trace
     from treestroke.store.atomic_write import write_atomically
@@ -316,21 +336,6 @@ def _service_settings(options: argparse.Namespace) -> Any:
 
     flags = {name: getattr(options, name, None) for name in ("host", "port", "data")}
     return read_settings(**{name: value for name, value in flags.items() if value is not None})
-
-
-def _outputs(options: argparse.Namespace, names: Sequence[str]) -> dict[str, Path]:
-    """Return the paths to write, by flag; refuse, before any work, those that cannot be written."""
-    outputs = {name: path for name in names if (path := getattr(options, name)) is not None}
-    taken = read_by(options)
-    for name, path in outputs.items():
-        if path.is_dir() or not path.parent.is_dir():
-            problem = "it is a folder" if path.is_dir() else f"there is no folder {path.parent}"
-            raise UsageError(f"--{name} {path}: {problem}; name a file in a folder that exists")
-        place = os.path.realpath(path)
-        if place in taken and path.is_file():
-            raise UsageError(f"--{name} {path}: another file of this command has this name; choose one of its own")
-        taken.add(place)
-    return outputs
 
 
 @contextmanager

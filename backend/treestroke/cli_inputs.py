@@ -7,7 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from treestroke.codec.inputs import CUTOUTS, PARTS, Inputs
+from treestroke.codec.inputs import BESIDE, PARTS, Inputs
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS, PHOTO_ENDINGS
 from treestroke.core.errors import TreestrokeError
 from treestroke.core.pipeline.settings import ModelSettings, Several, Span
@@ -30,7 +30,7 @@ def inputs_of(options: argparse.Namespace) -> tuple["Inputs[PartLike]", dict[str
     from treestroke.service.loading import load_project
 
     for name in parts:
-        if name not in CUTOUTS:
+        if name not in BESIDE:
             flag = "strokes" if PARTS[name].kind in ("views", "frame_strokes") else name
             raise UsageError(f"--{flag}: a project has its own {flag}; leave the flag out")
     project = load_project(project_path)
@@ -85,9 +85,9 @@ def read_by(options: argparse.Namespace) -> set[str]:
 
 def chosen_settings(options: argparse.Namespace) -> dict[str, Any]:
     """Return the settings that flags name, and the seed."""
-    flags = {entry.name: getattr(options, entry.name) for entry in fields(ModelSettings)}
+    flags = {entry.name: getattr(options, entry.name, None) for entry in fields(ModelSettings)}
     settings: dict[str, Any] = {name: _value(name, text) for name, text in flags.items() if text is not None}
-    return settings if options.seed is None else {**settings, "seed": _whole(options.seed)}
+    return settings if options.seed is None else {**settings, "seed": whole(options.seed)}
 
 
 def _value(name: str, text: str | bool) -> object:
@@ -105,7 +105,22 @@ def _value(name: str, text: str | bool) -> object:
         return text
 
 
-def _whole(text: str) -> object:
+def project_stem(path: str) -> str:
+    """Return what the names of the files begin with that are made of a project.
+
+    Raises
+    ------
+    UsageError
+        It is no project: a GLB holds neither branches nor photo.
+    """
+    if not path.endswith(".treestroke"):
+        fault = "siblings are made of a project, which holds what the tree was made of"
+        raise UsageError(f"{path}: {fault}; name the tree's NAME.treestroke")
+    return Path(path).stem
+
+
+def whole(text: str) -> Any:
+    """Return a flag's value as an int; what is no whole number stays text, which is refused by name."""
     try:
         return int(text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""A client of the service: sends photos and sketches, receives traces and trees; needs no modelling package."""
+"""A client of the service: sends photos, clips and sketches, receives traces and trees; needs no modelling package."""
 
 import os
 from collections.abc import Callable, Iterator, Mapping
@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import Any, Unpack
 from urllib.parse import quote
 
-from treestroke.client_captures import CaptureCalls, CaptureLike
+from treestroke.client_captures import CaptureLike
+from treestroke.client_clips import ClipCalls, ClipLike
 from treestroke.client_connection import Followed, id_of
 from treestroke.request_bodies import (
+    FrameStrokesLike,
     PhotoOptions,
     PictureLike,
     SketchLike,
@@ -27,6 +29,8 @@ from treestroke.schemas import GrownSkeleton, ModelInfo, ModelPage, PhotoInfo, P
 __all__ = [
     "CaptureLike",
     "Client",
+    "ClipLike",
+    "FrameStrokesLike",
     "PhotoOptions",
     "PictureLike",
     "ServiceError",
@@ -40,7 +44,7 @@ __all__ = [
 _ENDS = ("succeeded", "failed", "canceled")
 
 
-class Client(CaptureCalls):
+class Client(ClipCalls):
     """A connection to one service; threads may share it.
 
     A request is sent again, for some seconds, where the service was too busy for it or the connection broke and sending

@@ -15,12 +15,13 @@ from urllib.parse import quote
 import httpx
 
 from treestroke.capture_schemas import CapturePage, CaptureState
+from treestroke.clip_schemas import ClipInfo, ClipPage
 from treestroke.request_bodies import plain_options
 from treestroke.responses import Event, RetryableError, checked, events_of, read, unreachable
 from treestroke.schemas import ModelInfo, ModelPage, PhotoInfo, PhotoPage
 
 Done = TypeVar("Done")
-Page = TypeVar("Page", ModelPage, PhotoPage, CapturePage)
+Page = TypeVar("Page", ModelPage, PhotoPage, CapturePage, ClipPage)
 State = TypeVar("State", ModelInfo, CaptureState)
 
 _PAUSES_S = (0.2, 0.4, 0.8, 1.6, 3.2)
@@ -163,7 +164,7 @@ class Connection:
                 yield from events_of(answer.iter_bytes())
 
 
-def id_of(info: PhotoInfo | ModelInfo | CaptureState | str) -> str:
+def id_of(info: PhotoInfo | ModelInfo | CaptureState | ClipInfo | str) -> str:
     """Return an id as it stands in a path."""
     return quote(info if isinstance(info, str) else info.id, safe="")
 

@@ -8,10 +8,12 @@ from pathlib import Path
 from typing import Any, TypedDict
 
 from treestroke.schemas import PhotoInfo
-from treestroke.wire_strokes import CaptureStrokes, Sketch, Strokes
+from treestroke.wire_strokes import CaptureStrokes, FrameStrokes, Sketch, Strokes
 
 StrokesLike = Strokes | Mapping[str, Any] | str | os.PathLike[str]
 """Strokes, the same as a plain mapping, or the path of their JSON file."""
+FrameStrokesLike = FrameStrokes | Mapping[str, Any] | str | os.PathLike[str]
+"""Strokes over a frame of a clip, the same as a plain mapping, or the path of their JSON file."""
 ViewsLike = CaptureStrokes | Mapping[str, Any] | str | os.PathLike[str]
 """Strokes over photos of a capture, the same as a plain mapping, or the path of their JSON file."""
 PictureLike = str | os.PathLike[str] | bytes
@@ -45,7 +47,7 @@ class TreeOptions(Cutouts, total=False):
 
 
 class TraceOptions(TypedDict, total=False):
-    """Options of `Client.trace_capture`, all of which may be left out.
+    """Options of `Client.trace_capture` and `Client.trace_clip`, all of which may be left out.
 
     Attributes
     ----------
@@ -72,8 +74,8 @@ class SketchOptions(TreeOptions, total=False):
     photo: PhotoInfo | str | None
 
 
-def plain_strokes(strokes: StrokesLike | ViewsLike) -> dict[str, Any]:
-    """Return strokes over a photo, or over those of a capture, as plain values."""
+def plain_strokes(strokes: StrokesLike | ViewsLike | FrameStrokesLike) -> dict[str, Any]:
+    """Return strokes over a photo, over those of a capture, or over a frame of a clip, as plain values."""
     if isinstance(strokes, Strokes | CaptureStrokes):
         return strokes.model_dump(mode="json", exclude_none=True)
     if isinstance(strokes, Mapping):

@@ -35,7 +35,7 @@ class Settings(BaseSettings):
         float, _setting(20, "a tracing or decoding that takes longer is stopped, in seconds", gt=0, le=600)
     ]
     capture_trace_seconds: Annotated[
-        float, _setting(300, "tracing a capture is stopped if it takes longer, in seconds", gt=0, le=3600)
+        float, _setting(300, "tracing a capture or a clip is stopped if it takes longer, in seconds", gt=0, le=3600)
     ]
     model_seconds: Annotated[float, _setting(300, "a model that takes longer fails, in seconds", gt=0, le=86_400)]
     solve_seconds: Annotated[
@@ -50,12 +50,11 @@ class Settings(BaseSettings):
     ]
     photos_mb: Annotated[
         int,
-        _setting(
-            PHOTOS_MB, "what all photos may take as they are kept, deleted ones for a day too, in MB", ge=1, le=2**20
-        ),
+        _setting(PHOTOS_MB, "what all photos and clips may take, deleted ones for a day too, in MB", ge=1, le=2**20),
     ]
     keep_days: Annotated[
-        float, _setting(0, "models, photos and captures older than this are deleted; 0 keeps them", ge=0, le=36_500)
+        float,
+        _setting(0, "models, photos, captures and clips older than this are deleted; 0 keeps them", ge=0, le=36_500),
     ]
 
     @property

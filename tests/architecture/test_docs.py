@@ -15,14 +15,15 @@ from treestroke.api.errors import _STATUS
 from treestroke.capture_schemas import CaptureInfo
 from treestroke.cli import main
 from treestroke.client import Client
+from treestroke.clip_schemas import ClipInfo
 from treestroke.core.pipeline.settings import Choice, ModelSettings, Several
 from treestroke.schemas import ModelInfo, PhotoInfo, Problem
 from treestroke.service.failures import _DETAILS, problem_of_input
 from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import CaptureTraceRequest, ModelRequest
-from treestroke.wire_strokes import CaptureStrokes, Strokes, StrokeSketch
+from treestroke.wire_strokes import CaptureStrokes, FrameStrokes, Strokes, StrokeSketch
 
-COMMANDS = ("model", "views", "sketch", "trace", "serve", "worker", "doctor")
+COMMANDS = ("model", "views", "video", "sketch", "siblings", "trace", "serve", "worker", "doctor")
 INVOCATION = re.compile(r"^(?:\$ )?treestroke (\w+)(.*)$", re.M)
 
 
@@ -36,11 +37,11 @@ def flags_of(command: str, capsys: pytest.CaptureFixture[str]) -> set[str]:
 def test_the_settings_are_the_table() -> None:
     lists = {"form": "Form", "species": "Species", "foliage": "Foliage", "files": "More files"}
     found = [(*named(name), *rest) for name, *rest in rows(text_of("docs/settings.md").split("\n## ")[0])]
-    plain = {False: "false", (): "none"}
+    plain = {"False": "false", "()": "none"}
     table = [
         (
             f.name,
-            f"{f.default:g}" if isinstance(f.default, float) else plain.get(f.default, str(f.default)),
+            f"{f.default:g}" if isinstance(f.default, float) else plain.get(str(f.default), str(f.default)),
             f"[names](#{lists[f.name].lower().replace(' ', '-')})" if f.name in lists else str(f.metadata["allowed"]),
             f.metadata["meaning"],
         )
@@ -84,9 +85,12 @@ def test_the_flags_of_a_command_are_those_of_its_help(command: str, capsys: pyte
         for flag, of, _ in rows(section("docs/cli.md", "Flags"))
         if of == "all" or command in of.split(", ")
     }
-    if command in ("model", "views", "sketch"):
+    if command in ("model", "views", "video", "sketch", "siblings"):
         assert f"`{command}`" in section("docs/cli.md", "Flags")
-        written |= {f"--{f.name.replace('_', '-')}" for f in fields(ModelSettings)} | {"--no-compress"}
+        flags = [f"--{f.name.replace('_', '-')}" for f in fields(ModelSettings)]
+        written |= {*flags, "--no-compress", "--no-grove"}
+    if command == "siblings":
+        written -= {"--variants", "--siblings", "--grove", "--no-grove"}
     assert written == flags_of(command, capsys)
 
 
@@ -126,9 +130,11 @@ def test_the_calls_are_the_service_s_routes() -> None:
     assert set(calls) == routes()
 
 
-@pytest.mark.parametrize(("heading", "kind"), [("Photos", PhotoInfo), ("Models", ModelInfo), ("Captures", CaptureInfo)])
+@pytest.mark.parametrize(
+    ("heading", "kind"), [("Photos", PhotoInfo), ("Models", ModelInfo), ("Captures", CaptureInfo), ("Clips", ClipInfo)]
+)
 def test_the_fields_of_an_answer_are_those_of_its_schema(
-    heading: str, kind: type[PhotoInfo | ModelInfo | CaptureInfo]
+    heading: str, kind: type[PhotoInfo | ModelInfo | CaptureInfo | ClipInfo]
 ) -> None:
     (table,) = (t for t in tables(section("docs/http.md", heading)) if t[0].startswith("| field"))
     assert sorted(name for row in table[2:] for name in named(cells(row)[0])) == sorted(kind.model_fields)
@@ -138,12 +144,12 @@ def test_the_library_s_arguments_are_documented() -> None:
     page = text_of("docs/library.md")
     arguments = {
         name
-        for function in (treestroke.model, treestroke.model_views, treestroke.sketch)
+        for function in (treestroke.model, treestroke.model_views, treestroke.model_video, treestroke.sketch)
         for name in signature(function).parameters
     }
     calls = {
         name
-        for call in re.findall(r"`treestroke\.(?:model|model_views|sketch)\((.*?)\)`", page)
+        for call in re.findall(r"`treestroke\.(?:model|model_views|model_video|sketch)\((.*?)\)`", page)
         for name in call.split(", ")
     }
     (table,) = (t for t in tables(page) if t[0].startswith("| argument"))
@@ -171,7 +177,8 @@ def test_the_codes_of_failures_are_those_of_the_service() -> None:
 def test_the_warnings_are_those_of_the_sources() -> None:
     words = {
         node.value
-        for path in (PACKAGE / "core").rglob("*.py")
+        for place in ("core", "engines")
+        for path in (PACKAGE / place).rglob("*.py")
         for call in ast.walk(ast.parse(path.read_text()))
         if isinstance(call, ast.Call) and ast.unparse(call.func) in ("StrokeWarning", "_warning")
         for node in call.args[:2]
@@ -190,9 +197,9 @@ def test_the_doctor_s_parts_are_those_that_it_examines() -> None:
 
 
 def test_examples_in_json_are_what_the_service_takes_and_gives() -> None:
-    (strokes,), (sketch,), (views,), (request, traced, captured, problem) = (
+    (strokes,), (sketch,), (views,), (drawn,), (request, traced, captured, filmed, problem) = (
         [json.loads(fence.text) for fence in fences(f"docs/{name}.md", "json")]
-        for name in ("formats", "sketches", "views", "http")
+        for name in ("formats", "sketches", "views", "video", "http")
     )
     assert set(strokes) == set(Strokes.model_fields)
     Strokes.model_validate(strokes)
@@ -201,6 +208,8 @@ def test_examples_in_json_are_what_the_service_takes_and_gives() -> None:
     ModelRequest.model_validate(request)
     CaptureTraceRequest.model_validate(traced)
     ModelRequest.model_validate(captured)
+    ModelRequest.model_validate(filmed)
+    FrameStrokes.model_validate(drawn)
     assert set(problem) == set(Problem.model_fields)
     Problem.model_validate(problem)
 

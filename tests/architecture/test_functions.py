@@ -16,7 +16,9 @@ MANY_ARGUMENTS = {
     "client.py Client.trace": "the library's call over HTTP",
     "service/model.py model": "the library's call, with the inputs of a photo by name",
     "service/model.py model_views": "the library's call, with the inputs of many photos by name",
+    "service/model.py model_video": "the library's call, with the inputs of a clip by name",
     "service/model.py sketch": "the library's call, with the inputs of sketches by name",
+    "service/sibling_models.py siblings": "the library's call, with what siblings are to be like by name",
     "service/trace.py trace": "the library's call, with all that a live tree grows of by name",
 }
 """Functions that may have more arguments, and why: at most ten."""

@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 from tests.api import sketched
 from tests.api.corpora import saved
+from tests.clips import clip_bytes
 
 import treestroke
 from treestroke.cli import main
@@ -225,3 +226,14 @@ def test_the_command_line_opens_what_is_written(
     monkeypatch.setattr("treestroke.codec.image.MAX_PHOTO_BYTES", len(stored) - 1)
     assert main(["model", str(project), "--out", str(tmp_path / "a.glb")]) == 0
     assert (tmp_path / "a.glb").read_bytes() == treestroke.model(stored, maple_strokes, settings, 4).glb
+
+
+def test_a_project_keeps_a_clip_as_it_was_given(tmp_path: Path) -> None:
+    clip = clip_bytes(tmp_path)
+    project = project_of({"seed": 2}, clip=clip, frame_strokes=b'{"crown": {}}')
+    assert project.inputs.source == "clip"
+    again = opened(written(project))
+    assert again == project
+    with zipfile.ZipFile(io.BytesIO(written(project))) as archive:
+        assert archive.namelist() == ["clip.avi", "frame_strokes.json", "settings.json"]
+        assert archive.getinfo("clip.avi").compress_type == zipfile.ZIP_STORED

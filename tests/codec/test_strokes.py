@@ -7,8 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from treestroke.codec.strokes import encode_strokes, parse_strokes, strokes_from
+from treestroke.codec.strokes import (
+    encode_frame_strokes,
+    encode_strokes,
+    parse_frame_strokes,
+    parse_strokes,
+    strokes_from,
+)
 from treestroke.core.errors import StrokesError
+from treestroke.core.strokes import same_strokes
 
 SQUARE = [[10, 10], [90, 10], [90, 60], [10, 60]]
 GOOD = {"crown": {"points": SQUARE}, "branches": [{"points": [[50, 95], [50, 60]], "width": 4}]}
@@ -170,3 +177,21 @@ def test_any_json_is_read_or_refused_but_never_breaks(value: object) -> None:
         strokes_from(value)
     except StrokesError as error:
         assert "\n" not in str(error)
+
+
+def test_strokes_over_a_frame_come_back() -> None:
+    crown = {"points": [[0, 0], [9, 0], [9, 9]]}
+    drawn = parse_frame_strokes(json.dumps({"frame": 12, "crown": crown}), "strokes.json")
+    assert (drawn.frame, drawn.strokes.branches) == (12, ())
+    again = parse_frame_strokes(encode_frame_strokes(drawn), "strokes.json")
+    assert again.frame == 12
+    assert same_strokes(again.strokes, drawn.strokes)
+    assert parse_frame_strokes(json.dumps({"crown": crown}), "strokes.json").frame == 0
+
+
+@pytest.mark.parametrize("frame", [-1, 1.5, "2", None, True, 10_000])
+def test_a_frame_is_a_whole_number(frame: object) -> None:
+    text = json.dumps({"frame": frame, "crown": {"points": [[0, 0], [9, 0], [9, 9]]}})
+    with pytest.raises(StrokesError) as refusal:
+        parse_frame_strokes(text, "strokes.json")
+    assert refusal.value.pointer == "/frame"

@@ -2,6 +2,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
@@ -17,10 +18,23 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.queries import referenced
-from treestroke.store.tables import CapturePhoto, CaptureRow, File, ModelRow, PhotoRow, Replay, SolveRow, Stray, Table
+from treestroke.store.tables import (
+    CapturePhoto,
+    CaptureRow,
+    ClipRow,
+    File,
+    ModelRow,
+    PhotoRow,
+    Replay,
+    SolveRow,
+    Stray,
+    Table,
+    UploadRow,
+)
+from treestroke.store.uploads import Uploads
 
 HOUR, DAY = 3600.0, 86_400.0
-NOTHING = Swept(0, 0, 0, 0)
+NOTHING = Swept(0, 0, 0, 0, 0, 0)
 
 
 class Clocks:
@@ -40,6 +54,7 @@ class Kept:
 
     def __init__(self, folder: Path, clocks: Clocks) -> None:
         self.database, self.blobs, self.clocks = Database(folder), Blobs(folder), clocks
+        self.uploads = Uploads(folder)
         self.database.migrate()
         self.restart()
 
@@ -56,13 +71,27 @@ class Kept:
         for _ in range(round(seconds / HOUR)):
             self.clocks.pass_(HOUR)
             went.append(self.sweep())
-        return Swept(*(sum(getattr(one, name) for one in went) for name in ("models", "photos", "captures", "blobs")))
+        return Swept(*(sum(getattr(one, field.name) for one in went) for field in fields(Swept)))
 
     def photo(self, id: str) -> PhotoRow:
         row = PhotoRow(id=id, sha256="", width=1, height=1, blob=self.blobs.put(id.encode()), created=self.clocks.wall)
         with self.database.writing() as session:
             session.add(row)
         return row
+
+    def clip(self, id: str) -> ClipRow:
+        told = {"name": "", "frames": 60, "frames_per_second": 30.0, "media_type": "video/mp4"}
+        blob = self.blobs.put(id.encode())
+        row = ClipRow(id=id, sha256="", width=1, height=1, blob=blob, created=self.clocks.wall, **told)
+        with self.database.writing() as session:
+            session.add(row)
+        return row
+
+    def upload(self, id: str) -> None:
+        with self.database.writing() as session:
+            session.add(UploadRow(id=id, name="", created=self.clocks.wall))
+        with self.uploads.adding(id, 0) as writer:
+            writer.write(b"video")
 
     def model(self, status: str = "succeeded", **parts: str) -> ModelRow:
         blobs = {"photo": self.blobs.put(b"photo"), "strokes": self.blobs.put(b"strokes"), **parts}
@@ -107,7 +136,7 @@ def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
     assert kept.sweep_for(23 * HOUR) == NOTHING
     assert stored_models.restore(kept.database, row.id).files["tree.glb"]
     kept.delete(row)
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 3)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 0, 0, 3)
     assert (kept.count(ModelRow), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
     with pytest.raises(NotFound):
         stored_models.restore(kept.database, row.id)
@@ -175,7 +204,7 @@ def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str)
     assert blob in kept.named()
     assert kept.sweep_for(2 * HOUR) == NOTHING
     kept.delete(row)
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 4)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 0, 0, 4)
     assert not kept.blobs.path(blob).exists()
 
 
@@ -194,7 +223,7 @@ def test_a_deleted_photo_goes_after_a_day_and_its_models_keep_their_copy(kept: K
     photo, model = kept.photo("pho_1"), kept.model()
     with kept.database.writing() as session:
         session.execute(update(PhotoRow).values(deleted=kept.clocks.wall))
-    assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 0, 1)
+    assert kept.sweep_for(26 * HOUR) == Swept(0, 1, 0, 0, 0, 1)
     assert not kept.blobs.path(photo.blob).exists()
     assert kept.blobs.path(stored_models.find_model(kept.database, model.id).parts["photo"].blob).exists()
 
@@ -215,7 +244,7 @@ def test_what_is_older_than_the_days_is_deleted_and_goes_a_day_later(kept: Kept)
         stored_models.find_model(kept.database, old.id)
     for row in (young, growing):
         assert stored_models.find_model(kept.database, row.id).row.id == row.id
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 0, 2)
+    assert kept.sweep_for(26 * HOUR) == Swept(1, 1, 0, 0, 0, 2)
     assert not kept.blobs.path(photo.blob).exists()
     assert kept.count(ModelRow) == 2
 
@@ -333,7 +362,7 @@ def test_a_deleted_capture_goes_with_its_photos_and_what_was_found_of_them(kept:
     assert kept.sweep_for(3 * HOUR) == NOTHING
     captures.delete(kept.database, row.id)
     assert kept.sweep_for(23 * HOUR) == NOTHING
-    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 1, 3)
+    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 1, 0, 0, 3)
     assert (kept.count(CaptureRow), kept.count(CapturePhoto), kept.count(SolveRow), kept.files()) == (0, 0, 0, set())
 
 
@@ -342,7 +371,7 @@ def test_a_photo_that_was_removed_from_a_capture_goes_and_the_others_stay(kept: 
     kept.sweep()
     photo = captures.find_capture(kept.database, row.id).photos[0]
     captures.remove_photo(kept.database, row.id, photo.id)
-    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 0, 1)
+    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 0, 0, 0, 1)
     assert kept.files() == kept.named()
 
 
@@ -354,3 +383,37 @@ def test_an_old_capture_is_deleted_once_nothing_is_under_way(kept: Kept) -> None
     assert captures.find_capture(kept.database, busy)
     with pytest.raises(NotFound):
         captures.find_capture(kept.database, idle)
+
+
+def test_a_deleted_clip_goes_with_its_file_after_a_day(kept: Kept) -> None:
+    kept.clip("clp_1")
+    row = kept.clip("clp_2")
+    with kept.database.writing() as session:
+        session.execute(update(ClipRow).where(ClipRow.id == row.id).values(deleted=1.0, seen=None))
+    assert kept.sweep_for(23 * HOUR) == NOTHING
+    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 0, 1, 0, 1)
+    assert kept.count(ClipRow) == 1
+
+
+def test_old_clips_are_deleted_where_days_are_set(kept: Kept) -> None:
+    kept.restart(keep_days=2)
+    kept.clip("clp_1")
+    assert kept.sweep_for(47 * HOUR) == NOTHING
+    assert kept.sweep_for(28 * HOUR).clips == 1
+
+
+def test_an_upload_that_stopped_goes_after_a_day_and_one_that_goes_on_stays(kept: Kept) -> None:
+    for id in ("upl_1", "upl_2"):
+        kept.upload(id)
+    assert kept.sweep_for(23 * HOUR) == NOTHING
+    with kept.database.writing() as session:
+        session.execute(update(UploadRow).where(UploadRow.id == "upl_2").values(seen=None))
+    assert kept.sweep_for(3 * HOUR) == Swept(0, 0, 0, 0, 1, 0)
+    assert kept.uploads.ids() == ["upl_2"]
+
+
+def test_what_arrived_for_an_upload_without_a_row_goes_at_once(kept: Kept) -> None:
+    with kept.uploads.adding("upl_1", 0) as writer:
+        writer.write(b"video")
+    kept.sweep()
+    assert kept.uploads.ids() == []

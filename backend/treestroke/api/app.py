@@ -13,11 +13,10 @@ from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
 
 from treestroke import __version__
-from treestroke.api.clip_uploads import is_streamed
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
 from treestroke.api.metrics import add_metrics
-from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware
+from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
 from treestroke.api.routes import captures, clips, events, files, models, photos, sketches, status, uploads
 from treestroke.api.routes.page import add_page
 from treestroke.limits import MAX_CLIP_BYTES, MAX_PHOTO_BYTES, MAX_TEXT_BYTES
@@ -91,7 +90,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
         app.include_router(routes.router, responses=documented("foreign_host", "internal", "overloaded"))
     add_metrics(app)
     add_page(app)
-    app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of, streamed=is_streamed)
+    app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of)
     app.add_middleware(MethodMiddleware)
     app.add_middleware(SecurityMiddleware, hosts=HOSTS)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]

@@ -4,7 +4,6 @@ The headers are those of the IETF's draft-ietf-httpbis-resumable-upload: ``Uploa
 brings the rest of the file, ``Upload-Offset`` where it begins, ``Upload-Length`` how long the whole is.
 """
 
-import re
 from collections.abc import AsyncIterator
 from http import HTTPStatus
 from typing import Annotated, Any
@@ -12,7 +11,6 @@ from typing import Annotated, Any
 from fastapi import Header, Query, Request
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
-from starlette.types import Scope
 
 from treestroke.api.deps import form_of, media_type
 from treestroke.api.errors import Refusal
@@ -31,7 +29,6 @@ _PIECES = ("application/partial-upload", "application/octet-stream", "")
 """Media types of the pieces that follow the first one."""
 _PIECE = 1_000_000
 """Bytes of a form's file that are written at once."""
-_STREAMED = re.compile(r"/v1/(?:clips|uploads/[^/]+)")
 CLIP_BODY: dict[str, Any] = upload_body(_RAW)
 PIECE_BODY: dict[str, Any] = {
     "requestBody": {"content": {_PIECES[0]: {"schema": {"type": "string", "format": "binary"}}}}
@@ -52,11 +49,6 @@ ClipName = Annotated[
     str | None,
     Query(max_length=MAX_NAME, description="the file's name, where no form gives it", examples=["ash.mp4"]),
 ]
-
-
-def is_streamed(scope: Scope) -> bool:
-    """Tell whether a request's body goes to disk as it arrives, so that none of it is held in memory."""
-    return scope["method"] in ("POST", "PATCH") and _STREAMED.fullmatch(scope["path"]) is not None
 
 
 async def receive_clip(request: Request, resources: Resources, name: str | None, length: str | None) -> UploadRow:

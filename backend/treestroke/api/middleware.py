@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import re
 from collections.abc import Callable
 from functools import partial
 from http import HTTPStatus
@@ -25,6 +26,7 @@ CONTENT_SECURITY_POLICY = (
     "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob: data:; object-src 'none'; "
     "base-uri 'none'; frame-ancestors 'none'"
 )
+_STREAMED = re.compile(r"/v1/(?:clips|uploads/[^/]+)")
 _READING_METHODS = ("GET", "HEAD", "OPTIONS")
 _KNOWN_METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "TRACE")
 _OWN_SITES = ("same-origin", "none")
@@ -150,7 +152,7 @@ class _Body:
 class BodyLimitMiddleware:
     """Limits the size of a request's body, whatever Content-Length says, and refuses bodies that arrive too slowly.
 
-    Bodies that are ``streamed`` to disk do not count among the bytes that are held.
+    Bodies that are streamed to disk do not count among the bytes that are held.
     """
 
     def __init__(
@@ -160,9 +162,8 @@ class BodyLimitMiddleware:
         patience_s: float = PATIENCE_SECONDS,
         min_rate: float = MIN_BYTES_PER_SECOND,
         held_bytes: int = HELD_BYTES,
-        streamed: Callable[[Scope], bool] = lambda _: False,
     ) -> None:
-        self._app, self._limit_of, self._streamed = app, limit_of, streamed
+        self._app, self._limit_of = app, limit_of
         self._patience_s, self._min_rate, self._free = patience_s, min_rate, held_bytes
         self._bodies: set[_Body] = set()
 
@@ -176,7 +177,7 @@ class BodyLimitMiddleware:
         if declared.isdecimal() and int(declared) > limit:
             await problem("body_too_large", _too_large(limit))(scope, receive, send)
             return
-        body, streamed = _Body(receive, self._patience_s, self._min_rate), self._streamed(scope)
+        body, streamed = _Body(receive, self._patience_s, self._min_rate), is_streamed(scope)
 
         async def counted() -> Message:
             if body.complete:
@@ -214,6 +215,11 @@ class BodyLimitMiddleware:
         if body in self._bodies:
             self._bodies.remove(body)
             self._free += body.received
+
+
+def is_streamed(scope: Scope) -> bool:
+    """Tell whether a request's body goes to disk as it arrives, so that none of it is held in memory: clips do."""
+    return scope["method"] in ("POST", "PATCH") and _STREAMED.fullmatch(scope["path"]) is not None
 
 
 def _as_get(scope: Scope) -> Scope:

@@ -12,6 +12,7 @@ from treestroke.codec.video_kinds import ACCEPTED_VIDEOS, MP4, VIDEO_KINDS, vide
 from treestroke.core.errors import (
     CaptureError,
     ClipError,
+    EnvelopeError,
     FruitError,
     LeafError,
     PhotoError,
@@ -28,7 +29,9 @@ from treestroke.limits import (
 )
 
 Content = TypeVar("Content", covariant=True)
-PartKind = Literal["photo", "clip", "strokes", "frame_strokes", "views", "edits", "structure", "sketch", "cutout"]
+PartKind = Literal[
+    "photo", "clip", "strokes", "frame_strokes", "views", "edits", "structure", "sketch", "cutout", "envelope"
+]
 SourceName = Literal["photo", "views", "clip", "sketches"]
 
 BEGINNING = 128
@@ -178,11 +181,21 @@ PARTS: Mapping[str, Part] = {
             FruitError,
             "a fruit cut out, stalk up, that the tree is to bear",
         ),
+        Part(
+            "envelope",
+            "an outline of the siblings",
+            "envelope",
+            (TEXT, CUTOUT_PNG),
+            EnvelopeError,
+            "outline that siblings fill: heart, triangle, circle, pentagon, stroke JSON, or PNG of a shape",
+        ),
     )
 }
 """All parts, in the order in which they are stored and read."""
 SIDES = tuple(name for name, part in PARTS.items() if part.kind == "sketch")
 CUTOUTS = tuple(name for name, part in PARTS.items() if part.kind == "cutout")
+BESIDE = (*CUTOUTS, "envelope")
+"""Parts that may stand beside those of any source."""
 
 
 @dataclass(frozen=True)
@@ -214,13 +227,13 @@ class Source:
 SOURCES: Mapping[SourceName, Source] = {
     source.name: source
     for source in (
-        Source("photo", "photo and strokes", "strokes", ("photo", "strokes"), ("side", *CUTOUTS), "photo"),
+        Source("photo", "photo and strokes", "strokes", ("photo", "strokes"), ("side", *BESIDE), "photo"),
         Source(
             "views",
             "several photos and strokes over some of them",
             "views",
             ("photos", "views"),
-            ("structure", "edits", *CUTOUTS),
+            ("structure", "edits", *BESIDE),
             "photos",
         ),
         Source(
@@ -228,10 +241,10 @@ SOURCES: Mapping[SourceName, Source] = {
             "a clip and strokes over one of its frames",
             "frame_strokes",
             ("clip", "frame_strokes"),
-            CUTOUTS,
+            BESIDE,
             "clip",
         ),
-        Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *CUTOUTS), "side"),
+        Source("sketches", "a front sketch", "front", ("front",), ("side", "photo", *BESIDE), "side"),
     )
 }
 _SOURCE_NEEDED = f"a tree is made of {', or of '.join(source.title for source in SOURCES.values())}"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, BinaryIO, cast
 
 from treestroke.codec.archive import zip_into
-from treestroke.codec.image import MAX_STORED_BYTES, PHOTO_HEAD, StoredPhoto, most_stored_bytes
+from treestroke.codec.image import PHOTO_HEAD, StoredPhoto, most_stored_bytes
 from treestroke.codec.inputs import BEGINNING, PARTS, TEXT, Format, Inputs, Part, check_parts, part_of
 from treestroke.codec.json_text import read_json
 from treestroke.core.errors import SettingsError, TreestrokeError
@@ -158,7 +158,8 @@ def _check_sizes(archive: zipfile.ZipFile, members: Mapping[str, zipfile.ZipInfo
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
             raise NotImplementedError(f"{info.filename} is neither stored nor deflated")
         text = info.filename.endswith(TEXT.ending)
-        limit = min(_limit(archive, part, info), text_bytes_left if text else MAX_STORED_BYTES)
+        limit = _limit(archive, part, info)
+        limit = min(limit, text_bytes_left) if text else limit
         if info.file_size > limit:
             fault = f"{info.filename} has {info.file_size / 1e6:.1f} MB, more than the {limit / 1e6:.1f} MB"
             raise TreestrokeError(f"{name}: {fault} that it may have; make it smaller", code="project_too_large")

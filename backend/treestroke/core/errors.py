@@ -4,6 +4,7 @@ TreestrokeError              the input cannot be used; the message says what is 
 ├── PhotoError               the picture itself
 ├── LeafError                the picture of a leaf
 ├── FruitError               the picture of a fruit
+├── EnvelopeError            the outline that a sibling is to fill
 ├── CaptureError             several photos that do not show one tree from different places
 ├── ClipError                a video that does not show one tree that moves
 ├── StrokesError             a stroke, a sketch, or their file
@@ -74,6 +75,13 @@ class FruitError(TreestrokeError):
 
     usual_code = "fruit_unreadable"
     whole = "fruit"
+
+
+class EnvelopeError(TreestrokeError):
+    """The outline that a sibling is to fill cannot be read, or encloses nothing."""
+
+    usual_code = "envelope_unreadable"
+    whole = "envelope"
 
 
 class CaptureError(TreestrokeError):

@@ -14,10 +14,24 @@ import PIL
 from treestroke import __version__
 
 PACKAGES = ("core", "codec", "engines")
-MODULES = ("execution", "files", "jobs", "loading", "model", "report", "solving")
+MODULES = (
+    "clip_loading",
+    "execution",
+    "files",
+    "jobs",
+    "loading",
+    "model",
+    "opened",
+    "report",
+    "sibling_models",
+    "siblings",
+    "solving",
+)
 """Modules of ``service`` on the way from the inputs to a tree and its files, or to a capture's structure."""
 _BELOW = ("limits", "wire_edits", "wire_strokes")
 """Modules of the whole package that say what inputs may hold."""
+GENERATOR = f"treestroke {__version__}"
+"""The generator that files name; without the engine's digest, so that the same tree has the same bytes."""
 LIBRARIES = {
     "numpy": np.__version__,
     "opencv": cv2.__version__,

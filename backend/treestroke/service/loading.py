@@ -8,6 +8,7 @@ import numpy as np
 
 from treestroke.codec.branch_edits import edits_from, parse_edits
 from treestroke.codec.capture_strokes import capture_strokes_from, parse_capture_strokes
+from treestroke.codec.envelope import envelope_from, parse_envelope
 from treestroke.codec.exif import exif_focal_px
 from treestroke.codec.image import Warn, check_size, decode_cutout, decode_photo, decode_stored, ignore_warning
 from treestroke.codec.inputs import Inputs, PartKind, part_of
@@ -20,6 +21,7 @@ from treestroke.core.imaging.opacity import over_white
 from treestroke.core.pipeline.captured_photos import captured_photo
 from treestroke.core.pipeline.settings import ModelSettings, settings_from
 from treestroke.core.progress import Report, silent
+from treestroke.core.siblings.outlines import SHAPES, Envelope
 from treestroke.core.skeleton.branch_edits import BranchEdit
 from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Strokes
 from treestroke.core.types import Picture
@@ -32,10 +34,22 @@ FileLike = str | os.PathLike[str] | bytes
 PhotoLike = FileLike | Picture
 StrokesLike = FileLike | Mapping[str, Any] | Strokes
 SketchLike = FileLike | Mapping[str, Any] | Sketch
+EnvelopeLike = FileLike | Mapping[str, Any] | Envelope
+"""An outline's name, or what it is read from."""
 ViewsLike = FileLike | Mapping[str, Any] | CaptureStrokes
 EditsLike = FileLike | Mapping[str, Any] | tuple[BranchEdit, ...]
 FrameStrokesLike = FileLike | Mapping[str, Any] | FrameStrokes
-PartLike = PhotoLike | CapturedPhoto | StrokesLike | ViewsLike | EditsLike | SketchLike | ClipLike | FrameStrokesLike
+PartLike = (
+    PhotoLike
+    | CapturedPhoto
+    | StrokesLike
+    | ViewsLike
+    | EditsLike
+    | SketchLike
+    | ClipLike
+    | FrameStrokesLike
+    | EnvelopeLike
+)
 """Whatever the library takes as a part of a tree's inputs."""
 SettingsLike = Mapping[str, Any] | ModelSettings | None
 
@@ -196,6 +210,21 @@ def load_cutout(picture: FileLike, name: str) -> Picture:
     return decode_cutout(*read_part(name, picture), part_of(name).refusal)
 
 
+def load_envelope(envelope: EnvelopeLike) -> Envelope:
+    """Read the outline that siblings are to fill: its name, a path, JSON or PNG bytes, plain mapping or value.
+
+    Raises
+    ------
+    EnvelopeError
+        As `parse_envelope`; or the file cannot be read.
+    """
+    if isinstance(envelope, Envelope):
+        return envelope
+    if isinstance(envelope, Mapping) or envelope in SHAPES:
+        return envelope_from(envelope)
+    return parse_envelope(*read_part("envelope", envelope))
+
+
 def load_parts(inputs: Inputs[Any], report: Report = silent, warn: Warn = ignore_warning) -> dict[str, Any]:
     """Decode all parts of a tree's inputs, by name: photos to pixels, drawings to strokes and sketches.
 
@@ -237,6 +266,7 @@ _LOADERS: Mapping[PartKind, Callable[[Any, str], Any]] = {
     "structure": _load_structure,
     "sketch": load_sketch,
     "cutout": load_cutout,
+    "envelope": lambda envelope, _: load_envelope(envelope),
 }
 """Loaders of all parts but pictures, by kind: they take a part and its name."""
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from treestroke import __version__
-from treestroke.codec.inputs import CUTOUTS, Inputs
+from treestroke.codec.inputs import CUTOUTS, Inputs, SourceName
 from treestroke.codec.preview import draw_preview
 from treestroke.core.pipeline.drawn_views import mend_views
 from treestroke.core.pipeline.dressing import OwnPictures
@@ -25,10 +24,12 @@ from treestroke.core.types import Picture
 from treestroke.engines.child import Bounds
 from treestroke.engines.solving import solve_in_process
 from treestroke.service.clip_loading import ClipLike
+from treestroke.service.engine_version import GENERATOR
 from treestroke.service.execution import Stopwatch, one_thread
 from treestroke.service.files import Bundle, check_files, tree_files
 from treestroke.service.loading import (
     EditsLike,
+    EnvelopeLike,
     FileLike,
     FrameStrokesLike,
     PartLike,
@@ -40,10 +41,8 @@ from treestroke.service.loading import (
     load_parts,
     load_settings,
 )
-from treestroke.service.report import tree_report, variant_seeds
-
-GENERATOR = f"treestroke {__version__}"
-"""The generator that files name; without the engine's digest, so that the same tree has the same bytes."""
+from treestroke.service.report import Trees, tree_report, variant_seeds
+from treestroke.service.siblings import SiblingsOrder, grove_glb, grown_siblings, sibling_files
 
 SOLVE_BOUNDS = Bounds(seconds=600.0, memory=3 * 2**30)
 """What finding the cameras of as many photos as a capture may have takes at most."""
@@ -121,6 +120,7 @@ def model(
     side: SketchLike | None = None,
     leaf: FileLike | None = None,
     fruit: FileLike | None = None,
+    envelope: EnvelopeLike | None = None,
     name: str = "tree",
 ) -> Model:
     """Turn one photo and a few strokes into a 3D tree.
@@ -144,6 +144,9 @@ def model(
     leaf, fruit
         Paths or bytes of PNGs of what the tree is to bear, cut out: a leaf with its stalk down, a fruit with its stalk
         up.
+    envelope
+        The outline that siblings are to fill: heart, triangle, circle or pentagon; or a path, JSON or PNG bytes, or a
+        plain mapping.
     name
         The beginning of the files' names.
 
@@ -152,7 +155,7 @@ def model(
     PhotoError, StrokesError, LeafError, FruitError, SettingsError
         An input cannot be used; the message says what, where and how to mend it.
     """
-    parts = {"photo": photo, "strokes": strokes, "side": side, "leaf": leaf, "fruit": fruit}
+    parts = {"photo": photo, "strokes": strokes, "side": side, "leaf": leaf, "fruit": fruit, "envelope": envelope}
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
@@ -167,6 +170,7 @@ def model_views(
     edits: EditsLike | None = None,
     leaf: FileLike | None = None,
     fruit: FileLike | None = None,
+    envelope: EnvelopeLike | None = None,
     name: str = "tree",
 ) -> Model:
     """Turn photos of a tree from all sides, and strokes over some of them, into a 3D tree.
@@ -192,7 +196,7 @@ def model_views(
     """
     named = photos if isinstance(photos, Mapping) else {os.path.basename(photo): photo for photo in photos}
     several = {f"photos/{photo}": content for photo, content in named.items()}
-    parts = {**several, "views": views, "edits": edits, "leaf": leaf, "fruit": fruit}
+    parts = {**several, "views": views, "edits": edits, "leaf": leaf, "fruit": fruit, "envelope": envelope}
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
@@ -239,6 +243,7 @@ def sketch(
     photo: PhotoLike | None = None,
     leaf: FileLike | None = None,
     fruit: FileLike | None = None,
+    envelope: EnvelopeLike | None = None,
     name: str = "tree",
 ) -> Model:
     """Turn a sketch of a tree's front, and perhaps one of its left side, into a 3D tree.
@@ -258,7 +263,7 @@ def sketch(
     PhotoError, StrokesError, LeafError, FruitError, SettingsError
         An input cannot be used; the message says what, where and how to mend it.
     """
-    parts = {"front": front, "side": side, "photo": photo, "leaf": leaf, "fruit": fruit}
+    parts = {"front": front, "side": side, "photo": photo, "leaf": leaf, "fruit": fruit, "envelope": envelope}
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 
@@ -279,18 +284,36 @@ def make_tree(
     with one_thread():
         with watch.stage("decode"):
             parts = load_parts(inputs, watch, mended.append)
-        match inputs.source:
-            case "photo":
-                grow = _photo_recipe(parts, options.settings, watch)
-            case "views":
-                grow = _views_recipe(parts, options.settings, watch)
-            case "clip":
-                grow = _clip_recipe(parts, options.settings, watch)
-            case "sketches":
-                grow = _sketch_recipe(parts, options.settings, watch)
-        pictures = OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
-        made = _make_variants(grow, pictures, options, watch, on_grown)
+        grow = recipe_of(inputs.source, parts, options.settings, watch)
+        made = _make_variants(grow, siblings_order(parts), options, watch, on_grown)
     return made.with_warnings(asdict(warning) for warning in mended)
+
+
+def recipe_of(source: SourceName, parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
+    """Read decoded parts of a source, and return the first half of its recipe.
+
+    Raises
+    ------
+    TreestrokeError
+        An input cannot be used.
+    SolveEnded
+        Finding the cameras of several photos took too long, ran out of memory or crashed.
+    """
+    match source:
+        case "photo":
+            return _photo_recipe(parts, settings, report)
+        case "views":
+            return _views_recipe(parts, settings, report)
+        case "clip":
+            return _clip_recipe(parts, settings, report)
+        case "sketches":
+            return _sketch_recipe(parts, settings, report)
+
+
+def siblings_order(parts: Mapping[str, Any]) -> SiblingsOrder:
+    """Return what decoded parts say of a tree's leaves and fruit, and of the outline of its siblings."""
+    pictures = OwnPictures(**{name: parts[name] for name in CUTOUTS if name in parts})
+    return SiblingsOrder(parts.get("envelope"), pictures)
 
 
 def _photo_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Report) -> GrowTree:
@@ -326,18 +349,28 @@ def _sketch_recipe(parts: Mapping[str, Any], settings: ModelSettings, report: Re
 
 
 def _make_variants(
-    grow: GrowTree, pictures: OwnPictures, options: Options, watch: Stopwatch, on_grown: OnGrown
+    grow: GrowTree, order: SiblingsOrder, options: Options, watch: Stopwatch, on_grown: OnGrown
 ) -> Model:
-    """Grow as many trees as the settings ask for, each by the next seed, and write their files."""
+    """Grow as many trees as the settings ask for, each by the next seed, and their siblings, and write their files."""
     trees: list[TreeModel] = []
     bundles: dict[str, Bundle] = {}
     settings, seed, name = options.settings, options.seed, options.name
+    example: GrownTree | None = None
     for index, variant_seed in enumerate(variant_seeds(seed, settings.variants)):
         rng = np.random.default_rng(variant_seed)
         grown = grow(rng)
-        if index == 0:
+        if example is None:
             on_grown(grown.live)
-        trees.append(finish(grown, settings, rng, watch, pictures))
+            example = grown
+        trees.append(finish(grown, settings, rng, watch, order.pictures))
         variant_name = name if index == 0 else f"{name}.v{index + 1}"
         bundles |= tree_files(trees[-1], settings, variant_name, GENERATOR, watch)
-    return Model(bundles, tree_report(trees, bundles, settings, seed, watch), trees[0])
+    siblings = list[TreeModel]()
+    if example is not None and settings.siblings:
+        siblings += grown_siblings(example, order, settings, seed, watch)
+        bundles |= sibling_files(siblings, settings, name, watch)
+    if settings.grove:
+        together = [trees[0], *siblings]
+        file = f"{name}.grove.glb"
+        bundles[file] = {file: grove_glb(together, len(together), settings, seed, watch)}
+    return Model(bundles, tree_report(Trees(trees, siblings), bundles, settings, seed, watch), trees[0])

@@ -1,13 +1,14 @@
 """The report of a model: what was made, how long it took, how well it fits and what it measures, as plain values."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import cv2
 import numpy as np
 
 from treestroke.codec.cameras import plain_cameras
+from treestroke.codec.motion import plain_motion
 from treestroke.core.geometry.camera import Camera
 from treestroke.core.geometry.crown_volume import Silhouette
 from treestroke.core.geometry.silhouette import overlap, silhouette
@@ -30,10 +31,24 @@ def variant_seeds(first: int, count: int) -> list[int]:
     return [(first + index) % (MAX_SEED + 1) for index in range(count)]
 
 
+@dataclass(frozen=True, eq=False)
+class Trees:
+    """The finished trees of a model: variants of its inputs, and siblings of the first of them; one at least."""
+
+    variants: Sequence[TreeModel]
+    siblings: Sequence[TreeModel] = ()
+
+    @property
+    def all(self) -> list[TreeModel]:
+        """Variants, then siblings."""
+        return [*self.variants, *self.siblings]
+
+
 def tree_report(
-    trees: Sequence[TreeModel], bundles: Mapping[str, Bundle], settings: ModelSettings, seed: int, watch: Stopwatch
+    made: Trees, bundles: Mapping[str, Bundle], settings: ModelSettings, seed: int, watch: Stopwatch
 ) -> dict[str, Any]:
-    """Return the report of a model's variants, of which ``seed`` is the first one's, and of all their files."""
+    """Return the report of a model's trees, of which ``seed`` is the first one's, and of all their files."""
+    trees = made.all
     tree, files = trees[0], {name: len(content) for bundle in bundles.values() for name, content in bundle.items()}
     ious = [_silhouette_ious(variant) for variant in trees]
     scores = [
@@ -52,10 +67,15 @@ def tree_report(
         "measures": _plain_measures(tree.measures),
         "variants": [
             {"seed": variant_seed, "counts": count, "score": score}
-            for variant_seed, count, score in zip(variant_seeds(seed, len(trees)), counts, scores, strict=True)
+            for variant_seed, count, score in zip(variant_seeds(seed, len(made.variants)), counts, scores, strict=False)
+        ],
+        "siblings": [
+            {"counts": count, "score": score}
+            for count, score in zip(counts[len(made.variants) :], scores[len(made.variants) :], strict=True)
         ],
         "files": files,
         **({} if tree.captured is None else _plain_views(tree.captured, ious[0])),
+        **({} if tree.motion is None else {"motion": plain_motion(tree.motion)}),
         "warnings": [asdict(warning) for warning in tree.warnings],
     }
 

@@ -2130,6 +2130,25 @@ export interface components {
              */
             variants: number;
             /**
+             * Siblings
+             * @description other trees of the same kind, each in a file
+             * @default 0
+             */
+            siblings: number;
+            /**
+             * Grove
+             * @description one more file: the tree and its siblings beside each other
+             * @default false
+             */
+            grove: boolean;
+            /**
+             * Lift
+             * @description how limbs get their depth: kept apart, or by probability
+             * @default auto
+             * @enum {string}
+             */
+            lift: "auto" | "spread" | "posterior";
+            /**
              * Form
              * @description how limbs grow where the photo shows none
              * @default auto

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from treestroke.codec.gltf.document import Document
 from treestroke.core.sway.motion import Animation, Motion, Rig
+from treestroke.core.types import Floats
 
 _DIGITS = 6
 """Decimals of a bone's position, metres: rounded, translations add up exactly to the inverse bind matrices."""
@@ -53,6 +54,13 @@ def _inverse_binds(rig: Rig) -> NDArray[np.float32]:
     return matrices.reshape(-1, 16)
 
 
+def _rotations(document: Document, rotations: Floats, many: bool) -> int:
+    """Add unit quaternions (k, 4), as floats or, of ``many``, as 16 bit; return their accessor."""
+    if many:
+        return document.accessor(np.rint(rotations * 32767).astype(np.int16), normalized=True)
+    return document.accessor(rotations.astype(np.float32))
+
+
 def _animation(document: Document, animation: Animation, first: int) -> dict[str, Any]:
     """Add keyframes and return the row of an animation; bones with the same times share them."""
     inputs: dict[bytes, int] = {}
@@ -65,5 +73,5 @@ def _animation(document: Document, animation: Animation, first: int) -> dict[str
             inputs[key] = document.accessor(seconds, bounded=True)
         target = {"node": first + bone, "path": "rotation"}
         channels.append({"sampler": len(samplers), "target": target})
-        samplers.append({"input": inputs[key], "output": document.accessor(rotations.astype(np.float32))})
+        samplers.append({"input": inputs[key], "output": _rotations(document, rotations, animation.many)})
     return {"name": animation.name, "channels": channels, "samplers": samplers}

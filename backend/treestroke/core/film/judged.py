@@ -25,10 +25,13 @@ _SAMPLED = 48
 """Frames that stillness is judged on."""
 _STILL_WIDTH = 160
 _STILL = 2.0
-"""Least standard deviation over time, grey levels at `_STILL_WIDTH` px, of the pixels that change most: noise and
-compression stay under 1.2 there, leaves in a light wind came to 8 and more."""
+"""Least standard deviation over time, grey levels at `_STILL_WIDTH` px, of the pixels that change most (two trees in a
+wind: 27 and 50)."""
 _CHANGING = 99.5
 """Percentile of the pixels that change most."""
+_NOISE, _ALIKE = 8.0, 1.5
+"""Where the pixels that change most stay below `_NOISE` and below `_ALIKE` times the median of all, it is the noise of
+a small picture: it is everywhere alike."""
 
 
 @dataclass(frozen=True)
@@ -119,8 +122,8 @@ def check_motion(frames: NDArray[np.uint8]) -> None:
     height, width = frames.shape[1:]
     size = _STILL_WIDTH, max(1, round(_STILL_WIDTH * height / width))
     small = [cv2.resize(frame, size, interpolation=cv2.INTER_AREA) for frame in _sampled(frames)]
-    changing = np.percentile(np.array(small, dtype=np.float64).std(axis=0), _CHANGING)
-    if changing < _STILL:
+    usual, most = np.percentile(np.array(small, dtype=np.float64).std(axis=0), (50, _CHANGING))
+    if most < _STILL or (most < _NOISE and most < _ALIKE * usual):
         fault = "nothing moves in it; film the tree in a wind, from one place"
         raise ClipError(f"clip: {fault}, or, for a still photo, use `treestroke model`", code="clip_still")
 

@@ -73,8 +73,8 @@ class Tracks:
 def follow(frames: NDArray[np.uint8], chosen: int, region: Mask, report: Report = silent, most: int = MOST) -> Tracks:
     """Follow the corners in a region (h, w) of the chosen frame through all frames (f, h, w), forward and backward.
 
-    At most ``most`` begin in one frame. A point is lost where it leaves the picture, or does not come back from the next
-    frame to where it was. Where many are lost, others begin.
+    At most ``most`` begin in one frame. A point is lost where it leaves the picture, or does not come back to where it
+    was from the next frame. Where many are lost, others begin.
     """
     count = len(frames)
     follower = _Follower(region, most)

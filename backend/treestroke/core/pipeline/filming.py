@@ -15,6 +15,7 @@ from treestroke.core.pipeline.growing import grow_tree
 from treestroke.core.pipeline.grown_tree import Filmed, GrownTree
 from treestroke.core.pipeline.photo import PhotoTrace, trace_photo
 from treestroke.core.pipeline.settings import ModelSettings
+from treestroke.core.pipeline.swaying_limbs import with_swaying_limbs
 from treestroke.core.progress import Report, silent
 from treestroke.core.strokes import Strokes, StrokeWarning
 from treestroke.core.types import Mask
@@ -61,22 +62,19 @@ def read_clip(video: Video, strokes: Strokes, report: Report = silent) -> ClipEv
     report("follow", 0.0)
     tracks = _followed(video, _tree_of(evidence), report)
     filmed = Filmed(tracks, video.frames_per_second, video.chosen)
-    return ClipEvidence(evidence, filmed, (*assumed, *_doubts(tracks)))
+    return ClipEvidence(with_swaying_limbs(evidence, tracks), filmed, (*assumed, *_doubts(tracks)))
 
 
 def trace_clip(video: Video, strokes: Strokes, known: ClipTrace | None = None) -> ClipTrace:
-    """Trace a clip; ``known`` is an earlier trace, whose tracks are kept where the crown is the same.
+    """Trace a clip; ``known`` is an earlier trace by the same crown, whose tracks are kept.
 
     Raises
     ------
     StrokesError, ClipError
         As `read_clip`.
     """
-    before = None if known is None else known.photo.evidence
-    photo = trace_photo(video.picture, strokes, before)
-    if known is not None and before is not None and before.outlined is photo.evidence.outlined:
-        return ClipTrace(photo, known.tracks)
-    return ClipTrace(photo, _followed(video, _tree_of(photo.evidence), silent))
+    photo = trace_photo(video.picture, strokes, None if known is None else known.photo.evidence)
+    return ClipTrace(photo, _followed(video, _tree_of(photo.evidence), silent) if known is None else known.tracks)
 
 
 def grow_clip(

@@ -24,7 +24,7 @@ from treestroke.core.lift.clumps import in_clumps
 from treestroke.core.lift.fan import fan_out
 from treestroke.core.lift.hidden_limbs import with_hidden_limbs
 from treestroke.core.lift.imagined import ImaginedCrown, imagined_crown
-from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
+from treestroke.core.lift.spread import FrontCrown, FrontTree
 from treestroke.core.pipeline.completion import completed, touches_edge
 from treestroke.core.pipeline.crowns import (
     CLOSED_SHARE,
@@ -37,6 +37,7 @@ from treestroke.core.pipeline.crowns import (
 )
 from treestroke.core.pipeline.evidence import UNCLEAR, PhotoEvidence
 from treestroke.core.pipeline.grown_tree import GrownTree, LiveTree, Reading
+from treestroke.core.pipeline.lifting import lift_front, method_for
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import Side, crown_height, side_of, with_depth
 from treestroke.core.pipeline.taken import Taken, shown_kind
@@ -206,7 +207,7 @@ def _filled(evidence: PhotoEvidence, settings: ModelSettings, rng: np.random.Gen
     if taken.foliage == "palm":
         traced = traced.stroked  # limbs found in a palm's crown are midribs of its fronds
     crown = _crown_of(evidence, traced, taken.foliage, settings, rng)
-    lifted = _lifted(evidence, traced, crown, rng, settings.iterations > 0)
+    lifted = _lifted(evidence, traced, crown, settings, rng)
     if crown.imagined is not None:
         limbs_px = crown.camera.picture_space_from_world(lifted.tree.points)
         crown = replace(crown, volume=in_clumps(crown.imagined, limbs_px, rng))
@@ -273,7 +274,7 @@ def _crown_of(
 
 
 def _lifted(
-    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, rng: np.random.Generator, grows: bool
+    evidence: PhotoEvidence, traced: Traced, crown: _PhotoCrown, settings: ModelSettings, rng: np.random.Generator
 ) -> _LiftedTrace:
     """Lift the traced branches into the world: by the left side, or with a guessed depth."""
     visible, owner = densified(traced.skeleton, JOINT_SHARE * evidence.height_px)
@@ -281,13 +282,14 @@ def _lifted(
     front = FrontCrown(crown.volume, crown.camera)
     if crown.side is None and crown.kind == "bare" and traced.whole:
         seen = np.arange(len(visible))
-        whole, joints = with_hidden_limbs(visible, stroke) if grows else (visible, seen)
+        whole, joints = with_hidden_limbs(visible, stroke) if settings.iterations > 0 else (visible, seen)
         tree = fan_out(whole, stroke[joints], front, rng)
         return _LiftedTrace(tree, whole, owner[joints], {}, len(joints) - len(seen))
     if crown.side is None:
         leafy = crown.front.mask & crown.shows_leaves & (crown.kind != "bare")
         shown = (traced.measured[owner] | (stroke < 0)) & sample_nearest(leafy, visible.points, False)
-        return _LiftedTrace(lift(FrontTree(visible, stroke, shown), front, rng), visible, owner, {})
+        tree = lift_front(FrontTree(visible, stroke, shown), front, method_for(settings.lift, few=True), rng)
+        return _LiftedTrace(tree, visible, owner, {})
     weights = accumulate_to_root(visible, edge_lengths(visible))
     same = stroke == stroke[np.maximum(visible.parents, 0)]
     drawn_front = branched(visible, heaviest_children(visible, np.where(same, weights + weights.max(), weights)))

@@ -61,8 +61,9 @@ def measured_motion(
     seconds = len(filmed.tracks.points) / filmed.frames_per_second
     field = motion_field(filmed.tracks, places, rig.extent / camera.metres_per_pixel, filmed.chosen, seconds)
     moved = field.moved * camera.metres_per_pixel * np.array([1.0, -1.0])
-    turns = turns_of(rig, Seen(moved, field.trust, filmed.frames_per_second))
-    bones = np.flatnonzero(moving_branches(rig) & (field.trust > 0))
+    error = field.error_px * camera.metres_per_pixel
+    turns = turns_of(rig, Seen(moved, error, filmed.frames_per_second))
+    bones = np.flatnonzero(moving_branches(rig) & np.isfinite(error))
     across = turns[:, bones, 2]  # a turn about the line of sight is what the picture shows best
     return MeasuredMotion(
         rig=rig,

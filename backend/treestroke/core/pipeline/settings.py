@@ -15,6 +15,9 @@ MAX_SEED = 2**63 - 1
 FILES = ("gltf", "obj", "usdz", "ply", "instanced", "collision", "json", "swc", "csv")
 """Files beside the GLB: other formats, leaves as instances, a collision solid, the skeleton."""
 
+LIFTS = ("spread", "posterior")
+"""Ways to guess the depth of limbs that one picture shows (docs/decisions/0018)."""
+
 
 @dataclass(frozen=True)
 class Span:
@@ -113,6 +116,11 @@ class ModelSettings:
     )
     iterations: int = _setting(300, Span(0, 2000, whole=True), "rounds of growth", "tree")
     variants: int = _setting(1, Span(1, 16, whole=True), "trees grown of the photo, each by the next seed", "tree")
+    siblings: int = _setting(0, Span(0, 16, whole=True), "other trees of the same kind, each in a file", "tree")
+    grove: bool = _setting(False, Toggle(), "one more file: the tree and its siblings beside each other", "file")
+    lift: str = _setting(
+        "auto", Choice(("auto", *LIFTS)), "how limbs get their depth: kept apart, or by probability", "tree"
+    )
     form: str = _setting("auto", Choice(("auto", *TREE_FORMS)), "how limbs grow where the photo shows none", "tree")
     species: str = _setting("auto", Choice(("auto", *SPECIES)), "shape and place of leaves, relief of bark", "leaves")
     season: str = _setting("photo", Choice(("photo", *SEASONS)), "colour and number of leaves", "leaves")

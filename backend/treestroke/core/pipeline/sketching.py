@@ -14,9 +14,10 @@ from treestroke.core.grow.grown import Grown
 from treestroke.core.grow.self_similar import SelfSimilarParams, grow_small
 from treestroke.core.imaging.opacity import over_white
 from treestroke.core.imaging.outline import fill_outline
-from treestroke.core.lift.spread import FrontCrown, FrontTree, lift
+from treestroke.core.lift.spread import FrontCrown, FrontTree
 from treestroke.core.pipeline.crowns import drawn, frayed, seen_from_front
 from treestroke.core.pipeline.grown_tree import GrownTree, Reading
+from treestroke.core.pipeline.lifting import lift_front, method_for
 from treestroke.core.pipeline.settings import ModelSettings
 from treestroke.core.pipeline.sides import (
     Side,
@@ -142,7 +143,7 @@ def grow_sketches(
     """
     report("lift", 0.0)
     frame = _framed(evidence, settings.height)
-    lifted = _lifted(frame, rng)
+    lifted = _lifted(frame, settings, rng)
     report("grow", 0.0)
     params = SelfSimilarParams(most=SMALL_BRANCHES * settings.iterations)
     grown = replace(grow_small(lifted.tree, lifted.volume, params, rng, report), root_swelling=ROOT_SWELLING)
@@ -182,12 +183,12 @@ def _framed(evidence: SketchEvidence, height_m: float) -> _Frame:
     return _Frame(evidence, scale, tree, crown, side)
 
 
-def _lifted(frame: _Frame, rng: np.random.Generator) -> _LiftedSketch:
+def _lifted(frame: _Frame, settings: ModelSettings, rng: np.random.Generator) -> _LiftedSketch:
     """Turn the drawn branches into the world: by the left side, or by spreading them in depth."""
     outline = turned_outline(frame.crown)
     if frame.side is None:
         front = FrontTree(frame.tree.skeleton, frame.tree.branch, np.zeros(len(frame.tree), dtype=bool))
-        tree = lift(front, FrontCrown(outline, frame.camera), rng)
+        tree = lift_front(front, FrontCrown(outline, frame.camera), method_for(settings.lift, few=False), rng)
         return _LiftedSketch(Branched(tree, frame.tree.branch), outline, {})
     retrieved = with_depth(frame.tree, frame.side, frame.height_px, frame.camera)
     return _LiftedSketch(retrieved.tree, outline.with_side(frame.side.crown), retrieved.score)

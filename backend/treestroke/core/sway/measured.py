@@ -18,10 +18,12 @@ from treestroke.core.sway.stiffness import fluttering, moving_branches, softness
 from treestroke.core.sway.wind import quaternions
 from treestroke.core.types import Floats, Indices
 
-SHAPE_RAD = 0.07
+SHAPE_RAD = 0.06
 """Standard deviation of the turn of a branch of middling thickness."""
-TRACK = 0.0025
-"""Standard deviation of what is known of a place, over the tree's height."""
+TRACK = 0.0015
+"""Standard deviation of what is known of a place where tracks agree, over the tree's height."""
+DOUBT = 2.0
+"""Factor on the standard error of what is seen: tracks near each other err alike."""
 SOFTEST, STIFFEST = 4.0, 0.1
 """Bounds of the turn's standard deviation by thickness, over that of a branch of middling thickness."""
 MOST_RAD = 0.7
@@ -30,7 +32,7 @@ MOST_RAD_S = 6.0
 """... its greatest speed, radians a second."""
 RETURN_SECONDS = 0.6
 """Time in which the pose of the last frame becomes that of the first, so that the animation loops."""
-_CORRECTIONS = 2  # times the linear solution is corrected by what it leaves
+_CORRECTIONS = 2  # times the solution is corrected by what turns differ from small ones
 _DELAY_S = 0.12  # by which a branch of middling thickness that is not seen follows its parent
 _FOLLOWS = 0.5  # share of its parent's turn
 _FLUTTER_HZ = 2.6
@@ -47,14 +49,14 @@ class Seen:
     ----------
     moved
         (f, b, 2) how far each bone's head is from where it is at rest, metres: to the picture's right, and up.
-    trust
-        (b,) how much is known of it, 0 to 1.
+    error
+        (b,) standard error of that, metres; infinite where nothing is known.
     frames_per_second
         Of the frames.
     """
 
     moved: Floats
-    trust: Floats
+    error: Floats
     frames_per_second: float
 
 
@@ -65,13 +67,11 @@ def turns_of(rig: Rig, seen: Seen) -> Floats:
     and less, as thick as they are. Flutter bones swing as fast as their branch moves.
     """
     axes = _axes(rig)
-    solve = _Posterior(rig, axes, seen.trust)
-    target = seen.moved
-    turns = solve(target)
+    solve = _Posterior(rig, axes, seen.error)
+    turns = solve(seen.moved)
     for _ in range(_CORRECTIONS):
-        left = seen.moved - (heads_in_motion(rig, turns)[:, :, :2] - rig.heads[:, :2])
-        target = target + left
-        turns = _bounded(solve(target), seen.frames_per_second)
+        bent = heads_in_motion(rig, turns)[:, :, :2] - rig.heads[:, :2]
+        turns = _bounded(solve(seen.moved - (bent - solve.straight(turns))), seen.frames_per_second)
     turns = _followed(rig, turns, solve.known, seen.frames_per_second)
     return turns + _flutter(rig, turns, seen.frames_per_second)
 
@@ -83,7 +83,7 @@ def looped(turns: Floats, frames_per_second: float) -> Animation:
     bones = tuple(np.flatnonzero(np.abs(whole).max(axis=(0, 2)) > 0).tolist())
     times = np.arange(len(whole)) / frames_per_second
     rotations = tuple(quaternions(whole[:, bone]) for bone in bones)
-    return Animation("measured", bones, (times,) * len(bones), rotations)
+    return Animation("measured", bones, (times,) * len(bones), rotations, many=True)
 
 
 def heads_in_motion(rig: Rig, turns: Floats) -> Floats:
@@ -101,7 +101,7 @@ def heads_in_motion(rig: Rig, turns: Floats) -> Floats:
 class _Posterior:
     """The turns of highest posterior for what is seen: one linear system for all frames."""
 
-    def __init__(self, rig: Rig, axes: Floats, trust: Floats) -> None:
+    def __init__(self, rig: Rig, axes: Floats, error: Floats) -> None:
         self._axes = axes
         self._branches = np.flatnonzero(moving_branches(rig))
         ancestors = _ancestors(rig)
@@ -111,13 +111,20 @@ class _Posterior:
         design = np.cross(axes[self._branches], arms[:, :, None])[..., :2] * moves[:, :, None, None]
         self._places = places
         self._design = design.transpose(0, 3, 1, 2).reshape(2 * len(places), -1)
-        weight = np.repeat(trust[places], 2) / (TRACK * rig.extent) ** 2
+        weight = np.repeat(1.0 / ((TRACK * rig.extent) ** 2 + (DOUBT * error[places]) ** 2), 2)
         soft = softness(rig)[self._branches]
         bend = SHAPE_RAD * np.clip(soft / np.median(soft), STIFFEST, SOFTEST)
         evidence = self._design.T @ (self._design * weight[:, None])
         self._pull = np.linalg.solve(evidence + np.diag(np.repeat(bend**-2.0, 2)), self._design.T * weight)
         self.known = np.zeros(len(rig.names), dtype=bool)
-        self.known[self._branches] = ((trust[places, None] > 0) & moves).any(axis=0)
+        self.known[self._branches] = (np.isfinite(error[places, None]) & moves).any(axis=0)
+
+    def straight(self, turns: Floats) -> Floats:
+        """Return how far heads (f, b, 2) would move by turns (f, b, 3), if these were small."""
+        along = np.einsum("fbx,bax->fba", turns[:, self._branches], self._axes[self._branches])
+        moved = np.zeros((*turns.shape[:2], 2))
+        moved[:, self._places] = (along.reshape(len(turns), -1) @ self._design.T).reshape(len(turns), -1, 2)
+        return moved
 
     def __call__(self, moved: Floats) -> Floats:
         """Return the turns (f, b, 3) for how far the bones' heads moved (f, b, 2)."""

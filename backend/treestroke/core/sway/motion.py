@@ -68,12 +68,15 @@ class Animation:
         For each such bone the times (k,) of its keyframes, seconds, from 0 to its length.
     rotations
         For each such bone the unit quaternions (k, 4) x, y, z, w of its keyframes; the last equals the first.
+    many
+        Whether there are so many keyframes that files keep them in 16 bit, exact to 0.00003.
     """
 
     name: str
     bones: tuple[int, ...]
     times: tuple[Floats, ...]
     rotations: tuple[Floats, ...]
+    many: bool = False
 
 
 @dataclass(frozen=True, eq=False)
