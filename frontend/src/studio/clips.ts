@@ -3,6 +3,7 @@ import { type Client, Unreachable } from '../api/client'
 import type { ClipInfo, UploadInfo } from '../api/types'
 import { clipOf, frameSheet } from '../sheets'
 import type { Clip, Sheets, Store } from '../state'
+import { withFrame } from '../strokes'
 import { text } from '../text'
 import { faultOf, PageFault } from './faultText'
 import type { Thumbnails } from './thumbnails'
@@ -74,7 +75,9 @@ export class Clips {
       const { sheets } = this.store.state
       if (sheets?.source !== 'clip') return
       const frame = Math.min(sheets.front.frame, info.frames - 1)
-      this.store.set({ sheets: this.opened(info, frame), traced: null, liveTree: null })
+      const { history } = this.store.state
+      const drawn = { ...history, present: withFrame(history.present, frame) }
+      this.store.set({ sheets: this.opened(info, frame), history: drawn, traced: null, liveTree: null })
       this.store.fault('clip', null)
     } catch (error) {
       this.store.fault('clip', faultOf(error))

@@ -105,6 +105,8 @@ export const welcomeText = {
       trunk_level:
         'The trunk does not go up. Draw it from the ground upward; if the tree lies on its side, turn the photo first.',
       stroke_too_short: 'This stroke is too short. Draw it longer.',
+      clip_still: 'Nothing moves in this video. Film the tree in the wind; of a still tree a photo is enough.',
+      clip_picture: 'This is a still picture. Open it as a photo, or choose a video.',
       too_many_strokes: 'There are too many strokes. Delete some.',
       scale_unlikely: 'The measured line makes the tree impossibly large or small. Check its length and its ends.',
     },

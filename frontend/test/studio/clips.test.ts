@@ -116,7 +116,7 @@ test('a video that the service lost is sent again under the same strokes', async
   store.set({ sheets: clipSheets({ id: null }, 30) })
   await clips.sendAgain(video(10))
   expect(clipOf(store.state)?.id).toBe('clp_2')
-  expect(store.state.sheets?.front).toMatchObject({ frame: 19 })
+  expect([store.state.sheets?.front, store.strokes.frame]).toMatchObject([{ frame: 19 }, 19])
 })
 
 test('the video of a project is the one that was chosen, or comes from the service', async () => {

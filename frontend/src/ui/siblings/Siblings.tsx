@@ -32,9 +32,10 @@ export function Siblings() {
 /** The form that has siblings grown. */
 function Order({ known }: { readonly known: number }) {
   const { grower } = useStudio()
+  const own = useStore(({ model }) => model?.info.seed ?? 0)
   const can = useStore(state => canGrow(growthStatusOf(state)))
   const [count, setCount] = useState(known || FIRST_COUNT)
-  const [seed, setSeed] = useState(0)
+  const [seed, setSeed] = useState(own)
   const [shape, setShape] = useState<OutlineName>('none')
   const [drawn, setDrawn] = useState<Line | null>(null)
   const isOwn = shape === 'drawn' || shape === 'picture'
