@@ -4,14 +4,14 @@ import hashlib
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import structlog
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
-from treestroke.service import captures, clips, tracer
+from treestroke.service.drawn_over import Base, base_of
 from treestroke.service.engine_version import engine_version
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import ModelOrder
@@ -69,14 +69,6 @@ class StoredModel:
         return Version(self.row.seq, self.queue_position, self.eta_s)
 
 
-@dataclass(frozen=True)
-class _Base:
-    """What a tree is drawn over: its parts, stored already, and what was mended when they were read."""
-
-    parts: dict[str, ModelPart]
-    warnings: list[dict[str, Any]]
-
-
 def accept_model(
     resources: Resources, order: ModelOrder, key: str | None, sent_photo: PhotoRow | None = None
 ) -> StoredModel:
@@ -98,7 +90,7 @@ def accept_model(
     if (order.capture or order.clip) and (before := _repeated(resources, order, key)) is not None:
         return before
     photo = sent_photo or (None if order.photo is None else _photo_for(resources, order.photo, key))
-    base = _base(resources, order, photo)
+    base = base_of(resources, order, photo)
     inputs = Inputs.of({**base.parts, **sent_parts(resources, order)})
     row = new_row(order, photo, _fingerprint(order, base, inputs))
     request = _request_digest(order, row, photo)
@@ -221,64 +213,6 @@ def _photo_for(resources: Resources, id: str, key: str | None) -> PhotoRow:
     return photo
 
 
-def _base(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> _Base:
-    """Check what was drawn, against what it was drawn over, and return that."""
-    if order.capture is not None:
-        return _drawn_over_capture(resources, order)
-    return _drawn_over_photo(resources, order, photo) if order.clip is None else _drawn_over_clip(resources, order)
-
-
-def _drawn_over_clip(resources: Resources, order: ModelOrder) -> _Base:
-    """Check what was drawn, against the clip.
-
-    Raises
-    ------
-    NotFound
-        There is no such clip.
-    """
-    assert order.clip is not None
-    assert order.drawing.frame is not None
-    clip = clips.get_clip(resources, order.clip)
-    size = clip.width, clip.height
-    resources.tracers("", tracer.check_frame, order.drawing.frame, size, clip.frames)
-    resources.blobs.check(clip.blob)
-    return _Base({"clip": ModelPart(name="clip", blob=clip.blob, media_type=clip.media_type)}, [])
-
-
-def _drawn_over_photo(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> _Base:
-    """Check what was drawn, against the photo where there is one."""
-    path = None if photo is None else resources.blobs.path(photo.blob)
-    key = "" if photo is None else photo.blob
-    resources.tracers(key, tracer.check_drawing, path, order.drawing, order.within)
-    return _Base({}, []) if photo is None else _Base({"photo": _picture("photo", photo.blob)}, photo.warnings)
-
-
-def _drawn_over_capture(resources: Resources, order: ModelOrder) -> _Base:
-    """Check what was drawn, against the capture; its photos and their cameras are parts that share its files.
-
-    Raises
-    ------
-    NotFound
-        There is no such capture.
-    CaptureError
-        It is not solved.
-    """
-    assert order.capture is not None
-    assert order.drawing.views is not None
-    capture = captures.find_capture(resources.database, order.capture)
-    structure = captures.solved_structure(capture)
-    sizes = {photo.name: (photo.width, photo.height) for photo in capture.photos}
-    path = resources.blobs.check(structure)
-    resources.tracers(structure, tracer.check_views, path, order.drawing.views, sizes)
-    cameras = ModelPart(name="structure", blob=structure, media_type="application/json")
-    pictures = {name: _picture(name, photo.blob) for photo in capture.photos for name in [f"photos/{photo.name}"]}
-    return _Base({**pictures, "structure": cameras}, captures.warnings_of(capture.photos))
-
-
-def _picture(name: str, blob: str) -> ModelPart:
-    return ModelPart(name=name, blob=blob, media_type="image/png")
-
-
 def sent_parts(resources: Resources, order: ModelOrder) -> dict[str, ModelPart]:
     """Store the parts' files that came with the request."""
     return {
@@ -312,7 +246,7 @@ def new_row(order: ModelOrder, photo: PhotoRow | None, fingerprint: str) -> Mode
     )
 
 
-def _fingerprint(order: ModelOrder, base: _Base, inputs: Inputs[ModelPart]) -> str:
+def _fingerprint(order: ModelOrder, base: Base, inputs: Inputs[ModelPart]) -> str:
     """Return a digest of all that decides over the tree and its report, except the engine."""
     blobs = {name: part.blob for name, part in inputs.parts.items()}
     return digest([blobs.pop("photo", None), blobs, order.settings, order.seed, *base.warnings])

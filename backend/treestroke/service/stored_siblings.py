@@ -30,7 +30,7 @@ def accept_siblings(resources: Resources, id: str, asked: SiblingsAsked) -> Stor
     files = {} if asked.envelope is None else {"envelope": asked.envelope}
     settings = {**old.settings, "variants": 1, "siblings": asked.count, "grove": asked.scene}
     seed = old.seed if asked.seed is None else asked.seed
-    order = ModelOrder(old.photo, old.capture, files, Drawing(None, {}), settings, seed, asked.name, ())
+    order = ModelOrder(old.photo, old.capture, old.clip, files, Drawing(None, {}), settings, seed, asked.name, ())
     kept = {
         part.name: ModelPart(name=part.name, blob=part.blob, media_type=part.media_type)
         for part in model.parts.values()
