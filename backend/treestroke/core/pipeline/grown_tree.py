@@ -94,10 +94,21 @@ class Filmed:
 
 @dataclass(frozen=True, eq=False)
 class LearntMotion:
-    """How a sibling moves, as was learnt of its example, at so many frames a second."""
+    """How a sibling moves, as was learnt of its example.
+
+    Attributes
+    ----------
+    model
+        How branches turn.
+    frames_per_second
+        Of the series.
+    sway
+        How far the example's branches sway in the median, over its extent.
+    """
 
     model: MotionModel
     frames_per_second: float
+    sway: float
 
 
 @dataclass(frozen=True, eq=False)

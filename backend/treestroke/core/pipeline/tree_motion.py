@@ -11,7 +11,7 @@ from treestroke.core.pipeline.grown_tree import Filmed, LearntMotion
 from treestroke.core.siblings.motion_model import Turns, learn_motion
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.sway.bones import MOST_MEASURED, rig_of
-from treestroke.core.sway.measured import Seen, across_bones, fluttered, looped, repeated, turns_of
+from treestroke.core.sway.measured import Seen, across_bones, fluttered, heads_in_motion, looped, repeated, turns_of
 from treestroke.core.sway.motion import Animation, Rig
 from treestroke.core.sway.stiffness import moving_branches, thickness
 from treestroke.core.types import Floats, Indices
@@ -102,7 +102,7 @@ def learnt_motion(skeleton: Skeleton, filmed: Filmed, camera: OrthographicCamera
     motion = filmed_motion(skeleton, None, filmed, camera)
     branches = np.flatnonzero(moving_branches(motion.rig))
     model = learn_motion(motion.turns[:, branches], _branches(motion.rig, branches))
-    return LearntMotion(model, filmed.frames_per_second)
+    return LearntMotion(model, filmed.frames_per_second, _sway(motion.rig, motion.turns))
 
 
 def drawn_motion(
@@ -113,8 +113,16 @@ def drawn_motion(
     branches = np.flatnonzero(moving_branches(rig))
     turns = np.zeros((learnt.model.frames, len(rig.names), 3))
     turns[:, branches] = learnt.model.draw(_branches(rig, branches), rng)
+    # on the example, branches make good for what those below them do; drawn ones add up, and would sway further
+    turns *= learnt.sway / max(_sway(rig, turns), 1e-9)
     animation = repeated(fluttered(rig, turns, learnt.frames_per_second), learnt.frames_per_second)
     return TreeMotion(rig, animation, learnt.frames_per_second, turns, None)
+
+
+def _sway(rig: Rig, turns: Floats) -> float:
+    """Return how far the heads of branch bones sway in the median, a standard deviation, over the tree's extent."""
+    heads = heads_in_motion(rig, turns)[:, moving_branches(rig)]
+    return float(np.median(np.linalg.norm(heads.std(axis=0), axis=1))) / rig.extent
 
 
 def _branches(rig: Rig, branches: Indices) -> Turns:
