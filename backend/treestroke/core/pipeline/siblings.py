@@ -36,9 +36,9 @@ HEIGHT_PX = 1000.0
 """Height, px, of siblings in their fronts."""
 TALLER = 0.06
 """Standard deviation of the logarithm of a sibling's height over the example's."""
-SHARE_GROWN, CLIPPED_GROWN = 0.15, 0.35
-"""Share of the rounds of growth that siblings take, since their limbs are there before; and in an outline unlike that
-of the example, which limbs as learnt do not fill."""
+SHARE_GROWN, FULLER_GROWN = 0.15, 0.4
+"""Share of the rounds of growth that siblings take, since their limbs are there before; in an outline unlike that of
+the example, which limbs as learnt do not fill, and of a bare tree, all of whose twigs are seen."""
 OPAQUE = 0.8
 """Opacity above which a pixel shows a leaf in its own colour."""
 AT_EDGE = 0.06
@@ -208,7 +208,7 @@ def _filled(
     limbs = grow_limbs(example.branching, volume, room.height, rng)
     if not room.clipped:
         volume = in_clumps(imagined, camera.picture_space_from_world(limbs.points), rng)
-    share = CLIPPED_GROWN if room.clipped else SHARE_GROWN
+    share = FULLER_GROWN if room.clipped or tree.kind == "bare" else SHARE_GROWN
     library = choose_library(settings.library, tree.kind, limbs, tree.taken.form)
     method = Replacement(library, growth_for(tree.kind, round(share * settings.iterations), tree.taken.form))
     grown = grow(limbs, CrownToFill(volume, front), method, rng, report)
