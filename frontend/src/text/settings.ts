@@ -111,6 +111,16 @@ export const settingsText = {
         willow: 'Willow',
       },
     },
+    siblings: {
+      label: 'Siblings',
+      why: 'How many other trees of the same kind are made. The panel Siblings has more.',
+    },
+    grove: { label: 'Grove', why: 'One more file with the tree and its siblings beside each other.' },
+    lift: {
+      label: 'Depth',
+      why: 'How the depth of branches is found that one picture shows.',
+      names: { auto: 'As measured best', spread: 'Spread evenly', posterior: 'By probability' },
+    },
     season: {
       label: 'Season',
       why: 'Colours and thins the leaves, whatever season the photo shows.',

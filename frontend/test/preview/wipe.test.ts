@@ -65,4 +65,12 @@ describe('the wipe', () => {
     wipe.show(null)
     expect(slider().hidden).toBe(true)
   })
+
+  it('shows a video’s frame in the photo’s place, and then the photo again', () => {
+    const film = document.createElement('canvas')
+    wipe.showFilm(film)
+    expect([film.style.left, film.style.clipPath, photo().hidden]).toEqual(['100px', 'inset(0 100px 0 0)', true])
+    wipe.showFilm(null)
+    expect([film.isConnected, photo().hidden, photo().style.left]).toEqual([false, false, '100px'])
+  })
 })

@@ -102,3 +102,16 @@ test('several photos are those of one tree, even over a sheet of paper', async (
   await settle()
   expect(store.state).toMatchObject({ dialog: 'photos', offer: { photos: [jpeg, png] } })
 })
+
+test('it is said what becomes of a video that is dropped, and of a GIF, before anything is sent', async () => {
+  for (const video of [
+    new File(['frames'], 'ash.mp4', { type: 'video/mp4' }),
+    new File(['frames'], 'ash.gif', { type: 'image/gif' }),
+  ]) {
+    expect(drop(video, document.body, 100)).toEqual([text.clip.drop])
+    await settle()
+    expect(store.state).toMatchObject({ dialog: 'clip', clipOffer: video })
+    store.set({ dialog: null, clipOffer: null })
+  }
+  expect(openFile).not.toHaveBeenCalled()
+})
