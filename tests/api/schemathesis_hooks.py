@@ -10,6 +10,7 @@ from schemathesis.transport.serialization import Binary
 from tests.api import drawn
 from tests.api.corpora import saved
 
+from treestroke.codec.video_kinds import VIDEO_KINDS
 from treestroke.wire_requests import SKETCHES_EXAMPLE
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
@@ -34,6 +35,9 @@ for kind, content in (
     ("image/tiff", saved(PICTURE, "TIFF")),
     ("image/*", PHOTO),
     ("application/octet-stream", PHOTO),
+    *((kind.media_type, b"") for kind in VIDEO_KINDS),
+    ("video/*", b""),
+    ("application/partial-upload", b""),
 ):
     schemathesis.openapi.media_type(kind, strategies.just(content))
 

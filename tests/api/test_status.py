@@ -1,12 +1,14 @@
 import importlib.util
 import re
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
 from tests.api import drawn
 from tests.api.conftest import PATIENCE_SECONDS
+from tests.clips import clip_bytes
 from tests.faults.processes import wait_for
 
 from treestroke import __version__
@@ -123,12 +125,15 @@ def test_an_invented_method_is_refused_and_makes_no_series(client: httpx.Client)
 
 
 def test_head_is_get_without_the_body(
-    client: httpx.Client, document: dict[str, Any], made: dict[str, Any], photo: str
+    client: httpx.Client, document: dict[str, Any], made: dict[str, Any], photo: str, tmp_path: Path
 ) -> None:
+    octets = {"Content-Type": "application/octet-stream"}
+    clip = client.post("/v1/clips", content=clip_bytes(tmp_path), headers=octets).json()["id"]
+    upload = client.post("/v1/clips", headers={"Upload-Complete": "?0", **octets}).json()["id"]
     capture = client.post("/v1/captures").json()["id"]
     of_capture = client.post(f"/v1/captures/{capture}/photos", content=drawn.encoded()).json()["id"]
-    ids = {"/v1/captures": capture, "/v1/photos": photo}
-    named = {"view": "front", "ending": "glb", "photo": of_capture}
+    ids = {"/v1/captures": capture, "/v1/photos": photo, "/v1/clips": clip, "/v1/uploads": upload}
+    named = {"view": "front", "ending": "glb", "photo": of_capture, "frame": 3}
     paths = [path for path, one in document["paths"].items() if "get" in one and not path.endswith("/events")]
     for template in [*paths, "/", "/favicon.ico", "/nothing", "/page/nothing"]:
         id = next((id for begins, id in ids.items() if template.startswith(begins)), made["id"])
@@ -181,6 +186,16 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "trace_capture",
         "rename_capture",
         "restore_capture",
+        "add_clip",
+        "list_clips",
+        "get_clip",
+        "delete_clip",
+        "get_clip_video",
+        "get_clip_frame",
+        "trace_clip",
+        "get_upload",
+        "add_piece",
+        "delete_upload",
         "ask_for_model",
         "list_models",
         "get_model",
@@ -193,6 +208,7 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "get_preview",
         "get_strokes",
         "get_views",
+        "get_frame_strokes",
         "get_edits",
         "get_sketch",
         "get_project",
@@ -226,10 +242,14 @@ def test_every_body_has_an_example(document: dict[str, Any]) -> None:
         "post /v1/captures/{id}/photos",
         "post /v1/captures/{id}/trace",
         "patch /v1/captures/{id}",
+        "post /v1/clips",
+        "post /v1/clips/{id}/trace",
+        "patch /v1/uploads/{id}",
         "post /v1/models",
         "patch /v1/models/{id}",
     }
-    del asking["post /v1/photos"], asking["post /v1/captures/{id}/photos"]  # bytes
+    for bytes_ in ("post /v1/photos", "post /v1/captures/{id}/photos", "post /v1/clips", "patch /v1/uploads/{id}"):
+        del asking[bytes_]
     assert all("example" in kind for content in asking.values() for kind in content.values())
 
 
