@@ -80,9 +80,10 @@ def filmed_motion(
     rig = rig_of(skeleton, leaf_joints, MOST_MEASURED, tips=True)
     places = camera.picture_space_from_world(rig.heads)[:, :2]
     seconds = len(filmed.tracks.points) / filmed.frames_per_second
-    field = motion_field(filmed.tracks, places, rig.extent / camera.metres_per_pixel, filmed.chosen, seconds)
-    moved = field.moved * camera.metres_per_pixel * np.array([1.0, -1.0])
-    error = field.error_px * camera.metres_per_pixel
+    height_px = float(camera.pixels_from_metres(rig.extent))
+    field = motion_field(filmed.tracks, places, height_px, filmed.chosen, seconds)
+    moved = camera.metres_from_pixels(field.moved) * np.array([1.0, -1.0])
+    error = camera.metres_from_pixels(field.error_px)
     turns = turns_of(rig, Seen(moved, error, filmed.frames_per_second))
     bones = np.flatnonzero(moving_branches(rig) & np.isfinite(error))
     across = turns[:, bones, 2]  # a turn about the line of sight is what the picture shows best
