@@ -133,7 +133,7 @@ def _add_siblings(commands: "Commands") -> None:
     command.add_argument("--outline", metavar="OUTLINE", dest="envelope", help=PARTS["envelope"].help)
     command.add_argument("--scene", metavar="SCENE.glb", type=Path, help="all of them beside each other")
     command.add_argument("--report", metavar="REPORT.json", type=Path, help="seconds, counts and score of each")
-    command.add_argument("--preview", metavar="PICTURE.png", type=Path, help="a sheet of all of them")
+    command.add_argument("--preview", metavar="PICTURE.png", type=Path, help="the first one: front view and 3/4 view")
     _add_settings(command, ("variants", "siblings", "grove"))
 
 

@@ -13,7 +13,6 @@ from treestroke.core.pipeline.finishing import TreeModel, finish
 from treestroke.core.pipeline.grown_tree import GrownTree
 from treestroke.core.pipeline.levels import Level, levels
 from treestroke.core.pipeline.settings import ModelSettings
-from treestroke.core.pipeline.siblings import grow_sibling, learn
 from treestroke.core.progress import Report
 from treestroke.core.siblings.grove import crown_radius, plant
 from treestroke.core.siblings.outlines import Envelope
@@ -37,6 +36,8 @@ def grown_siblings(
     example: GrownTree, order: SiblingsOrder, settings: ModelSettings, seed: int, report: Report
 ) -> Iterator[TreeModel]:
     """Grow and finish as many siblings of a tree as the settings ask for, each by random numbers of its own."""
+    from treestroke.core.pipeline.siblings import grow_sibling, learn  # with scipy, slow, and rarely of use
+
     learnt = learn(example, settings.light)
     for number in range(1, settings.siblings + 1):
         rng = np.random.default_rng((seed, number))

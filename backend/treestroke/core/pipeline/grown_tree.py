@@ -1,19 +1,22 @@
 """A grown tree without leaves and bark: the result of every recipe's first half."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from treestroke.core.appearance import Appearance
 from treestroke.core.capture import UnusedPhoto
-from treestroke.core.film.tracks import Tracks
 from treestroke.core.geometry.camera import Camera, OrthographicCamera, PerspectiveCamera
 from treestroke.core.geometry.crown_volume import CrownVolume, Silhouette
 from treestroke.core.grow.grown import Grown
 from treestroke.core.pipeline.taken import Taken
-from treestroke.core.siblings.motion_model import MotionModel
 from treestroke.core.skeleton.skeleton import Skeleton
 from treestroke.core.strokes import StrokeWarning
 from treestroke.core.survey.measures import Stature
 from treestroke.core.types import FoliageKind, Indices
+
+if TYPE_CHECKING:  # with scipy, slow to import, and of no use for one photo
+    from treestroke.core.film.tracks import Tracks
+    from treestroke.core.siblings.motion_model import MotionModel
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +90,7 @@ class Filmed:
         Index of the frame that was drawn on, in which the tree is as it was grown.
     """
 
-    tracks: Tracks
+    tracks: "Tracks"
     frames_per_second: float
     chosen: int
 
@@ -106,7 +109,7 @@ class LearntMotion:
         How far the example's branches sway in the median, over its extent.
     """
 
-    model: MotionModel
+    model: "MotionModel"
     frames_per_second: float
     sway: float
 
