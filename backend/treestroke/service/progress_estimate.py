@@ -9,14 +9,14 @@ from treestroke.core.pipeline.settings import ModelSettings
 _READING: Mapping[SourceName, Mapping[str, float]] = {
     "photo": {"decode": 0.06, "foliage": 0.45, "trace": 0.14},
     "views": {"decode": 4.0, "mattes": 28.0, "hull": 7.0, "density": 6.0, "points": 28.0, "branches": 35.0},
-    "clip": {"decode": 3.0, "foliage": 0.45, "trace": 0.14, "tracks": 4.0},
+    "clip": {"decode": 3.0, "foliage": 0.45, "trace": 0.14, "follow": 5.0},
     "sketches": {"decode": 0.02, "trace": 0.2},
 }
 _FROM_ONE_SIDE: Mapping[str, float] = {"lift": 0.02, "grow": 0.35, "leaf": 0.35, "mesh": 0.3}
 _GROWING: Mapping[SourceName, Mapping[str, float]] = {
     "photo": _FROM_ONE_SIDE,
     "views": {"grow": 27.0, "leaf": 35.0, "mesh": 1.5},
-    "clip": {**_FROM_ONE_SIDE, "motion": 10.0},
+    "clip": {**_FROM_ONE_SIDE, "motion": 0.6},
     "sketches": _FROM_ONE_SIDE,
 }
 _PREVIEW = 0.6
