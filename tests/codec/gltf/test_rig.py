@@ -115,3 +115,15 @@ def test_without_wind_the_file_is_that_of_a_mesh_without_attachment(part: Part) 
 def test_equal_wind_gives_equal_bytes(wind: Motion, part: Part) -> None:
     first, second = (encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), motion=wind) for _ in range(2))
     assert first == second
+
+
+def test_rotations_of_many_keyframes_are_kept_in_16_bit(wind: Motion, part: Part) -> None:
+    many = replace(wind, animations=(replace(wind.animations[0], many=True),))
+    content = encode_glb([part], CAMERA, provenance=Provenance("treestroke 1"), motion=many)
+    gltf = pygltflib.GLTF2.load_from_bytes(content)
+    for sampler, turns in zip(gltf.animations[0].samplers, many.animations[0].rotations, strict=True):
+        row = gltf.accessors[sampler.output]
+        assert (row.componentType, row.normalized) == (5122, True)
+        start = gltf.bufferViews[row.bufferView].byteOffset
+        kept = np.frombuffer(gltf.binary_blob(), np.int16, row.count * 4, start).reshape(row.count, 4) / 32767
+        assert kept == pytest.approx(turns, abs=2e-5)
