@@ -198,6 +198,15 @@ def test_a_model_is_named_deleted_and_restored(client: Client, tree: ModelInfo) 
     assert client.restore(tree).name == "Old elm"
 
 
+def test_siblings_of_a_model_are_files_of_another(client: Client, tree: ModelInfo, tmp_path: Path) -> None:
+    more = client.wait(client.siblings(tree, 1, envelope="circle", name="Round"), timeout=PATIENCE_SECONDS)
+    assert (more.status, more.name) == ("succeeded", "Round")
+    assert client.download(more, tmp_path / "round.glb", "tree.s1.glb").read_bytes().startswith(b"glTF")
+    with pytest.raises(ServiceError) as caught:
+        client.siblings(tree, 0)
+    assert caught.value.status == 422
+
+
 def test_a_model_is_canceled(client: Client, photo: PhotoInfo) -> None:
     model = client.grow(photo, STROKES, {"iterations": 2000}, seed=2)
     client.cancel(model)

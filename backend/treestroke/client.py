@@ -13,6 +13,7 @@ from treestroke.request_bodies import (
     FrameStrokesLike,
     PhotoOptions,
     PictureLike,
+    SiblingOptions,
     SketchLike,
     SketchOptions,
     StrokesLike,
@@ -34,6 +35,7 @@ __all__ = [
     "PhotoOptions",
     "PictureLike",
     "ServiceError",
+    "SiblingOptions",
     "SketchLike",
     "SketchOptions",
     "StrokesLike",
@@ -164,6 +166,19 @@ class Client(ClipCalls):
         photo = options.pop("photo", None)
         inputs = {"sketches": plain_sketches(front, side), **({} if photo is None else {"photo": id_of(photo)})}
         return self._ask_for_tree(inputs, settings, seed, options)
+
+    def siblings(self, model: ModelInfo | str, count: int, **options: Unpack[SiblingOptions]) -> ModelInfo:
+        """Ask for other trees of the same kind, as files of a new model: ``tree.s1.glb`` and so on; `wait` for it.
+
+        ``options`` are the names of `SiblingOptions`.
+
+        Raises
+        ------
+        ServiceError
+            There is no such model, or an option cannot be used.
+        """
+        path = f"/v1/models/{id_of(model)}/siblings"
+        return read(ModelInfo, self._ask("POST", path, json={"count": count, **options}).content)
 
     def model(self, model: ModelInfo | str) -> ModelInfo:
         """Return a model."""

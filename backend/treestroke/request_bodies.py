@@ -46,6 +46,28 @@ class TreeOptions(Cutouts, total=False):
     idempotency_key: str | None
 
 
+class SiblingOptions(TypedDict, total=False):
+    """Options of `Client.siblings`, all of which may be left out.
+
+    Attributes
+    ----------
+    envelope
+        What their crowns fill, seen from the front: heart, triangle, circle or pentagon, or an outline as
+        ``{"points": [[x, y], ...]}``.
+    scene
+        Whether ``tree.grove.glb`` is among the files: all of them beside each other.
+    seed
+        A seed other than the model's.
+    name
+        The new model's name.
+    """
+
+    envelope: str | Mapping[str, Any]
+    scene: bool
+    seed: int
+    name: str
+
+
 class TraceOptions(TypedDict, total=False):
     """Options of `Client.trace_capture` and `Client.trace_clip`, all of which may be left out.
 
