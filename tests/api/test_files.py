@@ -216,5 +216,5 @@ def test_a_served_folder_holds_only_what_the_next_start_knows_as_its_own(
 
 def test_the_report_is_the_command_lines(client: httpx.Client, made: dict[str, Any]) -> None:
     needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
-    assert set(made["report"]) == needed | {"measures", "variants", "files", "reading", "taken"}
+    assert set(made["report"]) == needed | {"measures", "variants", "siblings", "files", "reading", "taken"}
     assert made["report"]["counts"]["bytes"] == len(client.get(made["files"]["tree.glb"]).content)

@@ -197,6 +197,7 @@ def test_every_operation_has_a_stable_name_and_a_sentence(document: dict[str, An
         "add_piece",
         "delete_upload",
         "ask_for_model",
+        "ask_for_siblings",
         "list_models",
         "get_model",
         "rename_model",
@@ -236,6 +237,7 @@ def test_every_body_has_an_example(document: dict[str, Any]) -> None:
     asking = {name: one["requestBody"]["content"] for name, one in operations(document).items() if "requestBody" in one}
     assert set(asking) == {
         "post /v1/photos",
+        "post /v1/models/{id}/siblings",
         "post /v1/photos/{id}/trace",
         "post /v1/sketches/trace",
         "post /v1/captures",

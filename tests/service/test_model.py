@@ -23,7 +23,7 @@ def maple(maple_photo: Path, maple_strokes: Path) -> Model:
 def test_the_report_has_the_contract_s_fields(maple: Model) -> None:
     report = maple.report
     needed = {"engine", "seed", "settings", "seconds", "counts", "score", "warnings"}
-    assert set(report) == needed | {"measures", "variants", "files", "reading", "taken"}
+    assert set(report) == needed | {"measures", "variants", "siblings", "files", "reading", "taken"}
     assert set(report["seconds"]) == set(STAGES) - {"levels"}
     assert set(report["counts"]) == {"iterations", "branches", "leaves", "triangles", "bytes"}
     assert set(report["score"]) == {"silhouette_iou", "attractors_reached", "depth_over_width"}
