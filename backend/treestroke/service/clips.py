@@ -16,7 +16,7 @@ from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import Crashed
 from treestroke.store.blobs import sha256_of
 from treestroke.store.queries import clip as find_clip
-from treestroke.store.queries import new_id, page, stored_bytes
+from treestroke.store.queries import mark_deleted, new_id, page, stored_bytes
 from treestroke.store.tables import ClipRow, UploadRow
 from treestroke.store.uploads import WrongOffset
 
@@ -186,8 +186,7 @@ def delete_clip(resources: Resources, id: str) -> None:
         There is no such clip.
     """
     with resources.database.writing() as session:
-        present = update(ClipRow).where(ClipRow.id == id, ClipRow.deleted.is_(None))
-        if session.scalars(present.values(deleted=time.time(), seen=None).returning(ClipRow.id)).first() is None:
+        if not mark_deleted(session, ClipRow, id):
             raise NotFound("clip")
 
 

@@ -210,6 +210,7 @@ def model_video(
     *,
     leaf: FileLike | None = None,
     fruit: FileLike | None = None,
+    envelope: EnvelopeLike | None = None,
     name: str = "tree",
 ) -> Model:
     """Turn a clip of a tree in the wind, and strokes over one of its frames, into a 3D tree that moves as it did.
@@ -228,7 +229,7 @@ def model_video(
     ClipError, StrokesError, LeafError, FruitError, SettingsError
         An input cannot be used; the message says what, where and how to mend it.
     """
-    parts = {"clip": clip, "frame_strokes": strokes, "leaf": leaf, "fruit": fruit}
+    parts = {"clip": clip, "frame_strokes": strokes, "leaf": leaf, "fruit": fruit, "envelope": envelope}
     return make_tree(Inputs.of(parts), Options.of(settings, seed, name), report, on_grown)
 
 

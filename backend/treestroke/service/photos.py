@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import update
-
 from treestroke.core.errors import PhotoError
 from treestroke.service import tracer
 from treestroke.service.tracing_pool import Crashed, TracingPool
 from treestroke.settings import PHOTO_MB, PHOTOS_MB
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.queries import new_id, page, stored_bytes
+from treestroke.store.queries import mark_deleted, new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
 from treestroke.store.tables import PhotoRow
 from treestroke.store.uploads import Uploads
@@ -122,9 +120,7 @@ def delete_photo(resources: Resources, id: str) -> None:
         There is no such photo.
     """
     with resources.database.writing() as session:
-        present = update(PhotoRow).where(PhotoRow.id == id, PhotoRow.deleted.is_(None))
-        deleted = present.values(deleted=time.time(), seen=None).returning(PhotoRow.id)
-        if session.scalars(deleted).first() is None:
+        if not mark_deleted(session, PhotoRow, id):
             raise NotFound("photo")
 
 

@@ -1,10 +1,11 @@
 """Queries that more than one use case needs."""
 
 import secrets
+import time
 from collections.abc import Collection, Iterable, Sequence
 from typing import Any, TypeVar
 
-from sqlalchemy import func, select, union
+from sqlalchemy import func, select, union, update
 from sqlalchemy.orm import Session
 
 from treestroke.store.leases import TERMINAL, AnyJob, JobRow
@@ -22,7 +23,6 @@ from treestroke.store.tables import (
 )
 
 FileRow = TypeVar("FileRow", File, ModelPart)
-Listed = TypeVar("Listed", ModelRow, PhotoRow, CaptureRow, ClipRow)
 Kept = TypeVar("Kept", ModelRow, PhotoRow, CaptureRow, ClipRow)
 _RECENT = 20
 """Finished jobs by whose times the next one's is estimated."""
@@ -54,6 +54,12 @@ def clip(session: Session, id: str, deleted: bool = False) -> ClipRow | None:
     return _kept(session, ClipRow, id, deleted)
 
 
+def mark_deleted(session: Session, table: type[Kept], id: str) -> bool:
+    """Delete a row that is there, until it is restored or removed; tell whether there was one."""
+    present = update(table).where(table.id == id, table.deleted.is_(None))
+    return session.scalars(present.values(deleted=time.time(), seen=None).returning(table.id)).first() is not None
+
+
 def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
     """Return the files of models, by model and name."""
     return _by_model_and_name(session, File, models)
@@ -64,7 +70,7 @@ def parts(session: Session, models: Iterable[str]) -> dict[str, dict[str, ModelP
     return _by_model_and_name(session, ModelPart, models)
 
 
-def page(session: Session, table: type[Listed], cursor: str | None, limit: int) -> tuple[Sequence[Listed], str | None]:
+def page(session: Session, table: type[Kept], cursor: str | None, limit: int) -> tuple[Sequence[Kept], str | None]:
     """Return a page of rows, newest first, and the cursor of the next page: decimal digits."""
     query = select(table).where(table.deleted.is_(None)).order_by(table.number.desc()).limit(limit + 1)
     rows = session.scalars(query if cursor is None else query.where(table.number < int(cursor))).all()

@@ -70,6 +70,6 @@ def test_nothing_is_known_far_from_all_tracks() -> None:
 
 
 def test_without_tracks_nothing_moves_and_nothing_is_known() -> None:
-    field = motion_field(swaying_tracks().at(np.zeros(200, dtype=bool)), PLACES, 200.0, 0, SECONDS)
+    field = motion_field(swaying_tracks(0), PLACES, 200.0, 0, SECONDS)
     assert not field.moved.any()
     assert np.isinf(field.error_px).all()

@@ -26,29 +26,29 @@ class CameraMotion:
         (f, 2, 3) from px of the chosen frame to px of each frame, for what stands still.
     shift_px
         (f,) how far the picture's middle moves.
-    known
-        Share of the frames in which it could be seen, 0 to 1.
     """
 
     to_frame: Floats
     shift_px: Floats
-    known: float
 
 
 def camera_motion(background: Tracks, size_px: tuple[int, int]) -> CameraMotion:
-    """Find turns, shifts and zooms of the camera by tracks of the background in frames of such a size (w, h)."""
-    matrices, found = np.tile(np.eye(2, 3), (len(background.points), 1, 1)), 0
+    """Find turns, shifts and zooms of the camera by tracks of the background in frames of such a size (w, h).
+
+    Where too few tracks agree, it is taken to stand as in the frame before.
+    """
+    matrices = np.tile(np.eye(2, 3), (len(background.points), 1, 1))
     for index, (points, seen) in enumerate(zip(background.points, background.seen, strict=True)):
         matrix = _similarity(background.rest[seen], points[seen])
         if matrix is not None:
-            matrices[index], found = matrix, found + 1
+            matrices[index] = matrix
         elif index:
             matrices[index] = matrices[index - 1]
     middle = np.array([*size_px, 2.0]) / 2.0
     shift = np.linalg.norm(matrices @ middle - middle[:2], axis=1)
     if shift.max(initial=0.0) < STEADY_PX:
         matrices[:] = np.eye(2, 3)
-    return CameraMotion(matrices, shift, found / max(len(matrices), 1))
+    return CameraMotion(matrices, shift)
 
 
 def without_camera(tracks: Tracks, motion: CameraMotion) -> Tracks:

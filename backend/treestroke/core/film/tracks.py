@@ -61,10 +61,6 @@ class Tracks:
         """(f, k, 2) how far each is from where it is in the chosen frame, px."""
         return self.points - self.rest
 
-    def at(self, which: NDArray[np.bool_]) -> "Tracks":
-        """Return some of the tracks, by a mask (k,)."""
-        return Tracks(self.points[:, which], self.seen[:, which], self.rest[which])
-
     def enlarged(self, factor: float) -> "Tracks":
         """Return the tracks in px of pictures that are larger by a factor."""
         return replace(self, points=self.points * factor, rest=self.rest * factor)

@@ -14,8 +14,8 @@ from treestroke.core.trace.tracing import Traced
 SAME = 0.07
 """Distance over the tree's height up to which a joint of the limbs that sway is one of the traced limbs."""
 FEWEST_LIMBS = 3
-"""Limbs beside the trunk from which on those that a frame shows are enough (the motion of 2 trees of 3 in leaf was
-measured better without further ones: docs/decisions/0019)."""
+"""Limbs beside the trunk from which on those that a frame shows are enough: the motion of an oak and a pine was
+measured better without further ones (docs/decisions/0019)."""
 _THICKEST = 0.35  # radius of a limb that is not seen, over that of the trunk
 
 

@@ -1,8 +1,7 @@
 import { text } from '../../text'
 import { useStore } from '../parts/useStore'
-import { Dialog } from './Dialog'
+import { Advice } from './Advice'
 import { PhotoRing } from './PhotoRing'
-import './advice.css'
 
 const { advice: words } = text.capture
 
@@ -11,22 +10,14 @@ export function AdviceDialog() {
   const limits = useStore(state => state.limits)
   const hasOffer = useStore(state => state.offer !== null)
   return (
-    <Dialog title={words.title} class="advice" after={{ dialog: hasOffer ? 'photos' : null }}>
-      <div class="advice-body">
-        <PhotoRing label={words.ring} />
-        <div>
-          <p class="advice-lead">{words.lead}</p>
-          <dl class="advice-points">
-            {words.points.map(([what, why]) => (
-              <div key={what}>
-                <dt>{what}</dt>
-                <dd>{why}</dd>
-              </div>
-            ))}
-          </dl>
-          {limits && <p class="soft">{words.least(limits.capture_photos_min, limits.capture_photos_max)}</p>}
-        </div>
-      </div>
-    </Dialog>
+    <Advice
+      title={words.title}
+      lead={words.lead}
+      points={words.points}
+      picture={<PhotoRing label={words.ring} />}
+      back={hasOffer ? 'photos' : null}
+    >
+      {limits && <p class="soft">{words.least(limits.capture_photos_min, limits.capture_photos_max)}</p>}
+    </Advice>
   )
 }

@@ -1,8 +1,7 @@
 import { text } from '../../text'
 import { useStore } from '../parts/useStore'
-import { Dialog } from './Dialog'
+import { Advice } from './Advice'
 import { FilmingPicture } from './FilmingPicture'
-import './advice.css'
 
 const { advice: words, welcome } = text.clip
 
@@ -10,22 +9,14 @@ const { advice: words, welcome } = text.clip
 export function FilmingDialog() {
   const hasOffer = useStore(state => state.clipOffer !== null)
   return (
-    <Dialog title={words.title} class="advice" after={{ dialog: hasOffer ? 'clip' : null }}>
-      <div class="advice-body">
-        <FilmingPicture />
-        <div>
-          <p class="advice-lead">{welcome.lead}</p>
-          <dl class="advice-points">
-            {words.points.map(([what, why]) => (
-              <div key={what}>
-                <dt>{what}</dt>
-                <dd>{why}</dd>
-              </div>
-            ))}
-          </dl>
-          <p class="soft">{welcome.formats}</p>
-        </div>
-      </div>
-    </Dialog>
+    <Advice
+      title={words.title}
+      lead={welcome.lead}
+      points={words.points}
+      picture={<FilmingPicture />}
+      back={hasOffer ? 'clip' : null}
+    >
+      <p class="soft">{welcome.formats}</p>
+    </Advice>
   )
 }
