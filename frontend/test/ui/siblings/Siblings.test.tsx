@@ -4,6 +4,7 @@ import { act } from 'preact/test-utils'
 import { beforeEach, expect, test, vi } from 'vitest'
 import { Studio } from '../../../src/studio/studio'
 import { Siblings } from '../../../src/ui/siblings/Siblings'
+import { SiblingsPanel } from '../../../src/ui/siblings/SiblingsPanel'
 import { photoSheets, shownModel } from '../../builders'
 import { settle } from '../../service'
 import { mount } from '../mount'
@@ -41,6 +42,16 @@ test('an outline that is to be drawn is waited for', () => {
   click('Drawn')
   click('Grow 6 siblings')
   expect(grow).not.toHaveBeenCalled()
+  expect(host.querySelector('.outline-pad svg')).not.toBeNull()
+})
+
+test('what was chosen stays while siblings grow', async () => {
+  open({ 'tree.glb': '/tree.glb' })
+  host = mount(studio, <SiblingsPanel />)
+  await vi.waitFor(() => expect(host.querySelector('.siblings-order')).not.toBeNull())
+  click('Drawn')
+  const { model } = studio.store.state
+  void act(() => studio.store.set({ model: { ...model!, info: { ...model!.info, status: 'running' } } }))
   expect(host.querySelector('.outline-pad svg')).not.toBeNull()
 })
 
