@@ -10,6 +10,7 @@ from xdist.scheduler import LoadFileScheduling
 
 from treestroke.service.execution import one_thread
 from treestroke.store.database import Database
+from treestroke.store.scope import LOCAL
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 DATA = Path(__file__).parent / "data"
@@ -67,7 +68,7 @@ def _as_the_service_computes() -> Iterator[None]:
 @pytest.fixture
 def database(tmp_path: Path) -> Iterator[Database]:
     """An empty database with its tables."""
-    opened = Database(tmp_path)
+    opened = Database(tmp_path).of(LOCAL)
     opened.migrate()
     yield opened
     opened.close()

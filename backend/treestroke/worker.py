@@ -35,6 +35,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.leases import AnyJob, end, take_back
+from treestroke.store.scope import SERVICE
 from treestroke.store.tables import JOBS
 
 NICENESS = 10
@@ -63,7 +64,7 @@ def main() -> int:
     start_logging()
     stop_with_parent()
     prepare_folder(settings.folder)
-    database = Database(settings.folder)
+    database = Database(settings.folder).of(SERVICE)
     os.register_at_fork(before=_no_fork.acquire, after_in_parent=_no_fork.release, after_in_child=_no_fork.release)
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
@@ -157,7 +158,7 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
         kill_with_parent(parent)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
-        stores[:] = [(Database(settings.folder), Blobs(settings.folder))]
+        stores[:] = [(Database(settings.folder).of(SERVICE), Blobs(settings.folder))]
 
     class JobRequest(Request):
         """Records in the database, from the parent process, how a child was killed."""

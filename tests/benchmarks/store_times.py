@@ -28,6 +28,7 @@ from treestroke.service.tracing_pool import TracingPool
 from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.scope import LOCAL
 from treestroke.store.tables import ModelRow
 from treestroke.store.uploads import Uploads
 
@@ -152,7 +153,7 @@ def main() -> int:
     tracers = TracingPool(1, 20, 2048)
     for count in SIZES:
         with tempfile.TemporaryDirectory() as folder:
-            database = Database(Path(folder))
+            database = Database(Path(folder)).of(LOCAL)
             database.migrate()
             fill(database.path, count)
             resources = Resources(database, Blobs(Path(folder)), tracers, tracers, tracers, Uploads(Path(folder)))

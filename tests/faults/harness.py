@@ -29,6 +29,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import TERMINAL
 from treestroke.store.queries import referenced
+from treestroke.store.scope import LOCAL
 
 ROOT = Path(__file__).parents[2]
 PHOTO = ROOT / "tests" / "data" / "beech_round.jpg"
@@ -336,7 +337,7 @@ class Service:
             assert set(files) <= {"growth.json"}
 
     def _check_folder(self) -> None:
-        database, blobs = Database(self.data), Blobs(self.data)
+        database, blobs = Database(self.data).of(LOCAL), Blobs(self.data)
         sweeper = Sweeper(database, blobs, 0, threading.Event())
         for _ in range(2):  # what no row names is to be seen twice
             sweeper.sweep(stray_s=0)

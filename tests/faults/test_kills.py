@@ -14,6 +14,7 @@ from tests.rows import add_model
 from treestroke.service.dispatch import record_heartbeat
 from treestroke.store.database import Database
 from treestroke.store.leases import heartbeat
+from treestroke.store.scope import LOCAL
 from treestroke.store.tables import ModelRow, Worker
 
 AGAIN_SECONDS = 30
@@ -46,7 +47,7 @@ def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: 
     """As where two containers have one name: the other's process 1 is nobody's here, and lives all the same."""
     service.finish()
     here = wait_for(service.workers, PATIENCE_SECONDS, "a worker")[0]
-    database, name = Database(service.data), f"{socket.gethostname()}/{2**22 - 1}/abcd"
+    database, name = Database(service.data).of(LOCAL), f"{socket.gethostname()}/{2**22 - 1}/abcd"
     record_heartbeat(database, name, 1)
     held = add_model(database, status="running", attempt=1, worker=name, claim="token", settings={})
     here.hit()

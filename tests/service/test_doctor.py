@@ -24,6 +24,7 @@ from treestroke.service.readiness import readiness
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.scope import LOCAL
 from treestroke.store.tables import PhotoRow
 
 
@@ -32,7 +33,7 @@ def folder(tmp_path: Path) -> Path:
     """A data folder with a database and one photo in it."""
     place = tmp_path / "data"
     place.mkdir(0o700)
-    database = Database(place)
+    database = Database(place).of(LOCAL)
     database.migrate()
     blob = Blobs(place).put(b"photo")
     with database.writing() as session:
@@ -267,7 +268,7 @@ def test_a_folder_that_others_may_look_into_is_ill(folder: Path) -> None:
 
 
 def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
-    database = Database(folder)
+    database = Database(folder).of(LOCAL)
     record_heartbeat(database, "dead-1", 1)
     database.close()
     with kept(6.0):

@@ -18,6 +18,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.queries import referenced
+from treestroke.store.scope import LOCAL
 from treestroke.store.tables import (
     CapturePhoto,
     CaptureRow,
@@ -53,7 +54,7 @@ class Kept:
     """A store whose process sweeps it now and then."""
 
     def __init__(self, folder: Path, clocks: Clocks) -> None:
-        self.database, self.blobs, self.clocks = Database(folder), Blobs(folder), clocks
+        self.database, self.blobs, self.clocks = Database(folder).of(LOCAL), Blobs(folder), clocks
         self.uploads = Uploads(folder)
         self.database.migrate()
         self.restart()

@@ -21,6 +21,7 @@ from treestroke.settings import read_settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import referenced
+from treestroke.store.scope import LOCAL
 
 PARTS = {
     "photo": ["photo", "strokes", "side", "leaf", "fruit"],
@@ -52,7 +53,7 @@ def old_folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def upgraded(old_folder: Path) -> Iterator[Upgraded]:
-    database = Database(old_folder)
+    database = Database(old_folder).of(LOCAL)
     database.migrate()
     assert database.current()
     yield Upgraded(database, Blobs(old_folder), json.loads((old_folder / "told.json").read_text()))
@@ -101,7 +102,7 @@ def test_the_doctor_finds_an_old_version_before_the_upgrade_and_all_files_whole_
     settings = read_settings(data=str(old_folder), port=0)
     before = {finding.part: finding.found for finding in examine_deployment(settings)}
     assert before["database"] == "of an older version"
-    database = Database(old_folder)
+    database = Database(old_folder).of(LOCAL)
     database.migrate()
     database.close()
     after = {finding.part: finding.found for finding in examine_deployment(settings)}

@@ -7,6 +7,7 @@ import pytest
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import DataFolderError, is_open_to_others, prepare_folder
 from treestroke.store.database import Database
+from treestroke.store.scope import LOCAL
 
 
 @pytest.fixture(autouse=True)
@@ -23,7 +24,7 @@ def mode(path: Path) -> int:
 def test_a_new_folder_and_all_that_is_put_there_are_this_user_s_alone(tmp_path: Path) -> None:
     folder = tmp_path / "a" / "data"
     prepare_folder(folder)
-    database = Database(folder)
+    database = Database(folder).of(LOCAL)
     database.migrate()
     database.close()
     Blobs(folder).put(b"tree")

@@ -21,11 +21,12 @@ from tests.running import BACKEND
 
 from treestroke.service.failures import code_of
 from treestroke.store.database import Database
+from treestroke.store.scope import LOCAL
 from treestroke.store.tables import File, ModelPart, ModelRow, PhotoRow, Replay, Table, Worker
 
 
 def test_the_tables_are_made_from_nothing(tmp_path: Path) -> None:
-    database = Database(tmp_path)
+    database = Database(tmp_path).of(LOCAL)
     database.migrate()
     assert database.current()
     database.close()
@@ -46,7 +47,7 @@ def test_processes_may_migrate_at_once(tmp_path: Path) -> None:
     command = [sys.executable, "-c", code, str(tmp_path)]
     processes = [subprocess.Popen(command, env=environment) for _ in range(3)]
     assert [process.wait(30) for process in processes] == [0, 0, 0]
-    database = Database(tmp_path)
+    database = Database(tmp_path).of(LOCAL)
     assert database.current()
     database.close()
 
@@ -60,7 +61,7 @@ def test_the_migrations_make_the_tables_that_the_program_knows(database: Databas
 
 
 def test_a_folder_of_the_program_before_is_brought_up_to_date_with_all_its_rows(tmp_path: Path) -> None:
-    database = Database(tmp_path)
+    database = Database(tmp_path).of(LOCAL)
     at_revision(database, "0004")
     with closing(sqlite3.connect(database.path)) as plain:
         plain.execute(
@@ -97,7 +98,7 @@ def at_revision(database: Database, revision: str) -> None:
 
 
 def test_what_an_older_program_kept_outlives_the_newer_tables(tmp_path: Path) -> None:
-    database = Database(tmp_path)
+    database = Database(tmp_path).of(LOCAL)
     at_revision(database, "0002")
     assert not database.current()
     with closing(sqlite3.connect(database.path)) as plain:
@@ -136,7 +137,7 @@ def test_a_failure_takes_everything_back(database: Database) -> None:
 
 def test_writers_take_turns_and_none_is_lost(database: Database) -> None:
     row = add_model(database)
-    others = [Database(database.path.parent) for _ in range(2)]
+    others = [Database(database.path.parent).of(LOCAL) for _ in range(2)]
 
     def count(one: Database) -> None:
         for _ in range(50):
@@ -242,7 +243,7 @@ def test_what_is_committed_survives_a_power_cut(database: Database) -> None:
 
 
 def test_only_migrating_makes_the_file(tmp_path: Path) -> None:
-    database = Database(tmp_path)
+    database = Database(tmp_path).of(LOCAL)
     for use in (database.reading, database.writing, database.autocommitting):
         with pytest.raises(OperationalError) as refused, use() as session:
             session.scalars(select(ModelRow)).all()
@@ -258,7 +259,7 @@ def test_only_migrating_makes_the_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["with spaces", "a?b#c%20d", "für;uri=false&mode=ro"])
 def test_the_folder_may_have_any_name(tmp_path: Path, name: str) -> None:
     (tmp_path / name).mkdir()
-    database = Database(tmp_path / name)
+    database = Database(tmp_path / name).of(LOCAL)
     database.migrate()
     row = add_model(database)
     assert find(database, row.id).id == row.id

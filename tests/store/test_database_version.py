@@ -8,6 +8,7 @@ from alembic.script import ScriptDirectory
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import DataFolderError, check_version, known_revisions
 from treestroke.store.database import Database, _migrations
+from treestroke.store.scope import LOCAL
 
 
 def test_the_known_versions_are_those_of_the_migrations() -> None:
@@ -21,7 +22,7 @@ def test_no_database_a_bare_one_and_one_of_ours_are_well(tmp_path: Path) -> None
     with closing(sqlite3.connect(tmp_path / "treestroke.sqlite3")) as bare:
         bare.execute("CREATE TABLE other (id)")
     check_version(tmp_path)
-    database = Database(tmp_path)
+    database = Database(tmp_path).of(LOCAL)
     database.migrate()
     check_version(tmp_path)
     database.close()

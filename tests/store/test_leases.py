@@ -9,6 +9,7 @@ from tests.rows import add_capture, add_model, add_solve, find
 from treestroke.store import leases
 from treestroke.store.database import Database
 from treestroke.store.queries import files
+from treestroke.store.scope import LOCAL
 from treestroke.store.tables import ModelRow, SolveRow
 
 LOST = {"code": "worker_lost", "detail": "lost", "retryable": True}
@@ -74,7 +75,7 @@ def test_eight_workers_claim_each_of_fifty_jobs_once(database: Database) -> None
     barrier, wins = threading.Barrier(8), Counter[str]()
 
     def work(at: int) -> None:
-        own = Database(database.path.parent)
+        own = Database(database.path.parent).of(LOCAL)
         barrier.wait()
         for id in ids[at * 6 :] + ids[: at * 6]:
             if claimed(own, id, f"t{at}", f"w{at}"):
@@ -225,7 +226,7 @@ def test_a_cancel_after_the_success_comes_too_late(database: Database) -> None:
 @pytest.mark.parametrize("round_", range(10))
 def test_cancel_and_success_at_once_end_in_one_of_both(database: Database, round_: int) -> None:
     job, barrier = started(database), threading.Barrier(2)
-    other = Database(database.path.parent)
+    other = Database(database.path.parent).of(LOCAL)
     results = []
 
     def publish() -> None:

@@ -30,6 +30,7 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import check_version, prepare_folder
 from treestroke.store.database import Database
+from treestroke.store.scope import SERVICE
 from treestroke.store.uploads import Uploads
 from treestroke.wire_edits import Edits
 from treestroke.wire_requests import (
@@ -109,7 +110,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
     capture_tracers = TracingPool(1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING)
     clip_tracers = TracingPool(CLIP_TRACERS, settings.capture_trace_seconds, settings.memory_mb, CLIPS_WAITING)
-    dispatcher = Dispatcher(database, blobs, partial(send_job_message, make_queue(settings)), settings.keep_days)
+    dispatcher = Dispatcher(
+        database.of(SERVICE), blobs, partial(send_job_message, make_queue(settings)), settings.keep_days
+    )
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
     app.state.resources = Resources(
         database, blobs, tracers, capture_tracers, clip_tracers, Uploads(settings.folder), *limits
@@ -117,7 +120,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
     tracers.start()
-    app.state.watcher = Watcher(database, app.state.places)
+    app.state.watcher = Watcher(database.of(SERVICE), app.state.places)
     dispatcher.start()
     try:
         yield

@@ -13,8 +13,10 @@ from treestroke.api.following import Watcher
 from treestroke.limits import MAX_PHOTO_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
+from treestroke.service.principals import LOCAL_PERSON, Principal
 from treestroke.service.projects import Projects
 from treestroke.settings import Settings
+from treestroke.store.scope import SERVICE
 
 MAX_PAGE = 100
 SIBLINGS_BODY: dict[str, Any] = {
@@ -47,9 +49,18 @@ def _settings(request: Request) -> Settings:
     return settings
 
 
-def _resources(request: Request) -> Resources:
+def _principal(_: Request) -> Principal:
+    return LOCAL_PERSON
+
+
+def _resources(request: Request, principal: "PrincipalOf") -> Resources:
     resources: Resources = request.app.state.resources
-    return resources
+    return resources.of(principal.scope)
+
+
+def _all_resources(request: Request) -> Resources:
+    resources: Resources = request.app.state.resources
+    return resources.of(SERVICE)
 
 
 def _dispatcher(request: Request) -> Dispatcher:
@@ -116,7 +127,10 @@ UploadId = Annotated[str, _id("upl")]
 CaptureId = Annotated[str, _id("cap")]
 CapturePhotoId = Annotated[str, _id("cph")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
+PrincipalOf = Annotated[Principal, Depends(_principal)]
 ResourcesOf = Annotated[Resources, Depends(_resources)]
+AllResources = Annotated[Resources, Depends(_all_resources)]
+"""The service's parts with the rows of all teams: for what tells of the service itself."""
 ProjectsOf = Annotated[Projects, Depends(_projects)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]
 WatcherOf = Annotated[Watcher, Depends(_watcher)]

@@ -9,6 +9,7 @@ from prometheus_client.registry import Collector
 from prometheus_fastapi_instrumentator import Instrumentator
 
 from treestroke.service.dispatch import queue_figures
+from treestroke.store.scope import SERVICE
 
 
 class _Queue(Collector):
@@ -19,7 +20,7 @@ class _Queue(Collector):
 
     def collect(self) -> Iterator[GaugeMetricFamily]:
         resources = getattr(self._app.state, "resources", None)
-        for name, (about, value) in (queue_figures(resources.database) if resources else {}).items():
+        for name, (about, value) in (queue_figures(resources.database.of(SERVICE)) if resources else {}).items():
             yield GaugeMetricFamily(f"treestroke_{name}", about, value)
 
 

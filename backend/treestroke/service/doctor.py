@@ -26,6 +26,7 @@ from treestroke.store.data_folder import DataFolderError, check_version, is_open
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
 from treestroke.store.queries import referenced
+from treestroke.store.scope import SERVICE
 from treestroke.store.tables import JOBS, Worker
 
 _BROKER_SECONDS = 2
@@ -194,7 +195,7 @@ def _redis(settings: Settings) -> Finding:
 
 def _rows(settings: Settings) -> Iterator[Finding]:
     """Check the database: whether it is sound and of this version, its files are whole and its workers run."""
-    database = Database(settings.folder)
+    database = Database(settings.folder).of(SERVICE)
     if not database.path.is_file():
         yield _refused(settings.folder) or Finding("database", True, f"not there yet; {_SERVE} creates it")
         return

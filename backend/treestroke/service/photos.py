@@ -3,9 +3,9 @@
 import hashlib
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from treestroke.core.errors import PhotoError
 from treestroke.service import tracer
@@ -15,6 +15,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import mark_deleted, new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
+from treestroke.store.scope import Scope
 from treestroke.store.tables import PhotoRow
 from treestroke.store.uploads import Uploads
 
@@ -40,6 +41,10 @@ class Resources:
     """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
     """Most bytes of all photos and clips together."""
+
+    def of(self, scope: Scope) -> Self:
+        """Return the same with rows of one scope: without it there are no sessions."""
+        return replace(self, database=self.database.of(scope))
 
 
 def add_photo(resources: Resources, content: bytes) -> PhotoRow:

@@ -106,7 +106,7 @@ def accept_model(
             if equal is not None:
                 copy_files(session, equal, row)
             if key:
-                session.merge(Replay(key=key, fingerprint=request, model=row.id, created=time.time(), seen=None))
+                _remember(session, key, request, row.id)
     # What the queue and the files tell needs no lock.
     return find_model(resources.database, (answered or row).id, deleted=True)
 
@@ -206,7 +206,7 @@ def restore(database: Database, id: str) -> StoredModel:
 def _photo_for(resources: Resources, id: str, key: str | None) -> PhotoRow:
     """Find the photo that a request names; a deleted one only where the request may have been sent before."""
     with resources.database.reading() as session:
-        repeated = key is not None and session.get(Replay, key) is not None
+        repeated = key is not None and queries.replay(session, key) is not None
         photo = queries.photo(session, id, deleted=repeated)
     if photo is None:
         raise NotFound("photo")
@@ -286,12 +286,19 @@ def _answered_before(session: Session, key: str | None, request: str) -> ModelRo
     KeyReused
         The key was used for another request.
     """
-    replay = session.get(Replay, key) if key else None
+    replay = queries.replay(session, key) if key else None
     if replay is None:
         return None
     if replay.fingerprint != request:
         raise KeyReused
     return queries.model(session, replay.model, deleted=True)
+
+
+def _remember(session: Session, key: str, request: str, model: str) -> None:
+    """Note which model an Idempotency-Key got; one that got a model which was removed since gets another."""
+    replay = queries.replay(session, key) or Replay(key=key)
+    replay.fingerprint, replay.model, replay.created, replay.seen = request, model, time.time(), None
+    session.add(replay)
 
 
 def finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:

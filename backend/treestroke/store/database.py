@@ -1,17 +1,19 @@
 """The database: opening it, migrating it, and short transactions."""
 
+import copy
 import sqlite3
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event, inspect
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
 from treestroke.store.data_folder import DATABASE, known_revisions
+from treestroke.store.scope import Scope, ScopedSession, scoped
 
 if TYPE_CHECKING:
     from alembic.config import Config
@@ -27,8 +29,9 @@ _READERS = 10
 class Database:
     """SQLite in WAL mode: many readers and one writer, from several processes.
 
-    A committed change survives a power cut. Only `migrate` creates the file. If the file is removed or replaced,
-    nothing more is read or written until the database is closed: changes to the old file would be lost.
+    Each session has a scope (`of`). A committed change survives a power cut. Only `migrate` creates the file. If the
+    file is removed or replaced, nothing more is read or written until the database is closed: changes to the old file
+    would be lost.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -36,13 +39,20 @@ class Database:
         url = URL.create("sqlite", database=self.path.absolute().as_uri(), query={"mode": "rw", "uri": "true"})
         self._readers, self._writer = _engine(url, _READERS), _engine(url, 1)
         self._write_lock = threading.Lock()
-        self._opened: tuple[int, int] | None = None
+        self._opened: list[tuple[int, int]] = []
+        self._scope: Scope | None = None
+
+    def of(self, scope: Scope) -> Self:
+        """Return the same database, by the same connections, for sessions with a scope: without one there are none."""
+        view = copy.copy(self)
+        view._scope = scope
+        return view
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """Open a session that reads one snapshot of the database and changes nothing."""
         self._check_file()
-        with Session(self._readers, expire_on_commit=False) as session:
+        with ScopedSession(self._readers, expire_on_commit=False, info=scoped(self._scope)) as session:
             yield session
 
     @contextmanager
@@ -76,7 +86,7 @@ class Database:
             self._check_file()
             with (
                 self._writer.connect().execution_options(**{option: True}) as connection,
-                Session(connection, expire_on_commit=False) as session,
+                ScopedSession(connection, expire_on_commit=False, info=scoped(self._scope)) as session,
             ):
                 yield session
         finally:
@@ -85,8 +95,9 @@ class Database:
     def _check_file(self) -> None:
         """Raise if the file is not the one that was opened first."""
         found = _identity(self.path)
-        self._opened = self._opened or found
-        if found is None or found != self._opened:
+        if found is not None and not self._opened:
+            self._opened.append(found)
+        if [found] != self._opened:
             error = sqlite3.OperationalError("the database file was removed or replaced")
             error.sqlite_errorcode = sqlite3.SQLITE_CANTOPEN
             raise OperationalError("open", None, error)
@@ -122,7 +133,7 @@ class Database:
         """Close all connections."""
         self._readers.dispose()
         self._writer.dispose()
-        self._opened = None
+        self._opened.clear()
 
 
 def _migrations() -> "Config":

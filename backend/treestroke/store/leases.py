@@ -68,7 +68,7 @@ def add_file(session: Session, job: ModelRow, name: str, blob: str, size: int, *
     """Publish a file of a running job and set ``values`` of its row; False if the attempt was taken back."""
     if session.scalars(_attempt(job).values(seq=ModelRow.seq + 1, **values).returning(ModelRow.id)).first() is None:
         return False
-    session.merge(File(model=job.id, name=name, blob=blob, bytes=size))
+    session.merge(File(team=job.team, model=job.id, name=name, blob=blob, bytes=size))
     return True
 
 
@@ -77,7 +77,7 @@ def succeed(session: Session, job: ModelRow, report: dict[str, Any], files: dict
     if not complete(session, job, report=report):
         return False
     for name, (blob, size) in files.items():
-        session.merge(File(model=job.id, name=name, blob=blob, bytes=size))
+        session.merge(File(team=job.team, model=job.id, name=name, blob=blob, bytes=size))
     return True
 
 

@@ -9,6 +9,7 @@ from sqlalchemy import func, select, union, update
 from sqlalchemy.orm import Session
 
 from treestroke.store.leases import TERMINAL, AnyJob, JobRow
+from treestroke.store.scope import scope_of
 from treestroke.store.tables import (
     REFERENCES,
     UPLOADED,
@@ -19,6 +20,7 @@ from treestroke.store.tables import (
     ModelPart,
     ModelRow,
     PhotoRow,
+    Replay,
     SolveRow,
 )
 
@@ -58,6 +60,12 @@ def mark_deleted(session: Session, table: type[Kept], id: str) -> bool:
     """Delete a row that is there, until it is restored or removed; tell whether there was one."""
     present = update(table).where(table.id == id, table.deleted.is_(None))
     return session.scalars(present.values(deleted=time.time(), seen=None).returning(table.id)).first() is not None
+
+
+def replay(session: Session, key: str) -> Replay | None:
+    """Find what an Idempotency-Key of the person whose session this is was used for."""
+    own = Replay.key == key, Replay.maker == scope_of(session).maker
+    return session.scalars(select(Replay).where(*own)).first()
 
 
 def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
@@ -109,11 +117,11 @@ def referenced(session: Session, beginning: str = "") -> set[str]:
 
 
 def queue_positions(session: Session, table: type[AnyJob], numbers: Collection[int]) -> dict[int, int]:
-    """Return each queued job's place among those of its table, by number: 1 is the next; other jobs are left out."""
+    """Return each queued job's place among its team's of its table, by number: 1 is the next; others are left out."""
     if not numbers:
         return {}
     places = (
-        select(table.number, func.row_number().over(order_by=table.number).label("place"))
+        select(table.number, func.row_number().over(partition_by=table.team, order_by=table.number).label("place"))
         .where(table.status == "queued", table.number <= max(numbers))
         .subquery()
     )

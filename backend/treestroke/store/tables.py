@@ -5,6 +5,8 @@ from typing import Any
 from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, MetaData, String, UniqueConstraint, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
+from treestroke.store.scope import Authored, Owned
+
 _NAMES = {
     "pk": "pk_%(table_name)s",
     "uq": "uq_%(table_name)s_%(column_0_name)s",
@@ -35,7 +37,7 @@ class Aged:
     seen: Mapped[float | None]
 
 
-class Uploaded:
+class Uploaded(Authored):
     """A row of an uploaded photo or clip, whose file is a blob; of a photo, upright sRGB pixels without metadata."""
 
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
@@ -72,7 +74,7 @@ class ClipRow(Uploaded, Aged, Table):
     deleted: Mapped[float | None]
 
 
-class UploadRow(Aged, Table):
+class UploadRow(Authored, Aged, Table):
     """A clip that is on its way here; what has arrived is a file of this id. It names the clip once it is whole."""
 
     __tablename__ = "uploads"
@@ -83,7 +85,7 @@ class UploadRow(Aged, Table):
     created: Mapped[float]
 
 
-class Job:
+class Job(Authored):
     """A row that is work for a worker: it waits, is under way, or is done. A message only says that it waits.
 
     ``attempt`` is the fence: each change made by a worker names its attempt, and is refused once another attempt has
@@ -128,7 +130,7 @@ class ModelRow(Job, Aged, Table):
     deleted: Mapped[float | None]
 
 
-class ModelPart(Table):
+class ModelPart(Owned, Table):
     """One of the files that a model is made of: the name of its part, the blob that holds it, and its media type."""
 
     __tablename__ = "model_parts"
@@ -139,7 +141,7 @@ class ModelPart(Table):
     media_type: Mapped[str] = mapped_column(String(40))
 
 
-class File(Table):
+class File(Owned, Table):
     """A file of a model: its public name, and the blob that holds it."""
 
     __tablename__ = "files"
@@ -150,7 +152,7 @@ class File(Table):
     bytes: Mapped[int]
 
 
-class CaptureRow(Aged, Table):
+class CaptureRow(Authored, Aged, Table):
     """Photos of one tree from several places; ``seq`` rises with every change of their number."""
 
     __tablename__ = "captures"
@@ -187,12 +189,14 @@ class SolveRow(Job, Table):
     """Blob of what was found."""
 
 
-class Replay(Aged, Table):
-    """An Idempotency-Key: the digest of the request that used it, and the model that it got."""
+class Replay(Authored, Aged, Table):
+    """An Idempotency-Key of one person: the digest of the request that used it, and the model that it got."""
 
     __tablename__ = "replays"
+    __table_args__ = (UniqueConstraint("team", "maker", "key"),)
 
-    key: Mapped[str] = mapped_column(String(255), primary_key=True)
+    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    key: Mapped[str] = mapped_column(String(255))
     fingerprint: Mapped[str] = mapped_column(String(64))
     model: Mapped[str] = mapped_column(String(40))
     created: Mapped[float]
@@ -241,7 +245,7 @@ REFERENCES = (*(table.blob for table in UPLOADED), ModelPart.blob, File.blob, So
 
 for _job in JOBS:
     Index(f"ix_{_job.__tablename__}_queue", _job.status, _job.number)
-    Index(f"ix_{_job.__tablename__}_fingerprint", _job.fingerprint, _job.engine, _job.status)
+    Index(f"ix_{_job.__tablename__}_fingerprint", _job.fingerprint, _job.team, _job.engine, _job.status)
     Index(f"ix_{_job.__tablename__}_times", _job.status, _job.started, _job.finished)
 for _uploaded in UPLOADED:
     Index(f"ix_{_uploaded.__tablename__}_stored", _uploaded.blob, _uploaded.bytes)
@@ -251,6 +255,8 @@ Index("ix_solves_structure", SolveRow.structure)
 for _table in (ModelRow, PhotoRow, CaptureRow, ClipRow):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
+for _listed in (ModelRow, CaptureRow):
+    Index(f"ix_{_listed.__tablename__}_team", _listed.team, _listed.number)
 Index("ix_replays_seen", Replay.seen)
 Index("ix_uploads_seen", UploadRow.seen)
 Index("ix_model_parts_blob", ModelPart.blob)

@@ -6,7 +6,7 @@ from http import HTTPStatus
 from fastapi import APIRouter, Response
 
 from treestroke import __version__
-from treestroke.api.deps import DispatcherOf, ResourcesOf, SettingsOf, WatcherOf
+from treestroke.api.deps import AllResources, DispatcherOf, SettingsOf, WatcherOf
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
@@ -44,7 +44,7 @@ async def live() -> Health:
 
 
 @router.get("/readyz", responses={HTTPStatus.SERVICE_UNAVAILABLE: {"model": Health}})
-def ready(resources: ResourcesOf, dispatcher: DispatcherOf, response: Response) -> Health:
+def ready(resources: AllResources, dispatcher: DispatcherOf, response: Response) -> Health:
     """Tell whether requests can be taken, part by part; without workers or broker they are taken and wait."""
     health = readiness(resources, dispatcher)
     if health.status == "down":

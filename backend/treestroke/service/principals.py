@@ -1,0 +1,38 @@
+"""Who asks: a person or a key of a team, with a role and scopes."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from treestroke.store.scope import LOCAL, Scope
+
+Role = Literal["viewer", "member", "owner"]
+ROLES: tuple[Role, ...] = ("viewer", "member", "owner")
+"""From the least that one may do to the most."""
+SCOPES = ("trees", "team")
+"""What a key may be for: trees, and all that they are made of; the team, its people and its keys."""
+
+
+@dataclass(frozen=True)
+class Principal:
+    """Who asks, as what: ``id`` is that of a member, and of all that they make.
+
+    A read-only one changes nothing, whatever its role. ``credential`` is the id of the key or session that they came
+    with, which may be revoked.
+    """
+
+    id: str
+    team: str
+    name: str
+    role: Role
+    scopes: frozenset[str] = frozenset(SCOPES)
+    read_only: bool = False
+    credential: str = ""
+
+    @property
+    def scope(self) -> Scope:
+        """Whose rows are seen, and whose new ones are."""
+        return Scope(self.team, self.id)
+
+
+LOCAL_PERSON = Principal(LOCAL.maker, str(LOCAL.team), "", "owner")
+"""The only person of a service without keys."""
