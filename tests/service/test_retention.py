@@ -18,7 +18,7 @@ from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.queries import referenced
-from treestroke.store.scope import LOCAL
+from treestroke.store.scope import LOCAL, SERVICE
 from treestroke.store.tables import (
     CapturePhoto,
     CaptureRow,
@@ -61,7 +61,7 @@ class Kept:
 
     def restart(self, keep_days: float = 0) -> None:
         clocks = self.clocks
-        self._sweeper = Sweeper(self.database, self.blobs, keep_days, threading.Event(), lambda: clocks.running)
+        self._sweeper = Sweeper(self.database.of(SERVICE), self.blobs, keep_days, threading.Event(), lambda: clocks.running)
 
     def sweep(self) -> Swept:
         return self._sweeper.sweep()

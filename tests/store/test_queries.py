@@ -85,11 +85,12 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
         queries.referenced(session, "ab")
     assert len(steps) > 7
     assert scans(steps) == []
-    assert any("ix_models_fingerprint (fingerprint=? AND engine=? AND status=?)" in step for step in steps)
+    assert any("ix_models_fingerprint (fingerprint=? AND team=? AND engine=? AND status=?)" in step for step in steps)
     assert any("ix_models_times (status=? AND started>?)" in step for step in steps)
 
 
 def test_the_newest_are_read_from_the_end(database: Database) -> None:
     with planned() as steps, database.reading() as session:
         queries.page(session, ModelRow, None, 20)
-    assert steps == ["SCAN models"]  # from its end, and no more than there are on a page: nothing is sorted
+    # From the end of the team's, and no more than there are on a page: nothing is sorted.
+    assert steps == ["SEARCH models USING INDEX ix_models_team (team=?)"]
