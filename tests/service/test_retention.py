@@ -61,7 +61,7 @@ class Kept:
 
     def restart(self, keep_days: float = 0) -> None:
         clocks = self.clocks
-        self._sweeper = Sweeper(self.database.of(SERVICE), self.blobs, keep_days, threading.Event(), lambda: clocks.running)
+        self._sweeper = Sweeper(self.database, self.blobs, keep_days, threading.Event(), lambda: clocks.running)
 
     def sweep(self) -> Swept:
         return self._sweeper.sweep()
@@ -335,10 +335,11 @@ def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, mo
 
 
 def test_a_sweep_reads_no_whole_table(kept: Kept) -> None:
-    kept.restart(keep_days=1)
     kept.delete(kept.model())
     kept.model()
     kept.photo("pho_1")
+    kept.database = kept.database.of(SERVICE)
+    kept.restart(keep_days=1)
     kept.sweep()
     kept.clocks.pass_(2 * DAY)
     with planned() as steps:
