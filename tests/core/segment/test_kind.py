@@ -85,6 +85,18 @@ def test_a_fan_of_twigs_is_bare() -> None:
     assert likeliest(odds_of(wood_photo(fan()), fan(), disc(300, 125))) == "bare"
 
 
+@pytest.mark.parametrize("colour", [(80, 130, 50), (220, 180, 30)])
+def test_twigs_with_few_leaves_are_hardly_bare(colour: tuple[int, int, int]) -> None:
+    photo, mask = wood_photo(fan()), fan()
+    rng = np.random.default_rng(4)
+    rows, columns = np.nonzero(mask)
+    for place in rng.choice(len(rows), 160, replace=False):
+        leaf = np.s_[rows[place] - 3 : rows[place] + 3, columns[place] - 3 : columns[place] + 3]
+        photo[leaf], mask[leaf] = colour, True
+    leafy, bare = odds_of(photo, mask, disc(300, 125)), odds_of(wood_photo(fan()), fan(), disc(300, 125))
+    assert leafy["bare"] < 0.5 < bare["bare"]
+
+
 def ball_of_leaves(colour: tuple[int, int, int]) -> KindOdds:
     """Judge a ball of square leaves, 4 px wide, whose outline they break."""
     rng = np.random.default_rng(0)

@@ -57,20 +57,30 @@ class _Copy:
         return max(_mean(self.grey, self.weights), 20.0)
 
 
-def crown_cues(photo: Picture, mask: Mask, crown: Mask) -> Cues:
+def crown_cues(photo: Picture, mask: Mask, crown: Mask, pure: Mask | None = None) -> Cues:
     """Measure the foliage (h, w, flags) of a crown (h, w, flags) on a photo (h, w, 3), sRGB.
+
+    ``pure`` (h, w, flags) are those of its pixels in which nothing shines through; without them all count.
 
     Returns
     -------
     By name. Colour: ``tint``, how much green or red exceed blue in the median pixel; ``greenish``, share of green
-    pixels. Light: ``light_top``, brightness of the upper half over the lower one's; ``fine_grain``, contrast of details
-    under 1 px over that of 1 to 2 px, inside the foliage; ``coarse_grain``, that of 1 to 2 px over that of 2 to 4 px.
-    Lines: ``fine_lines`` and ``coarse_lines``, how parallel edges are near by, 0 to 1; how far lines radiate, -1 to 1,
-    fine ones ``from_top`` of the crown, coarse ones ``from_centre`` and ``from_foot``; ``level``, how far fine lines
-    lie level (upright ones below 0). Outline: see `_outline_cues`. Ratios without a bound are logarithms.
+    pixels; ``leafy``, share of clearly green, yellow or red ones among the pure. Light: ``light_top``, brightness of
+    the upper half over the lower one's; ``fine_grain``, contrast of details under 1 px over that of 1 to 2 px, inside
+    the foliage; ``coarse_grain``, that of 1 to 2 px over that of 2 to 4 px. Lines: ``fine_lines`` and
+    ``coarse_lines``, how parallel edges are near by, 0 to 1; how far lines radiate, -1 to 1, fine ones ``from_top`` of
+    the crown, coarse ones ``from_centre`` and ``from_foot``; ``level``, how far fine lines lie level
+    (upright ones below 0). Outline: see `_outline_cues`. Ratios without a bound are logarithms.
     """
     copy = _copy(photo, mask, crown)
-    return {**_colour_cues(copy), **_light_cues(copy), **_line_cues(copy), **_outline_cues(copy)}
+    judged = next(part for part in (pure, mask, crown) if part is not None and (part is crown or part.any()))
+    return {
+        **_colour_cues(copy),
+        "leafy": _leafy(photo[judged]),
+        **_light_cues(copy),
+        **_line_cues(copy),
+        **_outline_cues(copy),
+    }
 
 
 def standing_cues(crown_px: Floats, trunk_px: Floats) -> Cues:
@@ -114,6 +124,15 @@ def _colour_cues(copy: _Copy) -> dict[str, float]:
         "tint": float(np.median((warmest - blue) / np.maximum(np.maximum(warmest, blue), 40.0))),
         "greenish": float(((green > 1.03 * red) & (green > 1.1 * blue)).mean()),
     }
+
+
+def _leafy(pixels: Picture) -> float:
+    """Return the share of pixels (n, 3) that have colours of leaves, which wood has not."""
+    red, green, blue = pixels.astype(np.float32).T
+    warmest = np.maximum(red, green)
+    is_green = (green > 1.03 * red) & (green > 1.15 * blue) & (green - np.minimum(red, blue) > 12.0)
+    is_vivid = (warmest - blue > 0.6 * warmest) & (warmest > 70.0)
+    return float((is_green | is_vivid).mean()) if len(pixels) else 0.0
 
 
 def _light_cues(copy: _Copy) -> dict[str, float]:

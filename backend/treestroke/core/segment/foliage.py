@@ -158,7 +158,7 @@ def segment_foliage(
         found, alpha = inside, inside.astype(np.float32)
     pore = params.pore_share * np.sqrt(inside.sum())
     mask, pure = _without_pores(alpha > HALF, pore), (alpha > HALF) & (odds > PURE_ODDS) & ~_bluish(pixels)
-    cues = crown_cues(pixels, _without_pores(found, pore), region)
+    cues = crown_cues(pixels, _without_pores(found, pore), region, pure)
     pure = _without_glare(pure, pixels)
     mask, pure, region = (_in_frame(part, box, crown.shape) for part in (mask, pure, region))
     report("foliage", 1.0)

@@ -17,6 +17,13 @@ FARTHEST = 3.0
 """Spreads from its middle beyond which a cue counts no more, so that no single one decides."""
 
 
+LEAFY = 0.1, 0.3
+"""Shares of leaf-coloured pixels up to which a tree may well be bare, and from which on it hardly is: none of the bare
+trees that were looked at has over 0.03, and trees with so few leaves that their limbs are seen everywhere have 0.4."""
+HARDLY_BARE = 3.0
+"""What the score of a bare tree loses there."""
+
+
 class _Weights(NamedTuple):
     """How a cue counts: its middle and spread over all trees, and what a spread more adds to the score of each kind."""
 
@@ -67,6 +74,7 @@ def kind_odds(cues: Cues, crown_px: Floats, trunk_px: Floats) -> KindOdds:
     for name, weights in _WEIGHTS.items():
         spreads = (cues[name] - weights.middle) / weights.spread
         scores += np.clip(spreads, -FARTHEST, FARTHEST) * np.array(weights[2:])
+    scores[FOLIAGE_KINDS.index("bare")] -= HARDLY_BARE * float(np.interp(cues["leafy"], LEAFY, (0.0, 1.0)))
     odds = np.exp(scores - scores.max())
     return dict(zip(FOLIAGE_KINDS, (odds / odds.sum()).tolist(), strict=True))
 

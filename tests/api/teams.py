@@ -1,0 +1,117 @@
+"""What one team has of every kind, and how each operation of the API is asked for it."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx
+from tests.api import drawn
+from tests.clips import clip_bytes
+
+METHODS = ("get", "put", "post", "delete", "patch")
+_KIND = re.compile(r"\^([a-z]+)_")
+
+
+@dataclass(frozen=True)
+class Belongings:
+    """Ids of what a team has, by kind; of some kinds with those of the wholes that they are parts of."""
+
+    ids: Mapping[str, str]
+    photo_of_capture: str
+
+    @property
+    def known(self) -> set[str]:
+        return {*self.ids.values(), self.photo_of_capture}
+
+
+@dataclass(frozen=True)
+class Asked:
+    """An operation of the API: its name, and a request for what a team has."""
+
+    name: str
+    verb: str
+    place: str
+    headers: dict[str, str] = field(default_factory=dict)
+    content: bytes = b""
+
+    def __str__(self) -> str:
+        return f"{self.verb} {self.place}"
+
+    def ask(self, client: httpx.Client) -> httpx.Response:
+        """Send the request, and read no more than the head of a stream."""
+        with client.stream(self.verb, self.place, headers=self.headers, content=self.content) as answer:
+            if "event-stream" not in answer.headers.get("content-type", ""):
+                answer.read()
+            return answer
+
+
+PARTS = {"view": "front", "ending": "json", "frame": "0", "name": "tree.glb"}
+"""Parts of paths that are no ids."""
+STROKES = b'{"crown": {"points": [[10, 10], [50, 10], [30, 50]]}, "branches": []}'
+BODIES: dict[str, tuple[str, bytes]] = {
+    "trace_photo": ("application/json", STROKES),
+    "trace_capture": ("application/json", b'{"views": []}'),
+    "trace_clip": ("application/json", STROKES),
+    "rename_model": ("application/json", b'{"name": "theirs"}'),
+    "rename_capture": ("application/json", b'{"name": "theirs"}'),
+    "add_capture_photo": ("image/png", drawn.encoded(seed=3)),
+    "add_piece": ("application/partial-upload", b"more"),
+    "ask_for_siblings": ("application/json", b'{"count": 1}'),
+}
+"""Bodies of operations that name an id in their path: without one a 422 could hide whose it is."""
+HEADERS = {"add_piece": {"upload-offset": "4"}}
+
+
+def own_one_of_each(client: httpx.Client, folder: Path) -> Belongings:
+    """Make one of each kind, by the API itself."""
+
+    def made(answer: httpx.Response) -> str:
+        assert answer.status_code in (201, 202), answer.text
+        return str(answer.json()["id"])
+
+    photo = made(client.post("/v1/photos", files={"file": drawn.encoded()}))
+    capture = made(client.post("/v1/captures", json={"name": "ours"}))
+    part = made(client.post(f"/v1/captures/{capture}/photos", files={"file": drawn.encoded(seed=1)}))
+    begun = client.post("/v1/clips", headers={"upload-complete": "?0"}, content=b"four")
+    ids = {
+        "pho": photo,
+        "cap": capture,
+        "clp": made(client.post("/v1/clips", files={"file": clip_bytes(folder)})),
+        "upl": begun.headers["location"].rpartition("/")[2],
+        "mdl": made(client.post("/v1/models", json=drawn.request(photo, name="ours"))),
+    }
+    return Belongings(ids, part)
+
+
+def operations(document: Mapping[str, Any], owned: Belongings) -> Iterator[Asked]:
+    """Yield a request for what a team has, for each operation whose path names an id.
+
+    Raises
+    ------
+    KeyError
+        An operation has a part of a path, or names a kind of thing, that this list does not know.
+    """
+    for path, verbs in document["paths"].items():
+        for verb in METHODS:
+            if verb in verbs and "{" in path:
+                yield _asked(path, verb, verbs[verb], owned)
+
+
+def _asked(path: str, verb: str, operation: Mapping[str, Any], owned: Belongings) -> Asked:
+    name = operation["operationId"]
+    place = path
+    for parameter in operation["parameters"]:
+        if parameter["in"] == "path":
+            place = place.replace(f"{{{parameter['name']}}}", _value(parameter, owned))
+    kind, content = BODIES.get(name, ("", b""))
+    headers = {**({"content-type": kind} if kind else {}), **HEADERS.get(name, {})}
+    return Asked(name, verb.upper(), place, headers, content)
+
+
+def _value(parameter: Mapping[str, Any], owned: Belongings) -> str:
+    kind = _KIND.match(parameter["schema"].get("pattern", ""))
+    if kind is None:
+        return PARTS[parameter["name"]]
+    return owned.photo_of_capture if kind[1] == "cph" else owned.ids[kind[1]]
