@@ -17,11 +17,9 @@ FARTHEST = 3.0
 """Spreads from its middle beyond which a cue counts no more, so that no single one decides."""
 
 
-LEAFY = 0.1, 0.3
-"""Shares of leaf-coloured pixels up to which a tree may well be bare, and from which on it hardly is: none of the bare
-trees that were looked at has over 0.03, and trees with so few leaves that their limbs are seen everywhere have 0.4."""
-HARDLY_BARE = 3.0
-"""What the score of a bare tree loses there."""
+LEAFY = 0.1, 0.4
+"""Shares of leaf-coloured pixels up to which a tree may be bare, and from which on it is in leaf, whatever else is seen:
+bare trees that were looked at have at most 0.04, trees whose limbs are seen everywhere among few leaves 0.4."""
 
 
 class _Weights(NamedTuple):
@@ -74,9 +72,20 @@ def kind_odds(cues: Cues, crown_px: Floats, trunk_px: Floats) -> KindOdds:
     for name, weights in _WEIGHTS.items():
         spreads = (cues[name] - weights.middle) / weights.spread
         scores += np.clip(spreads, -FARTHEST, FARTHEST) * np.array(weights[2:])
-    scores[FOLIAGE_KINDS.index("bare")] -= HARDLY_BARE * float(np.interp(cues["leafy"], LEAFY, (0.0, 1.0)))
     odds = np.exp(scores - scores.max())
-    return dict(zip(FOLIAGE_KINDS, (odds / odds.sum()).tolist(), strict=True))
+    return _in_leaf(dict(zip(FOLIAGE_KINDS, (odds / odds.sum()).tolist(), strict=True)), cues["leafy"])
+
+
+def _in_leaf(odds: KindOdds, leafy: float) -> KindOdds:
+    """Take from the odds of a bare tree what its leaves' colours speak against.
+
+    The more it looks like limbs alone, the more of that goes to leaves: limbs of conifers are seldom seen. All kinds
+    share the rest.
+    """
+    taken = odds["bare"] * float(np.interp(leafy, LEAFY, (0.0, 1.0)))
+    more = {**odds, "leaves": odds["leaves"] + odds["bare"] * taken, "bare": odds["bare"] - taken}
+    total = sum(more.values())
+    return {kind: share / total for kind, share in more.items()}
 
 
 def likeliest(odds: KindOdds) -> FoliageKind:
