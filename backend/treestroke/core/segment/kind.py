@@ -18,7 +18,7 @@ FARTHEST = 3.0
 
 
 LEAFY = 0.1, 0.4
-"""Shares of leaf-coloured pixels up to which a tree may be bare, and from which on it is in leaf, whatever else is seen:
+"""Shares of leaf-coloured pixels up to which a tree may be bare, and from which on it is in leaf, however it looks:
 bare trees that were looked at have at most 0.04, trees whose limbs are seen everywhere among few leaves 0.4."""
 
 
