@@ -6,6 +6,7 @@ from pathlib import Path
 import hypothesis
 import pytest
 from tests import promises
+from tests.postgres import PostgresServer, running_postgres
 from xdist.scheduler import LoadFileScheduling
 
 from treestroke.service.execution import one_thread
@@ -72,6 +73,19 @@ def database(tmp_path: Path) -> Iterator[Database]:
     opened.migrate()
     yield opened
     opened.close()
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[PostgresServer]:
+    """A Postgres of this process; a test that stops it starts it again."""
+    with running_postgres() as server:
+        yield server
+
+
+@pytest.fixture
+def postgres_url(postgres: PostgresServer) -> str:
+    """The URL of an empty database that nobody else uses."""
+    return postgres.fresh()
 
 
 @pytest.fixture(scope="session")

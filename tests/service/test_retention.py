@@ -61,7 +61,9 @@ class Kept:
 
     def restart(self, keep_days: float = 0) -> None:
         clocks = self.clocks
-        self._sweeper = Sweeper(self.database.of(SERVICE), self.blobs, keep_days, threading.Event(), lambda: clocks.running)
+        self._sweeper = Sweeper(
+            self.database.of(SERVICE), self.blobs, keep_days, threading.Event(), lambda: clocks.running
+        )
 
     def sweep(self) -> Swept:
         return self._sweeper.sweep()

@@ -160,7 +160,7 @@ def stored_bytes(session: Session) -> int:
     """Return the bytes that all photos and clips take, deleted but not yet removed ones too; equal files count once."""
     blobs = (select(table.blob, func.max(table.bytes).label("bytes")).group_by(table.blob) for table in UPLOADED)
     each = union(*blobs).subquery()
-    return session.scalar(select(func.sum(each.c.bytes))) or 0
+    return int(session.scalar(select(func.sum(each.c.bytes))) or 0)  # Postgres sums whole numbers as decimals
 
 
 def _kept(session: Session, table: type[Kept], id: str, deleted: bool) -> Kept | None:
