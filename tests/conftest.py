@@ -67,9 +67,16 @@ def _as_the_service_computes() -> Iterator[None]:
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
+def database_kind() -> str:
+    """SQLite, unless what tests the store asks for both kinds."""
+    return "sqlite"
+
+
+@pytest.fixture
+def database(tmp_path: Path, database_kind: str, request: pytest.FixtureRequest) -> Iterator[Database]:
     """An empty database with its tables."""
-    opened = Database(tmp_path).of(LOCAL)
+    url = request.getfixturevalue("postgres").fresh_with_tables() if database_kind == "postgres" else ""
+    opened = Database(tmp_path, url).of(LOCAL)
     opened.migrate()
     yield opened
     opened.close()

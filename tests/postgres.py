@@ -17,6 +17,10 @@ from tests.faults.processes import wait_for
 
 from treestroke.store.database import Database
 
+KINDS = ("sqlite", "postgres")
+"""Kinds of databases, for fixtures called ``database_kind``."""
+SQLITE_ONLY = pytest.mark.parametrize("database_kind", ["sqlite"])
+"""For tests of what is SQLite's own; each says why."""
 _NUMBERS = count(1)
 _MIGRATED = "migrated"
 """A database with the tables, which is copied; making them takes longer."""

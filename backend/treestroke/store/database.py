@@ -6,11 +6,12 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, Self
 
-from sqlalchemy import Connection, inspect
+from sqlalchemy import Connection
 from sqlalchemy.orm import Session
 
 from treestroke.store.data_folder import DATABASE, known_revisions
 from treestroke.store.postgres import Postgres
+from treestroke.store.revisions import revisions_of
 from treestroke.store.scope import Scope, ScopedSession, scoped
 from treestroke.store.sqlite import Sqlite
 
@@ -19,8 +20,13 @@ if TYPE_CHECKING:
 
 
 class _Form(Protocol):
-    """How one kind of database opens its connections."""
+    """One kind of database: where it is, how it is mended where it fails, and its connections."""
 
+    place: str
+    mend: str
+
+    def check(self) -> None: ...
+    def fault(self) -> str: ...
     def exists(self) -> bool: ...
     def reading(self) -> AbstractContextManager[Connection]: ...
     def writing(self) -> AbstractContextManager[Connection]: ...
@@ -35,7 +41,7 @@ class Database:
     def __init__(self, folder: Path, url: str = "") -> None:
         self.path = folder / DATABASE
         self.url = url
-        self._form: _Form = Postgres(url) if url else Sqlite(folder)
+        self._form: _Form = Postgres(folder, url) if url else Sqlite(folder)
         self._scope: Scope | None = None
 
     def of(self, scope: Scope) -> Self:
@@ -43,6 +49,16 @@ class Database:
         view = copy.copy(self)
         view._scope = scope
         return view
+
+    @property
+    def place(self) -> str:
+        """Where the database is, without a password."""
+        return self._form.place
+
+    @property
+    def mend(self) -> str:
+        """How whoever runs the service mends a database that fails."""
+        return self._form.mend
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
@@ -93,16 +109,30 @@ class Database:
 
     def current(self) -> bool:
         """Tell whether the tables have the revision that this program needs."""
-        return self.revisions() == {max(known_revisions())}
-
-    def revisions(self) -> set[str]:
-        """Return the revision of the tables; nothing where there are none."""
-        if not self._form.exists():
-            return set()
+        if not self.exists():
+            return False
         with self._form.reading() as connection:
-            if not inspect(connection).has_table("alembic_version"):
-                return set()
-            return set(connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars())
+            return revisions_of(connection) == {max(known_revisions())}
+
+    def exists(self) -> bool:
+        """Tell whether there may be tables: SQLite's file is there, or a Postgres was named."""
+        return self._form.exists()
+
+    def check(self) -> None:
+        """Check that this program can use the database; one without tables and files is new.
+
+        Raises
+        ------
+        DataFolderError
+            The database is lost, cannot be read, or was made by a newer program.
+        OperationalError
+            Postgres is away.
+        """
+        self._form.check()
+
+    def fault(self) -> str:
+        """Return what is wrong with the database itself, for whoever mends it; nothing where it is sound."""
+        return self._form.fault()
 
     def close(self) -> None:
         """Close all connections."""

@@ -2,14 +2,20 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from sqlalchemy import Connection, Engine, NullPool, create_engine, make_url, text
 from sqlalchemy.engine.interfaces import IsolationLevel
 
+from treestroke.store.data_folder import check_revisions
+from treestroke.store.revisions import revisions_of
+
 _CONNECTIONS = 10
 """Connections of one process."""
-_ANSWER_SECONDS = 2
-"""Time to connect, or to wait for a connection of the pool: then the database counts as away or busy."""
+_CONNECT_SECONDS = 2
+"""Time to connect: then the database counts as away. It is the least that libpq knows."""
+_POOL_SECONDS = 1.5
+"""Time to wait for a connection that others use: then the database counts as busy."""
 _LIMITS = {
     "statement_timeout": "20s",
     "lock_timeout": "5s",
@@ -30,13 +36,27 @@ class Postgres:
     locks the row first. One that reads sees a snapshot. A connection that was lost is replaced before it is used.
     """
 
-    def __init__(self, url: str) -> None:
-        self._url = url
+    def __init__(self, folder: Path, url: str) -> None:
+        self._folder, self._url = folder, url
+        self.place = make_url(url).render_as_string(hide_password=True)
+        self.mend = "start Postgres, or correct TREESTROKE_DATABASE_URL"
         self._engine = _engine(url, _LIMITS, pool=True)
 
     def exists(self) -> bool:
         """Tell whether there may be tables: whoever made the database made it before."""
         return True
+
+    def check(self) -> None:
+        """Check that this program can use the tables, if there are any; see `check_revisions`."""
+        with self.reading() as connection:
+            found = revisions_of(connection)
+        check_revisions(found, self._folder, self.place, "name another database by TREESTROKE_DATABASE_URL")
+
+    def fault(self) -> str:
+        """Return what is wrong with the server; nothing where it may be written to."""
+        with self.reading() as connection:
+            standby = connection.execute(text("SELECT pg_is_in_recovery()")).scalar()
+        return "a standby, which accepts no changes" if standby else ""
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
@@ -75,11 +95,11 @@ class Postgres:
 
 
 def _engine(url: str, limits: dict[str, str], pool: bool) -> Engine:
-    pooled = {"pool_size": _CONNECTIONS, "max_overflow": 0, "pool_timeout": _ANSWER_SECONDS, "pool_pre_ping": True}
+    pooled = {"pool_size": _CONNECTIONS, "max_overflow": 0, "pool_timeout": _POOL_SECONDS, "pool_pre_ping": True}
     return create_engine(
         make_url(url).set(drivername="postgresql+psycopg"),
         connect_args={
-            "connect_timeout": _ANSWER_SECONDS,
+            "connect_timeout": _CONNECT_SECONDS,
             "fallback_application_name": "treestroke",
             "options": " ".join(f"-c {name}={value}" for name, value in limits.items()),
             **_NETWORK,

@@ -10,7 +10,7 @@ from typing import Any
 from sqlalchemy import URL, Connection, Engine, create_engine, event
 from sqlalchemy.exc import OperationalError
 
-from treestroke.store.data_folder import DATABASE
+from treestroke.store.data_folder import DATABASE, check_version
 
 _WRITE, _AUTOCOMMIT = "treestroke_write", "treestroke_autocommit"
 """Execution options of connections: a transaction that writes, or one for each statement."""
@@ -29,6 +29,8 @@ class Sqlite:
 
     def __init__(self, folder: Path) -> None:
         self._path = folder / DATABASE
+        self.place = str(self._path)
+        self.mend = f"stop the service and restore {self._path} from a copy"
         url = URL.create("sqlite", database=self._path.absolute().as_uri(), query={"mode": "rw", "uri": "true"})
         self._readers, self._writer = _engine(url, _READERS), _engine(url, 1)
         self._write_lock = threading.Lock()
@@ -37,6 +39,16 @@ class Sqlite:
     def exists(self) -> bool:
         """Tell whether the file is there."""
         return self._path.exists()
+
+    def check(self) -> None:
+        """Check that this program can use the file; see `check_version`."""
+        check_version(self._path.parent)
+
+    def fault(self) -> str:
+        """Return what is wrong with the file; nothing where it is sound."""
+        with self.reading() as connection:
+            result = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
+        return "" if result == "ok" else " ".join(result.split())
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
