@@ -19,7 +19,7 @@ PORT ?= 8000
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/bytecode
 
-.PHONY: run page test redis chromium check types pictures bench golden nightly readers usd chaos setup
+.PHONY: run page test redis postgres chromium check types pictures bench golden nightly readers usd chaos setup
 .DEFAULT_GOAL := run
 
 # Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
@@ -33,14 +33,17 @@ run: $(STAMP) page
 # The page as the service serves it, made of frontend/.
 page: $(PAGE_STAMP)
 
-test: $(STAMP) page redis chromium
+test: $(STAMP) page redis postgres chromium
 	@cd frontend && node_modules/.bin/vitest run
 	@$(PYTEST) -m "not golden and not nightly and not browser and not readers" -n 4 --dist loadfile --no-loadscope-reorder
 	@$(PYTEST) -m browser -n 2 --dist loadfile
 
-# Tests need a Redis to start and kill, and a browser. CI installs them where they are missing; elsewhere the tests say so.
+# Tests need a Redis and a Postgres to start and kill, and a browser. CI installs what is missing; elsewhere tests say so.
 redis:
 	@$(call installed,redis-server,redis-server)
+
+postgres:
+	@$(call installed,/usr/lib/postgresql/*/bin/postgres,postgresql)
 
 chromium:
 	@$(call installed,chromium,chromium fonts-dejavu-core)
@@ -82,7 +85,7 @@ bench: $(STAMP) page
 	@$(BIN)/python -m tests.benchmarks.growth_ratio
 
 # One test at a time, for a quiet machine: what only repeats, and what is promised in seconds.
-nightly: $(STAMP) page redis
+nightly: $(STAMP) page redis postgres
 	@$(PYTEST) --promises -m "not golden and not browser and not readers"
 
 golden: $(STAMP)

@@ -6,6 +6,7 @@ from pathlib import Path
 import hypothesis
 import pytest
 from tests import promises
+from tests.postgres import PostgresServer, running_postgres
 from xdist.scheduler import LoadFileScheduling
 
 from treestroke.service.execution import one_thread
@@ -66,12 +67,32 @@ def _as_the_service_computes() -> Iterator[None]:
 
 
 @pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
+def database_kind() -> str:
+    """SQLite, unless what tests the store asks for both kinds."""
+    return "sqlite"
+
+
+@pytest.fixture
+def database(tmp_path: Path, database_kind: str, request: pytest.FixtureRequest) -> Iterator[Database]:
     """An empty database with its tables."""
-    opened = Database(tmp_path).of(LOCAL)
+    url = request.getfixturevalue("postgres").fresh_with_tables() if database_kind == "postgres" else ""
+    opened = Database(tmp_path, url).of(LOCAL)
     opened.migrate()
     yield opened
     opened.close()
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[PostgresServer]:
+    """A Postgres of this process; a test that stops it starts it again."""
+    with running_postgres() as server:
+        yield server
+
+
+@pytest.fixture
+def postgres_url(postgres: PostgresServer) -> str:
+    """The URL of an empty database that nobody else uses."""
+    return postgres.fresh()
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,6 @@
 """The launcher of web process and worker."""
 
+import os
 import subprocess
 from collections.abc import Iterator
 from itertools import pairwise
@@ -7,6 +8,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 import pytest
+from tests.postgres import KINDS
 from tests.running import serving
 
 from treestroke.cli import main
@@ -50,11 +52,13 @@ def test_a_folder_of_other_things_is_not_served(
     assert [path.name for path in tmp_path.iterdir()] == ["letter.txt"]
 
 
+@pytest.mark.parametrize("database_kind", KINDS)
 @pytest.mark.parametrize("command", ["serve", "worker", "doctor"])
 def test_a_newer_database_is_one_line_and_nothing_is_started(
     database: Database, capfd: pytest.CaptureFixture[str], command: str
 ) -> None:
     folder = database.path.parent
+    os.environ["TREESTROKE_DATABASE_URL"] = database.url
     folder.chmod(0o700)
     with database.writing() as session:
         session.connection().exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
@@ -65,6 +69,17 @@ def test_a_newer_database_is_one_line_and_nothing_is_started(
     assert len(lines) == 1, told.err
     assert "a newer treestroke made this database" in (told.out if command == "doctor" else lines[0])
     assert not (folder / "tmp").exists()
+
+
+def test_a_postgres_that_is_away_is_one_line_that_tells_no_password(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    os.environ["TREESTROKE_DATABASE_URL"] = "postgresql://ann:secret@127.0.0.1:1/trees"
+    assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 1
+    (line,) = capfd.readouterr().err.splitlines()
+    assert line.startswith("treestroke: postgresql://ann:***@127.0.0.1:1/trees: Postgres cannot be used (")
+    assert line.endswith("; start Postgres, or correct TREESTROKE_DATABASE_URL")
+    assert "secret" not in line
 
 
 @pytest.mark.parametrize("command", ["serve", "worker", "doctor"])

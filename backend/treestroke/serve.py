@@ -20,7 +20,7 @@ from types import FrameType
 from treestroke.core.errors import SettingsError
 from treestroke.parent_process import LISTENER, PARENT_HOLDS_STDIN, PREVIOUS_RUN_ID, RUN_ID
 from treestroke.settings import Settings
-from treestroke.store.data_folder import check_version, prepare_folder
+from treestroke.store.data_folder import DataFolderError, check_version, prepare_folder
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 STOP_SECONDS = 10.0
@@ -111,11 +111,36 @@ def serve(settings: Settings) -> int:
     with _listen(settings) as listener:
         prepare_folder(settings.folder)
         _lock(settings.folder)
-        check_version(settings.folder)
+        _check_database(settings)
         port = listener.getsockname()[1]
         threading.Thread(target=_announce, args=(address(settings, port), settings.host, port), daemon=True).start()
         _supervise(_children(settings, listener.fileno()))
     return 0
+
+
+def _check_database(settings: Settings) -> None:
+    """Refuse a database that cannot be used: the processes would only end and be started again, over and over.
+
+    Raises
+    ------
+    DataFolderError
+        The database is lost, cannot be read, was made by a newer program, or Postgres is away.
+    """
+    if not settings.hosted:
+        check_version(settings.folder)
+        return
+    from sqlalchemy.exc import OperationalError
+
+    from treestroke.store.database import Database
+
+    database = Database(settings.folder, settings.database_url)
+    try:
+        database.check()
+    except OperationalError as error:
+        why = " ".join(str(error.orig).split())
+        raise DataFolderError(f"{database.place}: Postgres cannot be used ({why}); {database.mend}") from error
+    finally:
+        database.close()
 
 
 def _children(settings: Settings, listener: int) -> list[Child]:

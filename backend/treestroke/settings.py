@@ -10,6 +10,7 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 from treestroke.core.errors import SettingsError, shown
 
 PREFIX = "TREESTROKE_"
+_POSTGRES = ("postgresql://", "postgres://")
 PHOTO_MB, PHOTOS_MB = 120, 20_000
 
 
@@ -25,6 +26,7 @@ class Settings(BaseSettings):
     data: Annotated[Path, _setting(Path("~/.treestroke"), "folder of the database, the files and the embedded queue")]
     host: Annotated[str, _setting("127.0.0.1", "address that the web process listens on")]
     port: Annotated[int, _setting(8000, "port that it listens on; 0 takes a free one", ge=0, le=65535)]
+    database_url: Annotated[str, _setting("", "a Postgres (postgresql://...); empty: SQLite in the data folder")]
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
     workers: Annotated[
         int,
@@ -63,6 +65,11 @@ class Settings(BaseSettings):
         return self.data.expanduser().absolute()
 
     @property
+    def hosted(self) -> bool:
+        """Whether several machines and teams may share the service: with a database of its own."""
+        return bool(self.database_url)
+
+    @property
     def embedded(self) -> bool:
         """Whether the queue is a folder rather than a Redis."""
         return not self.broker_url
@@ -99,6 +106,11 @@ def read_settings(**flags: object) -> Settings:
     if not settings.embedded and not settings.broker_url.startswith(("redis://", "rediss://")):
         raise SettingsError(
             f"{_variable('broker_url')}: only Redis is supported; give redis://HOST:PORT/0, or leave it out"
+        )
+    if settings.hosted and not settings.database_url.startswith(_POSTGRES):
+        raise SettingsError(
+            f"{_variable('database_url')}: only Postgres is supported; give postgresql://USER:PASSWORD@HOST:PORT/NAME, "
+            "or leave it out"
         )
     return settings
 

@@ -18,7 +18,7 @@ from celery.platforms import SecurityWarning  # type: ignore[attr-defined]
 from celery.worker import state
 from celery.worker.request import Request
 from sqlalchemy import select
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import OperationalError, SQLAlchemyError
 
 from treestroke.logs import start_logging
 from treestroke.parent_process import PREVIOUS_RUN_ID, RUN_ID, kill_with_parent, stop_with_parent
@@ -32,7 +32,7 @@ from treestroke.service.solving import solve_capture
 from treestroke.service.tracing_pool import limit_memory
 from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs
-from treestroke.store.data_folder import check_version, prepare_folder
+from treestroke.store.data_folder import prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.leases import AnyJob, end, take_back
 from treestroke.store.scope import SERVICE
@@ -64,7 +64,7 @@ def main() -> int:
     start_logging()
     stop_with_parent()
     prepare_folder(settings.folder)
-    database = Database(settings.folder).of(SERVICE)
+    database = Database(settings.folder, settings.database_url).of(SERVICE)
     os.register_at_fork(before=_no_fork.acquire, after_in_parent=_no_fork.release, after_in_child=_no_fork.release)
     if not _wait_for_tables(database):
         log.error("no_database", data=str(settings.folder), mend="start the web process, which makes the tables")
@@ -158,7 +158,7 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
         kill_with_parent(parent)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
-        stores[:] = [(Database(settings.folder).of(SERVICE), Blobs(settings.folder))]
+        stores[:] = [(Database(settings.folder, settings.database_url).of(SERVICE), Blobs(settings.folder))]
 
     class JobRequest(Request):
         """Records in the database, from the parent process, how a child was killed."""
@@ -233,9 +233,9 @@ def _wait_for_tables(database: Database) -> bool:
     """Wait until the database has the tables of this program; False if they are not there in time."""
     deadline = time.monotonic() + _TABLES_SECONDS
     while time.monotonic() < deadline:
-        with _without_forks(database):
-            check_version(database.path.parent)
-            if database.path.exists() and database.current():
+        with suppress(OperationalError), _without_forks(database):  # Postgres may come later than the worker
+            database.check()
+            if database.current():
                 return True
         time.sleep(_POLL_SECONDS)
     return False

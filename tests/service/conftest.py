@@ -8,7 +8,6 @@ from treestroke.service.photos import Resources
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.scope import LOCAL
 from treestroke.store.uploads import Uploads
 
 
@@ -20,8 +19,5 @@ def tracers() -> Iterator[TracingPool]:
 
 
 @pytest.fixture
-def resources(tmp_path: Path, tracers: TracingPool) -> Iterator[Resources]:
-    database = Database(tmp_path).of(LOCAL)
-    database.migrate()
-    yield Resources(database, Blobs(tmp_path), tracers, tracers, tracers, Uploads(tmp_path))
-    database.close()
+def resources(tmp_path: Path, database: Database, tracers: TracingPool) -> Resources:
+    return Resources(database, Blobs(tmp_path), tracers, tracers, tracers, Uploads(tmp_path))

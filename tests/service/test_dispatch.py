@@ -10,7 +10,14 @@ from tests.faults.processes import wait_for
 from tests.rows import add_capture, add_model, add_solve, find
 
 from treestroke.queue import GROW, SOLVE
-from treestroke.service.dispatch import Dispatcher, holds_jobs, queue_figures, record_heartbeat, remove_worker
+from treestroke.service.dispatch import (
+    Dispatcher,
+    StallDetector,
+    holds_jobs,
+    queue_figures,
+    record_heartbeat,
+    remove_worker,
+)
 from treestroke.service.failures import problem_of
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -20,6 +27,15 @@ from treestroke.store.tables import SolveRow, Worker
 def held_by(database: Database, worker: str, attempt: int = 1) -> str:
     record_heartbeat(database, worker, 1)
     return add_model(database, status="running", attempt=attempt, worker=worker, claim="token").id
+
+
+def test_a_counter_stalls_only_while_it_is_watched(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [0.0]
+    monkeypatch.setattr("treestroke.service.dispatch.time.monotonic", lambda: now[0])
+    detector, seen = StallDetector[str](), []
+    for now[0] in (0.0, 0.5, 60.0, 60.5, 62.0, 64.0, 66.0, 68.0):  # in between, the database was away for a minute
+        seen.append(detector.stalled([("stuck", 1)], 10.0))
+    assert seen == [*[set()] * 7, {"stuck"}]
 
 
 def test_jobs_of_a_run_that_is_over_queue_again_at_once_and_nobody_else_s(database: Database) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from tests.faults.processes import wait_for
+from tests.postgres import PostgresServer
 from tests.promises import kept
 
 from treestroke.cli import main
@@ -251,6 +252,19 @@ def test_a_database_of_another_version_is_ill(folder: Path) -> None:
         connection.execute("UPDATE alembic_version SET version_num = '0004'")
         connection.commit()
     assert ill(folder) == {"database": "of an older version"}
+
+
+def test_a_postgres_is_sound_of_an_older_version_or_away(
+    tmp_path: Path, postgres: PostgresServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    place = tmp_path / "data"
+    assert findings(place, database_url=postgres.fresh())["database"].ok is False  # it has no tables yet
+    place.mkdir(0o700)
+    sound = findings(place, database_url=postgres.fresh_with_tables())
+    assert {part: finding.found for part, finding in sound.items() if not finding.ok} == {}
+    away = findings(place, database_url=postgres.url("nowhere"))["database"]
+    assert (away.ok, away.mend) == (False, "start Postgres, or correct TREESTROKE_DATABASE_URL")
+    assert "\n" not in away.found
 
 
 def test_files_that_are_damaged_or_gone_are_ill_and_named(folder: Path) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from sqlalchemy import Engine, event
 from tests.api import drawn, sketched
+from tests.postgres import KINDS
 from tests.rows import add_model
 
 from treestroke.core.errors import StrokesError
@@ -18,6 +19,11 @@ from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import Holder, claim, succeed
 from treestroke.store.tables import ModelRow, PhotoRow
+
+
+@pytest.fixture(params=KINDS)
+def database_kind(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
 
 
 def order(resources: Resources, photo: str, **others: Any) -> ModelOrder:

@@ -49,7 +49,7 @@ def test_a_newer_database_is_refused_in_one_line_that_says_how_to_mend_it(databa
     with database.writing() as session:
         session.connection().exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
     with pytest.raises(DataFolderError, match=r"^\S+: a newer treestroke made this database .*9999.*; install .*$"):
-        check_version(database.path.parent)
+        database.check()
 
 
 def test_a_file_that_is_no_database_is_refused(tmp_path: Path) -> None:

@@ -75,7 +75,7 @@ def test_eight_workers_claim_each_of_fifty_jobs_once(database: Database) -> None
     barrier, wins = threading.Barrier(8), Counter[str]()
 
     def work(at: int) -> None:
-        own = Database(database.path.parent).of(LOCAL)
+        own = Database(database.path.parent, database.url).of(LOCAL)
         barrier.wait()
         for id in ids[at * 6 :] + ids[: at * 6]:
             if claimed(own, id, f"t{at}", f"w{at}"):
@@ -226,7 +226,7 @@ def test_a_cancel_after_the_success_comes_too_late(database: Database) -> None:
 @pytest.mark.parametrize("round_", range(10))
 def test_cancel_and_success_at_once_end_in_one_of_both(database: Database, round_: int) -> None:
     job, barrier = started(database), threading.Barrier(2)
-    other = Database(database.path.parent).of(LOCAL)
+    other = Database(database.path.parent, database.url).of(LOCAL)
     results = []
 
     def publish() -> None:

@@ -1,4 +1,5 @@
 from tests.plans import planned, scans
+from tests.postgres import SQLITE_ONLY
 from tests.rows import add_model
 
 from treestroke.store import queries
@@ -71,6 +72,7 @@ def test_blobs_that_rows_refer_to_are_found_by_how_their_names_begin(database: D
         assert len(queries.referenced(session)) == 5
 
 
+@SQLITE_ONLY  # whose plans do not depend on how many rows there are
 def test_no_question_reads_a_whole_table(database: Database) -> None:
     row = add_model(database)
     with planned() as steps, database.reading() as session:
@@ -89,6 +91,7 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
     assert any("ix_models_times (status=? AND started>?)" in step for step in steps)
 
 
+@SQLITE_ONLY  # as above
 def test_the_newest_are_read_from_the_end(database: Database) -> None:
     with planned() as steps, database.reading() as session:
         queries.page(session, ModelRow, None, 20)

@@ -28,7 +28,7 @@ from treestroke.service.projects import Projects
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
-from treestroke.store.data_folder import check_version, prepare_folder
+from treestroke.store.data_folder import prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.scope import SERVICE
 from treestroke.store.uploads import Uploads
@@ -104,8 +104,8 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
     prepare_folder(settings.folder)
-    check_version(settings.folder)
-    database, blobs = Database(settings.folder), Blobs(settings.folder)
+    database, blobs = Database(settings.folder, settings.database_url), Blobs(settings.folder)
+    database.check()
     database.migrate()
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
     capture_tracers = TracingPool(1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, Generic, Self
+from typing import Any, Generic, Self, TypeVar
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session
 
 from treestroke.core.errors import TreestrokeError
 from treestroke.service.engine_version import engine_version
-from treestroke.service.failures import code_of, problem_of, problem_of_input
+from treestroke.service.failures import WORTH_WAITING, code_of, problem_of, problem_of_input
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
@@ -22,6 +22,10 @@ from treestroke.store.leases import AnyJob, Holder, JobRow, claim, end, heartbea
 
 _BEAT_SECONDS = 2.0
 _LOOK_SECONDS = 0.5
+_PATIENCE_SECONDS = 60.0
+"""How long a job that is done waits for a database that is away: nobody else can take it meanwhile."""
+_RETRY_SECONDS = 0.5
+Result = TypeVar("Result")
 log = structlog.get_logger()
 
 
@@ -147,11 +151,34 @@ def carry_out(database: Database, table: type[JobRow], assignment: Assignment, w
 
 def publish(database: Database, job: AnyJob, succeed: Callable[[Session], bool]) -> None:
     """Publish a job's result by ``succeed``, which returns False where the attempt was taken back or is to stop."""
-    with database.writing() as session:
-        published = succeed(session)
-        # Not published: it was canceled at the last moment, or another attempt has the job.
-        canceled = not published and end(session, job, "canceled", None)
+
+    def write() -> tuple[bool, bool]:
+        with database.writing() as session:
+            published = succeed(session)
+            # Not published: it was canceled at the last moment, or another attempt has the job.
+            return published, not published and end(session, job, "canceled", None)
+
+    published, canceled = persist(write)
     log.info("job_succeeded" if published else "job_canceled" if canceled else "job_superseded")
+
+
+def persist(use: Callable[[], Result]) -> Result:
+    """Use the database, over and over while it is away or busy: the work of minutes is not lost for a restart of it.
+
+    Raises
+    ------
+    SQLAlchemyError
+        It stays away for longer than a job waits, or fails in another way.
+    """
+    deadline = time.monotonic() + _PATIENCE_SECONDS
+    while True:
+        try:
+            return use()
+        except SQLAlchemyError as error:
+            if code_of(error) not in WORTH_WAITING or time.monotonic() > deadline:
+                raise
+            log.warning("database_awaited", error=str(getattr(error, "orig", error)))
+        time.sleep(_RETRY_SECONDS)
 
 
 def _take_back(database: Database, job: JobRow) -> None:
@@ -163,6 +190,9 @@ def _take_back(database: Database, job: JobRow) -> None:
 
 
 def _end(database: Database, job: AnyJob, status: Any, error: dict[str, Any] | None) -> None:
-    with database.writing() as session:
-        ended = end(session, job, status, error)
+    def write() -> bool:
+        with database.writing() as session:
+            return end(session, job, status, error)
+
+    ended = persist(write)
     log.info(f"job_{status}" if ended else "job_superseded", code=error["code"] if error else None)

@@ -135,6 +135,7 @@ def delete(database: Database, id: str) -> None:
         There is no such capture.
     """
     with database.writing() as session:
+        queries.lock(session, CaptureRow, id)
         _row(session, id)
         leases.cancel(session, SolveRow, SolveRow.capture == id)
         session.execute(update(CaptureRow).where(CaptureRow.id == id).values(deleted=time.time(), seen=None))
@@ -163,9 +164,8 @@ def restore(database: Database, id: str) -> StoredCapture:
         There is no such capture, or it was removed for good.
     """
     with database.writing() as session:
-        row = _row(session, id, deleted=True)
-        if row.deleted is not None:
-            row.deleted = row.seen = None
+        _row(session, id, deleted=True)
+        queries.mark_restored(session, CaptureRow, id)
     return find_capture(database, id)
 
 
@@ -192,6 +192,7 @@ def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple
         return present, False
     columns = kept_columns(resources, content, tracer.keep_capture_photo)
     with resources.database.writing() as session:
+        queries.lock(session, CaptureRow, id)
         present = _present(session, id, sent_name, sha256)
         if present is not None:
             return present, False
@@ -225,6 +226,7 @@ def remove_photo(database: Database, id: str, photo: str) -> None:
         There is no such capture, or it has no such photo.
     """
     with database.writing() as session:
+        queries.lock(session, CaptureRow, id)
         _row(session, id)
         _photo(session, id, photo)
         session.execute(delete_from(CapturePhoto).where(CapturePhoto.id == photo))
@@ -244,6 +246,7 @@ def solve(resources: Resources, id: str) -> StoredCapture:
     asked = find_capture(resources.database, id)
     ready = _ready(resources, fingerprint(asked.photos))
     with resources.database.writing() as session:
+        queries.lock(session, CaptureRow, id)
         (now,) = _stored(session, [_row(session, id)])
         if len(now.photos) < MIN_PHOTOS:
             need = f"there are {len(now.photos)}, at least {MIN_PHOTOS} are needed; take more around the tree"

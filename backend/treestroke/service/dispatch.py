@@ -32,6 +32,8 @@ _BACKOFF_SECONDS = 2.0
 _SWEEP_SECONDS = 600.0
 _OVERDUE_SECONDS = 30.0
 """The service is degraded when the dispatcher has not finished a round within this time."""
+_UNWATCHED_SECONDS = 3.0
+"""Rounds that are further apart than this left a time in which nobody looked."""
 _UNKNOWN_SLOTS = 2
 """Messages that are sent while no worker is known: one may be about to start."""
 TASKS: dict[type[AnyJob], str] = {ModelRow: GROW, SolveRow: SOLVE}
@@ -44,18 +46,25 @@ log = structlog.get_logger()
 
 
 class StallDetector(Generic[Key]):
-    """Measures how long each of some counters has not changed, by this process's monotonic clock."""
+    """Measures how long each of some counters has not changed, by this process's monotonic clock.
+
+    Time in which nobody looked does not count: where the database was away, nobody could count on either.
+    """
 
     def __init__(self) -> None:
+        self._looked = time.monotonic()
         self._seen: dict[Key, tuple[int, float]] = {}
 
     def stalled(self, counters: Iterable[tuple[Key, int]], seconds: float) -> set[Key]:
         """Record all present counters, and return the keys of those that have not changed for ``seconds``."""
         now = time.monotonic()
+        unwatched_s = max(now - self._looked - _UNWATCHED_SECONDS, 0.0)
+        self._looked = now
         before, self._seen = self._seen, {}
         for key, count in counters:
             known = before.get(key)
-            self._seen[key] = known if known is not None and known[0] == count else (count, now)
+            since = known[1] + unwatched_s if known is not None and known[0] == count else now
+            self._seen[key] = count, since
         return {key for key, (_, since) in self._seen.items() if now - since >= seconds}
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import httpx
 from pydantic import ValidationError
 from redis import Redis, RedisError
-from sqlalchemy import func, select, text
+from sqlalchemy import func, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke import __version__
@@ -22,7 +22,7 @@ from treestroke.service.readiness import MIN_FREE_BYTES
 from treestroke.service.tracing_pool import CannotStart, Crashed, TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs, Damaged
-from treestroke.store.data_folder import DataFolderError, check_version, is_open_to_others
+from treestroke.store.data_folder import DataFolderError, is_open_to_others
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
 from treestroke.store.queries import referenced
@@ -37,8 +37,8 @@ _MAX_NAMED = 20
 """Damaged files that are listed by name."""
 _SERVE = "`treestroke serve`"
 _PACKAGES = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
-_REDIS_PACKAGES = ("kombu.transport.redis",)
-"""Modules that are imported, by their names, only when the queue is a Redis."""
+_REDIS_PACKAGES, _POSTGRES_PACKAGES = ("kombu.transport.redis",), ("psycopg",)
+"""Modules that are imported, by their names, only when the queue is a Redis, or the database a Postgres."""
 _WEB_PROCESS_ONLY = ("broker", "dispatcher", "tracers")
 """Checks that only the web process can make."""
 
@@ -61,7 +61,8 @@ def examine(settings: Settings) -> Iterator[Finding]:
 
 def examine_installation(settings: Settings) -> Iterator[Finding]:
     """Check what is installed, and whether it starts."""
-    yield _packages(_PACKAGES if settings.embedded else (*_PACKAGES, *_REDIS_PACKAGES))
+    redis, postgres = () if settings.embedded else _REDIS_PACKAGES, _POSTGRES_PACKAGES if settings.hosted else ()
+    yield _packages((*_PACKAGES, *redis, *postgres))
     yield _engine()
     yield _tracers(settings)
 
@@ -195,9 +196,9 @@ def _redis(settings: Settings) -> Finding:
 
 def _rows(settings: Settings) -> Iterator[Finding]:
     """Check the database: whether it is sound and of this version, its files are whole and its workers run."""
-    database = Database(settings.folder).of(SERVICE)
-    if not database.path.is_file():
-        yield _refused(settings.folder) or Finding("database", True, f"not there yet; {_SERVE} creates it")
+    database = Database(settings.folder, settings.database_url).of(SERVICE)
+    if not database.exists():
+        yield _refused(database) or Finding("database", True, f"not there yet; {_SERVE} creates it")
         return
     try:
         for check in (_soundness, _files, _workers):
@@ -212,21 +213,19 @@ def _rows(settings: Settings) -> Iterator[Finding]:
 
 
 def _soundness(_: Settings, database: Database) -> Finding:
-    with database.reading() as session:
-        result = session.execute(text("PRAGMA quick_check(1)")).scalar()
-    if result != "ok":
-        return _unsound(database, " ".join(str(result).split()))
-    if refused := _refused(database.path.parent):
+    if fault := database.fault():
+        return _unsound(database, fault)
+    if refused := _refused(database):
         return refused
     if not database.current():
         return Finding("database", False, "of an older version", f"start {_SERVE}, which brings it up to date")
     return Finding("database", True, "sound")
 
 
-def _refused(folder: Path) -> Finding | None:
+def _refused(database: Database) -> Finding | None:
     """Return the reason why the service would refuse the database at its start; None if it would not."""
     try:
-        check_version(folder)
+        database.check()
     except DataFolderError as error:
         reason, _separator, mend = str(error).partition("; ")
         return Finding("database", False, reason, mend)
@@ -234,7 +233,7 @@ def _refused(folder: Path) -> Finding | None:
 
 
 def _unsound(database: Database, why: str) -> Finding:
-    return Finding("database", False, why, f"stop the service and restore {database.path} from a copy")
+    return Finding("database", False, " ".join(why.split()), database.mend)
 
 
 def _files(settings: Settings, database: Database) -> Finding:

@@ -5,7 +5,7 @@ import sqlite3
 from typing import Any
 
 import cv2
-from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as NoConnection
 
 from treestroke.core.errors import TreestrokeError
@@ -51,6 +51,22 @@ _BY_SQLITE = {
     sqlite3.SQLITE_LOCKED: "database_busy",
     sqlite3.SQLITE_CANTOPEN: "database_unavailable",
 }
+_BY_SQLSTATE = {
+    "08": "database_unavailable",
+    "25006": "database_unavailable",  # it became a standby, which accepts no changes
+    "25P03": "database_busy",  # this process was too slow in a transaction
+    "40": "database_busy",  # a deadlock, or rows that another transaction has changed
+    "53": "database_busy",
+    "53100": "storage_full",
+    "55P03": "database_busy",
+    "57": "database_unavailable",
+    "57014": "database_busy",
+    "58": "storage_broken",
+    "XX": "storage_broken",
+}
+"""Codes by Postgres's error code, or its first two characters, which name a class of errors."""
+WORTH_WAITING = ("database_busy", "database_unavailable")
+"""Failures of the database that pass by themselves."""
 
 
 def problem_of(code: str) -> dict[str, Any]:
@@ -66,9 +82,18 @@ def code_of(error: Exception) -> str:
     if isinstance(error, NoConnection):
         return "database_busy"
     if isinstance(error, DBAPIError):
-        # The low byte is the primary result code, the others extend it.
-        return _BY_SQLITE.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF, "engine_error")
+        return _code_of_database(error)
     return _BY_ERRNO.get((isinstance(error, OSError) and error.errno) or 0, "engine_error")
+
+
+def _code_of_database(error: DBAPIError) -> str:
+    if not hasattr(error.orig, "sqlstate"):
+        # The low byte is SQLite's primary result code, the others extend it.
+        return _BY_SQLITE.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF, "engine_error")
+    state: str | None = getattr(error.orig, "sqlstate", None)
+    if state is None:  # the server said nothing: it cannot be reached, or the connection is lost
+        return "database_unavailable" if isinstance(error, OperationalError | InterfaceError) else "engine_error"
+    return _BY_SQLSTATE.get(state) or _BY_SQLSTATE.get(state[:2], "engine_error")
 
 
 def problem_of_input(error: TreestrokeError) -> dict[str, Any]:

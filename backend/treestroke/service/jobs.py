@@ -2,7 +2,10 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Any
+
+from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke.codec.archive import zipped
 from treestroke.codec.image import encode_png
@@ -11,7 +14,7 @@ from treestroke.codec.project import stored_part
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.progress import Report
-from treestroke.service.attempts import Assignment, Heartbeat, carry_out, publish
+from treestroke.service.attempts import Assignment, Heartbeat, carry_out, persist, publish
 from treestroke.service.captures import warnings_of
 from treestroke.service.clip_loading import StoredClip
 from treestroke.service.files import Bundle
@@ -50,11 +53,12 @@ def _make(
     def show(grown: LiveTree) -> None:
         content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
         blob, first = blobs.put(content), {} if job.preview_seq else {"preview_seq": ModelRow.seq + 1}
-        with database.writing() as session:
+        # A view of the growing tree is not worth waiting for a database that is away; the finished tree is.
+        with suppress(SQLAlchemyError), database.writing() as session:
             add_file(session, job, GROWTH, blob, len(content), **first)
 
     made = make_tree(contents, Options.of(job.settings, job.seed), heartbeat.report, show)
-    made = made.with_warnings(_mended_in_photos(database, job))
+    made = made.with_warnings(persist(lambda: _mended_in_photos(database, job)))
     heartbeat.report("preview", 0.0)
     trees = _packed(made.bundles)
     outputs = {**trees, PREVIEW: encode_png(made.preview())}

@@ -96,7 +96,7 @@ def accept_model(
     request = _request_digest(order, row, photo)
     equal = finished_model(resources, row)
     with resources.database.writing() as session:
-        answered = _answered_before(session, key, request)
+        answered = _claim_key(session, key, request, row.id) if key else None
         if answered is None:
             session.add_all([row, sent_photo] if sent_photo else [row])
             session.flush()  # parts and files refer to the row
@@ -105,8 +105,6 @@ def accept_model(
                 session.add(part)
             if equal is not None:
                 copy_files(session, equal, row)
-            if key:
-                _remember(session, key, request, row.id)
     # What the queue and the files tell needs no lock.
     return find_model(resources.database, (answered or row).id, deleted=True)
 
@@ -197,9 +195,8 @@ def restore(database: Database, id: str) -> StoredModel:
         There is no such model, or it was removed for good.
     """
     with database.writing() as session:
-        row = _row(session, id, deleted=True)
-        if row.deleted is not None:
-            row.deleted = row.seen = None
+        _row(session, id, deleted=True)
+        queries.mark_restored(session, ModelRow, id)
     return find_model(database, id)
 
 
@@ -294,11 +291,21 @@ def _answered_before(session: Session, key: str | None, request: str) -> ModelRo
     return queries.model(session, replay.model, deleted=True)
 
 
-def _remember(session: Session, key: str, request: str, model: str) -> None:
-    """Note which model an Idempotency-Key got; one that got a model which was removed since gets another."""
-    replay = queries.replay(session, key) or Replay(key=key)
-    replay.fingerprint, replay.model, replay.created, replay.seen = request, model, time.time(), None
-    session.add(replay)
+def _claim_key(session: Session, key: str, request: str, model: str) -> ModelRow | None:
+    """Note that an Idempotency-Key gets a new model; return the one that it got before, if that is still there.
+
+    Raises
+    ------
+    KeyReused
+        The key was used for another request.
+    """
+    replay = queries.locked_replay(session, Replay(key=key, fingerprint=request, model=model, created=time.time()))
+    if replay.fingerprint != request:
+        raise KeyReused
+    before = None if replay.model == model else queries.model(session, replay.model, deleted=True)
+    if before is None:
+        replay.model, replay.created, replay.seen = model, time.time(), None
+    return before
 
 
 def finished_model(resources: Resources, row: ModelRow) -> ModelRow | None:

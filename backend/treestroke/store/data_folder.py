@@ -66,21 +66,35 @@ def check_version(folder: Path) -> None:
         The database is lost, cannot be read, or was made by a newer program.
     """
     path = folder / DATABASE
+    other = "name another folder by --data"
     try:
         found = _revisions(path) if path.is_file() else set[str]()
     except sqlite3.DatabaseError as error:
         raise DataFolderError(
-            f"{path}: the database cannot be read ({error}); restore it from a copy, or name another folder by --data"
+            f"{path}: the database cannot be read ({error}); restore it from a copy, or {other}"
         ) from error
+    check_revisions(found, folder, str(path), other)
+
+
+def check_revisions(found: set[str], folder: Path, place: str, other: str) -> None:
+    """Check that this program can use tables of the revisions ``found`` with the files of a folder.
+
+    ``place`` is where the database is, ``other`` how another one is named.
+
+    Raises
+    ------
+    DataFolderError
+        The database is lost, or was made by a newer program.
+    """
     if not found and any(files for _, _, files in os.walk(folder / _BLOBS)):
         raise DataFolderError(
-            f"{path}: the database is lost or empty, but there are files in {folder / _BLOBS}; restore it from a copy, "
-            f"or move the folder {_BLOBS!r} away to start with an empty database"
+            f"{place}: the database is lost or empty, but there are files in {folder / _BLOBS}; restore it from a "
+            f"copy, or move the folder {_BLOBS!r} away to start with an empty database"
         )
     if unknown := found - known_revisions():
         raise DataFolderError(
-            f"{path}: a newer treestroke made this database (its version is {', '.join(sorted(unknown))}, this one "
-            f"knows up to {max(known_revisions())}); install that treestroke again, or name another folder by --data"
+            f"{place}: a newer treestroke made this database (its version is {', '.join(sorted(unknown))}, this one "
+            f"knows up to {max(known_revisions())}); install that treestroke again, or {other}"
         )
 
 

@@ -1,45 +1,47 @@
-"""The database: opening it, migrating it, and short transactions."""
+"""The database: migrating it, and short transactions, whether it is SQLite or Postgres."""
 
 import copy
-import sqlite3
-import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Protocol, Self
 
-from sqlalchemy import URL, Connection, Engine, create_engine, event, inspect
-from sqlalchemy.exc import OperationalError
+from sqlalchemy import Connection
 from sqlalchemy.orm import Session
 
 from treestroke.store.data_folder import DATABASE, known_revisions
+from treestroke.store.postgres import Postgres
+from treestroke.store.revisions import revisions_of
 from treestroke.store.scope import Scope, ScopedSession, scoped
+from treestroke.store.sqlite import Sqlite
 
 if TYPE_CHECKING:
     from alembic.config import Config
 
-_WRITE, _AUTOCOMMIT = "treestroke_write", "treestroke_autocommit"
-"""Execution options of connections: a transaction that writes, or one for each statement."""
-_BUSY_SECONDS = 10
-"""Time that a writer waits for another."""
-_READERS = 10
-"""Connections in the pool for reading; each has two files open."""
+
+class _Form(Protocol):
+    """One kind of database: where it is, how it is mended where it fails, and its connections."""
+
+    place: str
+    mend: str
+
+    def check(self) -> None: ...
+    def fault(self) -> str: ...
+    def exists(self) -> bool: ...
+    def reading(self) -> AbstractContextManager[Connection]: ...
+    def writing(self) -> AbstractContextManager[Connection]: ...
+    def autocommitting(self) -> AbstractContextManager[Connection]: ...
+    def migrating(self) -> AbstractContextManager[Connection]: ...
+    def close(self) -> None: ...
 
 
 class Database:
-    """SQLite in WAL mode: many readers and one writer, from several processes.
+    """A Postgres by its URL; without one, SQLite in the data folder. Each session has a scope (`of`)."""
 
-    Each session has a scope (`of`). A committed change survives a power cut. Only `migrate` creates the file. If the
-    file is removed or replaced, nothing more is read or written until the database is closed: changes to the old file
-    would be lost.
-    """
-
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, url: str = "") -> None:
         self.path = folder / DATABASE
-        url = URL.create("sqlite", database=self.path.absolute().as_uri(), query={"mode": "rw", "uri": "true"})
-        self._readers, self._writer = _engine(url, _READERS), _engine(url, 1)
-        self._write_lock = threading.Lock()
-        self._opened: list[tuple[int, int]] = []
+        self.url = url
+        self._form: _Form = Postgres(folder, url) if url else Sqlite(folder)
         self._scope: Scope | None = None
 
     def of(self, scope: Scope) -> Self:
@@ -48,92 +50,93 @@ class Database:
         view._scope = scope
         return view
 
+    @property
+    def place(self) -> str:
+        """Where the database is, without a password."""
+        return self._form.place
+
+    @property
+    def mend(self) -> str:
+        """How whoever runs the service mends a database that fails."""
+        return self._form.mend
+
     @contextmanager
     def reading(self) -> Iterator[Session]:
         """Open a session that reads one snapshot of the database and changes nothing."""
-        self._check_file()
-        with ScopedSession(self._readers, expire_on_commit=False, info=scoped(self._scope)) as session:
+        with self._session(self._form.reading()) as session:
             yield session
 
     @contextmanager
     def writing(self) -> Iterator[Session]:
-        """Open a session that is the only writer from its first statement on, and commit it at the end.
+        """Open a session in a transaction, and commit it at the end.
+
+        On SQLite it is the only writer from its first statement on. On Postgres others write meanwhile: what is read
+        and then changed is locked by the reading statement.
 
         Raises
         ------
         OperationalError
-            Other writers took longer than a writer waits, or the file was removed or replaced.
+            Other writers took longer than a writer waits, or the database is away.
         """
-        with self._write_by(_WRITE) as session, session.begin():
+        with self._session(self._form.writing()) as session, session.begin():
             yield session
 
     @contextmanager
     def autocommitting(self) -> Iterator[Session]:
-        """Open a session in which each statement is a transaction of its own.
-
-        The lock that all writers share is then held only while SQLite runs a statement. Otherwise a process that is
-        stopped between two statements, or waits for Python's global lock, would keep all others from writing.
-        """
-        with self._write_by(_AUTOCOMMIT) as session:
+        """Open a session in which each statement is a transaction of its own."""
+        with self._session(self._form.autocommitting()) as session:
             yield session
 
     @contextmanager
-    def _write_by(self, option: str) -> Iterator[Session]:
-        """Open a session on the one connection that writes; waiting for it occupies no connection for reading."""
-        if not self._write_lock.acquire(timeout=_BUSY_SECONDS):
-            raise OperationalError("BEGIN IMMEDIATE", None, sqlite3.OperationalError("database is locked"))
-        try:
-            self._check_file()
-            with (
-                self._writer.connect().execution_options(**{option: True}) as connection,
-                ScopedSession(connection, expire_on_commit=False, info=scoped(self._scope)) as session,
-            ):
-                yield session
-        finally:
-            self._write_lock.release()
-
-    def _check_file(self) -> None:
-        """Raise if the file is not the one that was opened first."""
-        found = _identity(self.path)
-        if found is not None and not self._opened:
-            self._opened.append(found)
-        if [found] != self._opened:
-            error = sqlite3.OperationalError("the database file was removed or replaced")
-            error.sqlite_errorcode = sqlite3.SQLITE_CANTOPEN
-            raise OperationalError("open", None, error)
+    def _session(self, opened: AbstractContextManager[Connection]) -> Iterator[Session]:
+        info = scoped(self._scope)
+        with opened as connection, ScopedSession(connection, expire_on_commit=False, info=info) as session:
+            yield session
 
     def migrate(self) -> None:
         """Create the tables, or migrate them from any older revision, in one transaction.
 
-        Foreign keys are not enforced meanwhile: a table that changes is dropped and created again, and the rows that
-        refer to it must stay. Alembic, which takes long to import, is imported only where there is something to do.
+        Alembic, which takes long to import, is imported only where there is something to do.
         """
-        if self.path.exists() and self.current():
+        if self.current():
             return
         from alembic import command
 
-        engine = _engine(URL.create("sqlite", database=str(self.path)), 1, foreign_keys=False)
-        try:
-            with engine.connect().execution_options(**{_WRITE: True}) as connection, connection.begin():
-                settings = _migrations()
-                settings.attributes["connection"] = connection
-                command.upgrade(settings, "head")
-        finally:
-            engine.dispose()
+        with self._form.migrating() as connection:
+            settings = _migrations()
+            settings.attributes["connection"] = connection
+            command.upgrade(settings, "head")
 
     def current(self) -> bool:
         """Tell whether the tables have the revision that this program needs."""
-        with self._readers.connect() as connection:
-            if not inspect(connection).has_table("alembic_version"):
-                return False
-            found = connection.exec_driver_sql("SELECT version_num FROM alembic_version").scalars().all()
-        return found == [max(known_revisions())]
+        if not self.exists():
+            return False
+        with self._form.reading() as connection:
+            return revisions_of(connection) == {max(known_revisions())}
+
+    def exists(self) -> bool:
+        """Tell whether there may be tables: SQLite's file is there, or a Postgres was named."""
+        return self._form.exists()
+
+    def check(self) -> None:
+        """Check that this program can use the database; one without tables and files is new.
+
+        Raises
+        ------
+        DataFolderError
+            The database is lost, cannot be read, or was made by a newer program.
+        OperationalError
+            Postgres is away.
+        """
+        self._form.check()
+
+    def fault(self) -> str:
+        """Return what is wrong with the database itself, for whoever mends it; nothing where it is sound."""
+        return self._form.fault()
 
     def close(self) -> None:
         """Close all connections."""
-        self._readers.dispose()
-        self._writer.dispose()
-        self._opened.clear()
+        self._form.close()
 
 
 def _migrations() -> "Config":
@@ -142,35 +145,3 @@ def _migrations() -> "Config":
     settings = Config()
     settings.set_main_option("script_location", "treestroke.store:migrations")
     return settings
-
-
-def _identity(path: Path) -> tuple[int, int] | None:
-    """Return a file's device and inode, which identify it whatever its path; None without a file."""
-    try:
-        found = path.stat()
-    except FileNotFoundError:
-        return None
-    return found.st_dev, found.st_ino
-
-
-def _engine(url: URL, connections: int, foreign_keys: bool = True) -> Engine:
-    engine = create_engine(
-        url,
-        pool_size=connections,
-        max_overflow=0,
-        connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False},
-    )
-
-    @event.listens_for(engine, "connect")
-    def _prepare(connection: Any, _: object) -> None:
-        connection.isolation_level = None  # transactions begin in `_begin` below, not implicitly in the driver
-        for pragma in ("journal_mode=WAL", "synchronous=FULL", f"foreign_keys={'ON' if foreign_keys else 'OFF'}"):
-            connection.execute(f"PRAGMA {pragma}")
-
-    @event.listens_for(engine, "begin")
-    def _begin(connection: Connection) -> None:
-        options = connection.get_execution_options()
-        if not options.get(_AUTOCOMMIT, False):
-            connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get(_WRITE, False) else "BEGIN")
-
-    return engine

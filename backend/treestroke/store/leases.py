@@ -103,7 +103,8 @@ def take_back(session: Session, job: AnyJob, error: dict[str, Any] | None) -> bo
     """
     table = type(job)
     lost = _attempt(job).where(table.beat == job.beat)
-    # The row decides, not ``job``: the request to stop may have arrived a moment ago.
+    # The row decides, not ``job``: the request to stop may have arrived a moment ago. None comes while it is locked.
+    session.execute(select(table.id).where(table.id == job.id).with_for_update())
     stopped = lost.where(table.cancel.is_(True)).values(**_ended(table, "canceled"))
     if session.scalars(stopped.returning(table.id)).first() is not None:
         return True
@@ -118,6 +119,8 @@ def take_back(session: Session, job: AnyJob, error: dict[str, Any] | None) -> bo
 
 def cancel(session: Session, table: type[AnyJob], *chosen: ColumnElement[bool]) -> None:
     """Cancel the chosen jobs of a table that are queued at once, and ask the workers of running ones to stop them."""
+    # Locked first: one that is taken back between the two statements would be missed by both.
+    session.execute(select(table.id).where(*chosen, table.status.in_(UNFINISHED)).with_for_update())
     session.execute(update(table).where(*chosen, table.status == "queued").values(**_ended(table, "canceled")))
     session.execute(
         update(table)

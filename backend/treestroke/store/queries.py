@@ -3,9 +3,11 @@
 import secrets
 import time
 from collections.abc import Collection, Iterable, Sequence
+from contextlib import suppress
 from typing import Any, TypeVar
 
-from sqlalchemy import func, select, union, update
+from sqlalchemy import Select, func, select, union, update
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from treestroke.store.leases import TERMINAL, AnyJob, JobRow
@@ -56,16 +58,43 @@ def clip(session: Session, id: str, deleted: bool = False) -> ClipRow | None:
     return _kept(session, ClipRow, id, deleted)
 
 
+def lock(session: Session, table: type[Kept], id: str) -> None:
+    """Let no other change a row, or what belongs to it, until this transaction ends; where there is none, do nothing.
+
+    On SQLite nobody else writes anyway.
+    """
+    session.execute(select(table.number).where(table.id == id).with_for_update())
+
+
 def mark_deleted(session: Session, table: type[Kept], id: str) -> bool:
     """Delete a row that is there, until it is restored or removed; tell whether there was one."""
     present = update(table).where(table.id == id, table.deleted.is_(None))
     return session.scalars(present.values(deleted=time.time(), seen=None).returning(table.id)).first() is not None
 
 
+def mark_restored(session: Session, table: type[Kept], id: str) -> None:
+    """Undo the deletion of a row, if it is deleted."""
+    session.execute(update(table).where(table.id == id, table.deleted.is_not(None)).values(deleted=None, seen=None))
+
+
 def replay(session: Session, key: str) -> Replay | None:
     """Find what an Idempotency-Key of the person whose session this is was used for."""
-    own = Replay.key == key, Replay.maker == scope_of(session).maker
-    return session.scalars(select(Replay).where(*own)).first()
+    return session.scalars(_replays(session, key)).first()
+
+
+def locked_replay(session: Session, new: Replay) -> Replay:
+    """Return the row of an Idempotency-Key: the new one, unless the person has used the key before.
+
+    Others who come with the same key wait here until this transaction ends, and then get what it has kept.
+    """
+    while True:
+        found = session.scalars(_replays(session, new.key).with_for_update()).first()
+        if found is not None:
+            return found
+        with suppress(IntegrityError), session.begin_nested():
+            session.add(new)
+            session.flush()
+            return new
 
 
 def files(session: Session, models: Iterable[str]) -> dict[str, dict[str, File]]:
@@ -160,7 +189,11 @@ def stored_bytes(session: Session) -> int:
     """Return the bytes that all photos and clips take, deleted but not yet removed ones too; equal files count once."""
     blobs = (select(table.blob, func.max(table.bytes).label("bytes")).group_by(table.blob) for table in UPLOADED)
     each = union(*blobs).subquery()
-    return session.scalar(select(func.sum(each.c.bytes))) or 0
+    return int(session.scalar(select(func.sum(each.c.bytes))) or 0)  # Postgres sums whole numbers as decimals
+
+
+def _replays(session: Session, key: str) -> Select[Replay]:
+    return select(Replay).where(Replay.key == key, Replay.maker == scope_of(session).maker)
 
 
 def _kept(session: Session, table: type[Kept], id: str, deleted: bool) -> Kept | None:

@@ -47,7 +47,7 @@ class Uploaded(Authored):
     width: Mapped[int]
     height: Mapped[int]
     blob: Mapped[str] = mapped_column(String(64))
-    bytes: Mapped[int] = mapped_column(insert_default=0, server_default="0")
+    bytes: Mapped[int] = mapped_column(_NUMBER, insert_default=0, server_default="0")
     """Size of the blob, which may be many times that of the upload."""
     warnings: Mapped[list[dict[str, Any]]] = mapped_column(insert_default=list, server_default="[]")
     """What was mended or left out when it was read: code, stroke and detail of each."""
@@ -149,7 +149,7 @@ class File(Owned, Table):
     model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"), primary_key=True)
     name: Mapped[str] = mapped_column(String(40), primary_key=True)
     blob: Mapped[str] = mapped_column(String(64))
-    bytes: Mapped[int]
+    bytes: Mapped[int] = mapped_column(_NUMBER)
 
 
 class CaptureRow(Authored, Aged, Table):
@@ -172,7 +172,7 @@ class CapturePhoto(Uploaded, Table):
     __table_args__ = (UniqueConstraint("capture", "name"),)
 
     capture: Mapped[str] = mapped_column(ForeignKey("captures.id", ondelete="CASCADE"))
-    name: Mapped[str] = mapped_column(String(200))
+    name: Mapped[str] = mapped_column(String(200).with_variant(String(200, collation="C"), "postgresql"))
     sent_name: Mapped[str] = mapped_column(String(200))
     """The name it was sent by: ``name`` unless another photo of the capture had that already."""
     focal_length_px: Mapped[float | None]
@@ -254,7 +254,8 @@ Index("ix_solves_capture", SolveRow.capture, SolveRow.fingerprint, SolveRow.numb
 Index("ix_solves_structure", SolveRow.structure)
 for _table in (ModelRow, PhotoRow, CaptureRow, ClipRow):
     Index(f"ix_{_table.__tablename__}_seen", _table.seen)
-    Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_table.deleted.is_not(None))
+    _deleted = _table.deleted.is_not(None)
+    Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_deleted, postgresql_where=_deleted)
 for _listed in (ModelRow, CaptureRow):
     Index(f"ix_{_listed.__tablename__}_team", _listed.team, _listed.number)
 Index("ix_replays_seen", Replay.seen)

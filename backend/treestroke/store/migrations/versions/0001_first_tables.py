@@ -30,7 +30,7 @@ def upgrade() -> None:
         sa.Column("beat", sa.Integer(), nullable=False),
         sa.Column("claim", sa.String(length=80), nullable=True),
         sa.Column("worker", sa.String(length=120), nullable=True),
-        sa.Column("cancel", sa.Boolean(), server_default=sa.text("0"), nullable=False),
+        sa.Column("cancel", sa.Boolean(), server_default=sa.false(), nullable=False),
         sa.Column("error", sa.JSON(none_as_null=True), nullable=True),
         sa.Column("report", sa.JSON(none_as_null=True), nullable=True),
         sa.Column("preview_seq", sa.Integer(), nullable=True),
@@ -77,7 +77,7 @@ def upgrade() -> None:
         sa.Column("model", sa.String(length=40), nullable=False),
         sa.Column("name", sa.String(length=40), nullable=False),
         sa.Column("blob", sa.String(length=64), nullable=False),
-        sa.Column("bytes", sa.Integer(), nullable=False),
+        sa.Column("bytes", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), nullable=False),
         sa.ForeignKeyConstraint(["model"], ["models.id"], name="fk_files_model", ondelete="CASCADE"),
         sa.PrimaryKeyConstraint("model", "name", name="pk_files"),
     )

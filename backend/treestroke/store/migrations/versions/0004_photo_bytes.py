@@ -11,7 +11,10 @@ down_revision = "0003"
 
 def upgrade() -> None:
     """Make the change."""
-    op.add_column("photos", sa.Column("bytes", sa.Integer(), server_default="0", nullable=False))
+    op.add_column(
+        "photos",
+        sa.Column("bytes", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), server_default="0", nullable=False),
+    )
     op.add_column("photos", sa.Column("warnings", sa.JSON(none_as_null=True), server_default="[]", nullable=False))
     _measure()
 

@@ -32,12 +32,14 @@ def upgrade() -> None:
     op.create_index("ix_models_times", "models", ["status", "started", "finished"])
     for table in ("models", "photos"):
         op.create_index(f"ix_{table}_seen", table, ["seen"])
-        op.create_index(f"ix_{table}_deleted", table, ["seen"], sqlite_where=sa.text("deleted IS NOT NULL"))
+        _index_some(f"ix_{table}_deleted", table, "seen", "deleted IS NOT NULL")
     op.create_index("ix_replays_seen", "replays", ["seen"])
     op.create_index("ix_photos_blob", "photos", ["blob"])
     op.create_index("ix_photos_stored", "photos", ["blob", "bytes"])
     op.create_index("ix_files_blob", "files", ["blob"])
     for part in _PARTS:
-        op.create_index(
-            f"ix_models_{part}_blob", "models", [f"{part}_blob"], sqlite_where=sa.text(f"{part}_blob IS NOT NULL")
-        )
+        _index_some(f"ix_models_{part}_blob", "models", f"{part}_blob", f"{part}_blob IS NOT NULL")
+
+
+def _index_some(name: str, table: str, column: str, where: str) -> None:
+    op.create_index(name, table, [column], sqlite_where=sa.text(where), postgresql_where=sa.text(where))

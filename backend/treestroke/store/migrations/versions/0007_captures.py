@@ -20,7 +20,8 @@ def upgrade() -> None:
         *_keys("captures"),
     )
     op.create_index("ix_captures_seen", "captures", ["seen"])
-    op.create_index("ix_captures_deleted", "captures", ["seen"], sqlite_where=sa.text("deleted IS NOT NULL"))
+    deleted = sa.text("deleted IS NOT NULL")
+    op.create_index("ix_captures_deleted", "captures", ["seen"], sqlite_where=deleted, postgresql_where=deleted)
     _create_photos()
     _create_solves()
 
@@ -30,14 +31,14 @@ def _create_photos() -> None:
         "capture_photos",
         *_numbered(),
         _capture(),
-        sa.Column("name", sa.String(length=200), nullable=False),
+        sa.Column("name", _by_code_points(200), nullable=False),
         sa.Column("sent_name", sa.String(length=200), nullable=False),
         sa.Column("focal_length_px", sa.Float(), nullable=True),
         sa.Column("sha256", sa.String(length=64), nullable=False),
         sa.Column("width", sa.Integer(), nullable=False),
         sa.Column("height", sa.Integer(), nullable=False),
         sa.Column("blob", sa.String(length=64), nullable=False),
-        sa.Column("bytes", sa.Integer(), server_default="0", nullable=False),
+        sa.Column("bytes", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), server_default="0", nullable=False),
         sa.Column("warnings", sa.JSON(), server_default="[]", nullable=False),
         sa.Column("created", sa.Float(), nullable=False),
         *_keys("capture_photos", "capture"),
@@ -76,6 +77,11 @@ def _create_solves() -> None:
     op.create_index("ix_solves_times", "solves", ["status", "started", "finished"])
     op.create_index("ix_solves_capture", "solves", ["capture", "fingerprint", "number"])
     op.create_index("ix_solves_structure", "solves", ["structure"])
+
+
+def _by_code_points(length: int) -> sa.types.TypeEngine[str]:
+    """Return the type of a text that is put in the same order everywhere, whatever language the database has."""
+    return sa.String(length=length).with_variant(sa.String(length=length, collation="C"), "postgresql")
 
 
 def _numbered() -> tuple[sa.Column[int], sa.Column[str]]:

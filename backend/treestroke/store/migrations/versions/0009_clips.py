@@ -21,7 +21,7 @@ def upgrade() -> None:
         sa.Column("frames", sa.Integer(), nullable=False),
         sa.Column("frames_per_second", sa.Float(), nullable=False),
         sa.Column("blob", sa.String(length=64), nullable=False),
-        sa.Column("bytes", sa.Integer(), server_default="0", nullable=False),
+        sa.Column("bytes", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), server_default="0", nullable=False),
         sa.Column("media_type", sa.String(length=40), nullable=False),
         sa.Column("warnings", sa.JSON(), server_default="[]", nullable=False),
         sa.Column("created", sa.Float(), nullable=False),
@@ -33,7 +33,8 @@ def upgrade() -> None:
     op.create_index("ix_clips_stored", "clips", ["blob", "bytes"])
     op.create_index("ix_clips_blob", "clips", ["blob"])
     op.create_index("ix_clips_seen", "clips", ["seen"])
-    op.create_index("ix_clips_deleted", "clips", ["seen"], sqlite_where=sa.text("deleted IS NOT NULL"))
+    deleted = sa.text("deleted IS NOT NULL")
+    op.create_index("ix_clips_deleted", "clips", ["seen"], sqlite_where=deleted, postgresql_where=deleted)
     op.create_table(
         "uploads",
         sa.Column("id", sa.String(length=40), nullable=False),
