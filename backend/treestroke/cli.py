@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 from treestroke import __version__
 from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, project_stem, whole
+from treestroke.cli_keys import add_key_flags, keys
 from treestroke.cli_outputs import ProgressLine, check_further, outputs_of, stem
 from treestroke.codec.inputs import BESIDE, PARTS, SOURCES, Source
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
@@ -154,7 +155,9 @@ def _add_service(commands: "Commands") -> None:
     serve.add_argument("--port", help="port to listen on (default 8000; 0 takes a free one)")
     worker = _add_command(commands, "worker", _worker, "grow models for a service elsewhere")
     doctor = _add_command(commands, "doctor", _doctor, "say what is missing or broken")
-    for command in (serve, worker, doctor):
+    keys = _add_command(commands, "keys", _keys, "make, list and revoke the keys of a team")
+    add_key_flags(keys)
+    for command in (serve, worker, doctor, keys):
         command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
 
 
@@ -329,6 +332,10 @@ def _doctor(options: argparse.Namespace) -> None:
             print(f"     {'':<{_PART_WIDTH}}  mend: {finding.mend}", flush=True)
     if ill:
         raise MachineFault(f"{ill} of {examined} parts are ill")
+
+
+def _keys(options: argparse.Namespace) -> None:
+    keys(_service_settings(options), options)
 
 
 def _service_settings(options: argparse.Namespace) -> Any:

@@ -58,6 +58,8 @@ class Client(ClipCalls):
         The address on which `treestroke serve` listens.
     timeout
         Seconds that the service may take for one answer.
+    key
+        A key of a member (``ts_...``), where the service has keys; ``TREESTROKE_KEY`` of the environment where absent.
     """
 
     def upload(self, photo: PictureLike) -> PhotoInfo:

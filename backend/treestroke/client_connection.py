@@ -24,6 +24,8 @@ Done = TypeVar("Done")
 Page = TypeVar("Page", ModelPage, PhotoPage, CapturePage, ClipPage)
 State = TypeVar("State", ModelInfo, CaptureState)
 
+_KEY = "TREESTROKE_KEY"
+"""Variable of the key of those who give none."""
 _PAUSES_S = (0.2, 0.4, 0.8, 1.6, 3.2)
 """Pauses between tries; a service that restarts is back within them."""
 _SILENCE_S = 20.0
@@ -42,10 +44,12 @@ class Followed(NamedTuple, Generic[State]):
 class Connection:
     """What calls of a service have in common; `client.Client` documents its parameters."""
 
-    def __init__(self, address: str = "http://127.0.0.1:8000", timeout: float = 60.0) -> None:
-        # The service listens on this machine only: no proxy leads there.
+    def __init__(self, address: str = "http://127.0.0.1:8000", timeout: float = 60.0, key: str | None = None) -> None:
         self._timeout = timeout
-        self._http = httpx.Client(base_url=address, timeout=timeout, trust_env=False)
+        key = key or os.environ.get(_KEY)
+        headers = {"Authorization": f"Bearer {key}"} if key else {}
+        # Nothing of the machine's proxies and passwords comes between the key and the service.
+        self._http = httpx.Client(base_url=address, timeout=timeout, headers=headers, trust_env=False)
 
     def __enter__(self) -> Self:
         return self

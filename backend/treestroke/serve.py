@@ -19,7 +19,7 @@ from types import FrameType
 
 from treestroke.core.errors import SettingsError
 from treestroke.parent_process import LISTENER, PARENT_HOLDS_STDIN, PREVIOUS_RUN_ID, RUN_ID
-from treestroke.settings import Settings
+from treestroke.settings import Settings, check_secret
 from treestroke.store.data_folder import DataFolderError, check_version, prepare_folder
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
@@ -96,18 +96,15 @@ def serve(settings: Settings) -> int:
     Raises
     ------
     SettingsError
-        The address is not a loopback address (without keys nobody else may reach the service), or the port is taken.
+        The address is not a loopback address though there are no keys or no names to answer to, keys cannot be
+        digested, or the port is taken.
     DataFolderError
         Other users can read the data folder and it may not be the service's alone, or its database is lost or was
         made by a newer treestroke.
     OSError
         The data folder cannot be written.
     """
-    if settings.host not in LOOPBACK:
-        raise SettingsError(
-            f"--host {settings.host}: without keys only this machine may reach treestroke; take 127.0.0.1, or put a "
-            "server that asks for a password in front of it"
-        )
+    _check_reach(settings)
     with _listen(settings) as listener:
         prepare_folder(settings.folder)
         _lock(settings.folder)
@@ -141,6 +138,21 @@ def _check_database(settings: Settings) -> None:
         raise DataFolderError(f"{database.place}: Postgres cannot be used ({why}); {database.mend}") from error
     finally:
         database.close()
+
+
+def _check_reach(settings: Settings) -> None:
+    """Check that whoever can reach the service needs a key, or is on this machine."""
+    if settings.hosted:
+        check_secret(settings)
+        if settings.host not in LOOPBACK and not settings.host_names:
+            raise SettingsError(
+                f"--host {settings.host}: name what the service answers to by TREESTROKE_HOSTS, such as trees.example"
+            )
+    elif settings.host not in LOOPBACK:
+        raise SettingsError(
+            f"--host {settings.host}: without keys only this machine may reach treestroke; take 127.0.0.1, or let a "
+            "team share it by keys: set TREESTROKE_DATABASE_URL"
+        )
 
 
 def _children(settings: Settings, listener: int) -> list[Child]:

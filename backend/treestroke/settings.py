@@ -11,6 +11,9 @@ from treestroke.core.errors import SettingsError, shown
 
 PREFIX = "TREESTROKE_"
 _POSTGRES = ("postgresql://", "postgres://")
+CLIENT_VARIABLES = ("TREESTROKE_KEY",)
+"""Variables with the same prefix that are not the service's but its clients'."""
+_SECRET_CHARACTERS = 32
 PHOTO_MB, PHOTOS_MB = 120, 20_000
 
 
@@ -27,6 +30,11 @@ class Settings(BaseSettings):
     host: Annotated[str, _setting("127.0.0.1", "address that the web process listens on")]
     port: Annotated[int, _setting(8000, "port that it listens on; 0 takes a free one", ge=0, le=65535)]
     database_url: Annotated[str, _setting("", "a Postgres (postgresql://...); empty: SQLite in the data folder")]
+    hosts: Annotated[str, _setting("", "with a database URL: names that the service answers to, with commas between")]
+    proxies: Annotated[
+        str, _setting("", "addresses of proxies before it, whose X-Forwarded-For and -Proto hold; with commas between")
+    ]
+    secret: Annotated[str, _setting("", "with a database URL: at least 32 characters, by which keys are digested")]
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
     workers: Annotated[
         int,
@@ -74,6 +82,16 @@ class Settings(BaseSettings):
         """Whether the queue is a folder rather than a Redis."""
         return not self.broker_url
 
+    @property
+    def host_names(self) -> list[str]:
+        """Names that the service answers to beside those of this machine."""
+        return _names(self.hosts)
+
+    @property
+    def trusted_proxies(self) -> list[str]:
+        """Addresses or networks of proxies that say who asks."""
+        return _names(self.proxies)
+
     def environment(self) -> dict[str, str]:
         """Return the environment variables from which another process reads the same settings."""
         return {_variable(name): str(value) for name, value in self}
@@ -89,7 +107,7 @@ def read_settings(**flags: object) -> Settings:
     """
     known = {_variable(name) for name in Settings.model_fields}
     for name in sorted(os.environ):
-        if name.upper().startswith(PREFIX) and name.upper() not in known:
+        if name.upper().startswith(PREFIX) and name.upper() not in {*known, *CLIENT_VARIABLES}:
             raise SettingsError(f"{name}: there is no such setting; the settings are {', '.join(sorted(known))}")
     try:
         settings = Settings(**flags)  # type: ignore[arg-type]
@@ -113,6 +131,26 @@ def read_settings(**flags: object) -> Settings:
             "or leave it out"
         )
     return settings
+
+
+def check_secret(settings: Settings) -> None:
+    """Check that keys can be digested.
+
+    Raises
+    ------
+    SettingsError
+        The secret is missing or short.
+    """
+    if len(settings.secret) < _SECRET_CHARACTERS:
+        raise SettingsError(
+            f"{_variable('secret')}: a service with keys needs a secret of at least {_SECRET_CHARACTERS} characters; "
+            "make one by `openssl rand -hex 32`, and keep it: no key is valid with another"
+        )
+
+
+def _names(text: str) -> list[str]:
+    """Return the names of a list with commas between."""
+    return [name.strip().lower() for name in text.split(",") if name.strip()]
 
 
 def _variable(name: str) -> str:

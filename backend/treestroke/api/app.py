@@ -7,7 +7,7 @@ from functools import partial
 from http import HTTPStatus
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.routing import APIRoute
 from pydantic.json_schema import models_json_schema
 from starlette.types import Scope
@@ -15,13 +15,30 @@ from starlette.types import Scope
 from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import Watcher
+from treestroke.api.identity import SECURITY_SCHEMES, admit
 from treestroke.api.metrics import add_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
-from treestroke.api.routes import captures, clips, events, files, models, photos, sketches, status, uploads
+from treestroke.api.routes import (
+    captures,
+    clips,
+    events,
+    files,
+    keys,
+    models,
+    photos,
+    session,
+    sketches,
+    status,
+    team,
+    uploads,
+)
 from treestroke.api.routes.page import add_page
+from treestroke.api.rules import RULES
+from treestroke.api.sign_ins import FailedSignIns
 from treestroke.limits import MAX_CLIP_BYTES, MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import make_queue, send_job_message
 from treestroke.schemas import Problem
+from treestroke.service.accounts import Accounts
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
 from treestroke.service.projects import Projects
@@ -32,6 +49,7 @@ from treestroke.store.data_folder import prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.scope import SERVICE
 from treestroke.store.uploads import Uploads
+from treestroke.wire_accounts import KeyRequest, MemberChange, MemberRequest, SignIn, TeamChange
 from treestroke.wire_edits import Edits
 from treestroke.wire_requests import (
     CaptureRequest,
@@ -55,6 +73,9 @@ _FORM_BYTES = 100_000
 """Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
+_ROUTES = (photos, sketches, captures, clips, uploads, models, events, files, session, keys, team, status)
+_ANYWHERE = ("unauthenticated", "foreign_host", "internal", "overloaded")
+"""Codes of problems that every route may answer with."""
 _BODIES = (
     Strokes,
     TraceRequest,
@@ -66,6 +87,11 @@ _BODIES = (
     Rename,
     SiblingsRequest,
     CaptureRequest,
+    SignIn,
+    KeyRequest,
+    MemberRequest,
+    MemberChange,
+    TeamChange,
     Problem,
 )
 """What bodies hold that FastAPI does not read."""
@@ -86,16 +112,17 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
         redoc_url=None,
         redirect_slashes=False,
         generate_unique_id_function=_operation_id,
+        dependencies=[Depends(admit)],
     )
-    app.state.settings, app.state.places = settings, places
+    app.state.settings, app.state.places, app.state.failed_sign_ins = settings, places, FailedSignIns()
     add_handlers(app)
-    for routes in (photos, sketches, captures, clips, uploads, models, events, files, status):
-        app.include_router(routes.router, responses=documented("foreign_host", "internal", "overloaded"))
+    for routes in _ROUTES:
+        app.include_router(routes.router, responses=documented(*_ANYWHERE))
     add_metrics(app)
     add_page(app)
     app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of)
     app.add_middleware(MethodMiddleware)
-    app.add_middleware(SecurityMiddleware, hosts=HOSTS)
+    app.add_middleware(SecurityMiddleware, hosts={*HOSTS, *settings.host_names}, hosted=settings.hosted)
     app.openapi = partial(_document, app)  # type: ignore[method-assign]
     return app
 
@@ -117,6 +144,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.resources = Resources(
         database, blobs, tracers, capture_tracers, clip_tracers, Uploads(settings.folder), *limits
     )
+    app.state.accounts = Accounts.of(database, settings.secret)
     app.state.projects = Projects(settings.folder, blobs)
     app.state.dispatcher = dispatcher
     tracers.start()
@@ -159,6 +187,16 @@ def _drop_standard_problems(document: dict[str, Any]) -> None:
             del operation["responses"][invalid]
 
 
+def _name_security(document: dict[str, Any], hosted: bool) -> None:
+    """Say how one is known, and where that is asked: nowhere in a service without keys."""
+    document["components"]["securitySchemes"] = SECURITY_SCHEMES
+    if not hosted:
+        return
+    known: list[dict[str, list[str]]] = [{name: []} for name in SECURITY_SCHEMES]
+    for operation in (operation for path in document["paths"].values() for operation in path.values()):
+        operation["security"] = [] if RULES[operation["operationId"]] is None else known
+
+
 def _document(app: FastAPI) -> dict[str, Any]:
     """Return the API's document, with the bodies that tracing processes read in place of FastAPI."""
     known = app.openapi_schema is not None
@@ -171,4 +209,5 @@ def _document(app: FastAPI) -> dict[str, Any]:
         )
         schemas.update(extra["$defs"])
         _drop_standard_problems(document)
+        _name_security(document, app.state.settings.hosted)
     return document

@@ -13,7 +13,7 @@ from treestroke.api.following import Watcher
 from treestroke.limits import MAX_PHOTO_BYTES
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
-from treestroke.service.principals import LOCAL_PERSON, Principal
+from treestroke.service.principals import Principal
 from treestroke.service.projects import Projects
 from treestroke.settings import Settings
 from treestroke.store.scope import SERVICE
@@ -49,8 +49,10 @@ def _settings(request: Request) -> Settings:
     return settings
 
 
-def _principal(_: Request) -> Principal:
-    return LOCAL_PERSON
+def _principal(request: Request) -> Principal:
+    """Return who was admitted."""
+    principal: Principal = request.state.principal
+    return principal
 
 
 def _resources(request: Request, principal: "PrincipalOf") -> Resources:
@@ -61,6 +63,19 @@ def _resources(request: Request, principal: "PrincipalOf") -> Resources:
 def _all_resources(request: Request) -> Resources:
     resources: Resources = request.app.state.resources
     return resources.of(SERVICE)
+
+
+def hosted_only(settings: "SettingsOf") -> None:
+    """Refuse what a service without keys has not.
+
+    Raises
+    ------
+    Refusal
+        This service has no keys.
+    """
+    if not settings.hosted:
+        detail = "this service has one person, and neither keys nor members; they need TREESTROKE_DATABASE_URL"
+        raise Refusal("not_hosted", detail)
 
 
 def _dispatcher(request: Request) -> Dispatcher:
@@ -113,6 +128,12 @@ def _id(kind: str) -> Any:
     return Path(json_schema_extra={"pattern": f"^{kind}_[0-9a-f]{{24}}$"})
 
 
+def body_of(schema: str) -> dict[str, Any]:
+    """Return a required JSON body by its schema's name, for the API's document."""
+    content = {"application/json": {"schema": {"$ref": f"#/components/schemas/{schema}"}}}
+    return {"requestBody": {"required": True, "content": content}}
+
+
 def leads_to(*operations: str) -> dict[str, Any]:
     """Return links to the operations that take the id a response holds."""
     return {name: {"operationId": name, "parameters": {"id": "$response.body#/id"}} for name in operations}
@@ -126,6 +147,8 @@ ClipId = Annotated[str, _id("clp")]
 UploadId = Annotated[str, _id("upl")]
 CaptureId = Annotated[str, _id("cap")]
 CapturePhotoId = Annotated[str, _id("cph")]
+MemberId = Annotated[str, _id("usr")]
+KeyId = Annotated[str, _id("key")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
 PrincipalOf = Annotated[Principal, Depends(_principal)]
 ResourcesOf = Annotated[Resources, Depends(_resources)]

@@ -19,6 +19,8 @@ from treestroke.api.following import TooManyFollowers
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.failures import code_of, problem_of
+from treestroke.service.keys import Exceeded
+from treestroke.service.members import LastOwner
 from treestroke.service.photos import NotFound
 from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracer import NoRoom
@@ -32,6 +34,11 @@ _RETRY_HEADER = {"Retry-After": {"schema": {"type": "string", "pattern": "^[0-9]
 _STATUS = {
     "bad_request": 400,
     "malformed_json": 400,
+    "unauthenticated": 401,
+    "scope_missing": 403,
+    "role_missing": 403,
+    "read_only": 403,
+    "not_hosted": 403,
     "foreign_host": 403,
     "foreign_origin": 403,
     "not_found": 404,
@@ -40,6 +47,9 @@ _STATUS = {
     "capture_not_found": 404,
     "clip_not_found": 404,
     "upload_not_found": 404,
+    "key_not_found": 404,
+    "member_not_found": 404,
+    "team_not_found": 404,
     "frame_not_found": 404,
     "file_not_found": 404,
     "method_not_allowed": 405,
@@ -48,11 +58,13 @@ _STATUS = {
     "capture_unsolved": 409,
     "upload_offset_wrong": 409,
     "upload_superseded": 409,
+    "last_owner": 409,
     "body_too_large": 413,
     "unsupported_media_type": 415,
     "range_not_satisfiable": 416,
     "invalid": 422,
     "idempotency_key_reused": 422,
+    "rate_limited": 429,
     "internal": 500,
     "file_damaged": 500,
     "overloaded": 503,
@@ -77,8 +89,8 @@ log = structlog.get_logger()
 class Refusal(HTTPException):
     """A request that a route or a middleware refuses; ``code`` decides the HTTP status."""
 
-    def __init__(self, code: str, detail: str) -> None:
-        super().__init__(_STATUS[code], detail)
+    def __init__(self, code: str, detail: str, headers: Mapping[str, str] | None = None) -> None:
+        super().__init__(_STATUS[code], detail, headers)
         self.code = code
 
 
@@ -95,6 +107,8 @@ def _response(
     headers = dict(headers or {})
     if status == HTTPStatus.SERVICE_UNAVAILABLE:
         headers["Retry-After"] = str(_RETRY_SECONDS)
+    if status == HTTPStatus.UNAUTHORIZED:
+        headers["WWW-Authenticate"] = "Bearer"
     body = Problem(
         type="about:blank",
         title=HTTPStatus(status).phrase,
@@ -112,7 +126,7 @@ def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
     described: dict[int | str, dict[str, Any]] = {}
     for status in sorted({_STATUS[code] for code in codes}):
         described[status] = {"description": HTTPStatus(status).phrase, "content": content}
-        if status == HTTPStatus.SERVICE_UNAVAILABLE:
+        if status in (HTTPStatus.SERVICE_UNAVAILABLE, HTTPStatus.TOO_MANY_REQUESTS):
             described[status]["headers"] = _RETRY_HEADER
     return described
 
@@ -147,6 +161,14 @@ def _missing(_: Request, error: NotFound) -> JSONResponse:
 def _reused(_: Request, __: KeyReused) -> JSONResponse:
     detail = "this Idempotency-Key was used with another request; take a new one"
     return problem("idempotency_key_reused", detail)
+
+
+def _last_owner(_: Request, __: LastOwner) -> JSONResponse:
+    return problem("last_owner", "this is the team's only owner; make another member owner first")
+
+
+def _exceeded(_: Request, error: Exceeded) -> JSONResponse:
+    return problem("scope_missing", f"your key has not the scope {error}, so it can make none that has; use another")
 
 
 def _no_room(_: Request, __: NoRoom) -> JSONResponse:
@@ -209,7 +231,7 @@ def _http(request: Request, error: HTTPException) -> JSONResponse:
 
 
 def _refused(_: Request, error: Refusal) -> JSONResponse:
-    return problem(error.code, error.detail)
+    return problem(error.code, error.detail, headers=error.headers)
 
 
 def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
@@ -227,6 +249,8 @@ _ANSWERS: dict[type[Exception], Any] = {
     RequestValidationError: _invalid,
     NotFound: _missing,
     KeyReused: _reused,
+    LastOwner: _last_owner,
+    Exceeded: _exceeded,
     NoRoom: _no_room,
     WrongOffset: _misplaced,
     Superseded: _superseded,

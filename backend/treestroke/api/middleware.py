@@ -3,7 +3,7 @@
 import asyncio
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 from http import HTTPStatus
 from operator import attrgetter
@@ -27,7 +27,7 @@ CONTENT_SECURITY_POLICY = (
     "base-uri 'none'; frame-ancestors 'none'"
 )
 _STREAMED = re.compile(r"/v1/(?:clips|uploads/[^/]+)")
-_READING_METHODS = ("GET", "HEAD", "OPTIONS")
+READING_METHODS = ("GET", "HEAD", "OPTIONS")
 _KNOWN_METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "TRACE")
 _OWN_SITES = ("same-origin", "none")
 """Values of Sec-Fetch-Site for requests by the service's own page, or by its user."""
@@ -40,15 +40,22 @@ _HEADERS = {
 }
 
 
+_THIS_MACHINE = "this service responds on this machine only; open it as 127.0.0.1 or localhost"
+_OTHER_NAME = "this service does not answer to this name; open it by its own, or add this one to TREESTROKE_HOSTS"
+_TLS_SECONDS = 365 * 86_400
+"""How long browsers are to come by TLS alone."""
+
+
 class SecurityMiddleware:
     """Refuses requests that are ambiguous, name another host or come from another site; sets security headers.
 
     Any page that is open in the user's browser can send requests to 127.0.0.1. Such a page is recognized by Origin,
-    or by Host if it made a host name of its own point here (DNS rebinding).
+    or by Host if it made a host name of its own point here (DNS rebinding). A ``hosted`` service is asked by TLS: its
+    own page is that of the same scheme, and browsers are told to come by TLS again.
     """
 
-    def __init__(self, app: ASGIApp, hosts: tuple[str, ...]) -> None:
-        self._app, self._hosts = app, hosts
+    def __init__(self, app: ASGIApp, hosts: Collection[str], hosted: bool = False) -> None:
+        self._app, self._hosts, self._hosted = app, hosts, hosted
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Forward a request, or refuse it."""
@@ -62,6 +69,8 @@ class SecurityMiddleware:
                 for name, value in _HEADERS.items():
                     headers.setdefault(name, value)
                 headers.setdefault("cache-control", "no-store")
+                if self._hosted and scope["scheme"] == "https":
+                    headers["strict-transport-security"] = f"max-age={_TLS_SECONDS}"
             await send(message)
 
         await (self._refusal(scope, Headers(scope=scope)) or self._app)(scope, receive, send_with_headers)
@@ -72,12 +81,12 @@ class SecurityMiddleware:
             detail = "the request gives the length of its body twice; send Content-Length or Transfer-Encoding"
             return problem("bad_request", detail, headers={"Connection": "close"})
         if _host_name(f"//{host}") not in self._hosts:
-            detail = "this service responds on this machine only; open it as 127.0.0.1 or localhost"
-            return problem("foreign_host", detail)
-        foreign = origin is not None and not (origin.split("://")[-1] == host and _host_name(origin) in self._hosts)
+            return problem("foreign_host", _OTHER_NAME if self._hosted else _THIS_MACHINE)
+        own = origin == own_origin(scope) if self._hosted else (origin or "").split("://")[-1] == host
+        foreign = origin is not None and not (own and _host_name(origin) in self._hosts)
         # A form may be sent without Origin; browsers then add Sec-Fetch-Site, "same-site" for another port of the host.
         if foreign or (
-            scope["method"] not in _READING_METHODS and headers.get("sec-fetch-site", "none") not in _OWN_SITES
+            scope["method"] not in READING_METHODS and headers.get("sec-fetch-site", "none") not in _OWN_SITES
         ):
             return problem("foreign_origin", "this page does not belong to the service; open the service's own page")
         return None
@@ -237,6 +246,11 @@ async def _send_head(send: Send, message: Message) -> None:
 
 def _too_large(limit: int) -> str:
     return f"the request's body has more than {limit / 1e6:g} MB; make it smaller"
+
+
+def own_origin(scope: Scope) -> str:
+    """Return what browsers send as Origin from the service's own page: scheme and host as they were asked for."""
+    return f"{scope['scheme']}://{Headers(scope=scope).get('host', '')}"
 
 
 def _host_name(address: str) -> str | None:

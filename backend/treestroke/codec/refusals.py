@@ -38,6 +38,7 @@ _NOT_PNG = Rule("wrong_type", f"it must be base64 of a PNG of at most {MAX_LEAF_
 _PLACES = ("at", "from", "to")
 """Keys of an edit that hold a place."""
 _BY_KEY_AND_TYPE = {
+    ("name", "string_too_short"): Rule("name_invalid", "it is empty; write one"),
     ("crown", "missing"): Rule("crown_missing", "it is missing; draw one stroke around the foliage"),
     ("points", "missing"): Rule("missing_key", "it has no points; give [[x, y], ...]", 1),
     ("points", "too_long"): Rule(

@@ -1,14 +1,13 @@
 """Who asks: a person or a key of a team, with a role and scopes."""
 
 from dataclasses import dataclass
-from typing import Literal
 
+from treestroke.account_schemas import KeyScope, Role
 from treestroke.store.scope import LOCAL, Scope
 
-Role = Literal["viewer", "member", "owner"]
 ROLES: tuple[Role, ...] = ("viewer", "member", "owner")
 """From the least that one may do to the most."""
-SCOPES = ("trees", "team")
+SCOPES: tuple[KeyScope, ...] = ("trees", "team")
 """What a key may be for: trees, and all that they are made of; the team, its people and its keys."""
 
 
@@ -24,9 +23,11 @@ class Principal:
     team: str
     name: str
     role: Role
-    scopes: frozenset[str] = frozenset(SCOPES)
+    scopes: frozenset[KeyScope] = frozenset(SCOPES)
     read_only: bool = False
     credential: str = ""
+    expires: float | None = None
+    """When that ends, in seconds since 1970; None: never."""
 
     @property
     def scope(self) -> Scope:

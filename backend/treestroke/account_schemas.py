@@ -1,0 +1,82 @@
+"""What the service sends of teams, members, keys and sessions in its responses, for its documents and its clients."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from treestroke.wire_strokes import Wire
+
+Role = Literal["viewer", "member", "owner"]
+KeyScope = Literal["trees", "team"]
+_SECONDS = "seconds since 1970"
+
+
+class Member(Wire):
+    """A person of a team."""
+
+    id: str
+    name: str
+    role: Role
+
+
+class MemberInfo(Member):
+    """A person of a team, as the list of members shows them."""
+
+    created: float = Field(description=_SECONDS)
+
+
+class MemberList(Wire):
+    """All members of a team, the first one first."""
+
+    members: list[MemberInfo]
+
+
+class Team(Wire):
+    """A team."""
+
+    id: str
+    name: str
+
+
+class TeamInfo(Team):
+    """A team, as its members see it."""
+
+    created: float = Field(description=_SECONDS)
+
+
+class SessionInfo(Wire):
+    """Who is signed in, as what, and until when; in a service without keys, the only person of its only team."""
+
+    hosted: bool = Field(description="whether the service has keys and teams")
+    member: Member
+    team: Team
+    scopes: list[KeyScope]
+    read_only: bool
+    expires: float | None = Field(description=f"{_SECONDS}; null: never")
+
+
+class KeyInfo(Wire):
+    """A key, without itself."""
+
+    id: str
+    name: str
+    beginning: str = Field(description="its first characters")
+    member: Member = Field(description="whose it is")
+    scopes: list[KeyScope]
+    read_only: bool
+    created: float = Field(description=_SECONDS)
+    expires: float = Field(description=_SECONDS)
+    last_used: float | None = Field(description=f"{_SECONDS}, to a minute; null: never used")
+    revoked: float | None = Field(description=f"{_SECONDS}; null: it is valid until it expires")
+
+
+class NewKey(KeyInfo):
+    """A key that was just made: the only time that it is shown."""
+
+    key: str
+
+
+class KeyList(Wire):
+    """Keys, the newest first."""
+
+    keys: list[KeyInfo]
