@@ -37,5 +37,8 @@ def scans(steps: list[str]) -> list[str]:
         "captures",
         "capture_photos",
         "solves",
+        "members",
+        "keys",
+        "sessions",
     )
     return [step for step in steps if any(step == f"SCAN {table}" for table in tables)]

@@ -30,11 +30,9 @@ class Settings(BaseSettings):
     host: Annotated[str, _setting("127.0.0.1", "address that the web process listens on")]
     port: Annotated[int, _setting(8000, "port that it listens on; 0 takes a free one", ge=0, le=65535)]
     database_url: Annotated[str, _setting("", "a Postgres (postgresql://...); empty: SQLite in the data folder")]
-    hosts: Annotated[str, _setting("", "with a database URL: names that the service answers to, with commas between")]
-    proxies: Annotated[
-        str, _setting("", "addresses of proxies before it, whose X-Forwarded-For and -Proto hold; with commas between")
-    ]
-    secret: Annotated[str, _setting("", "with a database URL: at least 32 characters, by which keys are digested")]
+    hosts: Annotated[str, _setting("", "names that it answers to beside 127.0.0.1, with commas between")]
+    proxies: Annotated[str, _setting("", "addresses of proxies before it that are trusted, with commas between")]
+    secret: Annotated[str, _setting("", "at least 32 characters, by which keys are digested")]
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
     workers: Annotated[
         int,
