@@ -13,6 +13,7 @@ from treestroke.service.execution import one_thread
 from treestroke.store.database import Database
 from treestroke.store.scope import LOCAL
 
+pytest_plugins = ["tests.bucket"]
 EXAMPLES = Path(__file__).parents[1] / "examples"
 DATA = Path(__file__).parent / "data"
 
@@ -20,7 +21,7 @@ FIRST = ("tests/api/test_events.py", "tests/faults/", "tests/test_installed.py",
 """What takes longest from its beginning to its end, mostly by waiting: the tests of one service, one after another."""
 
 NO_SHARED_SERVICE = tuple(
-    f"tests/api/test_{name}.py" for name in ("schemathesis", "connections", "following", "limits")
+    f"tests/api/test_{name}.py" for name in ("schemathesis", "connections", "following", "limits", "bucket")
 )
 
 

@@ -32,7 +32,7 @@ def scans(steps: list[str]) -> list[str]:
         "photos",
         "files",
         "replays",
-        "strays",
+        "blobs",
         "workers",
         "captures",
         "capture_photos",

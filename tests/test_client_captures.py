@@ -11,9 +11,6 @@ from tests.running import serving
 from treestroke.capture_schemas import CaptureInfo
 from treestroke.client import Client, ServiceError
 from treestroke.codec.image import encode_png
-from treestroke.store.blobs import Blobs
-from treestroke.store.database import Database
-from treestroke.store.scope import LOCAL
 from treestroke.wire_strokes import CaptureStrokes
 
 PATIENCE_SECONDS = 600
@@ -46,7 +43,7 @@ def capture(client: Client, data: Path, folder: Path) -> CaptureInfo:
     """A solved capture of that tree."""
     made = client.make_capture("Oak")
     client.add_photos(made, folder)
-    walked_capture.write_structure(Database(data).of(LOCAL), Blobs(data), made.id, walked_capture.structure())
+    walked_capture.write_structure_in(data, made.id, walked_capture.structure())
     return client.capture(made)
 
 

@@ -13,7 +13,6 @@ from tests.running import serving
 
 from treestroke.cli import main
 from treestroke.serve import Child
-from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 
 
@@ -87,7 +86,9 @@ def test_a_lost_database_is_one_line_and_nothing_is_started_or_made(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], command: str
 ) -> None:
     tmp_path.chmod(0o700)
-    Blobs(tmp_path).put(b"tree")
+    blob = tmp_path / "blobs" / "ab" / f"ab{62 * '0'}"
+    blob.parent.mkdir(parents=True)
+    blob.write_bytes(b"tree")
     before = sorted(tmp_path.rglob("*"))
     assert main([command, "--data", str(tmp_path), *(["--port", "0"] if command == "serve" else [])]) == 1
     told = capfd.readouterr()

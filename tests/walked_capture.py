@@ -2,6 +2,7 @@
 
 import json
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,9 @@ from treestroke.core.strokes import CameraDistance, CaptureStrokes
 from treestroke.service import captures
 from treestroke.service.engine_version import engine_version
 from treestroke.service.photos import Resources
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.database import Database
+from treestroke.store.scope import LOCAL
 
 COUNT = 8
 UNUSED = "copy.png"
@@ -71,6 +73,12 @@ def write_structure(database: Database, blobs: Blobs, id: str, found: Structure)
     known = {"status": "succeeded", "fingerprint": captures.fingerprint(photos), "engine": engine_version()}
     add_solve(database, id, structure=blob, **known)
     return blob
+
+
+def write_structure_in(data: Path, id: str, found: Structure) -> str:
+    """Write what was found of a capture's photos to the data folder of a service; give its blob."""
+    database = Database(data).of(LOCAL)
+    return write_structure(database, open_blobs(database, data).of(LOCAL), id, found)
 
 
 def request(capture: str, **others: Any) -> dict[str, Any]:

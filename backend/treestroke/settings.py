@@ -1,6 +1,7 @@
 """Settings of the service, read once from environment variables."""
 
 import os
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,7 @@ _POSTGRES = ("postgresql://", "postgres://")
 CLIENT_VARIABLES = ("TREESTROKE_KEY",)
 """Variables with the same prefix that are not the service's but its clients'."""
 _SECRET_CHARACTERS = 32
+_BUCKET = re.compile(r"s3://[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/[\w.=-]+)*/?")
 PHOTO_MB, PHOTOS_MB = 120, 20_000
 
 
@@ -34,6 +36,7 @@ class Settings(BaseSettings):
     proxies: Annotated[str, _setting("", "addresses of proxies before it that are trusted, with commas between")]
     secret: Annotated[str, _setting("", "at least 32 characters, by which keys are digested")]
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
+    bucket_url: Annotated[str, _setting("", "a bucket for the files (s3://BUCKET/PREFIX); empty: the data folder")]
     workers: Annotated[
         int,
         _setting(1, "jobs that a worker does at once; 0: `treestroke serve` starts no worker", ge=0, le=256),
@@ -127,6 +130,11 @@ def read_settings(**flags: object) -> Settings:
         raise SettingsError(
             f"{_variable('database_url')}: only Postgres is supported; give postgresql://USER:PASSWORD@HOST:PORT/NAME, "
             "or leave it out"
+        )
+    if settings.bucket_url and not _BUCKET.fullmatch(settings.bucket_url):
+        raise SettingsError(
+            f"{_variable('bucket_url')}: {shown(settings.bucket_url)} names no bucket; give s3://BUCKET/PREFIX, or "
+            "leave it out"
         )
     return settings
 

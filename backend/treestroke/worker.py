@@ -31,7 +31,7 @@ from treestroke.service.jobs import grow_model
 from treestroke.service.solving import solve_capture
 from treestroke.service.tracing_pool import limit_memory
 from treestroke.settings import Settings, read_settings
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.data_folder import prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.leases import AnyJob, end, take_back
@@ -43,6 +43,8 @@ NICENESS = 10
 _HEARTBEAT_SECONDS = 2.0
 _TABLES_SECONDS = 60.0
 """Time that the web process has to make the database's tables."""
+_PATIENCE_SECONDS = 120.0
+"""Time that a job waits for the place of the blobs to come back, while its lease is held."""
 _POLL_SECONDS = 0.2
 _IDLE_POLLS = 2
 """A worker that is told to stop ends after finding no running job this often: a child may be about to claim one."""
@@ -158,7 +160,7 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
         kill_with_parent(parent)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
-        stores[:] = [(Database(settings.folder, settings.database_url).of(SERVICE), Blobs(settings.folder))]
+        stores[:] = [_stores(settings)]
 
     class JobRequest(Request):
         """Records in the database, from the parent process, how a child was killed."""
@@ -197,6 +199,12 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
     for task in (Grow(), Solve()):
         app.register_task(task)
     return app
+
+
+def _stores(settings: Settings) -> tuple[Database, Blobs]:
+    """Return the database and the blobs of all teams, for the process that calls this alone."""
+    database = Database(settings.folder, settings.database_url).of(SERVICE)
+    return database, open_blobs(database, settings.folder, settings.bucket_url, _PATIENCE_SECONDS)
 
 
 def _record_end(database: Database, token: str, code: str) -> None:

@@ -17,14 +17,11 @@ from tests.api.test_events import events
 from tests.engines.rendered_set import SIZE, photos_of, ring
 from tests.faults.processes import wait_for
 from tests.structures import small_structure
-from tests.walked_capture import write_structure
+from tests.walked_capture import write_structure_in
 
 from treestroke.codec.image import encode_png
 from treestroke.codec.project import read_project
 from treestroke.codec.structure import encode_structure
-from treestroke.store.blobs import Blobs
-from treestroke.store.database import Database
-from treestroke.store.scope import LOCAL
 
 
 def made(client: httpx.Client, seeds: Sequence[int] = (), **body: Any) -> str:
@@ -220,7 +217,7 @@ def test_cameras_are_told_in_pixels_of_the_photos(service: Service) -> None:
     """Photos are solved smaller than they are; here in pictures of 64 by 48 px."""
     place = made(service.client, range(70, 75))
     found = small_structure([f"{seed}.png" for seed in range(70, 75)], [])
-    write_structure(Database(service.data).of(LOCAL), Blobs(service.data), place.rpartition("/")[2], found)
+    write_structure_in(service.data, place.rpartition("/")[2], found)
     capture = service.client.get(place).json()
     assert capture["status"] == "solved"
     scale = drawn.WIDTH / 64
@@ -238,7 +235,7 @@ def tree_walk(service: Service) -> str:
     for name, shot in zip(walked_capture.names(), walked_capture.shots(), strict=True):
         assert add(service.client, place, name, encode_png(shot.picture)).status_code == 201
     id = place.rpartition("/")[2]
-    write_structure(Database(service.data).of(LOCAL), Blobs(service.data), id, walked_capture.structure())
+    write_structure_in(service.data, id, walked_capture.structure())
     return id
 
 

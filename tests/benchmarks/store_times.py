@@ -26,7 +26,7 @@ from treestroke.service.photos import Resources
 from treestroke.service.retention import Sweeper
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.store import queries
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
 from treestroke.store.scope import LOCAL
 from treestroke.store.tables import ModelRow
@@ -155,8 +155,9 @@ def main() -> int:
         with tempfile.TemporaryDirectory() as folder:
             database = Database(Path(folder)).of(LOCAL)
             database.migrate()
+            blobs = open_blobs(database, Path(folder)).of(LOCAL)
             fill(database.path, count)
-            resources = Resources(database, Blobs(Path(folder)), tracers, tracers, tracers, Uploads(Path(folder)))
+            resources = Resources(database, blobs, tracers, tracers, tracers, Uploads(Path(folder)))
             sys.stdout.write(f"{count} models, {database.path.stat().st_size / 1e6:.0f} MB\n")
             answer(database, count)
             short &= ask(resources)

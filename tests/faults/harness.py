@@ -25,7 +25,7 @@ from tests.faults.processes import Process, end_sessions, processes, wait_for
 from tests.running import FAR_LIMITS
 
 from treestroke.service.retention import Sweeper
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import TERMINAL
 from treestroke.store.queries import referenced
@@ -337,12 +337,12 @@ class Service:
             assert set(files) <= {"growth.json"}
 
     def _check_folder(self) -> None:
-        database, blobs = Database(self.data).of(LOCAL), Blobs(self.data)
-        sweeper = Sweeper(database, blobs, 0, threading.Event())
+        database = Database(self.data).of(LOCAL)
+        sweeper = Sweeper(database, open_blobs(database, self.data), 0, threading.Event())
         for _ in range(2):  # what no row names is to be seen twice
-            sweeper.sweep(stray_s=0)
+            sweeper.sweep(unreferenced_s=0)
         with database.reading() as session:
-            assert {path.name for path in blobs.folder.rglob("*") if path.is_file()} == referenced(session)
+            assert {path.name for path in (self.data / "blobs").rglob("*") if path.is_file()} == referenced(session)
         database.close()
         temporary = [path.name for path in self.data.rglob(".*")]
         assert temporary == []

@@ -7,7 +7,7 @@ import pytest
 from tests.rows import add_model
 
 from treestroke.service.dispatch import Dispatcher, record_heartbeat
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import Holder, claim
 from treestroke.store.tables import ModelRow, Worker
@@ -23,7 +23,7 @@ def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
     with database.writing() as session:
         assert claim(session, ModelRow, queued.id, Holder("token", "worker", "engine")) is not None
     record_heartbeat(database, "worker", 1)
-    dispatcher = Dispatcher(database, Blobs(tmp_path), lambda task, id: None, 0)
+    dispatcher = Dispatcher(database, open_blobs(database, tmp_path), lambda task, id: None, 0)
     real = time.time
     for shift in (0.0, jump, 0.0):
         monkeypatch.setattr(time, "time", lambda shift=shift: real() + shift)

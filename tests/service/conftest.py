@@ -6,9 +6,10 @@ from tests.running import FAR_LIMITS
 
 from treestroke.service.photos import Resources
 from treestroke.service.tracing_pool import TracingPool
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
-from treestroke.store.uploads import Uploads
+from treestroke.store.scope import LOCAL
+from treestroke.store.upload_pieces import open_uploads
 
 
 @pytest.fixture(scope="module")
@@ -20,4 +21,6 @@ def tracers() -> Iterator[TracingPool]:
 
 @pytest.fixture
 def resources(tmp_path: Path, database: Database, tracers: TracingPool) -> Resources:
-    return Resources(database, Blobs(tmp_path), tracers, tracers, tracers, Uploads(tmp_path))
+    blobs = open_blobs(database, tmp_path)
+    made = Resources(database, blobs, tracers, tracers, tracers, open_uploads(database, blobs))
+    return made.of(LOCAL)

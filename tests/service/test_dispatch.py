@@ -19,7 +19,7 @@ from treestroke.service.dispatch import (
     remove_worker,
 )
 from treestroke.service.failures import problem_of
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
 from treestroke.store.tables import SolveRow, Worker
 
@@ -60,7 +60,7 @@ def sent() -> list[str]:
 
 @pytest.fixture
 def dispatcher(database: Database, sent: list[str]) -> Iterator[Dispatcher]:
-    made = Dispatcher(database, Blobs(database.path.parent), lambda task, id: sent.append(id), 0)
+    made = Dispatcher(database, open_blobs(database, database.path.parent), lambda task, id: sent.append(id), 0)
     yield made
     made.stop()
 
@@ -80,7 +80,9 @@ def test_a_row_that_cannot_be_read_keeps_no_other_job_from_its_worker(
 
 def test_kinds_of_jobs_take_turns_and_each_is_sent_by_its_task(database: Database) -> None:
     told: list[tuple[str, str]] = []
-    dispatcher = Dispatcher(database, Blobs(database.path.parent), lambda *message: told.append(message), 0)
+    dispatcher = Dispatcher(
+        database, open_blobs(database, database.path.parent), lambda *message: told.append(message), 0
+    )
     models = [add_model(database).id for _ in range(5)]
     solves = [add_solve(database, add_capture(database).id).id for _ in range(2)]
     record_heartbeat(database, "worker", 3)

@@ -23,7 +23,7 @@ from treestroke.service.doctor import Finding, examine, examine_deployment, exam
 from treestroke.service.photos import Resources
 from treestroke.service.readiness import readiness
 from treestroke.settings import Settings, read_settings
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
 from treestroke.store.scope import LOCAL
 from treestroke.store.tables import PhotoRow
@@ -36,7 +36,7 @@ def folder(tmp_path: Path) -> Path:
     place.mkdir(0o700)
     database = Database(place).of(LOCAL)
     database.migrate()
-    blob = Blobs(place).put(b"photo")
+    blob = open_blobs(database, place).of(LOCAL).put(b"photo")
     with database.writing() as session:
         session.add(PhotoRow(id="pho_1", sha256="0" * 64, width=64, height=64, blob=blob, created=0.0))
     database.close()

@@ -80,7 +80,14 @@ def test_a_mistake_in_a_query_is_ours(tmp_path: Path) -> None:
 
 
 def test_every_failure_says_what_to_do_in_one_line() -> None:
-    for code in ("storage_full", "file_missing", "too_many_files", "database_busy", "worker_lost"):
+    for code in (
+        "storage_unavailable",
+        "storage_full",
+        "file_missing",
+        "too_many_files",
+        "database_busy",
+        "worker_lost",
+    ):
         told = problem_of(code)
         assert told["code"] == code
         assert told["detail"].endswith(".")

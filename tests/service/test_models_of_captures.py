@@ -42,7 +42,7 @@ def capture(resources: Resources) -> str:
 
 @pytest.fixture
 def projects(resources: Resources) -> Iterator[Projects]:
-    made = Projects(resources.blobs.folder.parent, resources.blobs)
+    made = Projects(resources.blobs, resources.tracers)
     yield made
     made.close()
 
@@ -60,7 +60,7 @@ def grown(resources: Resources, model: StoredModel) -> StoredModel:
 
 def test_a_model_shares_the_files_of_its_capture(resources: Resources, capture: str) -> None:
     stored = captures.find_capture(resources.database, capture)
-    blobs_before = sum(path.is_file() for path in resources.blobs.folder.rglob("*"))
+    blobs_before = sum(path.is_file() for path in (resources.blobs.data / "blobs").rglob("*"))
     model = ask(resources, **request(capture, name="Around"))
     assert set(model.parts) == {*(f"photos/{name}" for name in [*names(), UNUSED]), "views", "structure"}
     assert {f"photos/{photo.name}": photo.blob for photo in stored.photos}.items() <= {
@@ -68,7 +68,9 @@ def test_a_model_shares_the_files_of_its_capture(resources: Resources, capture: 
     }.items()
     assert stored.solve is not None
     assert model.parts["structure"].blob == stored.solve.structure
-    assert sum(path.is_file() for path in resources.blobs.folder.rglob("*")) == blobs_before + 1  # the strokes
+    assert (
+        sum(path.is_file() for path in (resources.blobs.data / "blobs").rglob("*")) == blobs_before + 1
+    )  # the strokes
     assert (model.row.capture, model.row.photo, model.row.name) == (capture, None, "Around")
     assert list(model.drawings) == ["views.json"]
     assert list(ask(resources, **request(capture, edits=[])).drawings) == ["views.json"]

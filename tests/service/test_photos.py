@@ -27,7 +27,7 @@ def test_a_photo_that_cannot_be_used_leaves_nothing(resources: Resources) -> Non
     with pytest.raises(PhotoError):
         photos.add_photo(resources, b"no photo")
     assert count(resources, PhotoRow) == 0
-    assert not resources.blobs.folder.exists()
+    assert not (resources.blobs.data / "blobs").exists()
 
 
 def test_the_same_photo_twice_is_two_photos_and_one_file(resources: Resources) -> None:
@@ -74,4 +74,4 @@ def test_no_photo_is_taken_beyond_what_all_may_take(resources: Resources) -> Non
         with pytest.raises(NoRoom):
             take(tight, drawn.encoded(seed=1))
     assert count(resources, PhotoRow) == 1
-    assert sum(path.is_file() for path in resources.blobs.folder.rglob("*")) == 1
+    assert sum(path.is_file() for path in (resources.blobs.data / "blobs").rglob("*")) == 1

@@ -25,7 +25,7 @@ SECONDS = 300
 
 @pytest.fixture
 def projects(resources: Resources) -> Iterator[Projects]:
-    made = Projects(resources.blobs.folder.parent, resources.blobs)
+    made = Projects(resources.blobs, resources.tracers)
     yield made
     made.close()
 
@@ -109,7 +109,7 @@ def test_what_is_gone_changed_or_failed_is_packed_anew(resources: Resources, pro
     blob.rename(blob.with_suffix(".away"))
     with pytest.raises(Damaged):
         packed(projects, model)
-    assert list((resources.blobs.folder.parent / "projects").iterdir()) == []
+    assert list((resources.blobs.data / "projects").iterdir()) == []
     blob.with_suffix(".away").rename(blob)
     made = packed(projects, model)
     for harm in (made.path.unlink, lambda: made.path.write_bytes(b"")):
@@ -121,7 +121,7 @@ def test_what_is_gone_changed_or_failed_is_packed_anew(resources: Resources, pro
 
 def test_what_is_kept_goes_at_the_next_start(resources: Resources, projects: Projects) -> None:
     made = packed(projects, model_of(resources, b"photo"))
-    Projects(resources.blobs.folder.parent, resources.blobs).close()
+    Projects(resources.blobs, resources.tracers).close()
     assert not made.path.exists()
 
 

@@ -1,3 +1,4 @@
+import hashlib
 import threading
 import time
 from collections.abc import Iterator
@@ -6,7 +7,7 @@ from dataclasses import fields
 from pathlib import Path
 
 import pytest
-from sqlalchemy import func, select, update
+from sqlalchemy import delete, func, select, update
 from sqlalchemy.orm import Session
 from tests.plans import planned, scans
 from tests.rows import add_capture, add_model, add_solve
@@ -14,12 +15,15 @@ from tests.rows import add_capture, add_model, add_solve
 from treestroke.service import captures, retention, stored_models
 from treestroke.service.photos import NotFound
 from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
-from treestroke.store.blobs import Blobs
+from treestroke.service.unreferenced import BlobSweeper
+from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
+from treestroke.store.objects import Damaged, FolderObjects, StorageAway
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.queries import referenced
-from treestroke.store.scope import LOCAL, SERVICE
+from treestroke.store.scope import LOCAL, SERVICE, Scope
 from treestroke.store.tables import (
+    BlobRow,
     CapturePhoto,
     CaptureRow,
     ClipRow,
@@ -28,11 +32,10 @@ from treestroke.store.tables import (
     PhotoRow,
     Replay,
     SolveRow,
-    Stray,
     Table,
     UploadRow,
 )
-from treestroke.store.uploads import Uploads
+from treestroke.store.upload_pieces import open_uploads
 
 HOUR, DAY = 3600.0, 86_400.0
 NOTHING = Swept(0, 0, 0, 0, 0, 0)
@@ -53,15 +56,17 @@ class Clocks:
 class Kept:
     """A store whose process sweeps it now and then."""
 
-    def __init__(self, folder: Path, clocks: Clocks) -> None:
-        self.database, self.blobs, self.clocks = Database(folder).of(LOCAL), Blobs(folder), clocks
-        self.uploads = Uploads(folder)
+    def __init__(self, folder: Path, clocks: Clocks, bucket_url: str = "") -> None:
+        self.database, self.clocks = Database(folder).of(LOCAL), clocks
         self.database.migrate()
+        self.blobs = open_blobs(self.database, folder, bucket_url).of(LOCAL)
+        self.uploads = open_uploads(self.database, self.blobs).of(LOCAL)
         self.restart()
 
     def restart(self, keep_days: float = 0) -> None:
         clocks = self.clocks
-        self._sweeper = Sweeper(self.database, self.blobs, keep_days, threading.Event(), lambda: clocks.running)
+        service, over = self.database.of(SERVICE), threading.Event()
+        self._sweeper = Sweeper(service, self.blobs.of(SERVICE), keep_days, over, lambda: clocks.running)
 
     def sweep(self) -> Swept:
         return self._sweeper.sweep()
@@ -110,7 +115,7 @@ class Kept:
             return session.scalar(select(func.count()).select_from(table)) or 0
 
     def files(self) -> set[str]:
-        return {path.name for _, paths in self.blobs.places() for path in paths}
+        return {name for _, sizes in self.blobs.objects.pages() for name in sizes}
 
     def named(self) -> set[str]:
         with self.database.reading() as session:
@@ -124,23 +129,37 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
     opened.database.close()
 
 
-def test_what_is_not_deleted_stays(kept: Kept) -> None:
-    kept.model()
-    kept.photo("pho_1")
-    assert kept.sweep_for(30 * HOUR) == NOTHING
-    assert (kept.count(ModelRow), kept.count(PhotoRow), kept.count(File)) == (1, 1, 1)
+@pytest.fixture(params=["folder", "bucket"])
+def anywhere(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
+    """A store whose blobs are in a folder, or in a bucket."""
+    url = request.getfixturevalue("bucket_url") if request.param == "bucket" else ""
+    opened = Kept(tmp_path, Clocks(monkeypatch), url)
+    yield opened
+    opened.database.close()
 
 
-def test_a_deleted_model_goes_with_its_files_after_a_day(kept: Kept) -> None:
-    row = kept.model()
-    kept.delete(row)
-    assert kept.sweep_for(23 * HOUR) == NOTHING
-    assert stored_models.restore(kept.database, row.id).files["tree.glb"]
-    kept.delete(row)
-    assert kept.sweep_for(26 * HOUR) == Swept(1, 0, 0, 0, 0, 3)
-    assert (kept.count(ModelRow), kept.count(File), kept.count(Stray), kept.files()) == (0, 0, 0, set())
+def test_what_is_not_deleted_stays(anywhere: Kept) -> None:
+    anywhere.model()
+    anywhere.photo("pho_1")
+    assert anywhere.sweep_for(30 * HOUR) == NOTHING
+    assert (anywhere.count(ModelRow), anywhere.count(PhotoRow), anywhere.count(File)) == (1, 1, 1)
+
+
+def test_a_deleted_model_goes_with_its_files_after_a_day(anywhere: Kept) -> None:
+    row = anywhere.model()
+    anywhere.delete(row)
+    assert anywhere.sweep_for(23 * HOUR) == NOTHING
+    assert stored_models.restore(anywhere.database, row.id).files["tree.glb"]
+    anywhere.delete(row)
+    assert anywhere.sweep_for(26 * HOUR) == Swept(1, 0, 0, 0, 0, 3)
+    assert (anywhere.count(ModelRow), anywhere.count(File), anywhere.count(BlobRow), anywhere.files()) == (
+        0,
+        0,
+        0,
+        set(),
+    )
     with pytest.raises(NotFound):
-        stored_models.restore(kept.database, row.id)
+        stored_models.restore(anywhere.database, row.id)
 
 
 @pytest.mark.parametrize("jump", [25 * HOUR, -25 * HOUR, 400 * DAY])
@@ -209,15 +228,15 @@ def test_what_a_model_is_made_of_stays_as_long_as_it_does(kept: Kept, part: str)
     assert not kept.blobs.path(blob).exists()
 
 
-def test_a_file_that_two_models_share_stays_with_the_other(kept: Kept) -> None:
-    gone, stays = kept.model(), kept.model()
-    with kept.database.writing() as session:
+def test_a_file_that_two_models_share_stays_with_the_other(anywhere: Kept) -> None:
+    gone, stays = anywhere.model(), anywhere.model()
+    with anywhere.database.writing() as session:
         shared = session.get_one(File, (gone.id, "tree.glb")).blob
         session.get_one(File, (stays.id, "tree.glb")).blob = shared
-    kept.delete(gone)
-    kept.sweep_for(26 * HOUR)
-    assert kept.blobs.path(shared).exists()
-    assert shared in kept.named() == kept.files()
+    anywhere.delete(gone)
+    anywhere.sweep_for(26 * HOUR)
+    assert anywhere.blobs.path(shared).exists()
+    assert shared in anywhere.named() == anywhere.files()
 
 
 def test_a_deleted_photo_goes_after_a_day_and_its_models_keep_their_copy(kept: Kept) -> None:
@@ -286,32 +305,76 @@ def test_a_file_that_no_row_names_goes_an_hour_after_it_was_seen(kept: Kept) -> 
     assert kept.files() == {name}
     kept.clocks.pass_(HOUR)
     assert kept.sweep().blobs == 1
-    assert (kept.files(), kept.count(Stray)) == (set(), 0)
+    assert (kept.files(), kept.count(BlobRow)) == (set(), 0)
 
 
-def test_a_stray_that_a_row_names_at_the_last_moment_stays(kept: Kept, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("wanted", ["named", "stored again"])
+def test_a_blob_that_is_wanted_at_the_last_moment_stays(
+    anywhere: Kept, monkeypatch: pytest.MonkeyPatch, wanted: str
+) -> None:
+    name = anywhere.blobs.put(b"strokes")
+    anywhere.sweep()
+    anywhere.clocks.pass_(HOUR)
+    remove, asked = BlobSweeper._remove, list[str]()
+
+    def late(sweeper: BlobSweeper, team: str, names: list[str], before: float) -> int:
+        asked.extend(names)
+        if wanted == "named":
+            add_model(anywhere.database, {"strokes": name})
+        else:
+            anywhere.blobs.put(b"strokes")
+        return remove(sweeper, team, names, before)
+
+    monkeypatch.setattr(BlobSweeper, "_remove", late)
+    assert anywhere.sweep().blobs == 0
+    assert asked == [name]
+    assert anywhere.blobs.get(name) == b"strokes"
+
+
+def test_an_object_without_a_row_and_a_row_without_an_object_go_after_an_hour(anywhere: Kept) -> None:
+    lost, bare = anywhere.blobs.put(b"lost"), hashlib.sha256(b"bare").hexdigest()
+    anywhere.blobs.objects.remove("local", [lost])
+    anywhere.blobs.objects.put("local", bare, b"bare")
+    anywhere.blobs.objects.put("team_oaks", bare, b"bare")
+    assert anywhere.sweep_for(HOUR) == Swept(0, 0, 0, 0, 0, 3)
+    assert (anywhere.files(), anywhere.count(BlobRow)) == (set(), 0)
+
+
+def test_an_object_whose_row_was_lost_stays_where_another_row_names_it(anywhere: Kept) -> None:
+    row = anywhere.photo("pho_1")
+    with anywhere.database.writing() as session:
+        session.execute(delete(BlobRow))
+    assert anywhere.sweep_for(3 * HOUR) == NOTHING
+    assert anywhere.blobs.get(row.blob)
+    assert anywhere.count(BlobRow) == 1
+
+
+def test_a_team_keeps_its_blob_while_another_removes_the_same(anywhere: Kept) -> None:
+    row, oaks = anywhere.photo("pho_1"), Scope("team_oaks", "usr_ada")
+    anywhere.blobs.of(oaks).put(b"pho_1")
+    assert anywhere.sweep_for(2 * HOUR).blobs == 1
+    assert anywhere.blobs.get(row.blob)
+    with pytest.raises(Damaged):
+        anywhere.blobs.of(oaks).get(row.blob)
+
+
+def test_a_bucket_that_is_away_ends_a_sweep_that_has_removed_nothing(
+    kept: Kept, monkeypatch: pytest.MonkeyPatch
+) -> None:
     name = kept.blobs.put(b"strokes")
     kept.sweep()
     kept.clocks.pass_(HOUR)
-    remove = kept.blobs.remove
-    asked = []
 
-    def seen(path: Path, state: str) -> bool:
-        asked.append(path)
-        return remove(path, state)
+    def away(*_: object) -> None:
+        raise StorageAway("away")
 
-    states = retention._states
-
-    def named_meanwhile(paths: Iterator[Path]) -> dict[Path, str]:
-        found = states(paths)
-        add_model(kept.database, {"strokes": name})
-        return found
-
-    monkeypatch.setattr(kept.blobs, "remove", seen)
-    monkeypatch.setattr(retention, "_states", named_meanwhile)
-    assert kept.sweep().blobs == 0
-    assert asked == []
+    with monkeypatch.context() as patched:
+        patched.setattr(FolderObjects, "remove", away)
+        with pytest.raises(StorageAway):
+            kept.sweep()
+    assert kept.count(BlobRow) == 1
     assert kept.blobs.get(name) == b"strokes"
+    assert kept.sweep().blobs == 1
 
 
 def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -10,7 +10,6 @@ from treestroke.codec.strokes import strokes_from
 from treestroke.core.errors import PhotoError, StrokesError, TreestrokeError
 from treestroke.service import tracer
 from treestroke.service.model_request import Drawing
-from treestroke.store.blobs import Blobs
 
 MB = 10**6
 STROKES = strokes_from(drawn.STROKES)
@@ -19,10 +18,15 @@ FRONT, SIDE = (sketch_from(sketch) for sketch in (sketched.FRONT, sketched.SIDE)
 
 @pytest.fixture
 def photo(tmp_path: Path) -> Path:
-    kept = tracer.keep_photo(tmp_path, drawn.encoded(), MB, MB)
-    assert (kept["width"], kept["height"], kept["warnings"]) == (drawn.WIDTH, drawn.HEIGHT, [])
-    assert Blobs(tmp_path).path(kept["blob"]).stat().st_size == kept["bytes"]
-    return Blobs(tmp_path).path(kept["blob"])
+    return written(tmp_path, drawn.encoded())
+
+
+def written(folder: Path, content: bytes) -> Path:
+    """Have a photo read, and give its file the name of a blob."""
+    told = tracer.read_photo(folder / "photo", content, MB, MB)
+    assert (told["width"], told["height"], told["warnings"]) == (drawn.WIDTH, drawn.HEIGHT, [])
+    assert (folder / "photo").stat().st_size == told["bytes"]
+    return (folder / "photo").rename(folder / told["blob"])
 
 
 @pytest.mark.parametrize(
@@ -32,7 +36,7 @@ def test_a_photo_that_takes_too_much_is_not_written(
     tmp_path: Path, most: int, room: int, refusal: type[Exception]
 ) -> None:
     with pytest.raises(refusal):
-        tracer.keep_photo(tmp_path, drawn.encoded(), most, room)
+        tracer.read_photo(tmp_path / "photo", drawn.encoded(), most, room)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -51,8 +55,7 @@ def test_one_more_stroke_is_answered_from_what_is_known(photo: Path, monkeypatch
 def test_the_photos_that_were_used_longest_ago_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tracer, "_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT)
     monkeypatch.setattr(tracer, "_known", type(tracer._known)())
-    blobs = [tracer.keep_photo(tmp_path, drawn.encoded(seed=seed), MB, MB)["blob"] for seed in range(3)]
-    photos = [Blobs(tmp_path).path(blob) for blob in blobs]
+    photos = [written(tmp_path, drawn.encoded(seed=seed)) for seed in range(3)]
     for at in (0, 1, 0, 2):
         tracer.check_drawing(photos[at], Drawing(STROKES, {}))
     assert list(tracer._known) == [photos[0], photos[2]]

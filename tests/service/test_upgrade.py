@@ -17,8 +17,9 @@ from treestroke.service.doctor import examine_deployment
 from treestroke.service.jobs import grow_model
 from treestroke.service.projects import Projects
 from treestroke.service.retention import Sweeper
+from treestroke.service.tracing_pool import TracingPool
 from treestroke.settings import read_settings
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import referenced
 from treestroke.store.scope import LOCAL
@@ -56,7 +57,9 @@ def upgraded(old_folder: Path) -> Iterator[Upgraded]:
     database = Database(old_folder).of(LOCAL)
     database.migrate()
     assert database.current()
-    yield Upgraded(database, Blobs(old_folder), json.loads((old_folder / "told.json").read_text()))
+    yield Upgraded(
+        database, open_blobs(database, old_folder).of(LOCAL), json.loads((old_folder / "told.json").read_text())
+    )
     database.close()
 
 
@@ -70,8 +73,8 @@ def test_all_models_are_listed_and_found_with_their_parts_and_files(upgraded: Up
         assert {file.name: file.blob for file in model.files.values()} == told["files"]
 
 
-def test_project_files_have_the_same_bytes(upgraded: Upgraded) -> None:
-    projects = Projects(upgraded.blobs.folder.parent, upgraded.blobs)
+def test_project_files_have_the_same_bytes(upgraded: Upgraded, tracers: TracingPool) -> None:
+    projects = Projects(upgraded.blobs, tracers)
     for name, told in upgraded.told.items():
         assert projects.pack(upgraded.model(name)).result(30).sha256 == told["project"]
     projects.close()
@@ -93,7 +96,7 @@ def test_a_deleted_model_is_restored_and_nothing_that_is_referred_to_is_swept(up
         clock[0] += 13 * 3600.0
     with upgraded.database.reading() as session:
         kept = referenced(session)
-    assert {path.name for _, paths in upgraded.blobs.places() for path in paths} == kept
+    assert {name for _, names in upgraded.blobs.objects.pages() for name in names} == kept
     assert all(part.blob in kept for name in PARTS for part in upgraded.model(name).parts.values())
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.data_folder import DataFolderError, is_open_to_others, prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.scope import LOCAL
@@ -26,8 +26,8 @@ def test_a_new_folder_and_all_that_is_put_there_are_this_user_s_alone(tmp_path: 
     prepare_folder(folder)
     database = Database(folder).of(LOCAL)
     database.migrate()
+    open_blobs(database, folder).of(LOCAL).put(b"tree")
     database.close()
-    Blobs(folder).put(b"tree")
     assert {path for path in (folder, *folder.rglob("*")) if is_open_to_others(path)} == set()
 
 

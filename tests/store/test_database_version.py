@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from alembic.script import ScriptDirectory
 
-from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import DataFolderError, check_version, known_revisions
 from treestroke.store.database import Database, _migrations
+from treestroke.store.objects import FolderObjects
 from treestroke.store.scope import LOCAL
 
 
@@ -34,14 +34,13 @@ def test_a_database_that_is_lost_or_empty_beside_files_is_refused(tmp_path: Path
         with closing(sqlite3.connect(tmp_path / "treestroke.sqlite3")) as bare:
             bare.execute(left)
         (tmp_path / "treestroke.sqlite3").touch()
-    blobs = Blobs(tmp_path)
     check_version(tmp_path)  # no file yet
-    blobs.put(b"tree")
+    FolderObjects(tmp_path).put("local", "ab" * 32, b"tree")
     with pytest.raises(
         DataFolderError, match=r"lost or empty.*; restore it from a copy, or move the folder 'blobs' away"
     ):
         check_version(tmp_path)
-    blobs.folder.rename(tmp_path / "kept")
+    (tmp_path / "blobs").rename(tmp_path / "kept")
     check_version(tmp_path)
 
 

@@ -16,13 +16,12 @@ from treestroke.store.tables import (
     PhotoRow,
     Replay,
     StoreClock,
-    Stray,
     Table,
     Worker,
 )
 
 OAKS, ELMS = Scope("oaks", "usr_ann"), Scope("elms", "usr_ben")
-SHARED = {Worker, StoreClock, Stray}
+SHARED = {Worker, StoreClock}
 """Tables of the service itself, whose rows tell nothing about a team's trees."""
 
 

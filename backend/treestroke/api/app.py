@@ -41,14 +41,14 @@ from treestroke.schemas import Problem
 from treestroke.service.accounts import Accounts
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
-from treestroke.service.projects import Projects
+from treestroke.service.projects import AT_ONCE, Projects
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.settings import Settings
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.data_folder import prepare_folder
 from treestroke.store.database import Database
 from treestroke.store.scope import SERVICE
-from treestroke.store.uploads import Uploads
+from treestroke.store.upload_pieces import open_uploads
 from treestroke.wire_accounts import KeyRequest, MemberChange, MemberRequest, SignIn, TeamChange
 from treestroke.wire_edits import Edits
 from treestroke.wire_requests import (
@@ -131,9 +131,10 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
     prepare_folder(settings.folder)
-    database, blobs = Database(settings.folder, settings.database_url), Blobs(settings.folder)
+    database = Database(settings.folder, settings.database_url)
     database.check()
     database.migrate()
+    blobs = open_blobs(database, settings.folder, settings.bucket_url)
     tracers = TracingPool(settings.tracers, settings.trace_seconds, settings.memory_mb)
     capture_tracers = TracingPool(1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING)
     clip_tracers = TracingPool(CLIP_TRACERS, settings.capture_trace_seconds, settings.memory_mb, CLIPS_WAITING)
@@ -142,10 +143,11 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     )
     limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
     app.state.resources = Resources(
-        database, blobs, tracers, capture_tracers, clip_tracers, Uploads(settings.folder), *limits
+        database, blobs, tracers, capture_tracers, clip_tracers, open_uploads(database, blobs), *limits
     )
     app.state.accounts = Accounts.of(database, settings.secret)
-    app.state.projects = Projects(settings.folder, blobs)
+    packers = TracingPool(AT_ONCE, settings.capture_trace_seconds, settings.memory_mb)
+    app.state.projects = Projects(blobs, packers)
     app.state.dispatcher = dispatcher
     tracers.start()
     app.state.watcher = Watcher(database.of(SERVICE), app.state.places)
@@ -154,6 +156,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
     finally:
         dispatcher.stop()
+        packers.close()
         app.state.projects.close()
         tracers.close()
         capture_tracers.close()

@@ -25,7 +25,7 @@ from treestroke.service.photos import NotFound
 from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
-from treestroke.store.blobs import Damaged
+from treestroke.store.objects import Damaged
 from treestroke.store.uploads import Superseded, WrongOffset
 
 MEDIA_TYPE = "application/problem+json"
@@ -74,6 +74,7 @@ _STATUS = {
     "storage_full": 507,
     "storage_read_only": 500,
     "storage_broken": 500,
+    "storage_unavailable": 503,
     "file_missing": 500,
     "too_many_files": 503,
     "database_busy": 503,

@@ -16,9 +16,9 @@ from treestroke.core.errors import TreestrokeError
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import WORTH_WAITING, code_of, problem_of, problem_of_input
 from treestroke.service.progress_estimate import ProgressEstimate
-from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
 from treestroke.store.leases import AnyJob, Holder, JobRow, claim, end, heartbeat, take_back
+from treestroke.store.objects import Damaged
 
 _BEAT_SECONDS = 2.0
 _LOOK_SECONDS = 0.5

@@ -21,7 +21,7 @@ from treestroke.core.strokes import CaptureStrokes
 from treestroke.service.loading import load_stored_capture
 from treestroke.service.model_request import read_body
 from treestroke.service.tracer import answer_of
-from treestroke.store.blobs import read_blob
+from treestroke.store.objects import read_blob
 from treestroke.wire_requests import CaptureTraceRequest
 
 if TYPE_CHECKING:

@@ -13,14 +13,14 @@ def trace_capture(resources: Resources, id: str, body: bytes) -> bytes:
     NotFound, CaptureError, StrokesError, SettingsError
         There is no such capture, it is not solved, or the body cannot be used.
     Damaged
-        The file of its cameras is damaged.
+        A file of it is damaged.
     Overloaded, Crashed
         Too many captures are being traced, or the process died over this request.
     """
     capture = find_capture(resources.database, id)
-    structure = resources.blobs.path(solved_structure(capture))
+    structure = resources.blobs.check(solved_structure(capture))
     photos = [
-        capture_tracer.StoredPhoto(photo.name, (photo.width, photo.height), resources.blobs.path(photo.blob))
+        capture_tracer.StoredPhoto(photo.name, (photo.width, photo.height), resources.blobs.check(photo.blob))
         for photo in capture.photos
     ]
     mended = warnings_of(capture.photos)

@@ -23,8 +23,9 @@ from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
 from treestroke.store import leases, queries
-from treestroke.store.blobs import Blobs, Damaged
+from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
+from treestroke.store.objects import Damaged
 from treestroke.store.tables import CapturePhoto, CaptureRow, SolveRow
 from treestroke.wire_requests import CaptureRequest
 
@@ -190,7 +191,7 @@ def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple
         present = _present(session, id, sent_name, sha256)
     if present is not None:
         return present, False
-    columns = kept_columns(resources, content, tracer.keep_capture_photo)
+    columns = kept_columns(resources, content, tracer.read_capture_photo)
     with resources.database.writing() as session:
         queries.lock(session, CaptureRow, id)
         present = _present(session, id, sent_name, sha256)

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Sequence
 from contextlib import suppress
+from typing import Any
 
 from sqlalchemy import delete, update
 
@@ -14,7 +15,7 @@ from treestroke.service.file_names import file_name
 from treestroke.service.photos import NotFound, Resources
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import Crashed
-from treestroke.store.blobs import sha256_of
+from treestroke.store.objects import sha256_of
 from treestroke.store.queries import clip as find_clip
 from treestroke.store.queries import mark_deleted, new_id, page, stored_bytes
 from treestroke.store.tables import ClipRow, UploadRow
@@ -118,27 +119,35 @@ def finish_upload(resources: Resources, id: str) -> ClipRow:
 
 def _kept(resources: Resources, upload: UploadRow) -> ClipRow:
     """Read an upload, store it and note that it is a clip."""
-    id = upload.id
-    path = resources.uploads.path(id)
-    sha256 = sha256_of(path)
     try:
-        columns = resources.clip_tracers(sha256, clip_tracer.look, path, sha256)
+        columns = _stored(resources, upload.id)
     except Crashed as error:
-        remove_upload(resources, id)
+        remove_upload(resources, upload.id)
         fault = "it cannot be decoded, or takes too long; make it shorter, or convert it to MP4 (H.264)"
         raise ClipError(f"clip: {fault}") from error
     except ClipError:
-        remove_upload(resources, id)
+        remove_upload(resources, upload.id)
         raise
-    size = path.stat().st_size
-    resources.blobs.take(path, sha256)
-    row = ClipRow(
-        id=new_id("clp"), name=upload.name, sha256=sha256, blob=sha256, bytes=size, created=time.time(), **columns
-    )
+    row = ClipRow(id=new_id("clp"), name=upload.name, created=time.time(), **columns)
     with resources.database.writing() as session:
-        session.add(row)
-        session.execute(update(UploadRow).where(UploadRow.id == id).values(clip=row.id, seen=None))
-    return row
+        now = session.get(UploadRow, upload.id, with_for_update=True)
+        made = None if now is None else now.clip  # by another web process, meanwhile
+        if made is None:
+            session.add(row)
+        if now is not None and made is None:
+            now.clip, now.seen = row.id, None
+    resources.uploads.remove(upload.id)
+    return row if made is None else get_clip(resources, made, deleted=True)
+
+
+def _stored(resources: Resources, id: str) -> dict[str, Any]:
+    """Read what has arrived of an upload and store it; return the columns of its clip."""
+    with resources.uploads.whole(id) as path:
+        sha256 = sha256_of(path)
+        columns = resources.clip_tracers(sha256, clip_tracer.look, path, sha256)
+        size = path.stat().st_size
+        resources.blobs.take(path, sha256)
+    return {**columns, "sha256": sha256, "blob": sha256, "bytes": size}
 
 
 def finish_whole(resources: Resources, id: str) -> ClipRow:

@@ -21,13 +21,14 @@ from treestroke.schemas import Health
 from treestroke.service.readiness import MIN_FREE_BYTES
 from treestroke.service.tracing_pool import CannotStart, Crashed, TracingPool
 from treestroke.settings import Settings
-from treestroke.store.blobs import Blobs, Damaged
+from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.data_folder import DataFolderError, is_open_to_others
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
+from treestroke.store.objects import Damaged, StorageAway
 from treestroke.store.queries import referenced
-from treestroke.store.scope import SERVICE
-from treestroke.store.tables import JOBS, Worker
+from treestroke.store.scope import SERVICE, Scope
+from treestroke.store.tables import JOBS, BlobRow, Worker
 
 _BROKER_SECONDS = 2
 _WEB_SECONDS = 5.0
@@ -37,8 +38,8 @@ _MAX_NAMED = 20
 """Damaged files that are listed by name."""
 _SERVE = "`treestroke serve`"
 _PACKAGES = ("cv2", "maxflow", "PIL", "pillow_heif", "fastapi", "uvicorn", "celery", "sqlalchemy", "alembic")
-_REDIS_PACKAGES, _POSTGRES_PACKAGES = ("kombu.transport.redis",), ("psycopg",)
-"""Modules that are imported, by their names, only when the queue is a Redis, or the database a Postgres."""
+_REDIS_PACKAGES, _POSTGRES_PACKAGES, _BUCKET_PACKAGES = ("kombu.transport.redis",), ("psycopg",), ("boto3",)
+"""Modules that are imported, by their names, only with a Redis for the queue, a Postgres, or a bucket for the files."""
 _WEB_PROCESS_ONLY = ("broker", "dispatcher", "tracers")
 """Checks that only the web process can make."""
 
@@ -62,7 +63,7 @@ def examine(settings: Settings) -> Iterator[Finding]:
 def examine_installation(settings: Settings) -> Iterator[Finding]:
     """Check what is installed, and whether it starts."""
     redis, postgres = () if settings.embedded else _REDIS_PACKAGES, _POSTGRES_PACKAGES if settings.hosted else ()
-    yield _packages((*_PACKAGES, *redis, *postgres))
+    yield _packages((*_PACKAGES, *redis, *postgres, *(_BUCKET_PACKAGES if settings.bucket_url else ())))
     yield _engine()
     yield _tracers(settings)
 
@@ -237,25 +238,41 @@ def _unsound(database: Database, why: str) -> Finding:
 
 
 def _files(settings: Settings, database: Database) -> Finding:
-    """Compare every file that a row refers to with its SHA-256, one range of names at a time."""
-    blobs, count, bad = Blobs(settings.folder), 0, list[str]()
-    for prefix in (f"{number:02x}" for number in range(256)):
-        with database.reading() as session:
-            names = referenced(session, prefix)
-        count += len(names)
-        bad += [str(error) for error in (_damage(blobs, name) for name in sorted(names)) if error is not None]
+    """Compare every file that a row refers to with its SHA-256, one range of names of a team at a time."""
+    count, bad = 0, list[str]()
+    try:
+        blobs = open_blobs(database, settings.folder, settings.bucket_url)
+        blobs.objects.check_reachable()
+        for own, names in _named(database, blobs):
+            count += len(names)
+            bad += [str(error) for error in (_damage(own, name) for name in sorted(names)) if error is not None]
+    except StorageAway as error:
+        return Finding(
+            "files", False, str(error), "start the bucket's server, or mend TREESTROKE_BUCKET_URL or AWS_..."
+        )
     if bad:
         more = f", and {len(bad) - _MAX_NAMED} more" if len(bad) > _MAX_NAMED else ""
-        mend = f"restore them from a copy of {blobs.folder}; or upload the photos and request the models again"
+        mend = f"restore them from a copy of {blobs.objects.place}; or upload the photos and request the models again"
         return Finding(
             "files", False, f"{len(bad)} of {count} damaged or missing: {', '.join(bad[:_MAX_NAMED])}{more}", mend
         )
     return Finding("files", True, f"all {count} intact")
 
 
+def _named(database: Database, blobs: Blobs) -> Iterator[tuple[Blobs, set[str]]]:
+    """Yield the blobs of a team, and names that its rows refer to."""
+    with database.reading() as session:
+        teams = session.scalars(select(BlobRow.team).distinct()).all()
+    for scope in (Scope(team, "doctor") for team in teams):
+        for prefix in (f"{number:02x}" for number in range(256)):
+            with database.of(scope).reading() as session:
+                names = referenced(session, prefix)
+            yield blobs.of(scope), names
+
+
 def _damage(blobs: Blobs, name: str) -> Damaged | None:
     try:
-        blobs.check(name)
+        blobs.verify(name)
     except Damaged as error:
         return error
     return None

@@ -43,7 +43,7 @@ def _drawn_over_clip(resources: Resources, order: ModelOrder) -> Base:
 
 def _drawn_over_photo(resources: Resources, order: ModelOrder, photo: PhotoRow | None) -> Base:
     """Check what was drawn, against the photo where there is one."""
-    path = None if photo is None else resources.blobs.path(photo.blob)
+    path = None if photo is None else resources.blobs.check(photo.blob)
     key = "" if photo is None else photo.blob
     resources.tracers(key, tracer.check_drawing, path, order.drawing, order.within)
     return Base({}, []) if photo is None else Base({"photo": _picture("photo", photo.blob)}, photo.warnings)

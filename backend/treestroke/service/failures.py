@@ -9,6 +9,7 @@ from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as NoConnection
 
 from treestroke.core.errors import TreestrokeError
+from treestroke.store.objects import StorageAway
 
 _DETAILS = {
     "worker_lost": (
@@ -25,6 +26,7 @@ _DETAILS = {
     "storage_full": ("The service's disk is full. Free some space, then try again.", True),
     "storage_read_only": ("The service may not write to its data folder. Make its user the folder's owner.", True),
     "storage_broken": ("The service's disk or database cannot be read or written. See `treestroke doctor`.", False),
+    "storage_unavailable": ("The place of the files does not respond at the moment. Try again.", True),
     "file_missing": ("A file is missing on the service's disk. See `treestroke doctor`.", False),
     "too_many_files": ("The service has reached its limit of open files and connections. Try again.", True),
     "database_busy": ("The database is busy. Try again.", True),
@@ -79,6 +81,8 @@ def code_of(error: Exception) -> str:
     """Return the code of an error of the system or the database; ``engine_error`` for any other error."""
     if ran_out_of_memory(error):
         return "out_of_memory"
+    if isinstance(error, StorageAway):
+        return "storage_unavailable"
     if isinstance(error, NoConnection):
         return "database_busy"
     if isinstance(error, DBAPIError):

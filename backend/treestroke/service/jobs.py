@@ -25,6 +25,7 @@ from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import add_file, succeed
+from treestroke.store.scope import Scope
 from treestroke.store.tables import ModelPart, ModelRow
 
 GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
@@ -38,7 +39,7 @@ def grow_model(database: Database, blobs: Blobs, assignment: Assignment) -> None
             inputs = Inputs.of(queries.parts(session, [job.id])[job.id])
         estimate = ProgressEstimate(model_phases(load_settings(job.settings), inputs.source))
         with Heartbeat(database, job, estimate, assignment.seconds) as heartbeat:
-            report, files = _make(database, blobs, job, inputs, heartbeat)
+            report, files = _make(database, blobs.of(Scope(job.team, job.maker)), job, inputs, heartbeat)
         _publish(database, job, report, files)
 
     carry_out(database, ModelRow, assignment, grow)

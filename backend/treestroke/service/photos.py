@@ -17,10 +17,10 @@ from treestroke.store.queries import mark_deleted, new_id, page, stored_bytes
 from treestroke.store.queries import photo as find_photo
 from treestroke.store.scope import Scope
 from treestroke.store.tables import PhotoRow
-from treestroke.store.uploads import Uploads
+from treestroke.store.upload_pieces import AnyUploads
 
-Keep = Callable[[Path, bytes, int, int], dict[str, Any]]
-"""Stores a photo: `tracer.keep_photo` and its like."""
+Read = Callable[[Path, bytes, int, int], dict[str, Any]]
+"""Reads a photo: `tracer.read_photo` and its like."""
 
 
 class NotFound(Exception):
@@ -36,15 +36,16 @@ class Resources:
     tracers: TracingPool
     capture_tracers: TracingPool
     clip_tracers: TracingPool
-    uploads: Uploads
+    uploads: AnyUploads
     photo_bytes: int = PHOTO_MB * 10**6
     """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
     """Most bytes of all photos and clips together."""
 
     def of(self, scope: Scope) -> Self:
-        """Return the same with rows of one scope: without it there are no sessions."""
-        return replace(self, database=self.database.of(scope))
+        """Return the same with what belongs to one scope: without it there are no sessions."""
+        database, blobs, uploads = self.database.of(scope), self.blobs.of(scope), self.uploads.of(scope)
+        return replace(self, database=database, blobs=blobs, uploads=uploads)
 
 
 def add_photo(resources: Resources, content: bytes) -> PhotoRow:
@@ -69,11 +70,11 @@ def store_pixels(resources: Resources, content: bytes) -> PhotoRow:
     PhotoError, NoRoom, OSError
         As `kept_columns`.
     """
-    return PhotoRow(id=new_id("pho"), **kept_columns(resources, content, tracer.keep_photo))
+    return PhotoRow(id=new_id("pho"), **kept_columns(resources, content, tracer.read_photo))
 
 
-def kept_columns(resources: Resources, content: bytes, keep: Keep) -> dict[str, Any]:
-    """Store a photo by ``keep``, in a tracing process; return the columns of its row.
+def kept_columns(resources: Resources, content: bytes, read: Read) -> dict[str, Any]:
+    """Read a photo in a tracing process, and store it; return the columns of its row.
 
     Raises
     ------
@@ -82,16 +83,17 @@ def kept_columns(resources: Resources, content: bytes, keep: Keep) -> dict[str, 
     NoRoom
         All photos and clips together would take more than they may.
     OSError
-        The disk is full.
+        The disk is full, or the place of the blobs is away.
     """
     sha256 = hashlib.sha256(content).hexdigest()
     with resources.database.reading() as session:
         room = resources.photos_bytes - stored_bytes(session)
-    folder = resources.blobs.folder.parent
-    try:
-        columns = resources.tracers(sha256, keep, folder, content, resources.photo_bytes, room)
-    except Crashed as error:
-        raise PhotoError("photo: it cannot be decoded; save or copy it again") from error
+    with resources.blobs.temporary() as path:
+        try:
+            columns = resources.tracers(sha256, read, path, content, resources.photo_bytes, room)
+        except Crashed as error:
+            raise PhotoError("photo: it cannot be decoded; save or copy it again") from error
+        resources.blobs.take(path, columns["blob"])
     return {"sha256": sha256, "created": time.time(), **columns}
 
 
@@ -136,8 +138,8 @@ def trace_photo(resources: Resources, id: str, body: bytes) -> bytes:
     ------
     NotFound, StrokesError, SettingsError
         There is no such photo, or the body cannot be used.
-    Overloaded, Crashed
-        The tracing processes are too busy, or one died over this request.
+    Overloaded, Crashed, Damaged
+        The tracing processes are too busy, one died over this request, or the photo's file is damaged.
     """
     row = get_photo(resources, id)
-    return resources.tracers(row.blob, tracer.trace_answer, resources.blobs.path(row.blob), body, row.warnings)
+    return resources.tracers(row.blob, tracer.trace_answer, resources.blobs.check(row.blob), body, row.warnings)

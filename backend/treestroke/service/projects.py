@@ -6,15 +6,16 @@ import shutil
 import threading
 from collections import OrderedDict
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from treestroke.codec.project import write_project
+from treestroke.service import packing
 from treestroke.service.stored_models import StoredModel
-from treestroke.service.tracing_pool import Overloaded
-from treestroke.store.blobs import Blobs, Damaged
+from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded, TracingPool
+from treestroke.store.blobs import Blobs
+from treestroke.store.objects import Damaged
+from treestroke.store.scope import Scope
 
 AT_ONCE = 2
 """Projects that are packed at the same time."""
@@ -36,10 +37,10 @@ class Packed:
 
 
 class Projects:
-    """Packs projects piece by piece from blobs to a file, so that none is in memory; a start empties the cache."""
+    """Has projects packed to files by other processes; a start empties the cache."""
 
-    def __init__(self, folder: Path, blobs: Blobs) -> None:
-        self._folder, self._blobs = folder / "projects", blobs
+    def __init__(self, blobs: Blobs, packers: TracingPool) -> None:
+        self._folder, self._blobs, self._pool = blobs.data / "projects", blobs, packers
         shutil.rmtree(self._folder, ignore_errors=True)
         self._packers = ThreadPoolExecutor(AT_ONCE, "packer")
         self._cache: OrderedDict[str, Future[Packed]] = OrderedDict()
@@ -48,7 +49,8 @@ class Projects:
     def pack(self, model: StoredModel) -> Future[Packed]:
         """Pack a model's project file, once for all models of the same inputs, settings and seed.
 
-        The future raises an OSError where it cannot be packed, or Damaged where a part of it is.
+        The future raises an OSError where it cannot be packed, Damaged where a part of it is, or Crashed or CannotStart
+        where the process ended.
 
         Raises
         ------
@@ -57,33 +59,28 @@ class Projects:
         """
         blobs = {name: part.blob for name, part in model.inputs.parts.items()}
         settings = {**model.row.settings, "seed": model.row.seed}
-        key = hashlib.sha256(json.dumps([blobs, settings], sort_keys=True).encode()).hexdigest()
+        team = Scope(model.row.team, model.row.maker)
+        key = hashlib.sha256(json.dumps([team.team, blobs, settings], sort_keys=True).encode()).hexdigest()
         with self._lock:
-            packing = self._cache.pop(key, None)
-            if packing is None or _is_lost(packing):
+            packed = self._cache.pop(key, None)
+            if packed is None or _is_lost(packed):
                 if sum(not other.done() for other in self._cache.values()) >= WAITING:
                     raise Overloaded("too many projects are being packed at the moment")
-                packing = self._packers.submit(self._write, key, blobs, settings)
-            self._cache[key] = packing  # at the end: the first to go is the one requested longest ago
-            return packing
+                packed = self._packers.submit(self._write, self._blobs.of(team), key, blobs, settings)
+            self._cache[key] = packed  # at the end: the first to go is the one requested longest ago
+            return packed
 
     def close(self) -> None:
         """Stop packing."""
         self._packers.shutdown(cancel_futures=True)
 
-    def _write(self, key: str, blobs: dict[str, str], settings: dict[str, Any]) -> Packed:
+    def _write(self, own: Blobs, key: str, blobs: dict[str, str], settings: dict[str, Any]) -> Packed:
         self._folder.mkdir(mode=0o700, exist_ok=True)
         path = self._folder / key
         try:
-            with ExitStack() as opened:
-                out = opened.enter_context(path.open("w+b"))
-                paths = {name: self._blobs.check(blob) for name, blob in blobs.items()}
-                parts = {name: opened.enter_context(part.open("rb")) for name, part in paths.items()}
-                write_project(out, parts, settings)
-                size = out.tell()
-                out.seek(0)
-                sha256 = hashlib.file_digest(out, "sha256").hexdigest()
-        except (OSError, Damaged):
+            parts = {name: own.check(blob) for name, blob in blobs.items()}
+            size, sha256 = self._pool(key, packing.pack, path, parts, settings)
+        except (OSError, Damaged, Crashed, CannotStart):
             path.unlink(missing_ok=True)
             raise
         self._make_room(size)

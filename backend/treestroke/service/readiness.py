@@ -8,6 +8,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from treestroke.schemas import Health
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
+from treestroke.store.objects import StorageAway
 from treestroke.store.tables import Worker
 
 MIN_FREE_BYTES = 500_000_000
@@ -28,8 +29,12 @@ def readiness(resources: Resources, dispatcher: Dispatcher) -> Health:
         checks["workers"] = "ok" if workers else "none; jobs wait"
     except SQLAlchemyError:
         checks["database"] = "unavailable"
-    free = shutil.disk_usage(resources.blobs.folder.parent).free
+    free = shutil.disk_usage(resources.blobs.data).free
     checks["storage"] = "ok" if free > MIN_FREE_BYTES else f"only {free // 10**6} MB free"
+    try:
+        resources.blobs.objects.check_reachable()
+    except StorageAway:
+        checks["storage"] = "the bucket does not respond"
     down = checks["database"] != "ok"
     ok = all(check == "ok" for check in checks.values())
     return Health(status="down" if down else "ok" if ok else "degraded", checks=checks)

@@ -8,19 +8,17 @@ apart.
 import math
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import suppress
+from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from sqlalchemy import ColumnElement, delete, exists, inspect, select, update
 
 from treestroke.service.stored_models import RESTORABLE_SECONDS
-from treestroke.store.blobs import Blobs, state_of
+from treestroke.service.unreferenced import BlobSweeper
+from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import UNFINISHED
-from treestroke.store.queries import referenced
 from treestroke.store.tables import (
     CaptureRow,
     ClipRow,
@@ -29,13 +27,12 @@ from treestroke.store.tables import (
     Replay,
     SolveRow,
     StoreClock,
-    Stray,
     UploadRow,
 )
-from treestroke.store.uploads import Uploads
+from treestroke.store.upload_pieces import open_uploads
 
-STRAY_SECONDS = 3600.0
-"""A file that no row refers to is kept this long: its row may be about to be written."""
+UNREFERENCED_SECONDS = 3600.0
+"""A blob that no row refers to is kept this long: a row that does may be about to be written."""
 UNWATCHED_SECONDS = 12 * 3600.0
 """The most that time without a running process counts, so that a wall clock that jumped cannot add a day."""
 _STEP_ROWS = 50
@@ -73,15 +70,21 @@ class Sweeper:
         over: threading.Event,
         monotonic: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._database, self._blobs, self._keep_days, self._over = database, blobs, keep_days, over
-        self._uploads, self._monotonic = Uploads(blobs.folder.parent), monotonic
+        self._database, self._keep_days, self._over = database, keep_days, over
+        self._uploads, self._monotonic = open_uploads(database, blobs), monotonic
+        self._blobs = BlobSweeper(database, blobs, over)
         self._last: float | None = None
 
-    def sweep(self, stray_s: float = STRAY_SECONDS) -> Swept:
-        """Delete what is too old, and remove for good what was deleted a day ago and files that no row refers to.
+    def sweep(self, unreferenced_s: float = UNREFERENCED_SECONDS) -> Swept:
+        """Delete what is too old, and remove for good what was deleted a day ago and blobs that no row refers to.
 
-        The first sweep of a process only notes such files: the time before it is known by the wall clock alone, and a
+        The first sweep of a process only notes such blobs: the time before it is known by the wall clock alone, and a
         worker may be about to write a row that refers to one.
+
+        Raises
+        ------
+        OSError
+            The place of the blobs is away.
         """
         first, age_s = self._last is None, self._advance_clock()
         removed_until = age_s - RESTORABLE_SECONDS
@@ -101,7 +104,7 @@ class Sweeper:
         clips = self._in_steps(ClipRow, delete(ClipRow), ClipRow.deleted.is_not(None), ClipRow.seen <= removed_until)
         self._in_steps(Replay, delete(Replay), Replay.seen <= removed_until)
         uploads = self._sweep_uploads(removed_until)
-        blobs = sum(self._sweep_folders(age_s, math.inf if first else stray_s))
+        blobs = self._blobs.sweep(age_s, age_s - (math.inf if first else unreferenced_s))
         return Swept(models, photos, captures, clips, uploads, blobs)
 
     def _sweep_uploads(self, removed_until: float) -> int:
@@ -150,49 +153,3 @@ class Sweeper:
                 changed += session.execute(change.where(key.in_(found), *conditions)).rowcount  # type: ignore[attr-defined]
             self._over.wait(_PAUSE_SECONDS)
         return changed
-
-    def _sweep_folders(self, age_s: float, stray_s: float) -> Iterator[int]:
-        """Sweep folder by folder, with only one folder's references in memory; yield how many files were removed."""
-        for name, files in self._blobs.places():
-            if self._over.is_set():
-                return
-            yield self._sweep_folder(name, files, age_s, stray_s)
-
-    def _sweep_folder(self, folder: str, files: list[Path], age_s: float, stray_s: float) -> int:
-        """Remove the files of one folder that have been strays for long enough, and note the others."""
-        with self._database.reading() as session:
-            kept = referenced(session, folder)
-            known = {stray.name: stray for stray in session.scalars(select(Stray).where(Stray.folder == folder))}
-        states = _states(path for path in files if path.name not in kept)
-        old = [path for path, state in states.items() if _is_old(known.get(path.name), state, age_s - stray_s)]
-        removed = {path for path in old if self._remove(path, states.pop(path))}
-        now = {path.name: state for path, state in states.items()}
-        forgotten = known.keys() - now.keys()
-        found = {name for name, state in now.items() if name not in known or known[name].state != state}
-        if forgotten or found:
-            with self._database.writing() as session:
-                for name in forgotten:
-                    session.execute(delete(Stray).where(Stray.folder == folder, Stray.name == name))
-                for name in found:
-                    session.merge(Stray(folder=folder, name=name, state=now[name], seen=age_s))
-        return len(removed)
-
-    def _remove(self, path: Path, state: str) -> bool:
-        """Remove a stray, unless a row refers to it by now."""
-        with self._database.reading() as session:
-            if referenced(session, path.name):
-                return False
-        return self._blobs.remove(path, state)
-
-
-def _states(paths: Iterable[Path]) -> dict[Path, str]:
-    """Return the states of files; files removed in between are left out."""
-    states = {}
-    for path in paths:
-        with suppress(FileNotFoundError):
-            states[path] = state_of(path)
-    return states
-
-
-def _is_old(seen: Stray | None, state: str, before: float) -> bool:
-    return seen is not None and seen.state == state and seen.seen <= before

@@ -15,6 +15,7 @@ from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import complete
+from treestroke.store.scope import Scope
 from treestroke.store.tables import CapturePhoto, SolveRow
 
 _PHASES = [("decode", 0.1), ("solve", 0.9)]
@@ -32,9 +33,10 @@ def solve_capture(database: Database, blobs: Blobs, assignment: Assignment) -> N
             photos = queries.capture_photos(session, [job.capture])[job.capture]
         if fingerprint(photos) != job.fingerprint:
             raise Canceled  # the capture has other photos by now
+        own = blobs.of(Scope(job.team, job.maker))
         with Heartbeat(database, job, ProgressEstimate(_PHASES), assignment.seconds) as heartbeat:
-            structure = _find(blobs, photos, assignment.seconds, heartbeat.report)
-        blob = blobs.put(encode_structure(structure))
+            structure = _find(own, photos, assignment.seconds, heartbeat.report)
+            blob = own.put(encode_structure(structure))  # the lease is held while the place of the blobs is away
         publish(database, job, lambda session: complete(session, job, structure=blob))
 
     carry_out(database, SolveRow, assignment, solve)

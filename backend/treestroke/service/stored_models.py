@@ -17,8 +17,8 @@ from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Resources
 from treestroke.store import leases, queries
-from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
+from treestroke.store.objects import Damaged
 from treestroke.store.tables import File, ModelPart, ModelRow, PhotoRow, Replay
 
 RESTORABLE_SECONDS = 24 * 3600.0

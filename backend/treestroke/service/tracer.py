@@ -3,6 +3,7 @@
 Each process remembers the photos it saw last, with their foliage, so that one more stroke is answered at once.
 """
 
+import hashlib
 import json
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
@@ -26,7 +27,8 @@ from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Stroke
 from treestroke.core.types import Picture
 from treestroke.service.model_request import Drawing, read_body
 from treestroke.service.trace import Trace, trace, trace_sketches
-from treestroke.store.blobs import Blobs, read_blob
+from treestroke.store.atomic_write import write_synced
+from treestroke.store.objects import read_blob
 from treestroke.wire_requests import SketchTraceRequest, TraceRequest
 
 P = ParamSpec("P")
@@ -50,8 +52,8 @@ class NoRoom(Exception):
     """All stored photos and clips together would take more bytes than they may."""
 
 
-def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
-    """Decode an uploaded photo, store its upright pixels and return the columns of its row.
+def read_photo(path: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
+    """Decode an uploaded photo, write its upright pixels to ``path``, and return the columns of its row.
 
     Raises
     ------
@@ -59,6 +61,8 @@ def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, 
         As `decode_photo`; or it would take more than ``most`` bytes.
     NoRoom
         It would take more than ``room`` bytes.
+    OSError
+        It cannot be written.
     """
     mended: list[StrokeWarning] = []
     picture = decode_photo(content, "photo", warn=mended.append)
@@ -68,14 +72,16 @@ def keep_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, 
         raise PhotoError(f"photo: {fault}; resize it", code="photo_too_large_stored")
     if len(stored) > room:
         raise NoRoom
+    write_synced(path, stored)
     height, width, _ = picture.shape
-    kept = {"blob": Blobs(folder).put(stored), "bytes": len(stored), "width": width, "height": height}
-    return {**kept, "warnings": [asdict(warning) for warning in mended]}
+    blob = hashlib.sha256(stored).hexdigest()
+    warnings = [asdict(warning) for warning in mended]
+    return {"blob": blob, "bytes": len(stored), "width": width, "height": height, "warnings": warnings}
 
 
-def keep_capture_photo(folder: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
-    """Store a photo of a capture as `keep_photo` does, whose metadata also has the focal length."""
-    return {**keep_photo(folder, content, most, room), "focal_length_px": exif_focal_px(content)}
+def read_capture_photo(path: Path, content: bytes, most: int, room: int) -> dict[str, Any]:
+    """Read a photo of a capture as `read_photo` does, whose metadata also has the focal length."""
+    return {**read_photo(path, content, most, room), "focal_length_px": exif_focal_px(content)}
 
 
 def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] = ()) -> bytes:

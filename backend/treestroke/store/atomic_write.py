@@ -26,7 +26,7 @@ def write_atomically(contents: Mapping[Path, bytes]) -> None:
             else:
                 target = path.resolve()
                 temporary[target] = written = target.with_name(f".treestroke-{secrets.token_hex(8)}")
-                _write_synced(written, data)
+                write_synced(written, data)
         for target, written in temporary.items():
             written.replace(target)
             sync_folder(target.parent)
@@ -36,8 +36,14 @@ def write_atomically(contents: Mapping[Path, bytes]) -> None:
                 written.unlink()
 
 
-def _write_synced(path: Path, data: bytes) -> None:
-    """Write a new file and wait until it is on disk."""
+def write_synced(path: Path, data: bytes) -> None:
+    """Write a new file and wait until it is on disk.
+
+    Raises
+    ------
+    OSError
+        The disk is full, or the file may not be written.
+    """
     with path.open("xb") as file:
         file.write(data)
         file.flush()

@@ -1,70 +1,91 @@
-"""Blobs: immutable files named by the SHA-256 of their content, so that equal content is stored once."""
+"""Blobs: immutable files of teams, named by the SHA-256 of their content, so that equal content is stored once a team.
 
-import errno
+The table of blobs is the truth. A row is written before its object; removal deletes rows, and then their objects,
+before it commits. So whoever stores a blob that is being removed waits, and stores it anew. A process that dies leaves
+at most a row without an object, which the next one to store it writes, or an object without a row, which a sweep finds.
+"""
+
+import copy
 import hashlib
-import os
 import secrets
-import threading
 import time
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any, Self
 
-from treestroke.store.atomic_write import sync_folder, write_atomically
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.orm import Session
 
-_MAX_VERIFIED = 1024
-"""Files whose content was verified and need not be read again while their metadata stays the same."""
-_SETTLED_NS = 10**9
-"""Time after a write: a second write within the resolution of a file's times could not be seen in them."""
-_PROCESS_ERRORS = (errno.EMFILE, errno.ENFILE, errno.ENOMEM)
-"""Errors that keep this process from reading any file: they say nothing about the file."""
+from treestroke.store.bucket import BucketObjects
+from treestroke.store.copies import Copies
+from treestroke.store.database import Database
+from treestroke.store.objects import Damaged, FolderObjects, Objects, Verified, read_blob
+from treestroke.store.scope import Foreign, Scope
+from treestroke.store.tables import BlobRow
 
-
-class Damaged(Exception):
-    """A stored file is missing, cannot be read, or its content does not have the SHA-256 of its name."""
+_INSERTS: dict[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 
 
 class Blobs:
-    """The blobs of a data folder."""
+    """The blobs of one team: rows of the database, and objects; each is seen by its team alone (`of`).
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder / "blobs"
-        self._verified: dict[str, tuple[int, ...]] = {}
-        self._lock = threading.Lock()
+    Attributes
+    ----------
+    objects
+        Where the contents are.
+    data
+        The data folder of this machine.
+    """
+
+    def __init__(self, database: Database, objects: Objects, data: Path) -> None:
+        self.objects, self.data = objects, data
+        self._database, self._verified = database, Verified()
+        self._team: str | None = None
+
+    def of(self, scope: Scope) -> Self:
+        """Return the same for the blobs of a scope's team."""
+        view = copy.copy(self)
+        view._database, view._team = self._database.of(scope), scope.team
+        return view
 
     def put(self, content: bytes) -> str:
         """Store bytes and return their SHA-256; from then on they survive a power cut.
 
-        They are written even if the blob exists: that repairs a damaged file, and shows a sweep, which may be about
-        to remove the file, that it is needed.
+        They are written even if the blob exists: that repairs a damaged object.
 
         Raises
         ------
         OSError
-            The disk is full or not writable.
+            There is no room, or the place of the objects is away.
         """
         sha256 = hashlib.sha256(content).hexdigest()
-        path = self.path(sha256)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomically({path: content})
+        self._note(sha256, len(content))
+        self.objects.put(self._owner, sha256, content)
         return sha256
 
     def take(self, path: Path, sha256: str) -> None:
-        """Store a file, already on disk and with this SHA-256, that is moved here from the same file system.
+        """Store a file that is on disk, in the data folder, with this SHA-256; it is gone from there afterwards.
 
         Raises
         ------
         OSError
-            It cannot be moved.
+            There is no room, or the place of the objects is away.
         """
-        place = self.path(sha256)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        path.replace(place)
-        sync_folder(place.parent)
+        self._note(sha256, path.stat().st_size)
+        self.objects.take(self._owner, sha256, path)
 
     def path(self, sha256: str) -> Path:
-        """Return the path of a blob, which need not exist."""
-        return self.folder / sha256[:2] / sha256
+        """Return the path of a blob on this machine, whose content is still to be verified.
+
+        Raises
+        ------
+        Damaged
+            The blob is missing; where it was at hand already, only reading it tells.
+        OSError
+            The place of the objects is away.
+        """
+        return self.objects.local(self._owner, sha256)
 
     def get(self, sha256: str) -> bytes:
         """Return a blob's content.
@@ -73,93 +94,80 @@ class Blobs:
         ------
         Damaged
             The blob is missing, cannot be read, or has another SHA-256.
+        OSError
+            The place of the objects is away.
         """
-        return read_blob(self.path(sha256))
+        try:
+            return read_blob(self.path(sha256))
+        except Damaged:
+            return read_blob(self.objects.local(self._owner, sha256, again=True))
 
     def check(self, sha256: str) -> Path:
-        """Return a blob's path after verifying its content; it is read again only if the file has changed since.
+        """Return a blob's path on this machine after verifying its content, which is read again only if it changed.
 
         Raises
         ------
         Damaged
             The blob is missing, cannot be read, or has another SHA-256.
+        OSError
+            The place of the objects is away.
         """
-        path = self.path(sha256)
         try:
-            now = path.stat()
-            state = (now.st_ino, now.st_size, now.st_mtime_ns, now.st_ctime_ns)
-            if self._verified.get(sha256) == state:
-                return path
-            found = sha256_of(path)
-        except OSError as error:
-            raise _read_error(path, error) from error
-        if found != sha256:
-            raise Damaged(f"{path.name}: damaged")
-        if time.time_ns() - now.st_ctime_ns > _SETTLED_NS:
-            self._remember(sha256, state)
-        return path
+            return self._verified.check(self.path(sha256))
+        except Damaged:
+            return self._verified.check(self.objects.local(self._owner, sha256, again=True))
 
-    def places(self) -> Iterator[tuple[str, list[Path]]]:
-        """Yield all files by folder, half-written ones included; a folder's name is the prefix of its blobs' names."""
-        for folder in sorted(self.folder.iterdir()) if self.folder.is_dir() else ():
-            yield folder.name, list(folder.iterdir())
+    def verify(self, sha256: str) -> None:
+        """Read a blob where it is kept and compare it with its name, however often that was done before.
 
-    def remove(self, path: Path, state: str) -> bool:
-        """Remove a file if its `state_of` is ``state``, and return whether it was removed.
-
-        The file is renamed first, and renamed back if it has changed: so a file that is written again at the same
-        moment is kept.
+        Raises
+        ------
+        Damaged
+            The blob is missing, cannot be read, or has another SHA-256.
+        OSError
+            The place of the objects is away.
         """
-        aside = path.with_name(f".swept-{secrets.token_hex(8)}")
-        with suppress(FileNotFoundError):
-            if state_of(path) != state:
-                return False
-            path.rename(aside)
-            if state_of(aside) != state:
-                os.replace(aside, path)
-                return False
-            aside.unlink()
-            return True
-        return False
+        self.objects.verify(self._owner, sha256)
 
-    def _remember(self, sha256: str, state: tuple[int, ...]) -> None:
-        with self._lock:
-            self._verified[sha256] = state
-            if len(self._verified) > _MAX_VERIFIED:
-                del self._verified[next(iter(self._verified))]
+    @contextmanager
+    def temporary(self) -> Iterator[Path]:
+        """Yield a path in the data folder for a file that is to become a blob; nothing is left there."""
+        folder = self.data / "tmp"
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        path = folder / secrets.token_hex(8)
+        try:
+            yield path
+        finally:
+            path.unlink(missing_ok=True)
 
+    @property
+    def _owner(self) -> str:
+        if self._team is None:
+            raise Foreign("a blob belongs to a team: blobs.of(scope)")
+        return self._team
 
-def sha256_of(path: Path) -> str:
-    """Return the SHA-256 of a file's content."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def state_of(path: Path) -> str:
-    """Return an identifier of a file's content on disk: it survives renaming and changes when the file is written."""
-    now = path.stat()
-    return f"{now.st_ino}.{now.st_mtime_ns}"
+    def _note(self, sha256: str, size: int) -> None:
+        """Write the row of a blob; where it exists, note that it is wanted, so that no sweep removes it now."""
+        with self._database.autocommitting() as session:
+            row = insert_blobs(session, [_values(self._owner, sha256, size)])
+            wanted = {"seen": None, "bytes": size}
+            session.execute(row.on_conflict_do_update(index_elements=["team", "sha256"], set_=wanted))
 
 
-def read_blob(path: Path) -> bytes:
-    """Return the content of the blob at ``path``, verified against its name.
+def open_blobs(database: Database, data: Path, bucket_url: str = "", patience_s: float = 0.0) -> Blobs:
+    """Return the blobs of the service: in the data folder, or in a bucket, with as much patience while that is away.
 
-    Raises
-    ------
-    Damaged
-        The blob is missing, cannot be read, or has another SHA-256.
+    A process that forks opens them afterwards.
     """
-    try:
-        content = path.read_bytes()
-    except OSError as error:
-        raise _read_error(path, error) from error
-    if hashlib.sha256(content).hexdigest() != path.name:
-        raise Damaged(f"{path.name}: damaged")
-    return content
+    if not bucket_url:
+        return Blobs(database, FolderObjects(data), data)
+    return Blobs(database, BucketObjects(bucket_url, Copies(data), patience_s), data)
 
 
-def _read_error(path: Path, error: OSError) -> Exception:
-    """Return the error for a blob that cannot be read: the same error if the process can read no file at all."""
-    if error.errno in _PROCESS_ERRORS:
-        return error
-    return Damaged(f"{path.name}: {'missing' if isinstance(error, FileNotFoundError) else error.strerror}")
+def insert_blobs(session: Session, rows: Sequence[dict[str, Any]]) -> Any:
+    """Return a statement that inserts rows of blobs, which goes on with ``on_conflict_...``."""
+    return _INSERTS[session.get_bind().dialect.name](BlobRow.__table__).values(rows)
+
+
+def _values(team: str, sha256: str, size: int) -> dict[str, Any]:
+    return {"team": team, "sha256": sha256, "bytes": size, "created": time.time(), "seen": None}

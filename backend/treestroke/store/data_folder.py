@@ -8,7 +8,7 @@ from pathlib import Path
 
 DATABASE = "treestroke.sqlite3"
 _DATABASE_FILES = {DATABASE, *(f"{DATABASE}-{part}" for part in ("journal", "shm", "wal"))}
-_SERVICE_NAMES = {"blobs", "projects", "queue", "tmp", "uploads", *_DATABASE_FILES, "lock"}
+_SERVICE_NAMES = {"blobs", "cache", "projects", "queue", "tmp", "uploads", *_DATABASE_FILES, "lock"}
 """Names that the service creates; ``lock`` is left of earlier versions."""
 _FILE_SYSTEM_NAMES = {"lost+found"}
 _BLOBS = "blobs"

@@ -75,7 +75,10 @@ class ClipRow(Uploaded, Aged, Table):
 
 
 class UploadRow(Authored, Aged, Table):
-    """A clip that is on its way here; what has arrived is a file of this id. It names the clip once it is whole."""
+    """A clip that is on its way here; what has arrived is a file of this id, or pieces (`PieceRow`).
+
+    It names the clip once it is whole.
+    """
 
     __tablename__ = "uploads"
 
@@ -83,6 +86,17 @@ class UploadRow(Authored, Aged, Table):
     name: Mapped[str] = mapped_column(String(200))
     clip: Mapped[str | None] = mapped_column(String(40))
     created: Mapped[float]
+
+
+class PieceRow(Owned, Table):
+    """A piece of an upload that has arrived, where web processes share a bucket: where it begins, and its blob."""
+
+    __tablename__ = "upload_pieces"
+
+    upload: Mapped[str] = mapped_column(ForeignKey("uploads.id", ondelete="CASCADE"), primary_key=True)
+    start: Mapped[int] = mapped_column(BigInteger, primary_key=True)
+    bytes: Mapped[int]
+    blob: Mapped[str] = mapped_column(String(64))
 
 
 class Job(Authored):
@@ -223,24 +237,25 @@ class StoreClock(Table):
     """The latest wall-clock time at which ``age_s`` was written."""
 
 
-class Stray(Table):
-    """A file among the blobs that no row referred to when a sweep saw it."""
+class BlobRow(Owned, Table):
+    """A blob of a team (`store.blobs`): what a row refers to by its SHA-256, or may be about to refer to."""
 
-    __tablename__ = "strays"
+    __tablename__ = "blobs"
 
-    folder: Mapped[str] = mapped_column(String(2), primary_key=True)
-    name: Mapped[str] = mapped_column(String(80), primary_key=True)
-    state: Mapped[str] = mapped_column(String(60))
-    """The file's `store.blobs.state_of`, which changes when it is written again."""
-    seen: Mapped[float]
-    """When it was first seen in this state, by the store's own clock."""
+    team: Mapped[str] = mapped_column(String(40), primary_key=True)
+    sha256: Mapped[str] = mapped_column(String(64), primary_key=True)
+    """Its name; of what a process that died has left half written, the name of that file."""
+    bytes: Mapped[int] = mapped_column(BigInteger)
+    created: Mapped[float]
+    seen: Mapped[float | None]
+    """When a sweep first saw that no row refers to it, by the store's own clock; None where one does."""
 
 
 JOBS: tuple[type[ModelRow] | type[SolveRow], ...] = (ModelRow, SolveRow)
 """Every table whose rows are work for a worker."""
 UPLOADED: tuple[type[PhotoRow] | type[CapturePhoto] | type[ClipRow], ...] = (PhotoRow, CapturePhoto, ClipRow)
 """Every table of uploaded photos and clips."""
-REFERENCES = (*(table.blob for table in UPLOADED), ModelPart.blob, File.blob, SolveRow.structure)
+REFERENCES = (*(table.blob for table in UPLOADED), ModelPart.blob, File.blob, SolveRow.structure, PieceRow.blob)
 """Every column that names a blob."""
 
 for _job in JOBS:
@@ -262,3 +277,4 @@ Index("ix_replays_seen", Replay.seen)
 Index("ix_uploads_seen", UploadRow.seen)
 Index("ix_model_parts_blob", ModelPart.blob)
 Index("ix_files_blob", File.blob)
+Index("ix_upload_pieces_blob", PieceRow.blob)

@@ -5,7 +5,9 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Self
+
+from treestroke.store.scope import Scope
 
 
 class Superseded(Exception):
@@ -55,14 +57,45 @@ class PieceWriter:
                 os.fsync(self._file.fileno())
 
 
+class Finishing:
+    """Of which uploads something is being made in this process."""
+
+    def __init__(self) -> None:
+        self._ids: set[str] = set()
+        self._lock = threading.Lock()
+
+    @contextmanager
+    def of(self, id: str) -> Iterator[None]:
+        """Hold the right to make something of an upload.
+
+        Raises
+        ------
+        Superseded
+            Another request has it.
+        """
+        with self._lock:
+            if id in self._ids:
+                raise Superseded
+            self._ids.add(id)
+        try:
+            yield
+        finally:
+            with self._lock:
+                self._ids.discard(id)
+
+
 class Uploads:
     """The unfinished uploads of a data folder, each a file of its id."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder / "uploads"
         self._writers: dict[str, PieceWriter] = {}
-        self._finishing: set[str] = set()
+        self._finishing = Finishing()
         self._lock = threading.Lock()
+
+    def of(self, _: Scope) -> Self:
+        """Return the same: an id tells whose upload it is."""
+        return self
 
     def path(self, id: str) -> Path:
         """Return the path of what has arrived, which need not exist."""
@@ -115,15 +148,13 @@ class Uploads:
         Superseded
             Another request has it.
         """
-        with self._lock:
-            if id in self._finishing:
-                raise Superseded
-            self._finishing.add(id)
-        try:
+        with self._finishing.of(id):
             yield
-        finally:
-            with self._lock:
-                self._finishing.discard(id)
+
+    @contextmanager
+    def whole(self, id: str) -> Iterator[Path]:
+        """Yield the path of what has arrived; it stays there, unless it is taken away."""
+        yield self.path(id)
 
     def remove(self, id: str) -> None:
         """Remove what has arrived; a request that still adds some is ended."""

@@ -16,8 +16,8 @@ from treestroke.service import stored_models
 from treestroke.service.jobs import GROWTH
 from treestroke.service.photos import Resources
 from treestroke.service.stored_models import StoredModel
-from treestroke.store.blobs import Damaged
 from treestroke.store.leases import TERMINAL
+from treestroke.store.objects import Damaged, StorageAway
 
 log = structlog.get_logger()
 router = APIRouter(prefix="/v1/models", tags=["models"])
@@ -38,11 +38,11 @@ async def _follower(
 
 
 def _growth(resources: Resources, model: StoredModel) -> str | None:
-    """Return the grown skeleton as JSON; None if its file is damaged, because a stream cannot become a problem."""
+    """Return the grown skeleton as JSON; None if it cannot be read, because a stream cannot become a problem."""
     try:
         return resources.blobs.get(model.files[GROWTH].blob).decode()
-    except Damaged as error:
-        log.error("file_damaged", file=str(error))
+    except (Damaged, StorageAway) as error:
+        log.error("growth_not_read", error=str(error))
         return None
 
 
