@@ -7,13 +7,13 @@ from typing import Any
 from treestroke.codec.inputs import part_of
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
-from treestroke.store.tables import CapturePhoto, CaptureRow, ModelPart, ModelRow, SolveRow
+from treestroke.store.tables import CapturePhoto, CaptureRow, ModelPart, ModelRow, PhotoRow, SolveRow
 
 PARTS = {"photo": "a" * 64, "strokes": "b" * 64}
 
 
-def add_model(database: Database, parts: Mapping[str, str] = PARTS, **values: Any) -> ModelRow:
-    """Write the row of a queued model, and those of its ``parts``, blobs by name; return the model's."""
+def model_row(**values: Any) -> ModelRow:
+    """Give the row of a queued model."""
     usual: dict[str, Any] = {
         "id": new_id("mdl"),
         "name": "",
@@ -31,13 +31,23 @@ def add_model(database: Database, parts: Mapping[str, str] = PARTS, **values: An
         "cancel": False,
         "created": time.time(),
     }
-    row = ModelRow(**{**usual, **values})
+    return ModelRow(**{**usual, **values})
+
+
+def add_model(database: Database, parts: Mapping[str, str] = PARTS, **values: Any) -> ModelRow:
+    """Write the row of a queued model, and those of its ``parts``, blobs by name; return the model's."""
+    row = model_row(**values)
     with database.writing() as session:
         session.add(row)
         session.flush()
         for name, blob in parts.items():
             session.add(ModelPart(model=row.id, name=name, blob=blob, media_type=part_of(name).formats[0].media_type))
     return row
+
+
+def photo_row(blob: str, size: int) -> PhotoRow:
+    """Give the row of a photo whose file has so many bytes."""
+    return PhotoRow(id=new_id("pho"), sha256=blob, blob=blob, width=8, height=8, bytes=size, created=time.time())
 
 
 def add_capture(database: Database, blobs: Sequence[str] = (), **values: Any) -> CaptureRow:

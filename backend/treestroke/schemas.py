@@ -243,6 +243,23 @@ class Health(Wire):
     checks: dict[str, str] = Field(default_factory=dict)
 
 
+class RateNow(Wire):
+    """How many requests of a kind who asks may send, and how many are left."""
+
+    name: str
+    requests: int
+    seconds: int
+    remaining: int
+
+
+class QuotaNow(Wire):
+    """How much of a quota who asks has, and uses."""
+
+    name: str = Field(description="stored_bytes, queued, running, models_a_day or streams")
+    limit: int | None = Field(description="null: no limit")
+    used: int
+
+
 class Limits(Wire):
     """What the service takes."""
 
@@ -276,6 +293,8 @@ class Limits(Wire):
     settings: dict[str, dict[str, Any]] = Field(description="each setting's default and what is allowed")
     keep_days: float
     followers: int = Field(description="requests that follow models or captures at once, by events or by Prefer: wait")
+    rates: list[RateNow] = Field(description="of who asks; none of a service without keys")
+    quotas: list[QuotaNow] = Field(description="of the team of who asks; none of a service without keys")
 
 
 class Version(Wire):

@@ -63,6 +63,18 @@ class Settings(BaseSettings):
         int,
         _setting(PHOTOS_MB, "what all photos and clips may take, deleted ones for a day too, in MB", ge=1, le=2**20),
     ]
+    team_stored_mb: Annotated[
+        int, _setting(20_000, "what a team's photos, clips and files may take, in MB; 0: no limit", ge=0, le=2**30)
+    ]
+    team_queued: Annotated[
+        int, _setting(50, "models and captures of a team that may wait; 0: no limit", ge=0, le=1_000_000)
+    ]
+    team_running: Annotated[
+        int, _setting(2, "jobs of one team that are done at once where teams share it; 0: any number", ge=0, le=10_000)
+    ]
+    team_models_a_day: Annotated[
+        int, _setting(500, "models that a team may ask for in 24 hours; 0: no limit", ge=0, le=1_000_000)
+    ]
     keep_days: Annotated[
         float,
         _setting(0, "models, photos, captures and clips older than this are deleted; 0 keeps them", ge=0, le=36_500),

@@ -58,6 +58,7 @@ BODIES: dict[str, tuple[str, bytes]] = {
     "rename_capture": ("application/json", b'{"name": "theirs"}'),
     "add_capture_photo": ("image/png", drawn.encoded(seed=3)),
     "add_piece": ("application/partial-upload", b"more"),
+    "change_member": ("application/json", b'{"name": "theirs"}'),
     "ask_for_siblings": ("application/json", b'{"count": 1}'),
 }
 """Bodies of operations that name an id in their path: without one a 422 could hide whose it is."""
@@ -74,6 +75,8 @@ def own_one_of_each(client: httpx.Client, folder: Path) -> Belongings:
     photo = made(client.post("/v1/photos", files={"file": drawn.encoded()}))
     capture = made(client.post("/v1/captures", json={"name": "ours"}))
     part = made(client.post(f"/v1/captures/{capture}/photos", files={"file": drawn.encoded(seed=1)}))
+    key = client.post("/v1/keys", json={"name": "ours"})
+    member = client.post("/v1/members", json={"name": "Ours", "role": "viewer"})
     begun = client.post("/v1/clips", headers={"upload-complete": "?0"}, content=b"four")
     ids = {
         "pho": photo,
@@ -81,6 +84,8 @@ def own_one_of_each(client: httpx.Client, folder: Path) -> Belongings:
         "clp": made(client.post("/v1/clips", files={"file": clip_bytes(folder)})),
         "upl": begun.headers["location"].rpartition("/")[2],
         "mdl": made(client.post("/v1/models", json=drawn.request(photo, name="ours"))),
+        "key": made(key),
+        "usr": made(member),
     }
     return Belongings(ids, part)
 

@@ -37,7 +37,7 @@ async def application(scope: Scope, receive: Receive, send: Send) -> None:
         await asyncio.sleep(LATE_SECONDS)
     while path == "/held" and not released.is_set():
         await asyncio.sleep(0.01)
-    size = {"/large": 20_000_000, "/medium": 1_000_000, "/small": 90_000}.get(path, size)
+    size = {"/large": 20_000_000, "/large/events": 20_000_000, "/medium": 1_000_000, "/small": 90_000}.get(path, size)
     await send({"type": "http.response.start", "status": 200, "headers": [(b"content-length", b"%d" % size)]})
     await send({"type": "http.response.body", "body": bytes(size)})
 
@@ -179,6 +179,15 @@ def test_a_client_that_reads_nothing_is_given_up(path: bytes, keep_alive_s: int)
         served.slow_line(path)
         wait_for(lambda: served.answering, PATIENCE_SECONDS, "the answer")
         wait_for(lambda: not served.open, PATIENCE_SECONDS, "the connection's end")
+        assert served.ask().startswith(b"HTTP/1.1 200 ")
+
+
+def test_a_stream_that_nobody_reads_is_given_up_sooner_than_a_download() -> None:
+    with serving(stalled_s=PATIENCE_SECONDS, stream_stalled_s=0.4, behind_s=0.1) as served:
+        served.slow_line(b"/large")
+        served.slow_line(b"/large/events")
+        wait_for(lambda: served.behind == 2, PATIENCE_SECONDS, "both being behind")
+        wait_for(lambda: served.open == 1, PATIENCE_SECONDS, "the stream's end")
         assert served.ask().startswith(b"HTTP/1.1 200 ")
 
 

@@ -5,20 +5,24 @@ from contextlib import ExitStack
 import pytest
 from tests.rows import add_model
 
+from treestroke.api import following
 from treestroke.api.following import Follower, TooManyFollowers, Watcher
 from treestroke.service import stored_models
+from treestroke.service.principals import Principal
+from treestroke.service.quotas import QuotaExceeded
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.database import Database
 
+ANN, BEN = (Principal(f"usr_{name}", "oaks", name, "member", credential=f"key_{name}") for name in ("ann", "ben"))
 SECONDS = 60.0
 """Emergency exit of what is waited for."""
 
 
-def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable[None]]) -> None:
+def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable[None]], streams: int = 0) -> None:
     """Run a story in which models are followed."""
 
     async def run() -> None:
-        await asyncio.wait_for(story(Watcher(database, places)), 3 * SECONDS)
+        await asyncio.wait_for(story(Watcher(database, places, streams)), 3 * SECONDS)
 
     asyncio.run(run())
 
@@ -96,3 +100,56 @@ def test_whoever_follows_a_model_that_is_removed_is_told_the_end(database: Datab
             assert await news(follower) is None
 
     follow(database, 1, story)
+
+
+def test_a_person_has_a_few_streams_and_others_have_theirs(database: Database) -> None:
+    seen = added(database)
+
+    async def story(watcher: Watcher) -> None:
+        with ExitStack() as places:
+            for _ in range(3):
+                places.enter_context(watcher.follow(seen, ANN))
+            with pytest.raises(QuotaExceeded, match="streams"):
+                places.enter_context(watcher.follow(seen, ANN))
+            places.enter_context(watcher.follow(seen, BEN))
+            places.enter_context(watcher.follow(seen))  # who waits for an answer has no stream
+            assert (watcher.streams_of(ANN).used, watcher.streams_of(BEN).used) == (3, 1)
+        with watcher.follow(seen, ANN):
+            assert watcher.streams_of(ANN).used == 1
+
+    follow(database, 9, story, streams=3)
+
+
+def test_without_teams_a_person_has_as_many_streams_as_there_are_places(database: Database) -> None:
+    seen = added(database)
+
+    async def story(watcher: Watcher) -> None:
+        with ExitStack() as places:
+            for _ in range(9):
+                places.enter_context(watcher.follow(seen, ANN))
+
+    follow(database, 9, story)
+
+
+def test_streams_end_whose_key_was_revoked_whatever_else_happens_to_the_model(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen, asked = added(database), []
+
+    def find_revoked(_: Database, credentials: set[str]) -> set[str]:
+        asked.append(set(credentials))
+        return {"key_ann"}
+
+    async def story(watcher: Watcher) -> None:
+        with watcher.follow(seen, ANN) as revoked, watcher.follow(seen, BEN) as stays:
+            while await news(revoked) is not None:
+                pass
+            stored_models.rename(database, seen.id, "Oak")
+            assert await news(stays) is not None
+            revoked.update(seen)
+            assert await news(revoked) is None
+
+    monkeypatch.setattr(following, "find_revoked", find_revoked)
+    monkeypatch.setattr(following, "_REVOKED_SECONDS", 0.0)
+    follow(database, 9, story)
+    assert asked[0] == {"key_ann", "key_ben"}

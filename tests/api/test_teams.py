@@ -1,54 +1,37 @@
 """No team reaches what another has: each operation of the API is asked for another team's, by all that names it."""
 
-import threading
-import time
 from collections.abc import Iterator
 from typing import Any
 
 import httpx
 import pytest
-import uvicorn
-from fastapi import Request
 from tests.api import drawn
 from tests.api.teams import Belongings, operations, own_one_of_each
-
-from treestroke.api import deps
-from treestroke.api.app import make_app
-from treestroke.service.principals import Principal
-from treestroke.settings import read_settings
+from tests.hosted import Hosted, hosting
+from tests.postgres import PostgresServer
 
 
 @pytest.fixture(scope="module")
-def clients(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, httpx.Client]]:
-    app = make_app(read_settings(data=tmp_path_factory.mktemp("data")))
+def hosted(postgres: PostgresServer, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Hosted]:
+    with hosting(tmp_path_factory.mktemp("data"), postgres.fresh_with_tables()) as service:
+        yield service
 
-    def of(request: Request) -> Principal:
-        team = request.headers["x-team"]
-        return Principal(f"usr_{team}", team, team, "owner")
 
-    app.dependency_overrides[deps._principal] = of
-    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning"))
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    while not server.started:
-        time.sleep(0.05)
-    port = server.servers[0].sockets[0].getsockname()[1]
-    yield {
-        team: httpx.Client(base_url=f"http://127.0.0.1:{port}", headers={"x-team": team}, timeout=60)
-        for team in ("oaks", "elms")
-    }
-    server.should_exit = True
-    thread.join()
+def client_of(hosted: Hosted, team: str) -> httpx.Client:
+    headers = {**hosted.client.headers, "Authorization": f"Bearer {hosted.key(team=team)}"}
+    return httpx.Client(base_url=hosted.client.base_url, headers=headers, timeout=60)
 
 
 @pytest.fixture(scope="module")
-def oaks(clients: dict[str, httpx.Client]) -> httpx.Client:
-    return clients["oaks"]
+def oaks(hosted: Hosted) -> Iterator[httpx.Client]:
+    with client_of(hosted, "Oaks") as client:
+        yield client
 
 
 @pytest.fixture(scope="module")
-def elms(clients: dict[str, httpx.Client]) -> httpx.Client:
-    return clients["elms"]
+def elms(hosted: Hosted) -> Iterator[httpx.Client]:
+    with client_of(hosted, "Elms") as client:
+        yield client
 
 
 @pytest.fixture(scope="module")

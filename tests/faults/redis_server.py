@@ -54,6 +54,11 @@ class RedisServer:
         with Redis.from_url(self.url) as redis:
             redis.flushall()
 
+    def limit_memory(self, size: int) -> None:
+        """Let it keep at most so many bytes, which it then refuses to pass; 0: any."""
+        with Redis.from_url(self.url) as redis:
+            redis.config_set("maxmemory", size)
+
     def clients(self) -> int:
         with Redis.from_url(self.url) as redis:
             return len(redis.client_list())

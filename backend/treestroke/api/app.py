@@ -1,6 +1,7 @@
 """The web application."""
 
 import re
+import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -14,10 +15,12 @@ from starlette.types import Scope
 
 from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
-from treestroke.api.following import Watcher
+from treestroke.api.following import STREAMS_A_PERSON, Watcher
 from treestroke.api.identity import SECURITY_SCHEMES, admit
 from treestroke.api.metrics import add_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
+from treestroke.api.rates import RateHeadersMiddleware, limit_rate
+from treestroke.api.request_counts import RequestCounts
 from treestroke.api.routes import (
     captures,
     clips,
@@ -42,6 +45,7 @@ from treestroke.service.accounts import Accounts
 from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
 from treestroke.service.projects import AT_ONCE, Projects
+from treestroke.service.quotas import quotas_of
 from treestroke.service.tracing_pool import TracingPool
 from treestroke.settings import Settings
 from treestroke.store.blobs import open_blobs
@@ -74,7 +78,7 @@ _FORM_BYTES = 100_000
 _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
 _ROUTES = (photos, sketches, captures, clips, uploads, models, events, files, session, keys, team, status)
-_ANYWHERE = ("unauthenticated", "foreign_host", "internal", "overloaded")
+_ANYWHERE = ("unauthenticated", "foreign_host", "rate_limited", "internal", "overloaded")
 """Codes of problems that every route may answer with."""
 _BODIES = (
     Strokes,
@@ -116,10 +120,13 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     )
     app.state.settings, app.state.places, app.state.failed_sign_ins = settings, places, FailedSignIns()
     add_handlers(app)
+    counted = [Depends(limit_rate)] if settings.hosted else []
     for routes in _ROUTES:
-        app.include_router(routes.router, responses=documented(*_ANYWHERE))
+        app.include_router(routes.router, responses=documented(*_ANYWHERE), dependencies=counted)
     add_metrics(app)
     add_page(app)
+    if settings.hosted:
+        app.add_middleware(RateHeadersMiddleware)
     app.add_middleware(BodyLimitMiddleware, limit_of=_limit_of)
     app.add_middleware(MethodMiddleware)
     app.add_middleware(SecurityMiddleware, hosts={*HOSTS, *settings.host_names}, hosted=settings.hosted)
@@ -141,22 +148,32 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     dispatcher = Dispatcher(
         database.of(SERVICE), blobs, partial(send_job_message, make_queue(settings)), settings.keep_days
     )
-    limits = settings.photo_mb * 10**6, settings.photos_mb * 10**6
+    limits = settings.photo_mb * 10**6, sys.maxsize if settings.hosted else settings.photos_mb * 10**6
     app.state.resources = Resources(
-        database, blobs, tracers, capture_tracers, clip_tracers, open_uploads(database, blobs), *limits
+        database,
+        blobs,
+        tracers,
+        capture_tracers,
+        clip_tracers,
+        open_uploads(database, blobs),
+        *limits,
+        quotas_of(settings),
     )
     app.state.accounts = Accounts.of(database, settings.secret)
+    app.state.counts = RequestCounts(settings.broker_url)
     packers = TracingPool(AT_ONCE, settings.capture_trace_seconds, settings.memory_mb)
     app.state.projects = Projects(blobs, packers)
     app.state.dispatcher = dispatcher
     tracers.start()
-    app.state.watcher = Watcher(database.of(SERVICE), app.state.places)
+    streams = STREAMS_A_PERSON if settings.hosted else 0
+    app.state.watcher = Watcher(database.of(SERVICE), app.state.places, streams)
     dispatcher.start()
     try:
         yield
     finally:
         dispatcher.stop()
         packers.close()
+        await app.state.counts.close()
         app.state.projects.close()
         tracers.close()
         capture_tracers.close()

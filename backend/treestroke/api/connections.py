@@ -11,6 +11,7 @@ from fastapi.responses import JSONResponse
 from uvicorn.protocols.http.h11_impl import STATUS_PHRASES, H11Protocol
 
 from treestroke.api.errors import problem
+from treestroke.api.request_counts import REDIS_CONNECTIONS
 
 MAX_CONNECTIONS = 1000
 MIN_CONNECTIONS = 8
@@ -22,12 +23,16 @@ LINGER_SECONDS = 1.0
 """Time in which what a refused client still sends is read and ignored: a reset would lose the response."""
 STALLED_SECONDS = 120.0
 """A connection is closed when its client is this far behind `MIN_READ_BYTES_PER_SECOND`."""
+STREAM_STALLED_SECONDS = 60.0
+"""The same of a stream of events."""
+STREAMS = "/events"
+"""How the paths of streams end."""
 MIN_READ_BYTES_PER_SECOND = 20_000
 BEHIND_SECONDS = 5.0
 """A connection whose client is this far behind is closed before others when room is needed."""
 _CHECK_SHARE = 0.25
 """Time between two checks of a client's reading, as a share of the seconds that it may be behind."""
-_PROCESS_FILES = 30 + 2 * ACCEPTED_AT_ONCE
+_PROCESS_FILES = 30 + 2 * ACCEPTED_AT_ONCE + REDIS_CONNECTIONS
 """Descriptors of the process itself: log, event loop, listening socket, resource tracker, connections being closed."""
 _DATABASE_FILES = 15 * 3
 """Descriptors of SQLAlchemy's pool at its largest: database, WAL and WAL index of each connection."""
@@ -65,8 +70,9 @@ class Connection(H11Protocol):
     """A connection that is closed if a request's head does not arrive in time, or if the client stops reading.
 
     How far a client is behind in reading is counted in seconds: each second adds one, and what it reads takes some
-    off again. At ``stalled_s`` the connection is closed. So neither silence nor a few bytes now and then keep a
-    connection open, in whatever state it is, including one that only waits for its last bytes to be sent.
+    off again. At ``stalled_s``, or ``stream_stalled_s`` of a stream of events, the connection is closed. So neither
+    silence nor a few bytes now and then keep a connection open, in whatever state it is, including one that only waits
+    for its last bytes to be sent.
 
     When more than ``limit`` are open, one is closed: of those that are ``behind_s`` behind in reading, or else of
     all, the one that has sent no complete request for the longest time.
@@ -78,6 +84,7 @@ class Connection(H11Protocol):
         limit: int,
         head_s: float = HEAD_SECONDS,
         stalled_s: float = STALLED_SECONDS,
+        stream_stalled_s: float = STREAM_STALLED_SECONDS,
         min_rate: float = MIN_READ_BYTES_PER_SECOND,
         behind_s: float = BEHIND_SECONDS,
         **of_uvicorn: Any,
@@ -85,7 +92,8 @@ class Connection(H11Protocol):
         super().__init__(**of_uvicorn)
         self.conn: _CountedHTTP = _CountedHTTP(h11.SERVER)
         self._limit, self._head_s = limit, head_s
-        self._stalled_s, self._min_rate, self._behind_limit_s = stalled_s, min_rate, behind_s
+        self._stalled_s, self._stream_stalled_s = stalled_s, stream_stalled_s
+        self._min_rate, self._behind_limit_s = min_rate, behind_s
         self._since = self.loop.time()
         self._head_timer: asyncio.TimerHandle | None = None
         self._read_timer: asyncio.TimerHandle | None = None
@@ -137,6 +145,10 @@ class Connection(H11Protocol):
         return not self.cycle.response_complete or self.transport.get_write_buffer_size() > 0
 
     @property
+    def _streams(self) -> bool:
+        return self.cycle is not None and self.cycle.scope["path"].endswith(STREAMS)
+
+    @property
     def priority(self) -> tuple[bool, bool, bool, float]:
         """Sort key for closing connections: first clients that do not read, then those silent for the longest time."""
         reads = self._behind_s < self._behind_limit_s
@@ -171,7 +183,7 @@ class Connection(H11Protocol):
         caught_up_s = (bytes_read - self._bytes_read) / self._min_rate
         self._behind_s = max(self._behind_s + elapsed_s - caught_up_s, 0.0) if unread else 0.0
         self._bytes_read = bytes_read
-        if self._behind_s >= self._stalled_s:
+        if self._behind_s >= (self._stream_stalled_s if self._streams else self._stalled_s):
             self.transport.abort()
         else:
             self._expect_head()

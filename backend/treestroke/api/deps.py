@@ -49,6 +49,12 @@ def _settings(request: Request) -> Settings:
     return settings
 
 
+def _asker(request: Request) -> Principal | None:
+    """Return who was admitted; None where nobody needs to be known."""
+    asker: Principal | None = request.state.principal
+    return asker
+
+
 def _principal(request: Request) -> Principal:
     """Return who was admitted."""
     principal: Principal = request.state.principal
@@ -150,6 +156,8 @@ CapturePhotoId = Annotated[str, _id("cph")]
 MemberId = Annotated[str, _id("usr")]
 KeyId = Annotated[str, _id("key")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
+AskerOf = Annotated[Principal | None, Depends(_asker)]
+"""Who asks; None without a key."""
 PrincipalOf = Annotated[Principal, Depends(_principal)]
 ResourcesOf = Annotated[Resources, Depends(_resources)]
 AllResources = Annotated[Resources, Depends(_all_resources)]

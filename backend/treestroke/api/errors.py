@@ -1,5 +1,6 @@
 """Errors as problem+json: the only place that knows which problem has which HTTP status."""
 
+import math
 import re
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
@@ -16,12 +17,14 @@ from starlette.requests import ClientDisconnect
 from starlette.routing import Mount, compile_path
 
 from treestroke.api.following import TooManyFollowers
+from treestroke.api.request_counts import RateLimited
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.failures import code_of, problem_of
 from treestroke.service.keys import Exceeded
 from treestroke.service.members import LastOwner
 from treestroke.service.photos import NotFound
+from treestroke.service.quotas import MODELS_A_DAY, QUEUED, STORED, STREAMS, QuotaExceeded, stored_full
 from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
@@ -31,6 +34,7 @@ from treestroke.store.uploads import Superseded, WrongOffset
 MEDIA_TYPE = "application/problem+json"
 _RETRY_SECONDS = 1
 _RETRY_HEADER = {"Retry-After": {"schema": {"type": "string", "pattern": "^[0-9]+$"}, "description": "seconds"}}
+_RETRY_STATUS = (HTTPStatus.SERVICE_UNAVAILABLE, HTTPStatus.TOO_MANY_REQUESTS)
 _STATUS = {
     "bad_request": 400,
     "malformed_json": 400,
@@ -65,6 +69,8 @@ _STATUS = {
     "invalid": 422,
     "idempotency_key_reused": 422,
     "rate_limited": 429,
+    "quota_exceeded": 429,
+    "queue_full": 429,
     "internal": 500,
     "file_damaged": 500,
     "overloaded": 503,
@@ -82,6 +88,13 @@ _STATUS = {
 }
 """HTTP status of each problem's code; the codes of a `TreestrokeError` that are not listed have `_INPUT_STATUS`."""
 _INPUT_STATUS = 422
+_EXCEEDED = {
+    STORED: "the team's photos, clips and files would take more than they may; delete some, and ask again a day later",
+    QUEUED: "as many models and captures of the team wait as may wait; ask again when one is finished",
+    MODELS_A_DAY: "the team has asked for as many models in 24 hours as it may; ask again later",
+    STREAMS: "as many streams of events are open as one person may have; close one, or ask for the model now and then",
+}
+"""What is said of each quota."""
 BODY = ("bad_request", "body_too_slow", "body_too_large", "unsupported_media_type", "invalid")
 """Codes that every route which reads a body may answer with, for `documented`."""
 log = structlog.get_logger()
@@ -127,7 +140,7 @@ def documented(*codes: str) -> dict[int | str, dict[str, Any]]:
     described: dict[int | str, dict[str, Any]] = {}
     for status in sorted({_STATUS[code] for code in codes}):
         described[status] = {"description": HTTPStatus(status).phrase, "content": content}
-        if status in (HTTPStatus.SERVICE_UNAVAILABLE, HTTPStatus.TOO_MANY_REQUESTS):
+        if status in _RETRY_STATUS:
             described[status]["headers"] = _RETRY_HEADER
     return described
 
@@ -168,11 +181,26 @@ def _last_owner(_: Request, __: LastOwner) -> JSONResponse:
     return problem("last_owner", "this is the team's only owner; make another member owner first")
 
 
-def _exceeded(_: Request, error: Exceeded) -> JSONResponse:
+def _beyond_scopes(_: Request, error: Exceeded) -> JSONResponse:
     return problem("scope_missing", f"your key has not the scope {error}, so it can make none that has; use another")
 
 
-def _no_room(_: Request, __: NoRoom) -> JSONResponse:
+def _limited(_: Request, error: RateLimited) -> JSONResponse:
+    standing = error.standing
+    rate, retry_s = standing.rate, str(standing.more_in_s)
+    detail = f"{rate.name}: at most {rate.requests} requests in {rate.seconds} s are answered; ask again in {retry_s} s"
+    return problem("rate_limited", detail, headers={"Retry-After": retry_s, **standing.headers})
+
+
+def _exceeded(_: Request, error: QuotaExceeded) -> JSONResponse:
+    code = "queue_full" if error.quota == QUEUED else "quota_exceeded"
+    headers = {"Retry-After": str(max(math.ceil(error.retry_s), 1))}
+    return problem(code, f"{_EXCEEDED[error.quota]} (the limit is {error.limit})", headers=headers)
+
+
+def _no_room(request: Request, _: NoRoom) -> JSONResponse:
+    if limit := request.app.state.resources.quotas.stored_bytes:
+        return _exceeded(request, stored_full(limit))
     detail = (
         "all photos and clips together would take more than they may here; delete some, whose room is free a day later"
     )
@@ -251,8 +279,10 @@ _ANSWERS: dict[type[Exception], Any] = {
     NotFound: _missing,
     KeyReused: _reused,
     LastOwner: _last_owner,
-    Exceeded: _exceeded,
+    Exceeded: _beyond_scopes,
     NoRoom: _no_room,
+    RateLimited: _limited,
+    QuotaExceeded: _exceeded,
     WrongOffset: _misplaced,
     Superseded: _superseded,
     Overloaded: _busy,

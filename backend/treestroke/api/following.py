@@ -1,8 +1,13 @@
-"""Followers of models and captures: one poll, four times a second, serves all event streams of this process."""
+"""Followers of models and captures: one poll, four times a second, serves all event streams of this process.
+
+A person has a few streams at most where the service is shared, and they end soon after the key or the session is
+revoked that they were opened with.
+"""
 
 import asyncio
+import time
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import Any, Generic, TypeVar
 
@@ -11,11 +16,19 @@ from fastapi.concurrency import run_in_threadpool
 from sqlalchemy.exc import SQLAlchemyError
 
 from treestroke.service import captures, stored_models
+from treestroke.service.accounts import find_revoked
 from treestroke.service.captures import StoredCapture
+from treestroke.service.principals import Principal
+from treestroke.service.quotas import STREAMS, QuotaExceeded, Used
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.database import Database
 
+STREAMS_A_PERSON = 3
+"""Streams of one person in one web process, where persons are told apart."""
 _POLL_SECONDS = 0.25
+_REVOKED_SECONDS = 10.0
+"""How often streams are ended whose key or session was revoked."""
+_RETRY_SECONDS = 10.0
 Followed = TypeVar("Followed", StoredModel, StoredCapture)
 Changes = Callable[[Database, Mapping[str, Any]], Mapping[str, StoredModel | StoredCapture | None]]
 _CHANGES: dict[type[StoredModel | StoredCapture], Changes] = {
@@ -30,50 +43,63 @@ class TooManyFollowers(Exception):
 
 
 class Follower(Generic[Followed]):
-    """A request that waits for changes of a model or a capture."""
+    """A request that waits for changes of a model or a capture; a stream of events is somebody's (``principal``)."""
 
-    def __init__(self, known: Followed) -> None:
+    def __init__(self, known: Followed, principal: Principal | None = None) -> None:
+        self.principal = principal
         self.kind: type[StoredModel | StoredCapture] = type(known)
         self.id = known.id
         self.version: object = known.version
         self._latest: Followed | None = known
-        self._changed = asyncio.Event()
+        self._changed, self._ended = asyncio.Event(), False
 
     async def next_change(self) -> Followed | None:
         """Wait until what is followed has changed and return it; None if there will be no more changes."""
         await self._changed.wait()
         self._changed.clear()
-        return self._latest
+        return None if self._ended else self._latest
 
-    def update(self, now: Followed | None) -> None:
-        """Wake the request if what it follows has changed; None ends its wait for good."""
-        if now is None or now.version != self.version:
-            self.version = now.version if now else self.version
-            self._latest = now
+    def update(self, now: Followed) -> None:
+        """Wake the request if what it follows has changed."""
+        if now.version != self.version:
+            self.version, self._latest = now.version, now
             self._changed.set()
+
+    def end(self) -> None:
+        """End the request's wait for good."""
+        self._ended = True
+        self._changed.set()
 
 
 class Watcher:
-    """Polls the database for what is followed, while there is anything, and wakes the followers."""
+    """Polls the database for what is followed, while there is anything, and wakes the followers.
 
-    def __init__(self, database: Database, places: int) -> None:
-        self._database, self.places = database, places
+    Of ``places`` requests that follow, ``streams`` may be one person's streams; 0: no limit.
+    """
+
+    def __init__(self, database: Database, places: int, streams: int = 0) -> None:
+        self._database, self.places, self._streams = database, places, streams
+        self._asked_revoked = time.monotonic()
         self._followers: set[Follower[Any]] = set()
         self._stopped = asyncio.Event()
         self._polling: asyncio.Task[None] | None = None
 
     @contextmanager
-    def follow(self, known: Followed) -> Iterator[Follower[Followed]]:
-        """Follow a model or a capture from a known state on, until the context ends.
+    def follow(self, known: Followed, principal: Principal | None = None) -> Iterator[Follower[Followed]]:
+        """Follow a model or a capture from a known state on, until the context ends, for somebody's stream.
 
         Raises
         ------
         TooManyFollowers
             All places are taken.
+        QuotaExceeded
+            That person has as many streams as one may have.
         """
         if len(self._followers) >= self.places:
             raise TooManyFollowers
-        follower = Follower(known)
+        if principal is not None and self._streams and self.streams_of(principal).used >= self._streams:
+            raise QuotaExceeded(STREAMS, self._streams, _RETRY_SECONDS)
+        follower = Follower(known, principal)
         self._followers.add(follower)
         if self._polling is None:
             self._polling = asyncio.create_task(self._run())
@@ -81,6 +107,11 @@ class Watcher:
             yield follower
         finally:
             self._followers.discard(follower)
+
+    def streams_of(self, principal: Principal) -> Used:
+        """Return how many streams somebody has."""
+        own = sum(one.principal is not None and one.principal.id == principal.id for one in self._followers)
+        return Used(STREAMS, self._streams, own)
 
     def stop(self) -> None:
         """End the wait of all followers."""
@@ -91,11 +122,23 @@ class Watcher:
             while self._followers and not self._stopped.is_set():
                 with suppress(TimeoutError):
                     await asyncio.wait_for(self._stopped.wait(), _POLL_SECONDS)
-                await self._poll()
+                await _try(self._poll)
+                if time.monotonic() - self._asked_revoked >= _REVOKED_SECONDS:
+                    await _try(self.end_revoked)
         finally:
             self._polling = None
             for follower in self._followers:
-                follower.update(None)
+                follower.end()
+
+    async def end_revoked(self) -> None:
+        """End the streams whose key or session was revoked."""
+        self._asked_revoked = time.monotonic()
+        owned = [(follower, follower.principal.credential) for follower in self._followers if follower.principal]
+        if credentials := {credential for _, credential in owned if credential}:
+            revoked = await run_in_threadpool(find_revoked, self._database, credentials)
+            for follower, credential in owned:
+                if credential in revoked:
+                    follower.end()
 
     async def _poll(self) -> None:
         followers = list(self._followers)
@@ -104,11 +147,17 @@ class Watcher:
             known = versions[follower.kind]
             same = known.get(follower.id, follower.version) == follower.version
             known[follower.id] = follower.version if same else None  # followers at different states: always report
-        try:
-            for kind, known in versions.items():
-                changed = await run_in_threadpool(_CHANGES[kind], self._database, known)
-                for follower in followers:
-                    if follower.kind is kind and follower.id in changed:
-                        follower.update(changed[follower.id])
-        except SQLAlchemyError as error:
-            log.warning("poll_failed", error=str(error))
+        for kind, known in versions.items():
+            changed = await run_in_threadpool(_CHANGES[kind], self._database, known)
+            for follower in followers:
+                if follower.kind is kind and follower.id in changed:
+                    now = changed[follower.id]
+                    follower.end() if now is None else follower.update(now)
+
+
+async def _try(step: Callable[[], Awaitable[None]]) -> None:
+    """Take a step; where the database is away, the next one comes soon."""
+    try:
+        await step()
+    except SQLAlchemyError as error:
+        log.warning("poll_failed", error=str(error))

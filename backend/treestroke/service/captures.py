@@ -22,6 +22,7 @@ from treestroke.service.file_names import file_name, free_name
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
+from treestroke.service.quotas import admit_job, admit_upload
 from treestroke.store import leases, queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
@@ -182,8 +183,8 @@ def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple
         There is no such capture.
     CaptureError
         The capture has as many photos as it may have.
-    PhotoError, NoRoom, OSError
-        As `photos.kept_columns`.
+    PhotoError, NoRoom, QuotaExceeded, OSError
+        As `photos.kept_columns` and `quotas.admit_upload`.
     """
     sha256 = hashlib.sha256(content).hexdigest()
     sent_name = file_name(name) or sha256[:12]
@@ -199,6 +200,7 @@ def add_photo(resources: Resources, id: str, name: str, content: bytes) -> tuple
             return present, False
         taken = session.scalars(select(CapturePhoto.name).where(CapturePhoto.capture == id)).all()
         free = free_name(sent_name, taken)
+        admit_upload(session, resources.quotas, columns["bytes"])
         added = CapturePhoto(id=queries.new_id("cph"), capture=id, name=free, sent_name=sent_name, **columns)
         session.add(added)
         _note_change(session, id)
@@ -241,8 +243,8 @@ def solve(resources: Resources, id: str) -> StoredCapture:
     ------
     NotFound
         There is no such capture.
-    CaptureError
-        It has too few photos.
+    CaptureError, QuotaExceeded
+        It has too few photos; or as `quotas.admit_job`.
     """
     asked = find_capture(resources.database, id)
     ready = _ready(resources, fingerprint(asked.photos))
@@ -254,6 +256,8 @@ def solve(resources: Resources, id: str) -> StoredCapture:
             raise CaptureError(f"photos: {need}", code="too_few_photos")
         made = _new_solve(now, ready)
         if made is not None:
+            if made.status not in leases.TERMINAL:
+                admit_job(session, resources.quotas)
             leases.cancel(session, SolveRow, SolveRow.capture == id)
             session.add(made)
     return find_capture(resources.database, id, deleted=True)

@@ -13,11 +13,12 @@ from treestroke.service import clip_tracer
 from treestroke.service.clip_loading import too_large
 from treestroke.service.file_names import file_name
 from treestroke.service.photos import NotFound, Resources
+from treestroke.service.quotas import admit_upload
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import Crashed
 from treestroke.store.objects import sha256_of
 from treestroke.store.queries import clip as find_clip
-from treestroke.store.queries import mark_deleted, new_id, page, stored_bytes
+from treestroke.store.queries import mark_deleted, new_id, page
 from treestroke.store.tables import ClipRow, UploadRow
 from treestroke.store.uploads import WrongOffset
 
@@ -35,7 +36,7 @@ def begin_upload(resources: Resources, name: str, length: int | None = None) -> 
     if length is not None and length > MAX_CLIP_BYTES:
         raise too_large()
     with resources.database.reading() as session:
-        room = resources.photos_bytes - stored_bytes(session) - resources.uploads.total_size()
+        room = resources.room(session) - resources.uploads.total_size()
     if room < (length or 1):
         raise NoRoom
     row = UploadRow(id=new_id("upl"), name=file_name(name), created=time.time())
@@ -105,6 +106,8 @@ def finish_upload(resources: Resources, id: str) -> ClipRow:
         There is no such upload.
     ClipError
         It is no video that can be read, is too short or too dark, or nothing moves in it.
+    QuotaExceeded
+        As `quotas.admit_upload`; the upload stays.
     Overloaded
         Too many clips are being read; the upload stays.
     Superseded
@@ -133,6 +136,7 @@ def _kept(resources: Resources, upload: UploadRow) -> ClipRow:
         now = session.get(UploadRow, upload.id, with_for_update=True)
         made = None if now is None else now.clip  # by another web process, meanwhile
         if made is None:
+            admit_upload(session, resources.quotas, row.bytes)
             session.add(row)
         if now is not None and made is None:
             now.clip, now.seen = row.id, None

@@ -7,8 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
+from sqlalchemy.orm import Session
+
 from treestroke.core.errors import PhotoError
 from treestroke.service import tracer
+from treestroke.service.quotas import NO_QUOTAS, Quotas, admit_upload, stored_by_team
 from treestroke.service.tracing_pool import Crashed, TracingPool
 from treestroke.settings import PHOTO_MB, PHOTOS_MB
 from treestroke.store.blobs import Blobs
@@ -40,12 +43,19 @@ class Resources:
     photo_bytes: int = PHOTO_MB * 10**6
     """Most bytes of one photo as it is stored."""
     photos_bytes: int = PHOTOS_MB * 10**6
-    """Most bytes of all photos and clips together."""
+    """Most bytes of all photos and clips together; of a team with a quota, the quota counts instead."""
+    quotas: Quotas = NO_QUOTAS
 
     def of(self, scope: Scope) -> Self:
         """Return the same with what belongs to one scope: without it there are no sessions."""
         database, blobs, uploads = self.database.of(scope), self.blobs.of(scope), self.uploads.of(scope)
         return replace(self, database=database, blobs=blobs, uploads=uploads)
+
+    def room(self, session: Session) -> int:
+        """Return how many bytes of photos and clips may still be stored."""
+        if self.quotas.stored_bytes:
+            return self.quotas.stored_bytes - stored_by_team(session)
+        return self.photos_bytes - stored_bytes(session)
 
 
 def add_photo(resources: Resources, content: bytes) -> PhotoRow:
@@ -53,11 +63,12 @@ def add_photo(resources: Resources, content: bytes) -> PhotoRow:
 
     Raises
     ------
-    PhotoError, OSError
-        As `store_pixels`.
+    PhotoError, NoRoom, QuotaExceeded, OSError
+        As `store_pixels` and `quotas.admit_upload`.
     """
     row = store_pixels(resources, content)
     with resources.database.writing() as session:
+        admit_upload(session, resources.quotas, row.bytes)
         session.add(row)
     return row
 
@@ -87,7 +98,7 @@ def kept_columns(resources: Resources, content: bytes, read: Read) -> dict[str, 
     """
     sha256 = hashlib.sha256(content).hexdigest()
     with resources.database.reading() as session:
-        room = resources.photos_bytes - stored_bytes(session)
+        room = resources.room(session)
     with resources.blobs.temporary() as path:
         try:
             columns = resources.tracers(sha256, read, path, content, resources.photo_bytes, room)

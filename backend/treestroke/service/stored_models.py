@@ -16,6 +16,7 @@ from treestroke.service.engine_version import engine_version
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Resources
+from treestroke.service.quotas import admit_model
 from treestroke.store import leases, queries
 from treestroke.store.database import Database
 from treestroke.store.objects import Damaged
@@ -82,6 +83,8 @@ def accept_model(
     NotFound, TreestrokeError, KeyReused
         There is no such photo, capture or clip; something in the request cannot be used, or the capture is not solved;
         the key was used for another request.
+    QuotaExceeded
+        As `quotas.admit_model`.
     Damaged
         The file of the photo or the clip is damaged.
     OSError
@@ -98,6 +101,7 @@ def accept_model(
     with resources.database.writing() as session:
         answered = _claim_key(session, key, request, row.id) if key else None
         if answered is None:
+            admit_model(session, resources.quotas, equal is None, 0 if sent_photo is None else sent_photo.bytes)
             session.add_all([row, sent_photo] if sent_photo else [row])
             session.flush()  # parts and files refer to the row
             for part in inputs.parts.values():

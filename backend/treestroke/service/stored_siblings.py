@@ -3,6 +3,7 @@
 from treestroke.service.fingerprints import digest
 from treestroke.service.model_request import Drawing, ModelOrder
 from treestroke.service.photos import Resources
+from treestroke.service.quotas import admit_model
 from treestroke.service.sibling_request import SiblingsAsked
 from treestroke.service.stored_models import (
     StoredModel,
@@ -22,6 +23,8 @@ def accept_siblings(resources: Resources, id: str, asked: SiblingsAsked) -> Stor
     ------
     NotFound
         There is no such model.
+    QuotaExceeded
+        As `quotas.admit_model`.
     OSError
         The disk is full.
     """
@@ -40,6 +43,7 @@ def accept_siblings(resources: Resources, id: str, asked: SiblingsAsked) -> Stor
     row.photo = old.photo
     equal = finished_model(resources, row)
     with resources.database.writing() as session:
+        admit_model(session, resources.quotas, equal is None)
         session.add(row)
         session.flush()  # parts and files refer to the row
         for part in parts.values():

@@ -16,6 +16,7 @@ from treestroke.api.deps import (
     DispatcherOf,
     JsonBody,
     Limit,
+    PrincipalOf,
     ResourcesOf,
     WatcherOf,
     leads_to,
@@ -231,10 +232,10 @@ def _capture(resources: ResourcesOf, id: CaptureId) -> StoredCapture:
 
 
 async def _follower(
-    watcher: WatcherOf, capture: Annotated[StoredCapture, Depends(_capture)]
+    watcher: WatcherOf, principal: PrincipalOf, capture: Annotated[StoredCapture, Depends(_capture)]
 ) -> AsyncIterator[Follower[StoredCapture]]:
     """Yield a follower of the capture; before the stream begins, while the response can still be a problem."""
-    with watcher.follow(capture) as follower:
+    with watcher.follow(capture, principal) as follower:
         yield follower
 
 

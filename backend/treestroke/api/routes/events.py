@@ -8,7 +8,7 @@ from fastapi import APIRouter, Depends, Header
 from fastapi.concurrency import run_in_threadpool
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
-from treestroke.api.deps import ModelId, ResourcesOf, WatcherOf
+from treestroke.api.deps import ModelId, PrincipalOf, ResourcesOf, WatcherOf
 from treestroke.api.errors import documented
 from treestroke.api.following import Follower
 from treestroke.api.views import model_view
@@ -30,10 +30,10 @@ def _model(resources: ResourcesOf, id: ModelId) -> StoredModel:
 
 
 async def _follower(
-    watcher: WatcherOf, model: Annotated[StoredModel, Depends(_model)]
+    watcher: WatcherOf, principal: PrincipalOf, model: Annotated[StoredModel, Depends(_model)]
 ) -> AsyncIterator[Follower[StoredModel]]:
     """Yield a follower of the model; before the stream begins, while the response can still be a problem."""
-    with watcher.follow(model) as follower:
+    with watcher.follow(model, principal) as follower:
         yield follower
 
 

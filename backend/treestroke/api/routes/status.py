@@ -1,12 +1,15 @@
 """Health, limits and version of the service."""
 
-from dataclasses import fields
+from dataclasses import asdict, fields
 from http import HTTPStatus
+from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Depends, Request, Response
 
 from treestroke import __version__
-from treestroke.api.deps import AllResources, DispatcherOf, SettingsOf, WatcherOf
+from treestroke.api.deps import AllResources, DispatcherOf, PrincipalOf, ResourcesOf, SettingsOf, WatcherOf
+from treestroke.api.rates import ALL
+from treestroke.api.request_counts import RequestCounts
 from treestroke.api.routes.models import MAX_WAIT_SECONDS
 from treestroke.codec.image import MAX_PIXELS, MAX_SIDE, MIN_SIDE
 from treestroke.codec.photo_kinds import MEDIA_TYPES
@@ -29,9 +32,10 @@ from treestroke.limits import (
     MIN_CLIP_SECONDS,
     MIN_PHOTOS,
 )
-from treestroke.schemas import Health, Limits, Version
+from treestroke.schemas import Health, Limits, QuotaNow, RateNow, Version
 from treestroke.service.engine_version import engine_version
 from treestroke.service.files import files_on_offer
+from treestroke.service.quotas import used_by_team
 from treestroke.service.readiness import readiness
 
 router = APIRouter(tags=["service"])
@@ -52,8 +56,32 @@ def ready(resources: AllResources, dispatcher: DispatcherOf, response: Response)
     return health
 
 
+async def _rates(request: Request, principal: PrincipalOf) -> list[RateNow]:
+    """Return the rates of who asks; a service without keys has none."""
+    counts: RequestCounts = request.app.state.counts
+    if not request.app.state.settings.hosted:
+        return []
+    standings = [await counts.standing(rate, principal.id) for rate in ALL]
+    return [RateNow(**asdict(one.rate), remaining=one.remaining) for one in standings]
+
+
+def _quotas(resources: ResourcesOf, principal: PrincipalOf, settings: SettingsOf, watcher: WatcherOf) -> list[QuotaNow]:
+    """Return the quotas of the team of who asks; a service without keys has none."""
+    if not settings.hosted:
+        return []
+    with resources.database.reading() as session:
+        used = used_by_team(session, resources.quotas)
+    quotas = *used, watcher.streams_of(principal)
+    return [QuotaNow(name=name, limit=limit or None, used=count) for name, limit, count in quotas]
+
+
 @router.get("/v1/limits")
-def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
+def limits(
+    settings: SettingsOf,
+    watcher: WatcherOf,
+    rates: Annotated[list[RateNow], Depends(_rates)],
+    quotas: Annotated[list[QuotaNow], Depends(_quotas)],
+) -> Limits:
     """Return every limit of the service, and the settings of a model."""
     return Limits(
         photo_bytes=MAX_PHOTO_BYTES,
@@ -94,6 +122,8 @@ def limits(settings: SettingsOf, watcher: WatcherOf) -> Limits:
         },
         keep_days=settings.keep_days,
         followers=watcher.places,
+        rates=rates,
+        quotas=quotas,
     )
 
 
