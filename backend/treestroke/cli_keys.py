@@ -5,6 +5,7 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from treestroke.core.errors import SettingsError
+from treestroke.store.data_folder import DataFolderError
 
 if TYPE_CHECKING:
     from treestroke.service.team_setup import ListedKey
@@ -34,16 +35,25 @@ def keys(settings: "Settings", options: argparse.Namespace) -> None:
     ------
     TreestrokeError
         The service has no keys, or what was given cannot be used.
+    DataFolderError
+        The database does not answer.
     """
     if not settings.hosted:
         raise SettingsError(
             "keys: a service without a database of its own has one person and no keys; set TREESTROKE_DATABASE_URL"
         )
+    from sqlalchemy.exc import OperationalError
+
     from treestroke.store.database import Database
 
     database = Database(settings.folder, settings.database_url)
     try:
+        database.migrate()
         _ACTS[options.action](settings, database, options)
+    except OperationalError as error:
+        raise DataFolderError(
+            f"TREESTROKE_DATABASE_URL: the database does not answer ({error.orig}); start it, or correct the address"
+        ) from error
     finally:
         database.close()
 
@@ -58,7 +68,6 @@ def _add(settings: "Settings", database: "Database", options: argparse.Namespace
     if options.role not in (None, "owner", "member", "viewer"):
         raise SettingsError(f"--role {options.role}: there is no such role; take owner, member or viewer")
     wanted = _wanted(options)
-    database.migrate()
     made = add_key(database, settings.secret, Person(options.team, options.member or "owner", options.role), wanted)
     print(made.key)
 
