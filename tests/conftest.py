@@ -21,7 +21,8 @@ FIRST = ("tests/api/test_events.py", "tests/faults/", "tests/test_installed.py",
 """What takes longest from its beginning to its end, mostly by waiting: the tests of one service, one after another."""
 
 NO_SHARED_SERVICE = tuple(
-    f"tests/api/test_{name}.py" for name in ("schemathesis", "connections", "following", "limits", "bucket")
+    f"tests/api/test_{name}.py"
+    for name in ("schemathesis", "connections", "following", "limits", "bucket", "rates", "request_counts", "teams")
 )
 
 

@@ -1,4 +1,4 @@
-"""Rates and quotas of a service that teams share, as its answers tell them; a service of one person has none."""
+"""Rates and quotas of a service that teams share, as its answers tell them."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -153,9 +153,3 @@ def test_limits_tell_rates_and_quotas_of_who_asks(web: httpx.Client) -> None:
         {"name": "models_a_day", "limit": 3, "used": 1},
         {"name": "streams", "limit": 3, "used": 0},
     ]
-
-
-def test_a_service_of_one_person_has_neither_rates_nor_quotas(client: httpx.Client) -> None:
-    answer = client.get("/v1/limits")
-    assert (answer.json()["rates"], answer.json()["quotas"]) == ([], [])
-    assert "ratelimit" not in answer.headers

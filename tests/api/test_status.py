@@ -105,6 +105,12 @@ def test_the_limits_are_told(client: httpx.Client) -> None:
     assert (limits["settings"]["height"]["min"], limits["settings"]["height"]["max"]) == (0.1, 150)
 
 
+def test_a_service_without_teams_has_neither_rates_nor_quotas(client: httpx.Client) -> None:
+    answer = client.get("/v1/limits")
+    assert (answer.json()["rates"], answer.json()["quotas"]) == ([], [])
+    assert "ratelimit" not in answer.headers
+
+
 def test_the_version_is_told(client: httpx.Client) -> None:
     assert client.get("/v1/version").json() == {
         "version": __version__,
