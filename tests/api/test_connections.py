@@ -14,6 +14,7 @@ import uvicorn
 from starlette.types import Receive, Scope, Send
 from tests.faults.processes import wait_for
 
+from treestroke.api import connections
 from treestroke.api.connections import Connection
 
 GET = b"GET / HTTP/1.1\r\nHost: x\r\n"
@@ -182,8 +183,9 @@ def test_a_client_that_reads_nothing_is_given_up(path: bytes, keep_alive_s: int)
         assert served.ask().startswith(b"HTTP/1.1 200 ")
 
 
-def test_a_stream_that_nobody_reads_is_given_up_sooner_than_a_download() -> None:
-    with serving(stalled_s=PATIENCE_SECONDS, stream_stalled_s=0.4, behind_s=0.1) as served:
+def test_a_stream_that_nobody_reads_is_given_up_sooner_than_a_download(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connections, "STREAM_SHARE", 0.4 / PATIENCE_SECONDS)
+    with serving(stalled_s=PATIENCE_SECONDS, behind_s=0.1) as served:
         served.slow_line(b"/large")
         served.slow_line(b"/large/events")
         wait_for(lambda: served.behind == 2, PATIENCE_SECONDS, "both being behind")

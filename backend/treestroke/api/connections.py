@@ -23,8 +23,8 @@ LINGER_SECONDS = 1.0
 """Time in which what a refused client still sends is read and ignored: a reset would lose the response."""
 STALLED_SECONDS = 120.0
 """A connection is closed when its client is this far behind `MIN_READ_BYTES_PER_SECOND`."""
-STREAM_STALLED_SECONDS = 60.0
-"""The same of a stream of events."""
+STREAM_SHARE = 0.5
+"""A stream of events is closed in this share of that time: its reader misses nothing by following it anew."""
 STREAMS = "/events"
 """How the paths of streams end."""
 MIN_READ_BYTES_PER_SECOND = 20_000
@@ -70,9 +70,9 @@ class Connection(H11Protocol):
     """A connection that is closed if a request's head does not arrive in time, or if the client stops reading.
 
     How far a client is behind in reading is counted in seconds: each second adds one, and what it reads takes some
-    off again. At ``stalled_s``, or ``stream_stalled_s`` of a stream of events, the connection is closed. So neither
-    silence nor a few bytes now and then keep a connection open, in whatever state it is, including one that only waits
-    for its last bytes to be sent.
+    off again. At ``stalled_s``, or half of it for a stream of events, the connection is closed. So neither silence nor
+    a few bytes now and then keep a connection open, in whatever state it is, including one that only waits for its last
+    bytes to be sent.
 
     When more than ``limit`` are open, one is closed: of those that are ``behind_s`` behind in reading, or else of
     all, the one that has sent no complete request for the longest time.
@@ -84,7 +84,6 @@ class Connection(H11Protocol):
         limit: int,
         head_s: float = HEAD_SECONDS,
         stalled_s: float = STALLED_SECONDS,
-        stream_stalled_s: float = STREAM_STALLED_SECONDS,
         min_rate: float = MIN_READ_BYTES_PER_SECOND,
         behind_s: float = BEHIND_SECONDS,
         **of_uvicorn: Any,
@@ -92,8 +91,7 @@ class Connection(H11Protocol):
         super().__init__(**of_uvicorn)
         self.conn: _CountedHTTP = _CountedHTTP(h11.SERVER)
         self._limit, self._head_s = limit, head_s
-        self._stalled_s, self._stream_stalled_s = stalled_s, stream_stalled_s
-        self._min_rate, self._behind_limit_s = min_rate, behind_s
+        self._stalled_s, self._min_rate, self._behind_limit_s = stalled_s, min_rate, behind_s
         self._since = self.loop.time()
         self._head_timer: asyncio.TimerHandle | None = None
         self._read_timer: asyncio.TimerHandle | None = None
@@ -183,7 +181,7 @@ class Connection(H11Protocol):
         caught_up_s = (bytes_read - self._bytes_read) / self._min_rate
         self._behind_s = max(self._behind_s + elapsed_s - caught_up_s, 0.0) if unread else 0.0
         self._bytes_read = bytes_read
-        if self._behind_s >= (self._stream_stalled_s if self._streams else self._stalled_s):
+        if self._behind_s >= self._stalled_s * (STREAM_SHARE if self._streams else 1.0):
             self.transport.abort()
         else:
             self._expect_head()
