@@ -35,6 +35,16 @@ def test_what_is_handed_to_another_process_is_read_there_alike(monkeypatch: pyte
     assert read_settings() == settings
 
 
+@pytest.mark.parametrize(
+    "url", ["forest", f"https:{'//'}forest/trees", f"s3:{'//'}", f"s3:{'//'}Forest", f"s3:{'//'}f/a//b"]
+)
+def test_a_bucket_is_named_by_its_url(url: str) -> None:
+    for good in (f"s3:{'//'}forest", f"s3:{'//'}forest/", f"s3:{'//'}my.forest-1/trees/of_2026"):
+        assert read_settings(bucket_url=good).bucket_url == good
+    with pytest.raises(SettingsError, match=r"^TREESTROKE_BUCKET_URL: .* names no bucket; give s3:"):
+        read_settings(bucket_url=url)
+
+
 @pytest.mark.parametrize("name", ["TREESTROKE_COLOUR", "TREESTROKE_", "treestroke_ports"])
 def test_an_unknown_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(name, "1")

@@ -13,6 +13,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
+from tests.bucket import BUCKET, S3Server
 from tests.faults.processes import wait_for
 from tests.postgres import PostgresServer
 from tests.promises import kept
@@ -273,6 +274,26 @@ def test_files_that_are_damaged_or_gone_are_ill_and_named(folder: Path) -> None:
     assert ill(folder) == {"files": f"1 of 1 damaged or missing: {blob.name}: damaged"}
     blob.unlink()
     assert ill(folder) == {"files": f"1 of 1 damaged or missing: {blob.name}: missing"}
+
+
+def test_files_in_a_bucket_are_compared_there_and_not_their_copies(
+    folder: Path, s3_server: S3Server, bucket_url: str
+) -> None:
+    database = Database(folder)
+    name = open_blobs(database, folder, bucket_url).of(LOCAL).put(b"photo")
+    assert findings(folder, bucket_url=bucket_url)["files"].ok
+    open_blobs(database, folder, bucket_url).of(LOCAL).check(name)
+    database.close()
+    key = f"{bucket_url.rpartition('/')[2]}/local/{name[:2]}/{name}"
+    s3_server.client().put_object(Bucket=BUCKET, Key=key, Body=b"phoso")
+    assert ill(folder, bucket_url=bucket_url) == {"files": f"1 of 1 damaged or missing: {name}: damaged"}
+
+
+def test_a_bucket_that_is_not_there_is_ill(folder: Path, bucket_url: str) -> None:
+    missing = bucket_url.replace(BUCKET, "no-forest")
+    found = findings(folder, bucket_url=missing)["files"]
+    assert (found.ok, found.found.startswith(missing)) == (False, True)
+    assert "TREESTROKE_BUCKET_URL" in found.mend
 
 
 def test_a_folder_that_others_may_look_into_is_ill(folder: Path) -> None:

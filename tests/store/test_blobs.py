@@ -1,4 +1,4 @@
-"""Blobs in a folder and in a bucket of a real server: what holds for both."""
+"""Blobs in a folder and in a bucket of a real server: what holds for both, and with both databases."""
 
 import hashlib
 import os
@@ -6,7 +6,7 @@ import resource
 import threading
 import time
 import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,14 +21,6 @@ from treestroke.store.scope import LOCAL, SERVICE, Foreign, Scope
 from treestroke.store.tables import BlobRow
 
 OAKS = Scope("team_oaks", "usr_ada")
-
-
-@pytest.fixture
-def database(tmp_path: Path) -> Iterator[Database]:
-    made = Database(tmp_path)
-    made.migrate()
-    yield made
-    made.close()
 
 
 @pytest.fixture(params=["folder", "bucket"])
