@@ -6,6 +6,7 @@ from typing import Any
 
 from treestroke.codec.inputs import part_of
 from treestroke.store.database import Database
+from treestroke.store.leases import Holder, JobRow, claim_next
 from treestroke.store.queries import new_id
 from treestroke.store.tables import CapturePhoto, CaptureRow, ModelPart, ModelRow, PhotoRow, SolveRow
 
@@ -83,6 +84,29 @@ def add_solve(database: Database, capture: str, **values: Any) -> SolveRow:
     with database.writing() as session:
         session.add(row)
     return row
+
+
+def claim(database: Database, row: JobRow, token: str = "token", worker: str = "worker") -> JobRow:
+    """Claim the job that is next, which is to be that of a row."""
+    with database.writing() as session:
+        job = claim_next(session, Holder(token, worker, row.engine))
+    assert job is not None
+    assert job.id == row.id
+    assert isinstance(job, type(row))
+    return job
+
+
+class Messages:
+    """The queue's messages, of which ``taken`` have been taken by workers."""
+
+    def __init__(self) -> None:
+        self.sent = self.taken = 0
+
+    def waiting(self) -> int:
+        return self.sent - self.taken
+
+    def send(self) -> None:
+        self.sent += 1
 
 
 def find(database: Database, id: str) -> ModelRow:

@@ -1,4 +1,4 @@
-"""The queue: Celery messages with the ids of jobs. The jobs themselves are rows of the database."""
+"""The queue: Celery messages that say that a job waits. The jobs themselves are rows of the database."""
 
 import json
 import math
@@ -14,8 +14,11 @@ from kombu.transport import filesystem
 
 from treestroke.settings import Settings
 
-GROW, SOLVE = "treestroke.grow", "treestroke.solve"
-"""The tasks of workers: growing a model, finding the cameras of a capture."""
+WORK = "treestroke.work"
+"""The task of workers: doing the job that is next."""
+EARLIER_TASKS = "treestroke.grow", "treestroke.solve"
+"""Tasks by which earlier versions named a job; they too say that one waits."""
+_QUEUE = "treestroke"
 _SOCKET_SECONDS = 2.0
 """A broker that does not respond within this time is down."""
 _POLL_SECONDS = 0.1
@@ -41,7 +44,7 @@ def make_queue(settings: Settings) -> Celery:
         broker_connection_retry_on_startup=True,
         broker_connection_max_retries=None,
         broker_transport_polling_interval=_POLL_SECONDS,
-        task_default_queue="treestroke",
+        task_default_queue=_QUEUE,
         task_ignore_result=True,
         task_acks_late=False,
         worker_lost_wait=_LOST_SECONDS,
@@ -61,15 +64,32 @@ def hard_limit(seconds: float) -> int:
     return math.ceil(seconds + _GRACE_SECONDS)
 
 
-def send_job_message(app: Celery, task: str, job: str) -> None:
-    """Send the workers a message that a job waits for one of their tasks.
+class Hints:
+    """Messages that say that a job waits; they name none."""
 
-    Raises
-    ------
-    kombu.exceptions.OperationalError, OSError
-        The broker does not accept it.
-    """
-    app.send_task(task, args=[job], retry=False, ignore_result=True)
+    def __init__(self, app: Celery) -> None:
+        self._app = app
+
+    def waiting(self) -> int:
+        """Return how many messages no worker has taken.
+
+        Raises
+        ------
+        kombu.exceptions.OperationalError, redis.exceptions.RedisError, OSError
+            The broker does not say.
+        """
+        with self._app.connection_or_acquire() as connection:
+            return int(connection.default_channel.queue_declare(_QUEUE).message_count)
+
+    def send(self) -> None:
+        """Send one.
+
+        Raises
+        ------
+        kombu.exceptions.OperationalError, OSError
+            The broker does not accept it.
+        """
+        self._app.send_task(WORK, retry=False, ignore_result=True)
 
 
 class _FolderChannel(filesystem.Channel):

@@ -91,6 +91,11 @@ class Settings(BaseSettings):
         return bool(self.database_url)
 
     @property
+    def most_running(self) -> int:
+        """Jobs of one team that are done at once; 0: any number, as where one person has it all."""
+        return self.team_running if self.hosted else 0
+
+    @property
     def embedded(self) -> bool:
         """Whether the queue is a folder rather than a Redis."""
         return not self.broker_url

@@ -2,7 +2,7 @@
 
 import os
 import secrets
-import socket
+import signal
 import sys
 import threading
 import time
@@ -22,8 +22,8 @@ from sqlalchemy.exc import OperationalError, SQLAlchemyError
 
 from treestroke.logs import start_logging
 from treestroke.parent_process import PREVIOUS_RUN_ID, RUN_ID, kill_with_parent, stop_with_parent
-from treestroke.queue import DRAIN_SECONDS, GROW, SOLVE, hard_limit, make_queue
-from treestroke.service.attempts import Assignment
+from treestroke.queue import DRAIN_SECONDS, EARLIER_TASKS, WORK, hard_limit, make_queue
+from treestroke.service.attempts import claim_job
 from treestroke.service.dispatch import holds_jobs, record_heartbeat, remove_worker
 from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
@@ -34,9 +34,9 @@ from treestroke.settings import Settings, read_settings
 from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.data_folder import prepare_folder
 from treestroke.store.database import Database
-from treestroke.store.leases import AnyJob, end, take_back
+from treestroke.store.leases import Holder, end, take_back
 from treestroke.store.scope import SERVICE
-from treestroke.store.tables import JOBS
+from treestroke.store.tables import JOBS, AnyJob, ModelRow
 
 NICENESS = 10
 """Growing runs at low priority: tracing has a person waiting for it."""
@@ -48,6 +48,8 @@ _PATIENCE_SECONDS = 120.0
 _POLL_SECONDS = 0.2
 _IDLE_POLLS = 2
 """A worker that is told to stop ends after finding no running job this often: a child may be about to claim one."""
+_BY_ALARM = f"({signal.SIGALRM.name})"
+"""Billiard tells by this text that a child was ended by its alarm."""
 _no_fork = threading.RLock()
 """Held while a child is forked and while this process uses the database."""
 log = structlog.get_logger()
@@ -87,7 +89,7 @@ def _run(app: Celery, database: Database, name: str, engine: str) -> None:
     """Run Celery's worker until it is told to stop, with heartbeats in the database while it runs."""
     slots = app.conf.worker_concurrency
     stopped = threading.Event()
-    arguments = (database, name, slots, stopped)
+    arguments = (database, (name, slots, engine), stopped)
     heartbeats = threading.Thread(target=_send_heartbeats, args=arguments, name="heartbeats", daemon=True)
 
     @signals.worker_ready.connect(weak=False)
@@ -100,10 +102,10 @@ def _run(app: Celery, database: Database, name: str, engine: str) -> None:
         threading.Thread(target=_leave, args=(database, name), name="leaving", daemon=True).start()
 
     signals.setup_logging.connect(_keep_logging, weak=False)
-    # Celery warns of running as root with pickled messages; messages here are JSON and hold an id.
+    # Celery warns of running as root with pickled messages; messages here are JSON and hold nothing.
     warnings.simplefilter("ignore", SecurityWarning)
     app.Worker(
-        hostname=f"treestroke@{socket.gethostname()}",
+        hostname=f"treestroke@{name}",
         pool_cls="prefork",
         concurrency=slots,
         without_gossip=True,
@@ -158,6 +160,7 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
     @signals.worker_process_init.connect(weak=False)
     def _open(**_: object) -> None:
         kill_with_parent(parent)
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
         os.nice(NICENESS)
         limit_memory(settings.memory_mb * 2**20)
         stores[:] = [_stores(settings)]
@@ -171,33 +174,25 @@ def make_worker(settings: Settings, database: Database, worker: str) -> Celery:
                 _record_end(database, self.id, "time_limit")
 
         def on_failure(self, exc_info: Any, *args: Any, **kwargs: Any) -> Any:
-            error = exc_info.exception
-            if isinstance(getattr(error, "exc", error), WorkerLostError):  # billiard wraps the error
-                _record_end(database, self.id, "worker_lost")
+            error = getattr(exc_info.exception, "exc", exc_info.exception)  # billiard wraps it
+            if isinstance(error, WorkerLostError):
+                _record_end(database, self.id, "time_limit" if _BY_ALARM in str(error) else "worker_lost")
             return super().on_failure(exc_info, *args, **kwargs)
 
-    class Grow(Task):  # type: ignore[type-arg]
-        """Grow the model that a message names."""
+    class Hint(Task):  # type: ignore[type-arg]
+        """Do the job that is next; whatever a message holds, it only says that one waits."""
 
-        name, time_limit = GROW, hard_limit(settings.model_seconds)
+        time_limit = hard_limit(max(settings.model_seconds, settings.solve_seconds))
         Request = JobRequest  # type: ignore[assignment]
 
-        def run(self, model: str) -> None:
-            assignment = Assignment(model, str(self.request.id), worker, settings.model_seconds)
-            grow_model(*stores[0], assignment)
+        def run(self, *_: object, **__: object) -> None:
+            holder = Holder(str(self.request.id), worker, engine_version())
+            job = claim_job(stores[0][0], holder, settings.most_running)
+            if job is not None:
+                _do(*stores[0], job, seconds_of(settings, job))
 
-    class Solve(Task):  # type: ignore[type-arg]
-        """Find the cameras of a capture, by the job that a message names."""
-
-        name, time_limit = SOLVE, hard_limit(settings.solve_seconds)
-        Request = JobRequest  # type: ignore[assignment]
-
-        def run(self, solve: str) -> None:
-            assignment = Assignment(solve, str(self.request.id), worker, settings.solve_seconds)
-            solve_capture(*stores[0], assignment)
-
-    for task in (Grow(), Solve()):
-        app.register_task(task)
+    for name in (WORK, *EARLIER_TASKS):
+        app.register_task(type("Hint", (Hint,), {"name": name})())
     return app
 
 
@@ -205,6 +200,23 @@ def _stores(settings: Settings) -> tuple[Database, Blobs]:
     """Return the database and the blobs of all teams, for the process that calls this alone."""
     database = Database(settings.folder, settings.database_url).of(SERVICE)
     return database, open_blobs(database, settings.folder, settings.bucket_url, _PATIENCE_SECONDS)
+
+
+def seconds_of(settings: Settings, job: AnyJob) -> float:
+    """Return the time that a job may take."""
+    return settings.model_seconds if isinstance(job, ModelRow) else settings.solve_seconds
+
+
+def _do(database: Database, blobs: Blobs, job: AnyJob, seconds: float) -> None:
+    """Do a job; the system ends this process where it takes much longer, even in code that never comes back."""
+    signal.setitimer(signal.ITIMER_REAL, hard_limit(seconds))
+    try:
+        if isinstance(job, ModelRow):
+            grow_model(database, blobs, job, seconds)
+        else:
+            solve_capture(database, blobs, job, seconds)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def _record_end(database: Database, token: str, code: str) -> None:
@@ -227,11 +239,11 @@ def _record_end(database: Database, token: str, code: str) -> None:
         log.warning("child_lost", job=job.id if job else None, code=code)
 
 
-def _send_heartbeats(database: Database, name: str, slots: int, stopped: threading.Event) -> None:
+def _send_heartbeats(database: Database, worker: tuple[str, int, str], stopped: threading.Event) -> None:
     while not stopped.is_set():
         try:
             with _without_forks(database):
-                record_heartbeat(database, name, slots)
+                record_heartbeat(database, *worker)
         except SQLAlchemyError as error:
             log.warning("heartbeat_missed", error=str(error))
         stopped.wait(_HEARTBEAT_SECONDS)

@@ -7,28 +7,23 @@ for small files instead of a tree. `tests.faults.poisoned_serve` runs it; the pr
 import ctypes
 import os
 import signal
-import sqlite3
 import sys
 import time
 from collections.abc import Callable
-from contextlib import closing
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
-from celery import signals
-from celery.worker.request import Request
 from tests.faults.held import released
 
 from treestroke import queue, worker
 from treestroke.codec.inputs import Inputs
 from treestroke.service import jobs
-from treestroke.service.attempts import Assignment, Heartbeat
-from treestroke.settings import read_settings
+from treestroke.service.attempts import Heartbeat
+from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import ModelPart, ModelRow
+from treestroke.store.tables import AnyJob, ModelPart, ModelRow
 
 CHUNK = 64 * 2**20
 GRACE_SECONDS = 2
@@ -37,7 +32,7 @@ LIMITED = ("loop", "hang", "deaf")
 """Jobs that run into the service's limit, which a test sets low."""
 PATIENT_SECONDS = 600.0
 """The limit of all others: they must end well on a busy machine too."""
-_make, _publish, _grow = jobs._make, jobs._publish, worker.grow_model
+_make, _publish = jobs._make, jobs._publish
 
 
 def _segfault(*_: object) -> NoReturn:
@@ -116,26 +111,11 @@ def _publish_or_die(
         os.kill(os.getpid(), signal.SIGKILL)
 
 
-def _name_of(folder: Path, model: str) -> str:
-    with closing(sqlite3.connect(f"file:{folder / 'treestroke.sqlite3'}?mode=ro", uri=True, timeout=30)) as database:
-        found = database.execute("SELECT name FROM models WHERE id = ?", (model,)).fetchone()
-    return str(found[0]) if found else ""
-
-
-def _grow_patiently(database: Database, blobs: Blobs, assignment: Assignment) -> None:
-    if _name_of(database.path.parent, assignment.job) not in LIMITED:
-        assignment = replace(assignment, seconds=PATIENT_SECONDS)
-    _grow(database, blobs, assignment)
-
-
-def _wait_patiently(request: Request, **_: object) -> None:
-    """Lift the hard limit of a job before it goes to a child."""
-    if _name_of(read_settings().folder, str((*request.args, "")[0])) not in LIMITED:
-        request.time_limits = (PATIENT_SECONDS + GRACE_SECONDS, None)
+def _patient_seconds(settings: Settings, job: AnyJob) -> float:
+    return settings.model_seconds if isinstance(job, ModelRow) and job.name in LIMITED else PATIENT_SECONDS
 
 
 if __name__ == "__main__":
-    jobs._make, jobs._publish, worker.grow_model = _make_or_break, _publish_or_die, _grow_patiently
+    jobs._make, jobs._publish, worker.seconds_of = _make_or_break, _publish_or_die, _patient_seconds
     queue._GRACE_SECONDS = GRACE_SECONDS
-    signals.task_received.connect(_wait_patiently, weak=False)
     sys.exit(worker.main())

@@ -4,12 +4,11 @@ import time
 from pathlib import Path
 
 import pytest
-from tests.rows import add_model
+from tests.rows import Messages, add_model, claim
 
 from treestroke.service.dispatch import Dispatcher, record_heartbeat
 from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import Holder, claim
 from treestroke.store.tables import ModelRow, Worker
 
 HOUR = 3600.0
@@ -20,13 +19,13 @@ def test_a_clock_that_jumps_expires_no_lease_and_forgets_no_worker(
     database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, jump: float
 ) -> None:
     queued = add_model(database)
-    with database.writing() as session:
-        assert claim(session, ModelRow, queued.id, Holder("token", "worker", "engine")) is not None
-    record_heartbeat(database, "worker", 1)
-    dispatcher = Dispatcher(database, open_blobs(database, tmp_path), lambda task, id: None, 0)
+    claim(database, queued)
+    record_heartbeat(database, "worker", 1, "treestroke")
+    dispatcher = Dispatcher(database, open_blobs(database, tmp_path), Messages(), 0)
     real = time.time
     for shift in (0.0, jump, 0.0):
         monkeypatch.setattr(time, "time", lambda shift=shift: real() + shift)
+        dispatcher.lead()
         dispatcher.recover()
         dispatcher.dispatch()
     with database.reading() as session:

@@ -14,7 +14,7 @@ import pytest
 from tests.faults.harness import PATIENCE_SECONDS, POISONED, Service, small_tree
 from tests.faults.processes import wait_for
 
-from treestroke.queue import GROW, make_queue, send_job_message
+from treestroke.queue import Hints, make_queue
 from treestroke.settings import Settings
 
 SIZE = "40m"
@@ -91,10 +91,10 @@ def refused_for_space(answer: httpx.Response) -> None:
 
 
 def test_a_hint_that_does_not_fit_on_the_disk_leaves_nothing_behind(small_disk: Path) -> None:
-    queue = make_queue(Settings(data=small_disk / "data"))
-    send_job_message(queue, GROW, "mdl_1")
+    hints = Hints(make_queue(Settings(data=small_disk / "data")))
+    hints.send()
     disk = Filler(small_disk)
     disk.fill()
     with pytest.raises(OSError, match=os.strerror(errno.ENOSPC)):
-        send_job_message(queue, GROW, "mdl_2")
+        hints.send()
     assert len(list((small_disk / "data" / "queue" / "messages").iterdir())) == 1

@@ -48,13 +48,13 @@ def test_a_worker_that_starts_judges_nobody_by_host_and_process_number(service: 
     service.finish()
     here = wait_for(service.workers, PATIENCE_SECONDS, "a worker")[0]
     database, name = Database(service.data).of(LOCAL), f"{socket.gethostname()}/{2**22 - 1}/abcd"
-    record_heartbeat(database, name, 1)
+    record_heartbeat(database, name, 1, "treestroke")
     held = add_model(database, status="running", attempt=1, worker=name, claim="token", settings={})
     here.hit()
 
     def another() -> bool:
         """Tell whether another worker is ready; whoever holds the job goes on meanwhile."""
-        record_heartbeat(database, name, 1)
+        record_heartbeat(database, name, 1, "treestroke")
         with database.writing() as session:
             heartbeat(session, held, None, 0.0, 0.0)
         return any(one.pid != here.pid and service.name_of(one) for one in service.workers())

@@ -11,12 +11,13 @@ from redis import Redis
 from tests.faults.harness import PATIENCE_SECONDS, Service
 from tests.faults.processes import wait_for
 
-from treestroke.queue import GROW, make_queue, send_job_message
+from treestroke.queue import EARLIER_TASKS, WORK, Hints, make_queue
 from treestroke.settings import Settings
 
 
-def queue_of(service: Service, broker_url: str) -> Celery:
-    return make_queue(Settings(data=service.data, broker_url=broker_url))
+def hints_of(service: Service, broker_url: str) -> tuple[Hints, Celery]:
+    queue = make_queue(Settings(data=service.data, broker_url=broker_url))
+    return Hints(queue), queue
 
 
 def inject(service: Service, broker_url: str, message: bytes) -> None:
@@ -28,31 +29,31 @@ def inject(service: Service, broker_url: str, message: bytes) -> None:
         (service.data / "queue" / "messages" / f"{time.time_ns()}.treestroke.msg").write_bytes(message)
 
 
-def test_a_hint_that_comes_twice_or_too_late_or_for_nobody_changes_nothing(service: Service, broker_url: str) -> None:
-    queue = queue_of(service, broker_url)
+def test_hints_that_come_twice_or_too_late_or_name_a_job_as_they_once_did_change_nothing(
+    service: Service, broker_url: str
+) -> None:
+    hints, queue = hints_of(service, broker_url)
     ids = service.ask_for(2, "instant")
     for id in (*ids, *ids, "mdl_nobody"):
-        send_job_message(queue, GROW, id)
+        hints.send()
+        queue.send_task(EARLIER_TASKS[0], args=[id], retry=False)
     before = service.finish(ids)
-    ignored = len(service.logged("job_message_ignored"))
-    for id in ids:
-        send_job_message(queue, GROW, id)
-    wait_for(
-        lambda: len(service.logged("job_message_ignored")) >= ignored + 2,
-        PATIENCE_SECONDS,
-        "two more messages that are ignored",
-    )
+    for _ in ids:
+        hints.send()
+    wait_for(lambda: hints.waiting() == 0, PATIENCE_SECONDS, "an empty queue")
+    service.finish([service.ask("instant")])
     assert [(row["status"], row["attempt"]) for row in before] == [("succeeded", 1)] * 2
     assert [service.row(id) for id in ids] == before
 
 
 def test_a_worker_survives_messages_that_are_not_for_it(service: Service, broker_url: str) -> None:
     workers = [one.pid for one in service.workers()]
-    queue = queue_of(service, broker_url)
+    _, queue = hints_of(service, broker_url)
     queue.send_task("treestroke.of_another_version", args=["mdl_1"], retry=False)
-    queue.send_task(GROW, args=["mdl_1", {"more": "than we know"}], kwargs={"new": 1}, retry=False)
-    queue.send_task(GROW, args=[], retry=False)
-    queue.send_task(GROW, args=[["not", "an", "id"]], retry=False)
+    queue.send_task(WORK, args=["mdl_1", {"more": "than we know"}], kwargs={"new": 1}, retry=False)
+    for name in EARLIER_TASKS:
+        queue.send_task(name, args=[], retry=False)
+        queue.send_task(name, args=[["not", "an", "id"]], retry=False)
     inject(service, broker_url, old_form("mdl_1"))
     (row,) = service.finish([service.ask("instant")])
     assert (row["status"], row["attempt"]) == ("succeeded", 1)
@@ -72,7 +73,7 @@ def test_a_worker_survives_files_that_are_no_messages(service: Service, broker_u
 
 def old_form(id: str) -> bytes:
     """Make a message as the first protocol of Celery had it, all in the body."""
-    body = json.dumps({"task": GROW, "id": "1", "args": [id], "kwargs": {}})
+    body = json.dumps({"task": EARLIER_TASKS[0], "id": "1", "args": [id], "kwargs": {}})
     properties = {
         "delivery_tag": "1",
         "delivery_mode": 2,
@@ -92,17 +93,18 @@ def old_form(id: str) -> bytes:
 
 @pytest.mark.parametrize("sent", [0, 1])
 def test_a_queue_whose_folder_is_removed_takes_messages(sent: int, tmp_path: Path) -> None:
-    queue = make_queue(Settings(data=tmp_path))
+    hints = Hints(make_queue(Settings(data=tmp_path)))
     for _ in range(sent):
-        send_job_message(queue, GROW, "mdl_1")
+        hints.send()
     shutil.rmtree(tmp_path / "queue")
-    send_job_message(queue, GROW, "mdl_2")
+    assert hints.waiting() == 0
+    hints.send()
     assert len(list((tmp_path / "queue" / "messages").glob("*.msg"))) == 1
 
 
 def test_a_message_that_is_being_written_is_not_seen(tmp_path: Path) -> None:
     queue = make_queue(Settings(data=tmp_path))
-    send_job_message(queue, GROW, "mdl_1")
+    Hints(queue).send()
     (message,) = (tmp_path / "queue" / "messages").iterdir()
     begun = message.with_suffix(".part")
     message.rename(begun)
@@ -110,6 +112,6 @@ def test_a_message_that_is_being_written_is_not_seen(tmp_path: Path) -> None:
         assert len(waiting) == 0
         begun.rename(message)
         taken = waiting.get(block=False)
-        assert taken.payload[0] == ["mdl_1"]
+        assert taken.headers["task"] == WORK
         taken.ack()
     assert list(message.parent.iterdir()) == []

@@ -4,7 +4,7 @@ from typing import Any
 import pytest
 from tests.api import drawn
 from tests.plans import planned, scans
-from tests.rows import add_capture, add_solve
+from tests.rows import add_capture, add_solve, claim
 from tests.structures import small_structure
 
 from treestroke.codec.structure import encode_structure
@@ -12,10 +12,9 @@ from treestroke.core.errors import CaptureError, PhotoError, TreestrokeError
 from treestroke.limits import MAX_NAME, MAX_PHOTOS
 from treestroke.service import captures
 from treestroke.service.captures import StoredCapture
-from treestroke.service.engine_version import engine_version
 from treestroke.service.photos import NotFound, Resources
 from treestroke.store.blobs import Damaged
-from treestroke.store.leases import Holder, claim, complete
+from treestroke.store.leases import complete
 from treestroke.store.queries import referenced, stored_bytes
 from treestroke.store.tables import SolveRow
 
@@ -46,10 +45,7 @@ def work(resources: Resources, id: str) -> SolveRow:
     """Begin to solve a capture as a worker does."""
     capture = found(resources, id)
     assert capture.solve is not None
-    with resources.database.writing() as session:
-        job = claim(session, SolveRow, capture.solve.id, Holder("t", "w", engine_version()))
-    assert job is not None
-    return job
+    return claim(resources.database, capture.solve)
 
 
 def solved(resources: Resources, id: str) -> str:

@@ -2,14 +2,12 @@
 
 import threading
 import time
-from collections.abc import Iterator
 
 import pytest
 from sqlalchemy import text
 from tests.faults.processes import wait_for
-from tests.rows import add_capture, add_model, add_solve, find
+from tests.rows import Messages, add_capture, add_model, add_solve, find
 
-from treestroke.queue import GROW, SOLVE
 from treestroke.service.dispatch import (
     Dispatcher,
     StallDetector,
@@ -18,14 +16,16 @@ from treestroke.service.dispatch import (
     record_heartbeat,
     remove_worker,
 )
+from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
 from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
+from treestroke.store.scope import SERVICE, Scope
 from treestroke.store.tables import SolveRow, Worker
 
 
 def held_by(database: Database, worker: str, attempt: int = 1) -> str:
-    record_heartbeat(database, worker, 1)
+    record_heartbeat(database, worker, 1, "treestroke")
     return add_model(database, status="running", attempt=attempt, worker=worker, claim="token").id
 
 
@@ -54,46 +54,104 @@ def test_a_job_whose_workers_died_three_times_fails(database: Database) -> None:
 
 
 @pytest.fixture
-def sent() -> list[str]:
-    return []
+def messages() -> Messages:
+    return Messages()
 
 
 @pytest.fixture
-def dispatcher(database: Database, sent: list[str]) -> Iterator[Dispatcher]:
-    made = Dispatcher(database, open_blobs(database, database.path.parent), lambda task, id: sent.append(id), 0)
-    yield made
-    made.stop()
+def dispatcher(database: Database, messages: Messages) -> Dispatcher:
+    made = Dispatcher(database.of(SERVICE), open_blobs(database, database.path.parent), messages, 0, most_running=2)
+    made.lead()
+    return made
 
 
 def test_a_row_that_cannot_be_read_keeps_no_other_job_from_its_worker(
-    database: Database, dispatcher: Dispatcher, sent: list[str]
+    database: Database, dispatcher: Dispatcher, messages: Messages
 ) -> None:
     broken = held_by(database, "run-1")
     with database.writing() as session:
         session.execute(text("UPDATE models SET settings = '{' WHERE id = :id"), {"id": broken})
-    waiting = add_model(database).id
+    add_model(database)
     dispatcher.start()
-    wait_for(lambda: waiting in sent, 60, "a message for the job that waits")
-    assert sent == [waiting]
+    wait_for(lambda: messages.sent, 60, "a message for the job that waits")
     assert [thread.name for thread in threading.enumerate()].count("dispatcher") == 1
+    dispatcher.stop()
+    assert messages.sent == 1
 
 
-def test_kinds_of_jobs_take_turns_and_each_is_sent_by_its_task(database: Database) -> None:
-    told: list[tuple[str, str]] = []
-    dispatcher = Dispatcher(
-        database, open_blobs(database, database.path.parent), lambda *message: told.append(message), 0
-    )
-    models = [add_model(database).id for _ in range(5)]
-    solves = [add_solve(database, add_capture(database).id).id for _ in range(2)]
-    record_heartbeat(database, "worker", 3)
-    add_model(database, status="running")
+def test_messages_fill_all_slots_and_one_more_each_and_no_more_than_jobs_wait(
+    database: Database, dispatcher: Dispatcher, messages: Messages
+) -> None:
+    record_heartbeat(database, "run-1", 2, "treestroke")
+    own = [database.of(Scope(team, "ann")) for team in ("oaks", "elms", "ashes")]
+    add_model(own[0])
+    add_solve(own[1], add_capture(own[1]).id)
     dispatcher.dispatch()
-    turns = [models[0], solves[0], models[1], solves[1], models[2]]
-    assert told == [(SOLVE if id in solves else GROW, id) for id in turns]
+    assert messages.sent == 2
+    for team in own:
+        for _ in range(5):
+            add_model(team)
+    add_model(own[0], status="running")
+    dispatcher.dispatch()
+    assert messages.waiting() == 3  # of four hands, one of which is busy
+    messages.taken += 1  # and was lost on its way
+    dispatcher.dispatch()
+    assert messages.waiting() == 3
+
+
+@pytest.mark.parametrize("worker", [None, "another engine"])
+def test_nothing_is_said_of_jobs_that_no_worker_may_take(
+    database: Database, dispatcher: Dispatcher, messages: Messages, worker: str | None
+) -> None:
+    if worker is not None:
+        record_heartbeat(database, "run-1", 2, worker)
+    add_model(database)
+    dispatcher.dispatch()
+    assert messages.sent == 0
+
+
+def test_a_team_that_has_as_many_jobs_under_way_as_it_may_gets_no_messages(
+    database: Database, dispatcher: Dispatcher, messages: Messages
+) -> None:
+    record_heartbeat(database, "run-1", 4, "treestroke")
+    for status in ("running", "queued", "queued"):
+        add_model(database, status=status)
+    dispatcher.dispatch()
+    assert messages.sent == 1
+
+
+def test_jobs_of_an_engine_that_nobody_has_any_more_are_done_by_another(
+    database: Database, dispatcher: Dispatcher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record_heartbeat(database, "run-1", 1, "old but alive")
+    ids = {engine: add_model(database, engine=engine).id for engine in ("gone", "old but alive")}
+    running = add_model(database, engine="gone", status="running").id
+    dispatcher.take_over()
+    assert find(database, ids["gone"]).engine == "gone"  # its worker may be about to start
+    monkeypatch.setattr("treestroke.service.dispatch.LEASE_SECONDS", 0.0)
+    dispatcher.take_over()
+    engines = [find(database, id).engine for id in (*ids.values(), running)]
+    assert engines == [engine_version(), "old but alive", "gone"]
+
+
+def test_a_broker_that_does_not_answer_is_asked_again_later(
+    database: Database, dispatcher: Dispatcher, messages: Messages, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record_heartbeat(database, "run-1", 1, "treestroke")
+    add_model(database)
+    with monkeypatch.context() as away:
+        away.setattr(messages, "waiting", lambda: 1 / 0)
+        dispatcher.dispatch()
+        assert not dispatcher.broker_accepts
+    dispatcher.dispatch()
+    assert messages.sent == 0
+    monkeypatch.setattr(dispatcher, "_no_messages_until", 0.0)
+    dispatcher.dispatch()
+    assert (messages.sent, dispatcher.broker_accepts) == (1, True)
 
 
 def test_solves_of_a_worker_that_is_gone_queue_again(database: Database) -> None:
-    record_heartbeat(database, "run-1", 1)
+    record_heartbeat(database, "run-1", 1, "treestroke")
     solve = add_solve(database, add_capture(database).id, status="running", attempt=1, worker="run-1", claim="token")
     assert holds_jobs(database, "run-1")
     remove_worker(database, "run-1", problem_of("worker_lost"))
@@ -128,3 +186,4 @@ def test_a_dispatcher_that_fails_again_and_again_says_so(
         session.execute(text("DROP TABLE workers"))
     dispatcher.start()
     wait_for(lambda: "has finished no round for 1 s" in dispatcher.state, 60, "a state that says so", 0.1)
+    dispatcher.stop()

@@ -17,6 +17,7 @@ from tests.bucket import BUCKET, S3Server
 from tests.faults.processes import wait_for
 from tests.postgres import PostgresServer
 from tests.promises import kept
+from tests.rows import Messages
 
 from treestroke.cli import main
 from treestroke.service.dispatch import Dispatcher, record_heartbeat
@@ -149,7 +150,7 @@ def test_a_folder_that_is_not_there_is_well_and_is_not_made(tmp_path: Path) -> N
 
 
 def test_nothing_is_ready_once_the_database_is_gone_from_its_place(resources: Resources) -> None:
-    dispatcher = Dispatcher(resources.database, resources.blobs, lambda task, id: None, 0)
+    dispatcher = Dispatcher(resources.database, resources.blobs, Messages(), 0)
     assert readiness(resources, dispatcher).checks["database"] == "ok"
     resources.database.path.rename(resources.database.path.with_name("away"))
     health = readiness(resources, dispatcher)
@@ -304,7 +305,7 @@ def test_a_folder_that_others_may_look_into_is_ill(folder: Path) -> None:
 
 def test_a_worker_that_does_not_beat_is_ill(folder: Path) -> None:
     database = Database(folder).of(LOCAL)
-    record_heartbeat(database, "dead-1", 1)
+    record_heartbeat(database, "dead-1", 1, "treestroke")
     database.close()
     with kept(6.0):
         assert ill(folder) == {"workers": "0 of 1 are running"}

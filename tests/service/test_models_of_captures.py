@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests import walked_capture
+from tests.rows import claim
 from tests.structures import small_structure
 from tests.walked_capture import COUNT, UNUSED, make_capture, names, request, solve, structure, views, write_structure
 
@@ -14,7 +15,6 @@ from treestroke.codec.project import read_project
 from treestroke.codec.structure import encode_structure
 from treestroke.core.errors import CaptureError, StrokesError, TreestrokeError
 from treestroke.service import captures, model_request, stored_models
-from treestroke.service.attempts import Assignment
 from treestroke.service.jobs import grow_model
 from treestroke.service.model import Options, make_tree
 from treestroke.service.photos import NotFound, Resources
@@ -54,7 +54,7 @@ def ask(resources: Resources, key: str | None = None, **wish: Any) -> StoredMode
 
 def grown(resources: Resources, model: StoredModel) -> StoredModel:
     """Grow a model as its worker does."""
-    grow_model(resources.database, resources.blobs, Assignment(model.id, "token", "worker", PATIENCE_SECONDS))
+    grow_model(resources.database, resources.blobs, claim(resources.database, model.row), PATIENCE_SECONDS)
     return stored_models.find_model(resources.database, model.id)
 
 

@@ -87,7 +87,7 @@ def test_of_different_requests_with_one_key_one_is_taken(resources: Resources) -
     assert count(resources.database, ModelRow) == 1
 
 
-def test_a_key_whose_model_was_removed_gets_one_new_model(resources: Resources) -> None:
+def test_a_key_whose_model_was_removed_gets_one_model_row(resources: Resources) -> None:
     first = stored_models.accept_model(resources, order(), "key").id
     with resources.database.writing() as session:
         session.query(ModelRow).delete()

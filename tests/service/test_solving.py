@@ -3,6 +3,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 from tests.api import drawn
+from tests.rows import claim
 from tests.structures import small_structure
 
 from treestroke.codec.image import decode_photo
@@ -12,7 +13,6 @@ from treestroke.core.progress import Report
 from treestroke.engines.child import Bounds
 from treestroke.engines.solving import SolveEnded
 from treestroke.service import captures, solving
-from treestroke.service.attempts import Assignment
 from treestroke.service.captures import StoredCapture
 from treestroke.service.photos import Resources
 from treestroke.service.solving import solve_capture
@@ -32,7 +32,7 @@ def capture(resources: Resources) -> StoredCapture:
 
 def carry_out(resources: Resources, capture: StoredCapture, seconds: float = 60) -> StoredCapture:
     assert capture.solve is not None
-    solve_capture(resources.database, resources.blobs, Assignment(capture.solve.id, "token", "worker", seconds))
+    solve_capture(resources.database, resources.blobs, claim(resources.database, capture.solve), seconds)
     return captures.find_capture(resources.database, capture.id)
 
 

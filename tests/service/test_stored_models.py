@@ -7,7 +7,7 @@ import pytest
 from sqlalchemy import Engine, event
 from tests.api import drawn, sketched
 from tests.postgres import KINDS
-from tests.rows import add_model
+from tests.rows import add_model, claim, find
 
 from treestroke.core.errors import StrokesError
 from treestroke.service import model_request, photos, stored_models
@@ -17,7 +17,7 @@ from treestroke.service.photos import NotFound, Resources
 from treestroke.service.stored_models import KeyReused
 from treestroke.store.blobs import Damaged
 from treestroke.store.database import Database
-from treestroke.store.leases import Holder, claim, succeed
+from treestroke.store.leases import change_engine, succeed
 from treestroke.store.tables import ModelRow, PhotoRow
 
 
@@ -32,9 +32,13 @@ def order(resources: Resources, photo: str, **others: Any) -> ModelOrder:
 
 def finished(resources: Resources, id: str, glb: bytes, by: str = "") -> None:
     """Publish a model as its worker does."""
+    row = find(resources.database, id)
+    if by:
+        with resources.database.writing() as session:
+            change_engine(session, row.engine, by)
+            row.engine = by
+    job = claim(resources.database, row)
     with resources.database.writing() as session:
-        job = claim(session, ModelRow, id, Holder("t", "w", by or engine_version()))
-        assert job is not None
         assert succeed(session, job, {"score": {}}, {"tree.glb": (resources.blobs.put(glb), len(glb))})
 
 

@@ -10,10 +10,12 @@ from typing import Any
 
 import pytest
 from tests.conftest import DATA
+from tests.rows import Messages, claim
 
 from treestroke.service import stored_models
-from treestroke.service.attempts import Assignment
+from treestroke.service.dispatch import Dispatcher
 from treestroke.service.doctor import examine_deployment
+from treestroke.service.engine_version import engine_version
 from treestroke.service.jobs import grow_model
 from treestroke.service.projects import Projects
 from treestroke.service.retention import Sweeper
@@ -22,7 +24,7 @@ from treestroke.settings import read_settings
 from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.database import Database
 from treestroke.store.queries import referenced
-from treestroke.store.scope import LOCAL
+from treestroke.store.scope import LOCAL, SERVICE
 
 PARTS = {
     "photo": ["photo", "strokes", "side", "leaf", "fruit"],
@@ -80,10 +82,15 @@ def test_project_files_have_the_same_bytes(upgraded: Upgraded, tracers: TracingP
     projects.close()
 
 
-def test_a_queued_model_grows(upgraded: Upgraded) -> None:
-    grow_model(upgraded.database, upgraded.blobs, Assignment(upgraded.told["queued"]["id"], "token", "worker", 60))
+def test_a_queued_model_grows(upgraded: Upgraded, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The engine that it was accepted for has no workers any more."""
+    dispatcher = Dispatcher(upgraded.database.of(SERVICE), upgraded.blobs, Messages(), 0)
+    monkeypatch.setattr("treestroke.service.dispatch.LEASE_SECONDS", 0.0)
+    dispatcher.take_over()
+    job = claim(upgraded.database, upgraded.model("queued").row)
+    grow_model(upgraded.database, upgraded.blobs, job, 60)
     model = upgraded.model("queued")
-    assert (model.row.status, model.row.error) == ("succeeded", None)
+    assert (model.row.status, model.row.error, model.row.engine) == ("succeeded", None, engine_version())
     assert upgraded.blobs.get(model.files["tree.glb"].blob).startswith(b"glTF")
 
 

@@ -17,11 +17,12 @@ from treestroke.store.tables import (
     Replay,
     StoreClock,
     Table,
+    Turn,
     Worker,
 )
 
 OAKS, ELMS = Scope("oaks", "usr_ann"), Scope("elms", "usr_ben")
-SHARED = {Worker, StoreClock}
+SHARED = {Worker, Turn, StoreClock}
 """Tables of the service itself, whose rows tell nothing about a team's trees."""
 
 
@@ -88,7 +89,7 @@ def test_no_update_and_no_delete_reaches_another_team(database: Database) -> Non
         assert session.scalars(update(ModelRow).values(seq=9).returning(ModelRow.id)).all() == []
         leases.cancel(session, ModelRow, ModelRow.id == theirs.id)
         assert not queries.mark_deleted(session, ModelRow, theirs.id)
-        assert leases.claim(session, ModelRow, theirs.id, leases.Holder("t", "w", "e")) is None
+        assert leases.claim_next(session, leases.Holder("t", "w", "treestroke")) is None
     with database.of(ELMS).reading() as session:
         row = session.get_one(ModelRow, theirs.number)
         assert (row.name, row.status, row.seq, row.deleted) == ("", "queued", 1, None)
@@ -146,8 +147,8 @@ def test_a_key_is_one_persons(database: Database) -> None:
 def test_files_of_a_workers_result_are_the_teams(database: Database) -> None:
     row = add_model(database.of(OAKS))
     with database.of(SERVICE).writing() as session:
-        job = leases.claim(session, ModelRow, row.id, leases.Holder("t", "w", "e"))
-        assert job is not None
+        job = leases.claim_next(session, leases.Holder("t", "w", "treestroke"))
+        assert isinstance(job, ModelRow)
         assert leases.succeed(session, job, {}, {"tree.glb": ("c" * 64, 5)})
     with database.of(OAKS).reading() as session:
         assert set(queries.files(session, [row.id])[row.id]) == {"tree.glb"}

@@ -39,7 +39,7 @@ from treestroke.api.routes.page import add_page
 from treestroke.api.rules import RULES
 from treestroke.api.sign_ins import FailedSignIns
 from treestroke.limits import MAX_CLIP_BYTES, MAX_PHOTO_BYTES, MAX_TEXT_BYTES
-from treestroke.queue import make_queue, send_job_message
+from treestroke.queue import Hints, make_queue
 from treestroke.schemas import Problem
 from treestroke.service.accounts import Accounts
 from treestroke.service.dispatch import Dispatcher
@@ -146,7 +146,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     capture_tracers = TracingPool(1, settings.capture_trace_seconds, settings.memory_mb, CAPTURES_WAITING)
     clip_tracers = TracingPool(CLIP_TRACERS, settings.capture_trace_seconds, settings.memory_mb, CLIPS_WAITING)
     dispatcher = Dispatcher(
-        database.of(SERVICE), blobs, partial(send_job_message, make_queue(settings)), settings.keep_days
+        database.of(SERVICE), blobs, Hints(make_queue(settings)), settings.keep_days, settings.most_running
     )
     limits = settings.photo_mb * 10**6, sys.maxsize if settings.hosted else settings.photos_mb * 10**6
     app.state.resources = Resources(

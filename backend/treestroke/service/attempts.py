@@ -1,10 +1,9 @@
-"""One attempt of a job: claim its row, hold its lease, do the work, publish its result or record why not."""
+"""One attempt of a job: claim the next row, hold its lease, do the work, publish its result or record why not."""
 
 import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
@@ -13,12 +12,12 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from treestroke.core.errors import TreestrokeError
-from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import WORTH_WAITING, code_of, problem_of, problem_of_input
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store.database import Database
-from treestroke.store.leases import AnyJob, Holder, JobRow, claim, end, heartbeat, take_back
+from treestroke.store.leases import Holder, JobRow, claim_next, end, heartbeat, take_back
 from treestroke.store.objects import Damaged
+from treestroke.store.tables import AnyJob
 
 _BEAT_SECONDS = 2.0
 _LOOK_SECONDS = 0.5
@@ -27,16 +26,6 @@ _PATIENCE_SECONDS = 60.0
 _RETRY_SECONDS = 0.5
 Result = TypeVar("Result")
 log = structlog.get_logger()
-
-
-@dataclass(frozen=True)
-class Assignment:
-    """A job for a worker: the job's id, a token of this attempt, the worker's id, and the time limit."""
-
-    job: str
-    token: str
-    worker: str
-    seconds: float
 
 
 class Canceled(Exception):
@@ -111,17 +100,21 @@ class Heartbeat(Generic[JobRow]):
         return False
 
 
-def carry_out(database: Database, table: type[JobRow], assignment: Assignment, work: Callable[[JobRow], None]) -> None:
-    """Do a job, unless another worker does or did; ``work`` publishes its result, else why there is none is recorded.
+def claim_job(database: Database, holder: Holder, most_running: int) -> AnyJob | None:
+    """Claim the job that is next; None if none waits, or if the database cannot say now: the next hint asks again."""
+    try:
+        with database.writing() as session:
+            return claim_next(session, holder, most_running)
+    except SQLAlchemyError as error:
+        log.error("claim_failed", error=str(error))
+        return None
+
+
+def carry_out(database: Database, job: JobRow, work: Callable[[JobRow], None]) -> None:
+    """Do a job that was claimed; ``work`` publishes its result, else why there is none is recorded.
 
     ``work`` may raise what `Heartbeat.report` raises, and `AttemptLost`.
     """
-    holder = Holder(assignment.token, assignment.worker, engine_version())
-    with database.writing() as session:
-        job = claim(session, table, assignment.job, holder)
-    if job is None:
-        log.info("job_message_ignored", job=assignment.job)
-        return
     with structlog.contextvars.bound_contextvars(job=job.id, attempt=job.attempt):
         log.info("job_started")
         try:

@@ -1,4 +1,4 @@
-"""The dispatcher: sends messages for queued jobs, takes back the jobs of workers that have gone, and starts sweeps.
+"""The dispatcher: says that jobs wait, takes back the jobs of workers that have gone, and starts sweeps.
 
 A lease has run out when the row's heartbeat counter (``beat``) has not changed for a while on this process's own
 monotonic clock. So machines need not agree on the time, and no lease runs out because a clock jumps.
@@ -6,10 +6,10 @@ monotonic clock. So machines need not agree on the time, and no lease runs out b
 
 import threading
 import time
+from collections import Counter as Counts
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from dataclasses import asdict
-from itertools import islice, zip_longest
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 import structlog
 from prometheus_client import Counter
@@ -17,16 +17,16 @@ from sqlalchemy import delete, func, select, update
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from treestroke.queue import GROW, SOLVE
+from treestroke.service.engine_version import engine_version
 from treestroke.service.failures import problem_of
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import AnyJob, take_back
-from treestroke.store.tables import JOBS, ModelRow, SolveRow, Worker
+from treestroke.store.leadership import Leadership, LeadLost
+from treestroke.store.leases import change_engine, take_back
+from treestroke.store.tables import JOBS, AnyJob, ModelRow, SolveRow, Worker
 
 LEASE_SECONDS = 10.0
-RESEND_SECONDS = 5.0
 _TICK_SECONDS = 0.5
 _BACKOFF_SECONDS = 2.0
 _SWEEP_SECONDS = 600.0
@@ -34,15 +34,21 @@ _OVERDUE_SECONDS = 30.0
 """The service is degraded when the dispatcher has not finished a round within this time."""
 _UNWATCHED_SECONDS = 3.0
 """Rounds that are further apart than this left a time in which nobody looked."""
-_UNKNOWN_SLOTS = 2
-"""Messages that are sent while no worker is known: one may be about to start."""
-TASKS: dict[type[AnyJob], str] = {ModelRow: GROW, SolveRow: SOLVE}
-"""The task by which workers do the jobs of each table."""
 LOST = Counter("treestroke_attempts_lost", "Attempts whose lease ran out.")
 SENT = Counter("treestroke_messages_sent", "Messages sent to the broker.")
 UNSENT = Counter("treestroke_messages_unsent", "Messages that the broker did not accept.")
 Key = TypeVar("Key", bound=Hashable)
 log = structlog.get_logger()
+
+
+class Messages(Protocol):
+    """The queue's messages, each of which says that a job waits."""
+
+    def waiting(self) -> int:
+        """Return how many no worker has taken."""
+
+    def send(self) -> None:
+        """Send one."""
 
 
 class StallDetector(Generic[Key]):
@@ -71,13 +77,16 @@ class StallDetector(Generic[Key]):
 class Dispatcher:
     """A thread of the web process. It keeps no state that a new one could not read from the database.
 
-    ``send`` takes the name of a task and the id of a job.
+    Of several web processes on one database one leads: it alone does all of this, and the others stand by.
     """
 
-    def __init__(self, database: Database, blobs: Blobs, send: Callable[[str, str], None], keep_days: float) -> None:
-        self._database, self._send = database, send
+    def __init__(
+        self, database: Database, blobs: Blobs, messages: Messages, keep_days: float, most_running: int = 0
+    ) -> None:
+        self._database, self._messages, self._most_running = database, messages, most_running
+        self._leadership, self._leads = Leadership(database.url), False
         self._jobs, self._workers = StallDetector[tuple[str, int]](), StallDetector[str]()
-        self._sent: dict[str, float] = {}
+        self._abandoned = StallDetector[str]()
         self._notified, self._stopped = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name="dispatcher", daemon=True)
         self._last_round = time.monotonic()
@@ -93,11 +102,13 @@ class Dispatcher:
 
     @property
     def state(self) -> str:
-        """State of the dispatcher: "ok", or what is wrong."""
+        """State of the dispatcher: "ok", "standby" where another web process leads, or what is wrong."""
         if not self._thread.is_alive():
             return "has stopped; jobs wait until the service is restarted"
         silent_s = time.monotonic() - self._last_round
-        return "ok" if silent_s < _OVERDUE_SECONDS else f"has finished no round for {silent_s:.0f} s; its log says why"
+        if silent_s >= _OVERDUE_SECONDS:
+            return f"has finished no round for {silent_s:.0f} s; its log says why"
+        return "ok" if self._leads else "standby"
 
     def notify(self) -> None:
         """Start the next round now: the queue has changed."""
@@ -112,13 +123,27 @@ class Dispatcher:
 
     def _run(self) -> None:
         while not self._stopped.is_set():
-            succeeded = [_try(step) for step in (self.recover, self.dispatch)]  # both, even if the first fails
-            if all(succeeded):
+            if self._round():
                 self._last_round = time.monotonic()
             else:
                 self._stopped.wait(_BACKOFF_SECONDS)
             self._notified.wait(_TICK_SECONDS)
             self._notified.clear()
+        self._leadership.release()
+
+    def _round(self) -> bool:
+        """Do all that is due, each part even if another fails; tell whether all succeeded."""
+        succeeded = [_try(self.lead)]
+        if self._leads:
+            succeeded += [_try(step) for step in (self.recover, self.take_over)]
+        return all([*succeeded, _try(self.dispatch)])
+
+    def lead(self) -> None:
+        """Find out whether this process leads, or does by now."""
+        led, self._leads = self._leads, False
+        self._leads = self._leadership.held()
+        if self._leads and not led:
+            log.info("dispatcher_leads")
 
     def recover(self) -> None:
         """Take back the jobs whose lease has run out, and remove workers without a heartbeat."""
@@ -132,30 +157,57 @@ class Dispatcher:
             if lost:
                 LOST.inc()
                 log.warning("attempt_lost", job=job.id, attempt=job.attempt, worker=job.worker)
-                self._sent.pop(job.id, None)
         for name in self._workers.stalled(((worker.id, worker.beat) for worker in workers.values()), LEASE_SECONDS):
             with self._database.writing() as session:
                 session.execute(delete(Worker).where(Worker.id == name, Worker.beat == workers[name].beat))
 
-    def dispatch(self) -> None:
-        """Send messages for the next jobs: as many as fill all slots, and one more for each slot.
+    def take_over(self) -> None:
+        """Have the jobs of engines that no worker has any more done by this one: they were accepted before an upgrade.
 
-        The tables take turns, so that no kind of job waits for all of another.
+        An engine must lack workers for a while first: they may be about to start.
+        """
+        own = engine_version()
+        with self._database.reading() as session:
+            waiting = {engine for (engine, _), count in _counts(session, "queued").items() if count}
+            manned = set(session.scalars(select(Worker.engine)))
+        abandoned = ((engine, 0) for engine in waiting - manned - {own})
+        for engine in self._abandoned.stalled(abandoned, LEASE_SECONDS):
+            with self._database.writing() as session:
+                change_engine(session, engine, own)
+            log.warning("jobs_taken_over", of=engine, engine=own)
+
+    def dispatch(self) -> None:
+        """Send as many messages as let workers fill all their slots, and one more for each slot that is filled.
+
+        None is sent beyond those that nobody has taken: the queue never holds more than workers can take.
         """
         if time.monotonic() < self._no_messages_until:
             return
+        wanted = self._claimable() if self._leads else 0
+        try:
+            for _ in range(wanted - self._messages.waiting()):
+                self._messages.send()
+                SENT.inc()
+        except Exception as error:  # noqa: BLE001 - a broker fails in many ways, and all of them mean: try later
+            UNSENT.inc()
+            self.broker_accepts, self._no_messages_until = False, time.monotonic() + _BACKOFF_SECONDS
+            log.warning("message_unsent", error=str(error) or type(error).__name__)
+        else:
+            self.broker_accepts = True
+
+    def _claimable(self) -> int:
+        """Return how many jobs the running workers could claim, now and when they are done with those they have."""
         with self._database.reading() as session:
-            slots = session.scalar(select(func.sum(Worker.slots))) or 0
-            running = sum(_count(session, table, "running") for table in JOBS)
-            wanted = max(2 * slots - running, 0) if slots else _UNKNOWN_SLOTS
-            next_ones = dict(_next_ones(session, wanted))
-        now = time.monotonic()
-        self._sent = {id: at for id, at in self._sent.items() if id in next_ones}
-        for id, task in next_ones.items():
-            # Without workers one message for each job is enough: more would pile up in the broker.
-            due = id not in self._sent or (slots and now - self._sent[id] >= RESEND_SECONDS)
-            if due and not self._send_message(task, id, now):
-                return
+            queued, running = _counts(session, "queued"), _counts(session, "running")
+            slots = session.execute(select(Worker.engine, func.sum(Worker.slots)).group_by(Worker.engine)).all()
+        busy, at_work = Counts[str](), Counts[str]()
+        for (engine, team), count in running.items():
+            busy[engine] += count
+            at_work[team] += count
+        allowed = Counts[str]()
+        for (engine, team), count in queued.items():
+            allowed[engine] += min(count, max(self._most_running - at_work[team], 0)) if self._most_running else count
+        return sum(min(allowed[engine], max(2 * number - busy[engine], 0)) for engine, number in slots)
 
     def sweep(self) -> None:
         """Remove old models, photos, captures and files that no row refers to."""
@@ -163,29 +215,17 @@ class Dispatcher:
 
     def _sweep(self) -> None:
         """Sweep at intervals, on a thread of its own: a sweep may take a while."""
-        while not self._stopped.is_set():
-            _try(self.sweep)
-            self._stopped.wait(_SWEEP_SECONDS)
-
-    def _send_message(self, task: str, id: str, now: float) -> bool:
-        """Send the message for a job; False if the broker does not accept it."""
-        try:
-            self._send(task, id)
-        except Exception as error:  # noqa: BLE001 - a broker fails in many ways, and all of them mean: try later
-            UNSENT.inc()
-            self.broker_accepts, self._no_messages_until = False, time.monotonic() + _BACKOFF_SECONDS
-            log.warning("message_unsent", job=id, error=str(error) or type(error).__name__)
-            return False
-        SENT.inc()
-        self.broker_accepts, self._sent[id] = True, now
-        return True
+        while not self._stopped.wait(_TICK_SECONDS):
+            if self._leads:
+                _try(self.sweep)
+                self._stopped.wait(_SWEEP_SECONDS)
 
 
 def _try(step: Callable[[], None]) -> bool:
     """Run a step and return whether it succeeded; an error is logged and does not end the thread."""
     try:
         step()
-    except (SQLAlchemyError, OSError) as error:
+    except (SQLAlchemyError, LeadLost, OSError) as error:
         log.error(f"{step.__name__}_failed", error=str(error))
     except Exception:
         log.exception(f"{step.__name__}_failed")
@@ -194,14 +234,14 @@ def _try(step: Callable[[], None]) -> bool:
     return False
 
 
-def record_heartbeat(database: Database, worker: str, slots: int) -> None:
+def record_heartbeat(database: Database, worker: str, slots: int, engine: str) -> None:
     """Increase a worker's heartbeat counter, or add the worker."""
     with database.writing() as session:
         updated = session.execute(
             update(Worker).where(Worker.id == worker).values(beat=Worker.beat + 1, slots=slots).returning(Worker.id)
         ).first()
         if updated is None:
-            session.add(Worker(id=worker, slots=slots, beat=1))
+            session.add(Worker(id=worker, slots=slots, beat=1, engine=engine))
 
 
 def holds_jobs(database: Database, worker: str) -> bool:
@@ -221,7 +261,7 @@ def remove_worker(database: Database, worker: str, error: dict[str, Any] | None 
 def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
     """Return the queue's metrics by name, each with its description."""
     with database.reading() as session:
-        models, solves = (_counts(session, table) for table in (ModelRow, SolveRow))
+        models, solves = (_by_status(session, table) for table in (ModelRow, SolveRow))
         waiting = (
             select(table.created).where(table.status == "queued").order_by(table.number).limit(1) for table in JOBS
         )
@@ -249,21 +289,16 @@ def _running(session: Session, worker: str | None = None) -> Iterator[AnyJob]:
         yield from session.scalars(held if worker is None else held.where(table.worker == worker))
 
 
-def _next_ones(session: Session, wanted: int) -> Iterator[tuple[str, str]]:
-    """Yield the ids of the jobs to be done next, each with its task."""
-    lines = ([(id, TASKS[table]) for id in session.scalars(_queued(table).limit(wanted))] for table in JOBS)
-    in_turns = (job for turn in zip_longest(*lines) for job in turn if job is not None)
-    yield from islice(in_turns, wanted)
+def _counts(session: Session, status: str) -> Counts[tuple[str, str]]:
+    """Return how many jobs have a status, by engine and team."""
+    found = Counts[tuple[str, str]]()
+    for table in JOBS:
+        counted = select(table.engine, table.team, func.count()).where(table.status == status)
+        for engine, team, count in session.execute(counted.group_by(table.engine, table.team)):
+            found[engine, team] += count
+    return found
 
 
-def _queued(table: type[AnyJob]) -> Any:
-    return select(table.id).where(table.status == "queued").order_by(table.number)
-
-
-def _count(session: Session, table: type[AnyJob], status: str) -> int:
-    return session.scalar(select(func.count()).where(table.status == status)) or 0
-
-
-def _counts(session: Session, table: type[AnyJob]) -> dict[str, int]:
+def _by_status(session: Session, table: type[AnyJob]) -> dict[str, int]:
     counted = session.execute(select(table.status, func.count()).group_by(table.status))
     return {status: count for status, count in counted.all()}  # noqa: C416 - rows are no pairs to mypy

@@ -14,7 +14,7 @@ from treestroke.codec.project import stored_part
 from treestroke.codec.skeleton import plain_grown
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.progress import Report
-from treestroke.service.attempts import Assignment, Heartbeat, carry_out, persist, publish
+from treestroke.service.attempts import Heartbeat, carry_out, persist, publish
 from treestroke.service.captures import warnings_of
 from treestroke.service.clip_loading import StoredClip
 from treestroke.service.files import Bundle
@@ -31,18 +31,18 @@ from treestroke.store.tables import ModelPart, ModelRow
 GLB, PREVIEW, GROWTH = "tree.glb", "preview.png", "growth.json"
 
 
-def grow_model(database: Database, blobs: Blobs, assignment: Assignment) -> None:
-    """Grow a model, unless another worker does or did, and publish it whole or not at all."""
+def grow_model(database: Database, blobs: Blobs, job: ModelRow, seconds: float) -> None:
+    """Grow a model that was claimed, within some seconds, and publish it whole or not at all."""
 
     def grow(job: ModelRow) -> None:
         with database.reading() as session:
             inputs = Inputs.of(queries.parts(session, [job.id])[job.id])
         estimate = ProgressEstimate(model_phases(load_settings(job.settings), inputs.source))
-        with Heartbeat(database, job, estimate, assignment.seconds) as heartbeat:
+        with Heartbeat(database, job, estimate, seconds) as heartbeat:
             report, files = _make(database, blobs.of(Scope(job.team, job.maker)), job, inputs, heartbeat)
         _publish(database, job, report, files)
 
-    carry_out(database, ModelRow, assignment, grow)
+    carry_out(database, job, grow)
 
 
 def _make(

@@ -36,5 +36,5 @@ def readiness(resources: Resources, dispatcher: Dispatcher) -> Health:
     except StorageAway:
         checks["storage"] = "the bucket does not respond"
     down = checks["database"] != "ok"
-    ok = all(check == "ok" for check in checks.values())
+    ok = all(check in ("ok", "standby") for check in checks.values())
     return Health(status="down" if down else "ok" if ok else "degraded", checks=checks)

@@ -6,7 +6,7 @@ from treestroke.codec.structure import encode_structure
 from treestroke.core.capture import Structure
 from treestroke.core.progress import Report
 from treestroke.engines.solving import SolveEnded, solve_in_process
-from treestroke.service.attempts import Assignment, AttemptLost, Canceled, Heartbeat, TimeLimit, carry_out, publish
+from treestroke.service.attempts import AttemptLost, Canceled, Heartbeat, TimeLimit, carry_out, publish
 from treestroke.service.captures import fingerprint
 from treestroke.service.loading import load_stored_capture
 from treestroke.service.model import SOLVE_BOUNDS
@@ -25,8 +25,8 @@ _MEANT: Mapping[str, type[Exception]] = {"slow": TimeLimit, "memory": MemoryErro
 """What the end of the process that finds the cameras means for the attempt."""
 
 
-def solve_capture(database: Database, blobs: Blobs, assignment: Assignment) -> None:
-    """Find a capture's cameras, unless another worker does or did."""
+def solve_capture(database: Database, blobs: Blobs, job: SolveRow, seconds: float) -> None:
+    """Find a capture's cameras, by a job that was claimed, within some seconds."""
 
     def solve(job: SolveRow) -> None:
         with database.reading() as session:
@@ -34,12 +34,12 @@ def solve_capture(database: Database, blobs: Blobs, assignment: Assignment) -> N
         if fingerprint(photos) != job.fingerprint:
             raise Canceled  # the capture has other photos by now
         own = blobs.of(Scope(job.team, job.maker))
-        with Heartbeat(database, job, ProgressEstimate(_PHASES), assignment.seconds) as heartbeat:
-            structure = _find(own, photos, assignment.seconds, heartbeat.report)
+        with Heartbeat(database, job, ProgressEstimate(_PHASES), seconds) as heartbeat:
+            structure = _find(own, photos, seconds, heartbeat.report)
             blob = own.put(encode_structure(structure))  # the lease is held while the place of the blobs is away
         publish(database, job, lambda session: complete(session, job, structure=blob))
 
-    carry_out(database, SolveRow, assignment, solve)
+    carry_out(database, job, solve)
 
 
 def _find(blobs: Blobs, photos: Sequence[CapturePhoto], seconds: float, report: Report) -> Structure:

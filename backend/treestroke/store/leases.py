@@ -9,47 +9,37 @@ from typing import Any, Literal, NamedTuple, TypeVar
 from sqlalchemy import ColumnElement, select, update
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import File, ModelRow, SolveRow
+from treestroke.store.tables import JOBS, AnyJob, File, ModelRow, SolveRow
+from treestroke.store.turns import next_job, note_turn, wait_for_turn
 
 MAX_ATTEMPTS = 3
 UNFINISHED = ("queued", "running")
 TERMINAL = ("succeeded", "failed", "canceled")
 Ending = Literal["succeeded", "failed", "canceled"]
-AnyJob = ModelRow | SolveRow
 JobRow = TypeVar("JobRow", ModelRow, SolveRow)
 
 
 class Holder(NamedTuple):
-    """Who claims a job: a token of the attempt, the worker's id, and the engine that does the work."""
+    """Who claims a job: a token of the attempt, the worker's id, and the engine whose jobs it does."""
 
     token: str
     worker: str
     engine: str
 
 
-def claim(session: Session, table: type[JobRow], id: str, holder: Holder) -> JobRow | None:
-    """Start one more attempt of a queued job and return its row; None if it is no longer queued.
+def claim_next(session: Session, holder: Holder, most_running: int = 0) -> AnyJob | None:
+    """Start one more attempt of the queued job that is next (`store.turns`) and return its row; None if none waits.
 
-    The row now has the holder's engine, which may be another than when the job was requested.
+    Only jobs of the holder's engine count, and of teams that have fewer than ``most_running`` under way, unless it is
+    0.
     """
-    return session.scalars(
-        update(table)
-        .where(table.id == id, table.status == "queued")
-        .values(
-            status="running",
-            attempt=table.attempt + 1,
-            beat=table.beat + 1,
-            seq=table.seq + 1,
-            claim=holder.token,
-            worker=holder.worker,
-            engine=holder.engine,
-            phase=None,
-            phase_fraction=0.0,
-            progress=0.0,
-            started=time.time(),
-        )
-        .returning(table)
-    ).first()
+    all_turns = wait_for_turn(session)
+    job = next_job(session, holder.engine, most_running)
+    if job is not None:
+        note_turn(session, all_turns, job)
+        _start(job, holder)
+        session.flush()
+    return job
 
 
 def heartbeat(session: Session, job: AnyJob, phase: str | None, phase_fraction: float, progress: float) -> bool | None:
@@ -117,6 +107,13 @@ def take_back(session: Session, job: AnyJob, error: dict[str, Any] | None) -> bo
     return session.scalars(change.returning(table.id)).first() is not None
 
 
+def change_engine(session: Session, old: str, new: str) -> None:
+    """Let another engine do all queued jobs that were accepted for an old one."""
+    for table in JOBS:
+        waiting = update(table).where(table.status == "queued", table.engine == old)
+        session.execute(waiting.values(engine=new, seq=table.seq + 1))
+
+
 def cancel(session: Session, table: type[AnyJob], *chosen: ColumnElement[bool]) -> None:
     """Cancel the chosen jobs of a table that are queued at once, and ask the workers of running ones to stop them."""
     # Locked first: one that is taken back between the two statements would be missed by both.
@@ -127,6 +124,12 @@ def cancel(session: Session, table: type[AnyJob], *chosen: ColumnElement[bool]) 
         .where(*chosen, table.status == "running", table.cancel.is_(False))
         .values(cancel=True, seq=table.seq + 1)
     )
+
+
+def _start(job: AnyJob, holder: Holder) -> None:
+    job.status, job.claim, job.worker, job.started = "running", holder.token, holder.worker, time.time()
+    job.phase, job.phase_fraction, job.progress = None, 0.0, 0.0
+    job.attempt, job.beat, job.seq = job.attempt + 1, job.beat + 1, job.seq + 1
 
 
 def _attempt(job: AnyJob) -> Any:

@@ -10,11 +10,12 @@ from sqlalchemy import Select, func, select, union, update
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
-from treestroke.store.leases import TERMINAL, AnyJob, JobRow
+from treestroke.store.leases import TERMINAL, JobRow
 from treestroke.store.scope import scope_of
 from treestroke.store.tables import (
     REFERENCES,
     UPLOADED,
+    AnyJob,
     CapturePhoto,
     CaptureRow,
     ClipRow,

@@ -109,7 +109,7 @@ class Job(Authored):
     number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     engine: Mapped[str] = mapped_column(String(40))
-    """Engine of the worker that did it or does it; before that, of the web process."""
+    """Engine that it was accepted for: workers of this engine alone take it."""
     fingerprint: Mapped[str] = mapped_column(String(64))
     """Digest of all that decides over the result, except the engine: equal ones have equal results."""
     status: Mapped[str] = mapped_column(String(12))
@@ -217,13 +217,29 @@ class Replay(Authored, Aged, Table):
 
 
 class Worker(Table):
-    """A running worker: how many models it grows at once, and its own beat."""
+    """A running worker: how many jobs it does at once, by which engine, and its own beat."""
 
     __tablename__ = "workers"
 
     id: Mapped[str] = mapped_column(String(120), primary_key=True)
     slots: Mapped[int]
     beat: Mapped[int]
+    engine: Mapped[str] = mapped_column(String(40), server_default="")
+
+
+class Turn(Table):
+    """When a person's jobs of one kind were served last: the number of that claim, of all claims ever.
+
+    The row without team, person and kind counts all claims.
+    """
+
+    __tablename__ = "turns"
+
+    team: Mapped[str] = mapped_column(String(40), primary_key=True)
+    maker: Mapped[str] = mapped_column(String(40), primary_key=True)
+    kind: Mapped[str] = mapped_column(String(40), primary_key=True)
+    """Name of the jobs' table."""
+    last: Mapped[int] = mapped_column(_NUMBER)
 
 
 class StoreClock(Table):
@@ -251,6 +267,7 @@ class BlobRow(Owned, Table):
     """When a sweep first saw that no row refers to it, by the store's own clock; None where one does."""
 
 
+AnyJob = ModelRow | SolveRow
 JOBS: tuple[type[ModelRow] | type[SolveRow], ...] = (ModelRow, SolveRow)
 """Every table whose rows are work for a worker."""
 UPLOADED: tuple[type[PhotoRow] | type[CapturePhoto] | type[ClipRow], ...] = (PhotoRow, CapturePhoto, ClipRow)
@@ -260,6 +277,7 @@ REFERENCES = (*(table.blob for table in UPLOADED), ModelPart.blob, File.blob, So
 
 for _job in JOBS:
     Index(f"ix_{_job.__tablename__}_queue", _job.status, _job.number)
+    Index(f"ix_{_job.__tablename__}_line", _job.status, _job.engine, _job.team, _job.maker, _job.number)
     Index(f"ix_{_job.__tablename__}_fingerprint", _job.fingerprint, _job.team, _job.engine, _job.status)
     Index(f"ix_{_job.__tablename__}_times", _job.status, _job.started, _job.finished)
 for _uploaded in UPLOADED:
