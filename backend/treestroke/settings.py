@@ -145,7 +145,7 @@ def read_settings(**flags: object) -> Settings:
         )
     if settings.hosted and not settings.database_url.startswith(_POSTGRES):
         raise SettingsError(
-            f"{_variable('database_url')}: only Postgres is supported; give postgresql://USER:PASSWORD@HOST:PORT/NAME, "
+            f"{_variable('database_url')}: only Postgres is supported; give postgresql://HOST:PORT/NAME, "
             "or leave it out"
         )
     if settings.bucket_url and not _BUCKET.fullmatch(settings.bucket_url):

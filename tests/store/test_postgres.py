@@ -75,6 +75,12 @@ def test_a_database_that_is_not_there_is_away(tmp_path: Path, postgres: Postgres
     assert failure(Database(tmp_path, postgres.url("nowhere")).of(LOCAL)) == "database_unavailable"
 
 
+def test_a_text_that_postgres_cannot_keep_is_the_sender_s_mistake(database: Database) -> None:
+    with pytest.raises(SQLAlchemyError) as failed:
+        find(database, "mdl_\0")
+    assert code_of(failed.value) == "text_unusable"
+
+
 def test_without_a_free_connection_the_database_is_busy(impatient: Database) -> None:
     with impatient.reading(), impatient.writing():
         assert failure(impatient) == "database_busy"

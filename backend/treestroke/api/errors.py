@@ -71,6 +71,7 @@ _STATUS = {
     "rate_limited": 429,
     "quota_exceeded": 429,
     "queue_full": 429,
+    "text_unusable": 422,
     "internal": 500,
     "file_damaged": 500,
     "overloaded": 503,

@@ -5,7 +5,7 @@ import sqlite3
 from typing import Any
 
 import cv2
-from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import DataError, DBAPIError, InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as NoConnection
 
 from treestroke.core.errors import TreestrokeError
@@ -30,6 +30,7 @@ _DETAILS = {
     "file_missing": ("A file is missing on the service's disk. See `treestroke doctor`.", False),
     "too_many_files": ("The service has reached its limit of open files and connections. Try again.", True),
     "database_busy": ("The database is busy. Try again.", True),
+    "text_unusable": ("A text holds the character NUL, which cannot be kept. Leave it out.", False),
     "database_unavailable": ("The database cannot be opened at the moment. Try again.", True),
 }
 _BY_ERRNO = {
@@ -95,6 +96,8 @@ def _code_of_database(error: DBAPIError) -> str:
         # The low byte is SQLite's primary result code, the others extend it.
         return _BY_SQLITE.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF, "engine_error")
     state: str | None = getattr(error.orig, "sqlstate", None)
+    if state is None and isinstance(error, DataError):  # the driver did not even send it
+        return "text_unusable"
     if state is None:  # the server said nothing: it cannot be reached, or the connection is lost
         return "database_unavailable" if isinstance(error, OperationalError | InterfaceError) else "engine_error"
     return _BY_SQLSTATE.get(state) or _BY_SQLSTATE.get(state[:2], "engine_error")
