@@ -119,6 +119,6 @@ def start_logging() -> None:
     root = logging.getLogger()
     root.handlers = [handler]
     root.setLevel(logging.INFO)
-    for noisy in ("alembic", "celery", "kombu", "uvicorn", "httpx"):
+    for noisy in ("alembic", "celery", "kombu", "uvicorn", "httpx", "botocore"):
         logging.getLogger(noisy).setLevel(logging.WARNING)
     logging.getLogger("uvicorn.error").addFilter(_is_needed)

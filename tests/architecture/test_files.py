@@ -11,7 +11,7 @@ PATH_OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:work|root|home|opt|Users|mnt|srv)
 NAMESPACE = re.compile(r"\bhttp:/{2}www\.w3\.org/\d{4}/[\w/]+")
 """A name that looks like an address and that nobody asks for."""
 OWN = r"(?:127\.0\.0\.1|localhost|\[::1\]|redis|testserver)\b"
-HOST = re.compile(rf"\b\w+:/{{2}}(?!{OWN}|HOST\b|BUCKET\b)\w[\w.-]*|\b(?:pypi|pythonhosted|npmjs)\.org")
+HOST = re.compile(rf"\b\w+:/{{2}}(?!{OWN}|HOST\b|BUCKET\b|USER\b)\w[\w.-]*|\b(?:pypi|pythonhosted|npmjs)\.org")
 
 
 def tracked() -> list[Path]:

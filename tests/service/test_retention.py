@@ -1,27 +1,19 @@
-import hashlib
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import fields
 from pathlib import Path
 
 import pytest
-from sqlalchemy import delete, func, select, update
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 from tests.plans import planned, scans
-from tests.rows import add_capture, add_model, add_solve
+from tests.rows import add_capture, add_solve
+from tests.sweeping import DAY, HOUR, NOTHING, Kept
 
 from treestroke.service import captures, retention, stored_models
 from treestroke.service.photos import NotFound
 from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
-from treestroke.service.unreferenced import BlobSweeper
-from treestroke.store.blobs import open_blobs
-from treestroke.store.database import Database
-from treestroke.store.objects import Damaged, FolderObjects, StorageAway
 from treestroke.store.queries import photo as photo_by_id
-from treestroke.store.queries import referenced
-from treestroke.store.scope import LOCAL, SERVICE, Scope
 from treestroke.store.tables import (
     BlobRow,
     CapturePhoto,
@@ -32,110 +24,8 @@ from treestroke.store.tables import (
     PhotoRow,
     Replay,
     SolveRow,
-    Table,
     UploadRow,
 )
-from treestroke.store.upload_pieces import open_uploads
-
-HOUR, DAY = 3600.0, 86_400.0
-NOTHING = Swept(0, 0, 0, 0, 0, 0)
-
-
-class Clocks:
-    """The clock on the wall, and that of the process, which alone never jumps."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.wall, self.running = time.time(), 0.0
-        monkeypatch.setattr(retention.time, "time", lambda: self.wall)
-
-    def pass_(self, seconds: float) -> None:
-        self.wall += seconds
-        self.running += seconds
-
-
-class Kept:
-    """A store whose process sweeps it now and then."""
-
-    def __init__(self, folder: Path, clocks: Clocks, bucket_url: str = "") -> None:
-        self.database, self.clocks = Database(folder).of(LOCAL), clocks
-        self.database.migrate()
-        self.blobs = open_blobs(self.database, folder, bucket_url).of(LOCAL)
-        self.uploads = open_uploads(self.database, self.blobs).of(LOCAL)
-        self.restart()
-
-    def restart(self, keep_days: float = 0) -> None:
-        clocks = self.clocks
-        service, over = self.database.of(SERVICE), threading.Event()
-        self._sweeper = Sweeper(service, self.blobs.of(SERVICE), keep_days, over, lambda: clocks.running)
-
-    def sweep(self) -> Swept:
-        return self._sweeper.sweep()
-
-    def sweep_for(self, seconds: float) -> Swept:
-        """Let time pass, with a sweep every hour; give what went in all."""
-        went = [self.sweep()]
-        for _ in range(round(seconds / HOUR)):
-            self.clocks.pass_(HOUR)
-            went.append(self.sweep())
-        return Swept(*(sum(getattr(one, field.name) for one in went) for field in fields(Swept)))
-
-    def photo(self, id: str) -> PhotoRow:
-        row = PhotoRow(id=id, sha256="", width=1, height=1, blob=self.blobs.put(id.encode()), created=self.clocks.wall)
-        with self.database.writing() as session:
-            session.add(row)
-        return row
-
-    def clip(self, id: str) -> ClipRow:
-        told = {"name": "", "frames": 60, "frames_per_second": 30.0, "media_type": "video/mp4"}
-        blob = self.blobs.put(id.encode())
-        row = ClipRow(id=id, sha256="", width=1, height=1, blob=blob, created=self.clocks.wall, **told)
-        with self.database.writing() as session:
-            session.add(row)
-        return row
-
-    def upload(self, id: str) -> None:
-        with self.database.writing() as session:
-            session.add(UploadRow(id=id, name="", created=self.clocks.wall))
-        with self.uploads.adding(id, 0) as writer:
-            writer.write(b"video")
-
-    def model(self, status: str = "succeeded", **parts: str) -> ModelRow:
-        blobs = {"photo": self.blobs.put(b"photo"), "strokes": self.blobs.put(b"strokes"), **parts}
-        row = add_model(self.database, blobs, status=status, created=self.clocks.wall)
-        tree = self.blobs.put(b"tree of " + row.id.encode())
-        with self.database.writing() as session:
-            session.add(File(model=row.id, name="tree.glb", blob=tree, bytes=4))
-        return row
-
-    def delete(self, row: ModelRow) -> None:
-        stored_models.delete(self.database, row.id)
-
-    def count(self, table: type[Table]) -> int:
-        with self.database.reading() as session:
-            return session.scalar(select(func.count()).select_from(table)) or 0
-
-    def files(self) -> set[str]:
-        return {name for _, sizes in self.blobs.objects.pages() for name in sizes}
-
-    def named(self) -> set[str]:
-        with self.database.reading() as session:
-            return referenced(session)
-
-
-@pytest.fixture
-def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
-    opened = Kept(tmp_path, Clocks(monkeypatch))
-    yield opened
-    opened.database.close()
-
-
-@pytest.fixture(params=["folder", "bucket"])
-def anywhere(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Kept]:
-    """A store whose blobs are in a folder, or in a bucket."""
-    url = request.getfixturevalue("bucket_url") if request.param == "bucket" else ""
-    opened = Kept(tmp_path, Clocks(monkeypatch), url)
-    yield opened
-    opened.database.close()
 
 
 def test_what_is_not_deleted_stays(anywhere: Kept) -> None:
@@ -306,75 +196,6 @@ def test_a_file_that_no_row_names_goes_an_hour_after_it_was_seen(kept: Kept) -> 
     kept.clocks.pass_(HOUR)
     assert kept.sweep().blobs == 1
     assert (kept.files(), kept.count(BlobRow)) == (set(), 0)
-
-
-@pytest.mark.parametrize("wanted", ["named", "stored again"])
-def test_a_blob_that_is_wanted_at_the_last_moment_stays(
-    anywhere: Kept, monkeypatch: pytest.MonkeyPatch, wanted: str
-) -> None:
-    name = anywhere.blobs.put(b"strokes")
-    anywhere.sweep()
-    anywhere.clocks.pass_(HOUR)
-    remove, asked = BlobSweeper._remove, list[str]()
-
-    def late(sweeper: BlobSweeper, team: str, names: list[str], before: float) -> int:
-        asked.extend(names)
-        if wanted == "named":
-            add_model(anywhere.database, {"strokes": name})
-        else:
-            anywhere.blobs.put(b"strokes")
-        return remove(sweeper, team, names, before)
-
-    monkeypatch.setattr(BlobSweeper, "_remove", late)
-    assert anywhere.sweep().blobs == 0
-    assert asked == [name]
-    assert anywhere.blobs.get(name) == b"strokes"
-
-
-def test_an_object_without_a_row_and_a_row_without_an_object_go_after_an_hour(anywhere: Kept) -> None:
-    lost, bare = anywhere.blobs.put(b"lost"), hashlib.sha256(b"bare").hexdigest()
-    anywhere.blobs.objects.remove("local", [lost])
-    anywhere.blobs.objects.put("local", bare, b"bare")
-    anywhere.blobs.objects.put("team_oaks", bare, b"bare")
-    assert anywhere.sweep_for(HOUR) == Swept(0, 0, 0, 0, 0, 3)
-    assert (anywhere.files(), anywhere.count(BlobRow)) == (set(), 0)
-
-
-def test_an_object_whose_row_was_lost_stays_where_another_row_names_it(anywhere: Kept) -> None:
-    row = anywhere.photo("pho_1")
-    with anywhere.database.writing() as session:
-        session.execute(delete(BlobRow))
-    assert anywhere.sweep_for(3 * HOUR) == NOTHING
-    assert anywhere.blobs.get(row.blob)
-    assert anywhere.count(BlobRow) == 1
-
-
-def test_a_team_keeps_its_blob_while_another_removes_the_same(anywhere: Kept) -> None:
-    row, oaks = anywhere.photo("pho_1"), Scope("team_oaks", "usr_ada")
-    anywhere.blobs.of(oaks).put(b"pho_1")
-    assert anywhere.sweep_for(2 * HOUR).blobs == 1
-    assert anywhere.blobs.get(row.blob)
-    with pytest.raises(Damaged):
-        anywhere.blobs.of(oaks).get(row.blob)
-
-
-def test_a_bucket_that_is_away_ends_a_sweep_that_has_removed_nothing(
-    kept: Kept, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    name = kept.blobs.put(b"strokes")
-    kept.sweep()
-    kept.clocks.pass_(HOUR)
-
-    def away(*_: object) -> None:
-        raise StorageAway("away")
-
-    with monkeypatch.context() as patched:
-        patched.setattr(FolderObjects, "remove", away)
-        with pytest.raises(StorageAway):
-            kept.sweep()
-    assert kept.count(BlobRow) == 1
-    assert kept.blobs.get(name) == b"strokes"
-    assert kept.sweep().blobs == 1
 
 
 def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, monkeypatch: pytest.MonkeyPatch) -> None:

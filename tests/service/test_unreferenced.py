@@ -1,4 +1,4 @@
-"""Removal of blobs while others store them, on both databases; and that a sweep of many stays in small steps."""
+"""Removal of blobs: while others store them, on both databases; from a folder and from a bucket; of many."""
 
 import hashlib
 import threading
@@ -7,16 +7,19 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from sqlalchemy import update
+from sqlalchemy import delete, update
 from sqlalchemy.orm import Session
 from tests.plans import planned, scans
+from tests.rows import add_model
+from tests.sweeping import HOUR, NOTHING, Kept
 
 from treestroke.service import unreferenced
+from treestroke.service.retention import Swept
 from treestroke.service.unreferenced import BlobSweeper
 from treestroke.store.blobs import Blobs, insert_blobs, open_blobs
 from treestroke.store.database import Database
-from treestroke.store.objects import FolderObjects
-from treestroke.store.scope import LOCAL, SERVICE
+from treestroke.store.objects import Damaged, FolderObjects, StorageAway
+from treestroke.store.scope import LOCAL, SERVICE, Scope
 from treestroke.store.tables import BlobRow
 
 CONTENTS = [b"%d" % at for at in range(20)]
@@ -115,3 +118,72 @@ def test_many_blobs_are_swept_in_small_steps_and_by_indexes(
         assert sweeper_of(database, blobs).sweep(2.0, 1.0) == 3000
     assert len(steps) == 3000 / 50
     assert scans(plans) == []
+
+
+@pytest.mark.parametrize("wanted", ["named", "stored again"])
+def test_a_blob_that_is_wanted_at_the_last_moment_stays(
+    anywhere: Kept, monkeypatch: pytest.MonkeyPatch, wanted: str
+) -> None:
+    name = anywhere.blobs.put(b"strokes")
+    anywhere.sweep()
+    anywhere.clocks.pass_(HOUR)
+    remove, asked = BlobSweeper._remove, list[str]()
+
+    def late(sweeper: BlobSweeper, team: str, names: list[str], before: float) -> int:
+        asked.extend(names)
+        if wanted == "named":
+            add_model(anywhere.database, {"strokes": name})
+        else:
+            anywhere.blobs.put(b"strokes")
+        return remove(sweeper, team, names, before)
+
+    monkeypatch.setattr(BlobSweeper, "_remove", late)
+    assert anywhere.sweep().blobs == 0
+    assert asked == [name]
+    assert anywhere.blobs.get(name) == b"strokes"
+
+
+def test_an_object_without_a_row_and_a_row_without_an_object_go_after_an_hour(anywhere: Kept) -> None:
+    lost, bare = anywhere.blobs.put(b"lost"), hashlib.sha256(b"bare").hexdigest()
+    anywhere.blobs.objects.remove("local", [lost])
+    anywhere.blobs.objects.put("local", bare, b"bare")
+    anywhere.blobs.objects.put("team_oaks", bare, b"bare")
+    assert anywhere.sweep_for(HOUR) == Swept(0, 0, 0, 0, 0, 3)
+    assert (anywhere.files(), anywhere.count(BlobRow)) == (set(), 0)
+
+
+def test_an_object_whose_row_was_lost_stays_where_another_row_names_it(anywhere: Kept) -> None:
+    row = anywhere.photo("pho_1")
+    with anywhere.database.writing() as session:
+        session.execute(delete(BlobRow))
+    assert anywhere.sweep_for(3 * HOUR) == NOTHING
+    assert anywhere.blobs.get(row.blob)
+    assert anywhere.count(BlobRow) == 1
+
+
+def test_a_team_keeps_its_blob_while_another_removes_the_same(anywhere: Kept) -> None:
+    row, oaks = anywhere.photo("pho_1"), Scope("team_oaks", "usr_ada")
+    anywhere.blobs.of(oaks).put(b"pho_1")
+    assert anywhere.sweep_for(2 * HOUR).blobs == 1
+    assert anywhere.blobs.get(row.blob)
+    with pytest.raises(Damaged):
+        anywhere.blobs.of(oaks).get(row.blob)
+
+
+def test_a_bucket_that_is_away_ends_a_sweep_that_has_removed_nothing(
+    kept: Kept, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name = kept.blobs.put(b"strokes")
+    kept.sweep()
+    kept.clocks.pass_(HOUR)
+
+    def away(*_: object) -> None:
+        raise StorageAway("away")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(FolderObjects, "remove", away)
+        with pytest.raises(StorageAway):
+            kept.sweep()
+    assert kept.count(BlobRow) == 1
+    assert kept.blobs.get(name) == b"strokes"
+    assert kept.sweep().blobs == 1

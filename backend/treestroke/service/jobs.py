@@ -3,6 +3,7 @@
 import json
 from collections.abc import Mapping
 from contextlib import suppress
+from functools import partial
 from typing import Any
 
 from sqlalchemy.exc import SQLAlchemyError
@@ -25,6 +26,7 @@ from treestroke.store import queries
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.leases import add_file, succeed
+from treestroke.store.objects import StorageAway
 from treestroke.store.scope import Scope
 from treestroke.store.tables import ModelPart, ModelRow
 
@@ -53,10 +55,12 @@ def _make(
 
     def show(grown: LiveTree) -> None:
         content = json.dumps(plain_grown(grown), separators=(",", ":")).encode()
-        blob, first = blobs.put(content), {} if job.preview_seq else {"preview_seq": ModelRow.seq + 1}
-        # A view of the growing tree is not worth waiting for a database that is away; the finished tree is.
-        with suppress(SQLAlchemyError), database.writing() as session:
-            add_file(session, job, GROWTH, blob, len(content), **first)
+        first = {} if job.preview_seq else {"preview_seq": ModelRow.seq + 1}
+        # A view of the growing tree is not worth failing for where storage is away; the finished tree is waited for.
+        with suppress(SQLAlchemyError, StorageAway):
+            blob = blobs.put(content)
+            with database.writing() as session:
+                add_file(session, job, GROWTH, blob, len(content), **first)
 
     made = make_tree(contents, Options.of(job.settings, job.seed), heartbeat.report, show)
     made = made.with_warnings(persist(lambda: _mended_in_photos(database, job)))
@@ -64,7 +68,7 @@ def _make(
     trees = _packed(made.bundles)
     outputs = {**trees, PREVIEW: encode_png(made.preview())}
     heartbeat.report("preview", 1.0)
-    files = {name: (blobs.put(content), len(content)) for name, content in outputs.items()}
+    files = {name: (persist(partial(blobs.put, content)), len(content)) for name, content in outputs.items()}
     heartbeat.report("preview", 1.0)
     return {**made.report, "files": {name: len(content) for name, content in trees.items()}}, files
 

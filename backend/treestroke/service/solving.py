@@ -1,12 +1,21 @@
 """Find the cameras of one queued capture in an attempt, and publish what was found."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from treestroke.codec.structure import encode_structure
 from treestroke.core.capture import Structure
 from treestroke.core.progress import Report
 from treestroke.engines.solving import SolveEnded, solve_in_process
-from treestroke.service.attempts import AttemptLost, Canceled, Heartbeat, TimeLimit, carry_out, publish
+from treestroke.service.attempts import (
+    AttemptLost,
+    Canceled,
+    Heartbeat,
+    TimeLimit,
+    carry_out,
+    persist,
+    publish,
+)
 from treestroke.service.captures import fingerprint
 from treestroke.service.loading import load_stored_capture
 from treestroke.service.model import SOLVE_BOUNDS
@@ -36,7 +45,8 @@ def solve_capture(database: Database, blobs: Blobs, job: SolveRow, seconds: floa
         own = blobs.of(Scope(job.team, job.maker))
         with Heartbeat(database, job, ProgressEstimate(_PHASES), seconds) as heartbeat:
             structure = _find(own, photos, seconds, heartbeat.report)
-            blob = own.put(encode_structure(structure))  # the lease is held while the place of the blobs is away
+            # The lease is held while storage is away.
+            blob = persist(partial(own.put, encode_structure(structure)))
         publish(database, job, lambda session: complete(session, job, structure=blob))
 
     carry_out(database, job, solve)

@@ -52,7 +52,7 @@ class BucketObjects:
         self._bucket, _, prefix = url.removeprefix("s3://").strip("/").partition("/")
         self._prefix = f"{prefix}/" if prefix else ""
         self._copies, self._patience_s = copies, patience_s
-        self._client, self._brief = _client(_TIMES), _client(_BRIEF_TIMES)
+        self._client, self._brief = _clients(_TIMES, _BRIEF_TIMES)
         self._locks = [threading.Lock() for _ in range(_LOCKS)]
 
     def put(self, team: str, name: str, content: bytes) -> None:
@@ -169,12 +169,13 @@ class BucketObjects:
             raise StorageAway(f"{self.place}: {error}") from error
 
 
-def _client(times: dict[str, Any]) -> Any:
-    """Return a client of the server; boto3, which takes long to import, is imported only where there is a bucket."""
+def _clients(*times: dict[str, Any]) -> list[Any]:
+    """Return clients of the server; boto3, which takes long to import, is imported only where there is a bucket."""
     import boto3
     from botocore.config import Config
 
     # Contents are compared by SHA-256: further checksums would only cost time.
     checksums = {"request_checksum_calculation": "when_required", "response_checksum_validation": "when_required"}
-    config = Config(max_pool_connections=_LOCKS, **checksums, **times)
-    return boto3.session.Session().client("s3", config=config)
+    configs = (Config(max_pool_connections=_LOCKS, **checksums, **one) for one in times)
+    session = boto3.session.Session()
+    return [session.client("s3", config=config) for config in configs]
