@@ -219,11 +219,10 @@ def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, mo
 
 
 def test_a_sweep_reads_no_whole_table(kept: Kept) -> None:
+    kept.restart(keep_days=1)
     kept.delete(kept.model())
     kept.model()
     kept.photo("pho_1")
-    kept.database = kept.database.of(SERVICE)
-    kept.restart(keep_days=1)
     kept.sweep()
     kept.clocks.pass_(2 * DAY)
     with planned() as steps:
