@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from treestroke.schemas import Failure, GrownSkeleton, PhotoFrame, Place, Point, Reason, StrokeWarning, Taken
+from treestroke.schemas import Failure, GrownSkeleton, MakerInfo, PhotoFrame, Place, Point, Reason, StrokeWarning, Taken
 from treestroke.wire_strokes import Wire
 
 Pose = tuple[float, float, float, float]
@@ -67,6 +67,7 @@ class CaptureState(Wire):
 
     id: str
     name: str
+    maker: MakerInfo | None = Field(default=None, description="null where nobody signs in")
     status: CaptureStatus
     phase: str | None = Field(description="the step under way")
     phase_fraction: float = Field(ge=0, le=1)
@@ -93,6 +94,7 @@ class CaptureInfo(CaptureState):
             "example": {
                 "id": "cap_7b1d0c2e3f4a5968778695a4",
                 "name": "The old oak, all around",
+                "maker": None,
                 "status": "unsolved",
                 "phase": None,
                 "phase_fraction": 0.0,

@@ -2,7 +2,7 @@
 
 from pydantic import ConfigDict, Field
 
-from treestroke.schemas import Point, StrokeWarning, TraceAnswer
+from treestroke.schemas import MakerInfo, Point, StrokeWarning, TraceAnswer
 from treestroke.wire_strokes import Wire
 
 
@@ -14,6 +14,7 @@ class ClipInfo(Wire):
             "example": {
                 "id": "clp_3e4f5a6b7c8d9e0f1a2b3c4d",
                 "name": "ash.mp4",
+                "maker": None,
                 "width": 1920,
                 "height": 1080,
                 "frames": 240,
@@ -31,6 +32,7 @@ class ClipInfo(Wire):
 
     id: str
     name: str = Field(description="its file name; empty where it came without")
+    maker: MakerInfo | None = Field(default=None, description="null where nobody signs in")
     width: int = Field(description="of its frames, upright, pixels")
     height: int
     frames: int = Field(description="how many there are at the even rate")

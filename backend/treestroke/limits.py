@@ -30,6 +30,10 @@ MAX_CLIP_SIDE, FRAME_SIDE = 4096, 640
 """Longest side, px, of a clip's picture that is drawn on, and of its grey frames."""
 MAX_NAME = 200
 """Most characters of a model's name."""
+MAX_TAGS, MAX_TAG = 20, 40
+"""Most tags of a model, and characters of each."""
+SHARE_DAYS, MAX_SHARE_DAYS = 30, 365
+"""Days that a link to a model leads somewhere, where nothing else is asked for, and most of them."""
 MAX_ID = 40
 """Most characters of the id of a photo or a capture in a request."""
 MAX_REV = 2**53 - 1

@@ -131,6 +131,13 @@ class Failure(Wire):
     retryable: bool
 
 
+class MakerInfo(Wire):
+    """Who made something."""
+
+    id: str
+    name: str = Field(description="empty where they are no longer known")
+
+
 class ModelInfo(Wire):
     """A tree that was made, or waits to be made."""
 
@@ -139,6 +146,8 @@ class ModelInfo(Wire):
             "example": {
                 "id": "mdl_0a1b2c3d4e5f60718293a4b5",
                 "name": "The old oak",
+                "tags": ["park", "oak"],
+                "maker": {"id": "usr_7a8b9c0d1e2f30415263f4a5", "name": "Ann"},
                 "photo": "pho_5f0c8e1d2b3a49c6d7e8f901",
                 "capture": None,
                 "status": "running",
@@ -165,6 +174,8 @@ class ModelInfo(Wire):
 
     id: str
     name: str
+    tags: list[str] = Field(default_factory=list)
+    maker: MakerInfo | None = Field(default=None, description="null where nobody signs in")
     photo: str | None = Field(description="null where it is made of sketches alone, of a capture, or of a clip")
     capture: str | None = Field(default=None, description="where it is made of one")
     clip: str | None = Field(default=None, description="where it is made of one")
@@ -189,7 +200,7 @@ class ModelInfo(Wire):
 
 
 class ModelPage(Wire):
-    """Models, newest first; ``next`` is the cursor of the next page."""
+    """Models, newest first; ``next`` is the cursor of the next page, which follows an empty one of a search too."""
 
     models: list[ModelInfo]
     next: str | None

@@ -10,7 +10,16 @@ from pydantic.json_schema import SkipJsonSchema
 from treestroke.core.pipeline import settings as table
 from treestroke.core.pipeline.settings import MAX_SEED, Choice, Several, Span, Toggle
 from treestroke.core.siblings.outlines import SHAPES
-from treestroke.limits import MAX_ID, MAX_LEAF_BYTES, MAX_NAME, MAX_REV
+from treestroke.limits import (
+    MAX_ID,
+    MAX_LEAF_BYTES,
+    MAX_NAME,
+    MAX_REV,
+    MAX_SHARE_DAYS,
+    MAX_TAG,
+    MAX_TAGS,
+    SHARE_DAYS,
+)
 from treestroke.wire_edits import EDITS_EXAMPLE, EditList
 from treestroke.wire_strokes import (
     STROKES_EXAMPLE,
@@ -256,9 +265,37 @@ class SiblingsRequest(RequestPart):
 
 
 class Rename(RequestPart):
-    """The new name of a model or a capture."""
+    """The new name of a capture."""
 
     name: Name = Field(json_schema_extra={"example": "The old oak"})
+
+
+Tag = Annotated[str, Strict(), Field(min_length=1, max_length=MAX_TAG, pattern=NAME_PATTERN)]
+
+
+class ModelChange(RequestPart):
+    """A model's new name, its new tags, or both."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {"name": "The old oak", "tags": ["park", "oak"]}})
+
+    name: Name | SkipJsonSchema[None] = Field(
+        default=None, description="in place of the one that it has", json_schema_extra=no_default
+    )
+    tags: Annotated[list[Tag], Field(max_length=MAX_TAGS)] | SkipJsonSchema[None] = Field(
+        default=None, description="in place of those that it has", json_schema_extra=no_default
+    )
+
+
+class ShareRequest(RequestPart):
+    """A link to be made by which anybody sees a model."""
+
+    model_config = ConfigDict(json_schema_extra={"example": {"days": 30, "photo": False, "download": True}})
+
+    days: Annotated[int, Strict(), Field(ge=1, le=MAX_SHARE_DAYS)] = Field(
+        default=SHARE_DAYS, description="how long it leads somewhere"
+    )
+    photo: Annotated[bool, Strict()] = Field(default=False, description="whether the photo is shown, too")
+    download: Annotated[bool, Strict()] = Field(default=True, description="whether the tree is offered for download")
 
 
 class CaptureRequest(RequestPart):

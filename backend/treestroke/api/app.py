@@ -30,6 +30,8 @@ from treestroke.api.routes import (
     models,
     photos,
     session,
+    shared,
+    shares,
     sketches,
     status,
     team,
@@ -59,8 +61,10 @@ from treestroke.wire_requests import (
     CaptureRequest,
     CaptureTraceRequest,
     ClipTraceRequest,
+    ModelChange,
     ModelRequest,
     Rename,
+    ShareRequest,
     SiblingsRequest,
     SketchTraceRequest,
     TraceRequest,
@@ -77,7 +81,10 @@ _FORM_BYTES = 100_000
 """Most bytes of a form around its file."""
 _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
-_ROUTES = (photos, sketches, captures, clips, uploads, models, events, files, session, keys, team, status)
+_ROUTES = (
+    *(photos, sketches, captures, clips, uploads, models, events, files, shares, shared),
+    *(session, keys, team, status),
+)
 _ANYWHERE = ("unauthenticated", "foreign_host", "rate_limited", "internal", "overloaded")
 """Codes of problems that every route may answer with."""
 _BODIES = (
@@ -89,6 +96,8 @@ _BODIES = (
     ModelRequest,
     Edits,
     Rename,
+    ModelChange,
+    ShareRequest,
     SiblingsRequest,
     CaptureRequest,
     SignIn,

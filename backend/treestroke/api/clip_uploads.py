@@ -21,6 +21,7 @@ from treestroke.codec.video_kinds import VIDEO_KINDS
 from treestroke.limits import MAX_CLIP_BYTES, MAX_NAME
 from treestroke.service import clips
 from treestroke.service.clip_loading import too_large
+from treestroke.service.makers import find_makers
 from treestroke.service.photos import Resources
 from treestroke.store.tables import ClipRow, UploadRow
 
@@ -96,10 +97,11 @@ async def receive_piece(request: Request, resources: Resources, id: str, offset:
         await _write(resources, id, offset, request.stream())
 
 
-def clip_answer(clip: ClipRow) -> JSONResponse:
+def clip_answer(resources: Resources, clip: ClipRow) -> JSONResponse:
     """Return the response that says a clip was stored."""
+    makers = find_makers(resources.database, [clip])
     headers = {"Location": f"/v1/clips/{clip.id}", "Upload-Offset": str(clip.bytes), "Upload-Complete": "?1"}
-    return JSONResponse(clip_view(clip).model_dump(), HTTPStatus.CREATED, headers)
+    return JSONResponse(clip_view(clip, makers).model_dump(), HTTPStatus.CREATED, headers)
 
 
 def upload_answer(resources: Resources, id: str, status: HTTPStatus) -> JSONResponse:

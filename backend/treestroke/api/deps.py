@@ -80,7 +80,7 @@ def hosted_only(settings: "SettingsOf") -> None:
         This service has no keys.
     """
     if not settings.hosted:
-        detail = "this service has one person, and neither keys nor members; they need TREESTROKE_DATABASE_URL"
+        detail = "this service has one person: no keys, members or links to trees; these need TREESTROKE_DATABASE_URL"
         raise Refusal("not_hosted", detail)
 
 
@@ -152,6 +152,7 @@ ModelId = Annotated[str, _id("mdl")]
 ClipId = Annotated[str, _id("clp")]
 UploadId = Annotated[str, _id("upl")]
 CaptureId = Annotated[str, _id("cap")]
+ShareId = Annotated[str, _id("shr")]
 CapturePhotoId = Annotated[str, _id("cph")]
 MemberId = Annotated[str, _id("usr")]
 KeyId = Annotated[str, _id("key")]

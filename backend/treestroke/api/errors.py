@@ -25,10 +25,12 @@ from treestroke.service.keys import Exceeded
 from treestroke.service.members import LastOwner
 from treestroke.service.photos import NotFound
 from treestroke.service.quotas import MODELS_A_DAY, QUEUED, STORED, STREAMS, QuotaExceeded, stored_full
+from treestroke.service.shares import ShareOver, Unfinished
 from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
 from treestroke.store.objects import Damaged
+from treestroke.store.queries import NotYours
 from treestroke.store.uploads import Superseded, WrongOffset
 
 MEDIA_TYPE = "application/problem+json"
@@ -45,6 +47,7 @@ _STATUS = {
     "not_hosted": 403,
     "foreign_host": 403,
     "foreign_origin": 403,
+    "not_yours": 403,
     "not_found": 404,
     "photo_not_found": 404,
     "model_not_found": 404,
@@ -54,15 +57,19 @@ _STATUS = {
     "key_not_found": 404,
     "member_not_found": 404,
     "team_not_found": 404,
+    "share_not_found": 404,
     "frame_not_found": 404,
     "file_not_found": 404,
     "method_not_allowed": 405,
     "body_too_slow": 408,
     "request_too_slow": 408,
     "capture_unsolved": 409,
+    "model_unfinished": 409,
     "upload_offset_wrong": 409,
     "upload_superseded": 409,
     "last_owner": 409,
+    "share_revoked": 410,
+    "share_expired": 410,
     "body_too_large": 413,
     "unsupported_media_type": 415,
     "range_not_satisfiable": 416,
@@ -173,6 +180,19 @@ def _missing(_: Request, error: NotFound) -> JSONResponse:
     return problem(f"{error}_not_found", f"there is no such {error}; check its id")
 
 
+def _not_yours(_: Request, __: NotYours) -> JSONResponse:
+    return problem("not_yours", "somebody else made this; ask them, or an owner of the team, to do it")
+
+
+def _unfinished(_: Request, __: Unfinished) -> JSONResponse:
+    return problem("model_unfinished", "this model has no tree that could be shared; wait for it, or grow it again")
+
+
+def _share_over(_: Request, error: ShareOver) -> JSONResponse:
+    how = "was revoked" if error.code == "share_revoked" else "has ended"
+    return problem(error.code, f"this link {how}; ask who sent it for another one")
+
+
 def _reused(_: Request, __: KeyReused) -> JSONResponse:
     detail = "this Idempotency-Key was used with another request; take a new one"
     return problem("idempotency_key_reused", detail)
@@ -278,6 +298,9 @@ _ANSWERS: dict[type[Exception], Any] = {
     TreestrokeError: _input,
     RequestValidationError: _invalid,
     NotFound: _missing,
+    NotYours: _not_yours,
+    Unfinished: _unfinished,
+    ShareOver: _share_over,
     KeyReused: _reused,
     LastOwner: _last_owner,
     Exceeded: _beyond_scopes,

@@ -27,6 +27,8 @@ _CHANGE_TEAM = Rule("team", "owner", writes=True)
 
 RULES: dict[str, Rule | None] = {
     **dict.fromkeys(("live", "ready", "page", "icon", "sign_in"), None),
+    **dict.fromkeys(("get_shared_page", "get_shared_model", "get_shared_tree"), None),
+    **dict.fromkeys(("get_shared_preview", "get_shared_photo", "get_oembed"), None),
     **dict.fromkeys(("limits", "version", "get_session", "sign_out"), _SIGNED_IN),
     "metrics": Rule("team", "owner", hidden=True),
     **dict.fromkeys(("list_photos", "get_photo", "get_image", "trace_photo", "trace_sketches"), _LOOK),
@@ -39,8 +41,9 @@ RULES: dict[str, Rule | None] = {
     **dict.fromkeys(("add_clip", "delete_clip", "get_upload", "add_piece", "delete_upload"), _CHANGE),
     **dict.fromkeys(("list_models", "get_model", "follow_model", "get_tree", "get_preview", "get_tree_file"), _LOOK),
     **dict.fromkeys(("get_strokes", "get_views", "get_frame_strokes", "get_edits", "get_sketch", "get_project"), _LOOK),
-    **dict.fromkeys(("ask_for_model", "ask_for_siblings", "rename_model", "cancel_model"), _CHANGE),
-    **dict.fromkeys(("delete_model", "restore_model"), _CHANGE),
+    **dict.fromkeys(("ask_for_model", "ask_for_siblings", "change_model", "cancel_model"), _CHANGE),
+    **dict.fromkeys(("delete_model", "restore_model", "share_model", "revoke_share"), _CHANGE),
+    "list_shares": _LOOK,
     **dict.fromkeys(("get_team", "list_members", "list_keys"), _LOOK_AT_TEAM),
     **dict.fromkeys(("make_key", "revoke_key"), _CHANGE_OWN_KEYS),
     **dict.fromkeys(("rename_team", "add_member", "change_member", "remove_member"), _CHANGE_TEAM),

@@ -10,9 +10,12 @@ from treestroke.codec.structure import plain_cloud
 from treestroke.core.capture import Structure
 from treestroke.limits import MAX_CLOUD_POINTS
 from treestroke.service.captures import StoredCapture
-from treestroke.service.jobs import GROWTH
+from treestroke.service.jobs import GLB, GROWTH
+from treestroke.service.makers import Maker, Makers
+from treestroke.service.shares import Shared
 from treestroke.service.stored_models import StoredModel
-from treestroke.store.tables import CapturePhoto, ClipRow, PhotoRow
+from treestroke.share_schemas import SharedModel, ShareInfo
+from treestroke.store.tables import CapturePhoto, ClipRow, PhotoRow, Share
 
 
 def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
@@ -28,12 +31,13 @@ def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
     )
 
 
-def clip_view(row: ClipRow) -> clip_schemas.ClipInfo:
-    """Return a clip as the API shows it."""
+def clip_view(row: ClipRow, makers: Makers) -> clip_schemas.ClipInfo:
+    """Return a clip as the API shows it; ``makers`` has who made it."""
     return clip_schemas.ClipInfo(
         id=row.id,
         name=row.name,
         width=row.width,
+        maker=_maker(makers.get(row.maker)),
         height=row.height,
         frames=row.frames,
         frames_per_second=row.frames_per_second,
@@ -54,6 +58,8 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
     return schemas.ModelInfo(
         id=row.id,
         name=row.name,
+        tags=row.tags,
+        maker=_maker(model.maker),
         photo=row.photo,
         capture=row.capture,
         clip=row.clip,
@@ -137,6 +143,7 @@ def _state(capture: StoredCapture) -> dict[str, Any]:
         **known,
         "id": row.id,
         "name": row.name,
+        "maker": _maker(capture.maker),
         "status": capture.status,
         "phase_fraction": 0.0 if solve is None else solve.phase_fraction,
         "progress": 0.0 if solve is None else round(solve.progress, 4),
@@ -146,6 +153,39 @@ def _state(capture: StoredCapture) -> dict[str, Any]:
         "photo_count": len(capture.photos),
         "created": _time(row.created),
     }
+
+
+def share_view(share: Share, url: str | None = None) -> ShareInfo:
+    """Return a link to a model as the API shows it; its address where it was just made."""
+    return ShareInfo(
+        id=share.id,
+        url=url,
+        created=_time(share.created),
+        expires=_time(share.expires),
+        revoked=None if share.revoked is None else _time(share.revoked),
+        photo=share.photo,
+        download=share.download,
+    )
+
+
+def shared_view(shared: Shared) -> SharedModel:
+    """Return what a link tells of a model: nothing of who made it."""
+    row, share, report = shared.model.row, shared.share, shared.model.row.report or {}
+    taken = _taken(report)
+    return SharedModel(
+        name=row.name,
+        bytes=shared.model.files[GLB].bytes,
+        foliage=None if taken is None else taken.foliage,
+        form=None if taken is None else taken.form,
+        height=report.get("measures", {}).get("height", {}).get("value"),
+        photo=share.photo,
+        download=share.download,
+        expires=_time(share.expires),
+    )
+
+
+def _maker(maker: Maker | None) -> schemas.MakerInfo | None:
+    return None if maker is None else schemas.MakerInfo(id=maker.id, name=maker.name)
 
 
 def _score(report: dict[str, Any] | None) -> dict[str, float] | None:

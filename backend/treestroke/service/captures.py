@@ -20,6 +20,7 @@ from treestroke.service import tracer
 from treestroke.service.engine_version import engine_version
 from treestroke.service.file_names import file_name, free_name
 from treestroke.service.fingerprints import digest
+from treestroke.service.makers import Maker, makers_of
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
 from treestroke.service.quotas import admit_job, admit_upload
@@ -59,6 +60,8 @@ class StoredCapture:
         The last time that the cameras of just these photos were asked for; None where they never were.
     queue_position, eta_s
         The solve's place in the queue and its remaining seconds; None where it is over.
+    maker
+        Who made it; None where nobody signs in.
     """
 
     row: CaptureRow
@@ -66,6 +69,7 @@ class StoredCapture:
     solve: SolveRow | None
     queue_position: int | None = None
     eta_s: float | None = None
+    maker: Maker | None = None
 
     @property
     def id(self) -> str:
@@ -96,7 +100,7 @@ def make_capture(database: Database, body: bytes) -> StoredCapture:
     row = CaptureRow(id=queries.new_id("cap"), name=name, seq=1, created=time.time())
     with database.writing() as session:
         session.add(row)
-    return StoredCapture(row, [], None)
+    return find_capture(database, row.id)
 
 
 def find_capture(database: Database, id: str, deleted: bool = False) -> StoredCapture:
@@ -133,14 +137,13 @@ def delete(database: Database, id: str) -> None:
 
     Raises
     ------
-    NotFound
-        There is no such capture.
+    NotFound, NotYours
+        There is no such capture, or it may not be deleted by whom the session is for.
     """
     with database.writing() as session:
-        queries.lock(session, CaptureRow, id)
-        _row(session, id)
+        if not queries.mark_deleted(session, CaptureRow, id):
+            raise NotFound("capture")
         leases.cancel(session, SolveRow, SolveRow.capture == id)
-        session.execute(update(CaptureRow).where(CaptureRow.id == id).values(deleted=time.time(), seen=None))
 
 
 def rename(database: Database, id: str, name: str) -> StoredCapture:
@@ -162,12 +165,12 @@ def restore(database: Database, id: str) -> StoredCapture:
 
     Raises
     ------
-    NotFound
-        There is no such capture, or it was removed for good.
+    NotFound, NotYours
+        There is no such capture, or it was removed for good; or it may not be restored by whom the session is for.
     """
     with database.writing() as session:
-        _row(session, id, deleted=True)
-        queries.mark_restored(session, CaptureRow, id)
+        if not queries.mark_restored(session, CaptureRow, id):
+            raise NotFound("capture")
     return find_capture(database, id)
 
 
@@ -225,13 +228,13 @@ def remove_photo(database: Database, id: str, photo: str) -> None:
 
     Raises
     ------
-    NotFound
-        There is no such capture, or it has no such photo.
+    NotFound, NotYours
+        There is no such capture, or it has no such photo; or that may not be deleted by whom the session is for.
     """
     with database.writing() as session:
         queries.lock(session, CaptureRow, id)
         _row(session, id)
-        _photo(session, id, photo)
+        queries.check_removable(session, _photo(session, id, photo))
         session.execute(delete_from(CapturePhoto).where(CapturePhoto.id == photo))
         _note_change(session, id)
 
@@ -334,11 +337,11 @@ def _stored(session: Session, rows: Sequence[CaptureRow]) -> list[StoredCapture]
     photos = queries.capture_photos(session, [row.id for row in rows])
     solves = {row.id: queries.last_solve(session, row.id, fingerprint(photos[row.id])) for row in rows}
     waits = queries.waits(session, SolveRow, [solve for solve in solves.values() if solve is not None])
-    stored = []
+    makers, stored = makers_of(session, rows), []
     for row in rows:
         solve = solves[row.id]
         place, eta_s = (None, None) if solve is None else waits[solve.number]
-        stored.append(StoredCapture(row, photos[row.id], solve, place, eta_s))
+        stored.append(StoredCapture(row, photos[row.id], solve, place, eta_s, makers.get(row.maker)))
     return stored
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from typing import Any
 
-from sqlalchemy import delete, update
+from sqlalchemy import update
 
 from treestroke.core.errors import ClipError
 from treestroke.limits import MAX_CLIP_BYTES
@@ -17,8 +17,8 @@ from treestroke.service.quotas import admit_upload
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import Crashed
 from treestroke.store.objects import sha256_of
+from treestroke.store.queries import check_removable, mark_deleted, new_id, page
 from treestroke.store.queries import clip as find_clip
-from treestroke.store.queries import mark_deleted, new_id, page
 from treestroke.store.tables import ClipRow, UploadRow
 from treestroke.store.uploads import WrongOffset
 
@@ -87,13 +87,16 @@ def remove_upload(resources: Resources, id: str) -> None:
 
     Raises
     ------
-    NotFound
-        There is no such upload.
+    NotFound, NotYours
+        There is no such upload, or it may not be removed by whom the session is for.
     """
     with resources.database.writing() as session:
-        removed = session.scalars(delete(UploadRow).where(UploadRow.id == id).returning(UploadRow.id)).first()
+        row = session.get(UploadRow, id)
+        if row is not None:
+            check_removable(session, row)
+            session.delete(row)
     resources.uploads.remove(id)
-    if removed is None:
+    if row is None:
         raise NotFound("upload")
 
 
@@ -195,8 +198,8 @@ def delete_clip(resources: Resources, id: str) -> None:
 
     Raises
     ------
-    NotFound
-        There is no such clip.
+    NotFound, NotYours
+        There is no such clip, or it may not be deleted by whom the session is for.
     """
     with resources.database.writing() as session:
         if not mark_deleted(session, ClipRow, id):

@@ -19,7 +19,7 @@ from treestroke.core.pipeline.settings import plain_settings, settings_from
 from treestroke.core.stroke_rules import Place, require_trunk
 from treestroke.core.strokes import CaptureStrokes, FrameStrokes, Sketch, Strokes
 from treestroke.service.files import check_files
-from treestroke.wire_requests import FormRequest, ModelRequest, Rename, TreeRequest
+from treestroke.wire_requests import FormRequest, ModelChange, ModelRequest, Rename, TreeRequest
 from treestroke.wire_strokes import PictureSketch, Sketches
 from treestroke.wire_strokes import Sketch as SketchRequest
 
@@ -106,6 +106,22 @@ def read_name(body: bytes) -> str:
         It is not such a request, or the name cannot be used.
     """
     return checked(Rename, read_body(body), TreestrokeError).name
+
+
+def read_change(body: bytes) -> dict[str, object]:
+    """Return a model's new name, its new tags or both, by the columns of its row; each tag once, without spaces around.
+
+    Raises
+    ------
+    TreestrokeError
+        It is not such a request, it holds neither, or something in it cannot be used.
+    """
+    change = checked(ModelChange, read_body(body), TreestrokeError).model_dump(exclude_unset=True)
+    if not change:
+        raise TreestrokeError("body: there is neither a name nor are there tags; send one of them")
+    if (tags := change.get("tags")) is not None:
+        change["tags"] = list(dict.fromkeys(tag for one in tags if (tag := one.strip())))
+    return change
 
 
 def read_body(body: bytes) -> Any:

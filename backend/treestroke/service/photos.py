@@ -134,8 +134,8 @@ def delete_photo(resources: Resources, id: str) -> None:
 
     Raises
     ------
-    NotFound
-        There is no such photo.
+    NotFound, NotYours
+        There is no such photo, or it may not be deleted by whom the session is for.
     """
     with resources.database.writing() as session:
         if not mark_deleted(session, PhotoRow, id):

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 from treestroke.account_schemas import KeyScope, Role
-from treestroke.store.scope import LOCAL, Scope
+from treestroke.store.scope import LOCAL, Removes, Scope
 
 ROLES: tuple[Role, ...] = ("viewer", "member", "owner")
 """From the least that one may do to the most."""
+_REMOVES: dict[Role, Removes] = {"viewer": "none", "member": "own", "owner": "all"}
 SCOPES: tuple[KeyScope, ...] = ("trees", "team")
 """What a key may be for: trees, and all that they are made of; the team, its people and its keys."""
 
@@ -31,8 +32,8 @@ class Principal:
 
     @property
     def scope(self) -> Scope:
-        """Whose rows are seen, and whose new ones are."""
-        return Scope(self.team, self.id)
+        """Whose rows are seen, whose new ones are, and which may be deleted."""
+        return Scope(self.team, self.id, _REMOVES[self.role])
 
 
 LOCAL_PERSON = Principal(LOCAL.maker, str(LOCAL.team), "", "owner")

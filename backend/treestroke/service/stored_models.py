@@ -14,15 +14,18 @@ from treestroke.codec.inputs import PARTS, Inputs, file_name, part_of
 from treestroke.service.drawn_over import Base, base_of
 from treestroke.service.engine_version import engine_version
 from treestroke.service.fingerprints import digest
+from treestroke.service.makers import Maker, makers_of
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import NotFound, Resources
 from treestroke.service.quotas import admit_model
 from treestroke.store import leases, queries
 from treestroke.store.database import Database
 from treestroke.store.objects import Damaged
+from treestroke.store.search import Search, search
 from treestroke.store.tables import File, ModelPart, ModelRow, PhotoRow, Replay
 
 RESTORABLE_SECONDS = 24 * 3600.0
+_ALL = Search()
 log = structlog.get_logger()
 
 
@@ -40,13 +43,17 @@ class Version(NamedTuple):
 
 @dataclass(frozen=True)
 class StoredModel:
-    """A model as it is stored and shown: its row, parts and files, its place in the queue and its remaining seconds."""
+    """A model as it is stored and shown: its row, parts and files, its place in the queue and its remaining seconds.
+
+    ``maker`` is None where nobody signs in.
+    """
 
     row: ModelRow
     parts: dict[str, ModelPart]
     files: dict[str, File]
     queue_position: int | None
     eta_s: float | None
+    maker: Maker | None = None
 
     @property
     def id(self) -> str:
@@ -126,10 +133,18 @@ def find_model(database: Database, id: str, deleted: bool = False) -> StoredMode
         return found
 
 
-def list_models(database: Database, cursor: str | None, limit: int) -> tuple[Sequence[StoredModel], str | None]:
-    """Return a page of models, newest first, and the cursor of the next page: decimal digits."""
+def list_models(
+    database: Database, cursor: str | None, limit: int, wanted: Search = _ALL
+) -> tuple[Sequence[StoredModel], str | None]:
+    """Return a page of the models that are looked for, newest first, and the cursor of the next page: decimal digits.
+
+    A page of a search may be empty where more follow (`store.search.search`).
+    """
     with database.reading() as session:
-        rows, next_cursor = queries.page(session, ModelRow, cursor, limit)
+        if wanted == _ALL:
+            rows, next_cursor = queries.page(session, ModelRow, cursor, limit)
+        else:
+            rows, next_cursor = search(session, wanted, cursor, limit)
         return _stored(session, rows), next_cursor
 
 
@@ -148,8 +163,8 @@ def find_changed(database: Database, versions: Mapping[str, Version | None]) -> 
         return {**removed, **{model.row.id: model for model in _stored(session, found)}}
 
 
-def rename(database: Database, id: str, name: str) -> StoredModel:
-    """Name a model.
+def change(database: Database, id: str, changes: Mapping[str, object]) -> StoredModel:
+    """Give a model a new name or new tags, by the columns of its row.
 
     Raises
     ------
@@ -158,7 +173,7 @@ def rename(database: Database, id: str, name: str) -> StoredModel:
     """
     with database.writing() as session:
         _row(session, id)
-        session.execute(update(ModelRow).where(ModelRow.id == id).values(name=name, seq=ModelRow.seq + 1))
+        session.execute(update(ModelRow).where(ModelRow.id == id).values(**changes, seq=ModelRow.seq + 1))
     return find_model(database, id)
 
 
@@ -181,13 +196,13 @@ def delete(database: Database, id: str) -> None:
 
     Raises
     ------
-    NotFound
-        There is no such model.
+    NotFound, NotYours
+        There is no such model, or it may not be deleted by whom the session is for.
     """
     with database.writing() as session:
-        _row(session, id)
+        if not queries.mark_deleted(session, ModelRow, id):
+            raise NotFound("model")
         leases.cancel(session, ModelRow, ModelRow.id == id)
-        session.execute(update(ModelRow).where(ModelRow.id == id).values(deleted=time.time(), seen=None))
 
 
 def restore(database: Database, id: str) -> StoredModel:
@@ -195,12 +210,12 @@ def restore(database: Database, id: str) -> StoredModel:
 
     Raises
     ------
-    NotFound
-        There is no such model, or it was removed for good.
+    NotFound, NotYours
+        There is no such model, or it was removed for good; or it may not be restored by whom the session is for.
     """
     with database.writing() as session:
-        _row(session, id, deleted=True)
-        queries.mark_restored(session, ModelRow, id)
+        if not queries.mark_restored(session, ModelRow, id):
+            raise NotFound("model")
     return find_model(database, id)
 
 
@@ -350,4 +365,5 @@ def _stored(session: Session, rows: Sequence[ModelRow]) -> list[StoredModel]:
         queries.files(session, ids),
         queries.waits(session, ModelRow, rows),
     )
-    return [StoredModel(row, parts[row.id], files[row.id], *waits[row.number]) for row in rows]
+    makers = makers_of(session, rows)
+    return [StoredModel(row, parts[row.id], files[row.id], *waits[row.number], makers.get(row.maker)) for row in rows]

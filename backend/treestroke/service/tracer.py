@@ -11,7 +11,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
+import cv2
+
 from treestroke.codec.exif import exif_focal_px
+from treestroke.codec.gltf.document import encode_picture
 from treestroke.codec.image import decode_photo, decode_stored, encode_stored
 from treestroke.codec.refusals import checked, inside
 from treestroke.codec.sketch import sketch_of
@@ -102,6 +105,16 @@ def trace_answer(photo: Path, body: bytes, mended: Sequence[Mapping[str, str]] =
     known.last = trace(known.picture, strokes, known.last, request.grow, side=side, settings=settings)
     answer = known.last.as_dict()
     return answer_of(request.rev, {**answer, "warnings": [*mended, *answer["warnings"]]})
+
+
+def photo_jpeg(photo: Path, longest: int) -> bytes:
+    """Return a stored photo as a JPEG whose sides have at most ``longest`` px."""
+    picture = _recall(photo).picture
+    scale = longest / max(picture.shape[:2])
+    if scale < 1.0:
+        size = round(picture.shape[1] * scale) or 1, round(picture.shape[0] * scale) or 1
+        picture = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)  # type: ignore[assignment]
+    return encode_picture(picture)[1]
 
 
 def sketch_answer(body: bytes) -> bytes:

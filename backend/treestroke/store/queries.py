@@ -6,12 +6,13 @@ from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from typing import Any, TypeVar
 
-from sqlalchemy import Select, func, select, union, update
+from sqlalchemy import ColumnElement, Select, func, select, union
 from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
+from treestroke.store.account_tables import MemberRow
 from treestroke.store.leases import TERMINAL, JobRow
-from treestroke.store.scope import scope_of
+from treestroke.store.scope import Authored, scope_of
 from treestroke.store.tables import (
     REFERENCES,
     UPLOADED,
@@ -32,6 +33,10 @@ Kept = TypeVar("Kept", ModelRow, PhotoRow, CaptureRow, ClipRow)
 _RECENT = 20
 """Finished jobs by whose times the next one's is estimated."""
 _FIRST_GUESS_S = {ModelRow: 5.0, SolveRow: 120.0}
+
+
+class NotYours(Exception):
+    """What somebody else made was about to be deleted or restored."""
 
 
 def new_id(kind: str) -> str:
@@ -67,15 +72,44 @@ def lock(session: Session, table: type[Kept], id: str) -> None:
     session.execute(select(table.number).where(table.id == id).with_for_update())
 
 
+def check_removable(session: Session, row: Authored) -> None:
+    """Check that a row may be deleted or restored by whom the session is for.
+
+    Raises
+    ------
+    NotYours
+        It may not: a member removes what they made, a viewer nothing.
+    """
+    scope = scope_of(session)
+    if scope.removes == "none" or (scope.removes == "own" and row.maker != scope.maker):
+        raise NotYours
+
+
 def mark_deleted(session: Session, table: type[Kept], id: str) -> bool:
-    """Delete a row that is there, until it is restored or removed; tell whether there was one."""
-    present = update(table).where(table.id == id, table.deleted.is_(None))
-    return session.scalars(present.values(deleted=time.time(), seen=None).returning(table.id)).first() is not None
+    """Delete a row that is there, until it is restored or removed; tell whether there was one.
+
+    Raises
+    ------
+    NotYours
+        It may not be deleted by whom the session is for.
+    """
+    return _mark(session, table, table.id == id, table.deleted.is_(None), deleted=time.time())
 
 
-def mark_restored(session: Session, table: type[Kept], id: str) -> None:
-    """Undo the deletion of a row, if it is deleted."""
-    session.execute(update(table).where(table.id == id, table.deleted.is_not(None)).values(deleted=None, seen=None))
+def mark_restored(session: Session, table: type[Kept], id: str) -> bool:
+    """Undo the deletion of a row; one that is not deleted stays as it is. Tell whether there was a row.
+
+    Raises
+    ------
+    NotYours
+        It may not be restored by whom the session is for.
+    """
+    return _mark(session, table, table.id == id, deleted=None)
+
+
+def maker_names(session: Session, makers: Iterable[str]) -> dict[str, str]:
+    """Return the names of people by their ids, of those who were removed too."""
+    return dict(session.execute(select(MemberRow.id, MemberRow.name).where(MemberRow.id.in_(makers))).all())
 
 
 def replay(session: Session, key: str) -> Replay | None:
@@ -195,6 +229,18 @@ def stored_bytes(session: Session) -> int:
 
 def _replays(session: Session, key: str) -> Select[Replay]:
     return select(Replay).where(Replay.key == key, Replay.maker == scope_of(session).maker)
+
+
+def _mark(session: Session, table: type[Kept], *chosen: ColumnElement[bool], deleted: float | None) -> bool:
+    """Set when a row was deleted, or that it is not; nobody else changes it meanwhile."""
+    row = session.scalars(select(table).where(*chosen).with_for_update()).first()
+    if row is None:
+        return False
+    check_removable(session, row)
+    if row.deleted != deleted:
+        row.deleted, row.seen = deleted, None
+        session.flush()
+    return True
 
 
 def _kept(session: Session, table: type[Kept], id: str, deleted: bool) -> Kept | None:

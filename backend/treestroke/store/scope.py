@@ -1,7 +1,7 @@
 """Whose rows a session sees and changes: those of one team, or all for the service itself. Nothing else scopes."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from sqlalchemy import String, event
 from sqlalchemy.orm import Mapped, ORMExecuteState, Session, mapped_column, with_loader_criteria
@@ -9,14 +9,19 @@ from sqlalchemy.orm import Mapped, ORMExecuteState, Session, mapped_column, with
 _SCOPE = "scope"
 """Under which a session keeps its scope."""
 _LOCAL = "local"
+Removes = Literal["all", "own", "none"]
 
 
 @dataclass(frozen=True)
 class Scope:
-    """A team whose rows are seen, and who makes new ones in it; without a team, all rows are seen."""
+    """A team whose rows are seen, and who makes new ones in it; without a team, all rows are seen.
+
+    ``removes`` tells which of the rows that are seen may be deleted and restored (`store.queries.check_removable`).
+    """
 
     team: str | None
     maker: str
+    removes: Removes = "all"
 
 
 SERVICE = Scope(None, "service")

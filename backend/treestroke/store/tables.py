@@ -23,6 +23,7 @@ class Table(DeclarativeBase):
     type_annotation_map = {  # noqa: RUF012
         dict[str, Any]: JSON(none_as_null=True),
         list[dict[str, Any]]: JSON(none_as_null=True),
+        list[str]: JSON(none_as_null=True),
         float: Float,
     }
 
@@ -134,6 +135,7 @@ class ModelRow(Job, Aged, Table):
     __tablename__ = "models"
 
     name: Mapped[str] = mapped_column(String(200))
+    tags: Mapped[list[str]] = mapped_column(insert_default=list, server_default="[]")
     photo: Mapped[str | None] = mapped_column(String(40))
     capture: Mapped[str | None] = mapped_column(String(40))
     clip: Mapped[str | None] = mapped_column(String(40))
@@ -164,6 +166,28 @@ class File(Owned, Table):
     name: Mapped[str] = mapped_column(String(40), primary_key=True)
     blob: Mapped[str] = mapped_column(String(64))
     bytes: Mapped[int] = mapped_column(_NUMBER)
+
+
+class Share(Authored, Table):
+    """A link by which anybody sees a model; who has its token has the link, so that the token itself is not kept.
+
+    Unlike all other times, ``expires`` decides: the link does nothing from then on, by the wall clock.
+    """
+
+    __tablename__ = "shares"
+
+    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    id: Mapped[str] = mapped_column(String(40), unique=True)
+    model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"))
+    digest: Mapped[str] = mapped_column(String(64), unique=True)
+    """SHA-256 of the token."""
+    photo: Mapped[bool]
+    """Whether the photo is shown."""
+    download: Mapped[bool]
+    """Whether the tree is offered for download."""
+    created: Mapped[float]
+    expires: Mapped[float]
+    revoked: Mapped[float | None]
 
 
 class CaptureRow(Authored, Aged, Table):
@@ -291,6 +315,7 @@ for _table in (ModelRow, PhotoRow, CaptureRow, ClipRow):
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_deleted, postgresql_where=_deleted)
 for _listed in (ModelRow, CaptureRow):
     Index(f"ix_{_listed.__tablename__}_team", _listed.team, _listed.number)
+Index("ix_shares_model", Share.model, Share.number)
 Index("ix_replays_seen", Replay.seen)
 Index("ix_uploads_seen", UploadRow.seen)
 Index("ix_model_parts_blob", ModelPart.blob)

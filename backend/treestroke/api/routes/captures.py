@@ -133,13 +133,15 @@ def rename_capture(resources: ResourcesOf, id: CaptureId, body: JsonBody) -> Cap
     return _view(resources, captures.rename(resources.database, id, read_name(body)))
 
 
-@router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
+@router.post("/{id}/restore", responses=documented("not_yours", "not_found", "storage_full"))
 def restore_capture(resources: ResourcesOf, id: CaptureId) -> CaptureInfo:
     """Undo a deletion."""
     return _view(resources, captures.restore(resources.database, id))
 
 
-@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
+@router.delete(
+    "/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_yours", "not_found", "storage_full")
+)
 def delete_capture(resources: ResourcesOf, id: CaptureId) -> None:
     """Delete a capture with its photos, which go after 24 hours; until then it can be restored."""
     captures.delete(resources.database, id)
@@ -181,7 +183,9 @@ def get_capture_image(request: Request, resources: ResourcesOf, id: CaptureId, p
 
 
 @router.delete(
-    "/{id}/photos/{photo}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full")
+    "/{id}/photos/{photo}",
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=documented("not_yours", "not_found", "storage_full"),
 )
 def remove_capture_photo(resources: ResourcesOf, id: CaptureId, photo: CapturePhotoId) -> None:
     """Remove a photo from a capture; the cameras of the others are to be found anew."""

@@ -25,6 +25,7 @@ from treestroke.clip_schemas import ClipInfo, ClipPage, ClipTraceAnswer, UploadI
 from treestroke.codec.video_kinds import MP4, VIDEO_KINDS
 from treestroke.limits import MAX_CLIP_SIDE, MAX_FRAME
 from treestroke.service import clips
+from treestroke.service.makers import find_makers
 from treestroke.wire_strokes import STROKES_EXAMPLE
 
 router = APIRouter(prefix="/v1/clips", tags=["clips"])
@@ -93,20 +94,23 @@ async def add_clip(
     if upload_complete == "?0":
         return await run_in_threadpool(upload_answer, resources, upload.id, HTTPStatus.CREATED)
     finish = clips.finish_whole if upload_complete is None else clips.finish_upload
-    return clip_answer(await run_in_threadpool(finish, resources, upload.id))
+    clip = await run_in_threadpool(finish, resources, upload.id)
+    return await run_in_threadpool(clip_answer, resources, clip)
 
 
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
 def list_clips(resources: ResourcesOf, cursor: Cursor = None, limit: Limit = 20) -> ClipPage:
     """List clips, newest first."""
     page, next_cursor = clips.list_clips(resources, cursor, limit)
-    return ClipPage(clips=[clip_view(row) for row in page], next=next_cursor)
+    makers = find_makers(resources.database, page)
+    return ClipPage(clips=[clip_view(row, makers) for row in page], next=next_cursor)
 
 
 @router.get("/{id}", responses=documented("not_found"))
 def get_clip(resources: ResourcesOf, id: ClipId) -> ClipInfo:
     """Return a clip."""
-    return clip_view(clips.get_clip(resources, id))
+    row = clips.get_clip(resources, id)
+    return clip_view(row, find_makers(resources.database, [row]))
 
 
 @router.get("/{id}/video", response_class=FileResponse, responses=_VIDEO)
@@ -127,7 +131,9 @@ def get_clip_frame(resources: ResourcesOf, id: ClipId, frame: Frame, height: Fra
     return Response(clips.frame_jpeg(resources, id, frame, height), headers=headers, media_type="image/jpeg")
 
 
-@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
+@router.delete(
+    "/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_yours", "not_found", "storage_full")
+)
 def delete_clip(resources: ResourcesOf, id: ClipId) -> None:
     """Delete a clip; models that were made of it keep their own copy."""
     clips.delete_clip(resources, id)

@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi import APIRouter, Depends, Header, Query, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from starlette.datastructures import UploadFile
 
 from treestroke.api.deps import (
-    RENAME_BODY,
     SIBLINGS_BODY,
     Cursor,
     DispatcherOf,
@@ -23,6 +22,7 @@ from treestroke.api.deps import (
     ModelId,
     ResourcesOf,
     WatcherOf,
+    body_of,
     check_length,
     form_of,
     leads_to,
@@ -32,14 +32,15 @@ from treestroke.api.errors import BODY, Refusal, documented
 from treestroke.api.following import TooManyFollowers, Watcher
 from treestroke.api.views import model_view
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
-from treestroke.limits import MAX_TEXT_BYTES
+from treestroke.limits import MAX_ID, MAX_NAME, MAX_TAG, MAX_TEXT_BYTES
 from treestroke.schemas import ModelInfo, ModelPage
 from treestroke.service import photos, stored_models, stored_siblings
-from treestroke.service.model_request import ModelOrder, read_form, read_name, read_order
+from treestroke.service.model_request import ModelOrder, read_change, read_form, read_order
 from treestroke.service.photos import Resources
 from treestroke.service.sibling_request import read_siblings
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.leases import TERMINAL
+from treestroke.store.search import Search
 from treestroke.store.tables import PhotoRow
 from treestroke.wire_requests import MODEL_EXAMPLE, FormRequest
 from treestroke.wire_strokes import STROKES_EXAMPLE
@@ -62,7 +63,7 @@ _FILES = (
     "get_project",
     "get_tree_file",
 )
-_CHANGES = ("rename_model", "cancel_model", "delete_model", "restore_model")
+_CHANGES = ("change_model", "cancel_model", "delete_model", "restore_model", "share_model", "list_shares")
 _LINKS = leads_to("get_model", "follow_model", *_FILES, *_CHANGES)
 _NEXT = {"next_page": {"operationId": "list_models", "parameters": {"cursor": "$response.body#/next"}}}
 _PHOTO_FIELD = {"photo": {"type": "string", "format": "binary", "description": ACCEPTED_FORMATS}}
@@ -193,10 +194,20 @@ def ask_for_siblings(resources: ResourcesOf, dispatcher: DispatcherOf, id: Model
     return JSONResponse(model_view(model).model_dump(), status, {"Location": f"/v1/models/{model.row.id}"})
 
 
+def _wanted(
+    q: Annotated[str, Query(max_length=MAX_NAME, description="words in name, tags or the maker's name")] = "",
+    tag: Annotated[str, Query(max_length=MAX_TAG)] = "",
+    maker: Annotated[str, Query(max_length=MAX_ID, description="id of who made them")] = "",
+) -> Search:
+    return Search(q, tag, maker)
+
+
 @router.get("", responses={HTTPStatus.OK: {"links": _NEXT}, **documented("invalid")})
-def list_models(resources: ResourcesOf, cursor: Cursor = None, limit: Limit = 20) -> ModelPage:
-    """List models, newest first."""
-    page, next_cursor = stored_models.list_models(resources.database, cursor, limit)
+def list_models(
+    resources: ResourcesOf, wanted: Annotated[Search, Depends(_wanted)], cursor: Cursor = None, limit: Limit = 20
+) -> ModelPage:
+    """List models, newest first; a search looks through 1000 at a time, and leads on by ``next`` where more follow."""
+    page, next_cursor = stored_models.list_models(resources.database, cursor, limit, wanted)
     return ModelPage(models=[model_view(model) for model in page], next=next_cursor)
 
 
@@ -206,19 +217,21 @@ def get_model(resources: ResourcesOf, id: ModelId) -> ModelInfo:
     return model_view(stored_models.find_model(resources.database, id))
 
 
-@router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=RENAME_BODY)
-def rename_model(resources: ResourcesOf, id: ModelId, body: JsonBody) -> ModelInfo:
-    """Name a model."""
-    return model_view(stored_models.rename(resources.database, id, read_name(body)))
+@router.patch("/{id}", responses=documented(*BODY, "not_found", "storage_full"), openapi_extra=body_of("ModelChange"))
+def change_model(resources: ResourcesOf, id: ModelId, body: JsonBody) -> ModelInfo:
+    """Give a model a new name, new tags, or both."""
+    return model_view(stored_models.change(resources.database, id, read_change(body)))
 
 
-@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
+@router.delete(
+    "/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_yours", "not_found", "storage_full")
+)
 def delete_model(resources: ResourcesOf, id: ModelId) -> None:
     """Delete a model; its files go after 24 hours, until then it can be restored."""
     stored_models.delete(resources.database, id)
 
 
-@router.post("/{id}/restore", responses=documented("not_found", "storage_full"))
+@router.post("/{id}/restore", responses=documented("not_yours", "not_found", "storage_full"))
 def restore_model(resources: ResourcesOf, id: ModelId) -> ModelInfo:
     """Undo a deletion."""
     return model_view(stored_models.restore(resources.database, id))

@@ -14,14 +14,14 @@ from treestroke.api.middleware import CONTENT_SECURITY_POLICY
 PAGE = Path(__file__).parents[1] / "page"
 _CACHE_FOREVER = "public, max-age=31536000, immutable"
 _REVALIDATE = "no-cache"
-_NOT_BUILT = """\
+NOT_BUILT = """\
 The page has not been built. Run
 
     make page
 
 in treestroke's source folder and reload. The API works without it: see /openapi.json.
 """
-_PAGE_POLICY = f"{CONTENT_SECURITY_POLICY}; media-src 'self' blob:; script-src 'self' 'wasm-unsafe-eval'"
+PAGE_POLICY = f"{CONTENT_SECURITY_POLICY}; media-src 'self' blob:; script-src 'self' 'wasm-unsafe-eval'"
 """The page may also run WebAssembly, which decompresses trees."""
 # The system's table of media types may be wrong or incomplete, and browsers are told not to guess.
 _MEDIA_TYPES = {
@@ -70,9 +70,9 @@ def add_page(app: FastAPI, folder: Path = PAGE) -> None:
     @app.get("/", include_in_schema=False)
     async def page(request: Request) -> Response:
         if not built.index.is_file():
-            return PlainTextResponse(_NOT_BUILT, HTTPStatus.NOT_FOUND)
+            return PlainTextResponse(NOT_BUILT, HTTPStatus.NOT_FOUND)
         response = await built.get_response(built.index.name, request.scope)
-        response.headers["content-security-policy"] = _PAGE_POLICY
+        response.headers["content-security-policy"] = PAGE_POLICY
         return response
 
     @app.get("/favicon.ico", include_in_schema=False)

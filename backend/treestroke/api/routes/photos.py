@@ -70,7 +70,9 @@ def get_image(request: Request, resources: ResourcesOf, id: PhotoId) -> Response
     return send_blob(request, resources, photos.get_photo(resources, id).blob, "image/png")
 
 
-@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
+@router.delete(
+    "/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_yours", "not_found", "storage_full")
+)
 def delete_photo(resources: ResourcesOf, id: PhotoId) -> None:
     """Delete a photo; models that were made of it keep their own copy."""
     photos.delete_photo(resources, id)

@@ -53,10 +53,13 @@ async def add_piece(
     await receive_piece(request, resources, id, int(upload_offset))
     if upload_complete != "?1":
         return await run_in_threadpool(upload_answer, resources, id, HTTPStatus.OK)
-    return clip_answer(await run_in_threadpool(clips.finish_upload, resources, id))
+    clip = await run_in_threadpool(clips.finish_upload, resources, id)
+    return await run_in_threadpool(clip_answer, resources, clip)
 
 
-@router.delete("/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_found", "storage_full"))
+@router.delete(
+    "/{id}", status_code=HTTPStatus.NO_CONTENT, responses=documented("not_yours", "not_found", "storage_full")
+)
 def delete_upload(resources: ResourcesOf, id: UploadId) -> None:
     """Give an upload up; the clip that was made of it stays."""
     clips.remove_upload(resources, id)
