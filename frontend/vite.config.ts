@@ -2,6 +2,7 @@ import { fileURLToPath } from 'node:url'
 import { defineConfig } from 'vitest/config'
 
 const built = fileURLToPath(new URL('../backend/treestroke/api/page', import.meta.url))
+const pages = ['index', 'share'].map(name => fileURLToPath(new URL(`${name}.html`, import.meta.url)))
 
 // The page lies where the service finds it; nothing is inlined, so that the Content-Security-Policy can be strict.
 export default defineConfig({
@@ -14,6 +15,7 @@ export default defineConfig({
     target: 'es2022',
     chunkSizeWarningLimit: 700, // three.js is one file
     rolldownOptions: {
+      input: pages,
       output: {
         codeSplitting: { groups: [{ name: 'three', test: /node_modules[\\/]three[\\/](?!.*meshopt)/ }] },
       },

@@ -10,6 +10,7 @@ import type {
   Grown,
   Limits,
   Model,
+  Session,
   Settings,
   TraceAnswer,
 } from './api/types'
@@ -186,6 +187,8 @@ export interface State extends OwnPictures {
   readonly offer: Offer | null
   /** A video that was chosen, while it is said what becomes of it, and while it is sent. */
   readonly clipOffer: File | null
+  /** Who is signed in to a hosted service; null while nobody is, and where nobody needs to. */
+  readonly session: Session | null
   /** The service's limits, once it has told them. */
   readonly limits: Limits | null
   /** False while the browser cannot save the drawing. */
@@ -225,6 +228,7 @@ export const EMPTY: State = {
   dialog: null,
   offer: null,
   clipOffer: null,
+  session: null,
   limits: null,
   kept: true,
   online: true,

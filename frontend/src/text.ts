@@ -6,6 +6,7 @@ import { measuredText } from './text/measured'
 import { motionText } from './text/motion'
 import { scoreText } from './text/score'
 import { settingsText } from './text/settings'
+import { sharingText } from './text/sharing'
 import { sheetsText } from './text/sheets'
 import { siblingsText } from './text/siblings'
 import { takenText } from './text/taken'
@@ -19,6 +20,7 @@ export const text = {
   ...treeText,
   capture: captureText,
   clip: clipText,
+  sharing: sharingText,
   sheets: sheetsText,
   siblings: siblingsText,
   settings: settingsText,

@@ -9,6 +9,7 @@ import type {
   Limits,
   Model,
   Settings,
+  Share,
   SketchTraceAnswer,
   TraceAnswer,
   UploadInfo,
@@ -63,6 +64,13 @@ export interface SiblingsOrder {
   readonly envelope?: string | { readonly points: readonly Point[] }
   /** Whether they are set in one scene, too. */
   readonly scene: boolean
+}
+
+/** What models are looked for: words in name, tags or the maker's name; a tag; the id of who made them. */
+export interface Wanted {
+  readonly q: string
+  readonly tag: string
+  readonly maker: string
 }
 
 /** A request for a model. */
@@ -185,8 +193,10 @@ export class Client {
     return request('GET', `/v1/models/${id}`)
   }
 
-  listModels(cursor: string | null): Promise<Schemas['ModelPage']> {
-    return request('GET', `/v1/models?limit=24${cursor ? `&cursor=${cursor}` : ''}`)
+  /** Return a page of models, of those that are looked for; a page of a search may be empty where more follow. */
+  listModels(cursor: string | null, wanted: Partial<Wanted> = {}): Promise<Schemas['ModelPage']> {
+    const given = Object.entries({ ...wanted, ...(cursor && { cursor }) }).filter(([, value]) => value)
+    return request('GET', `/v1/models?${new URLSearchParams([['limit', '24'], ...given])}`)
   }
 
   renameModel(id: string, name: string): Promise<Model> {
@@ -199,6 +209,23 @@ export class Client {
 
   restoreModel(id: string): Promise<Model> {
     return request('POST', `/v1/models/${id}/restore`)
+  }
+
+  tagModel(id: string, tags: readonly string[]): Promise<Model> {
+    return request('PATCH', `/v1/models/${id}`, json({ tags }))
+  }
+
+  /** Make a link by which anybody sees a model; its address is told this once. */
+  shareModel(id: string, terms: Schemas['ShareRequest']): Promise<Share> {
+    return request('POST', `/v1/models/${id}/shares`, json(terms))
+  }
+
+  async listShares(id: string): Promise<readonly Share[]> {
+    return (await request<Schemas['ShareList']>('GET', `/v1/models/${id}/shares`)).shares
+  }
+
+  async revokeShare(id: string): Promise<void> {
+    await request('DELETE', `/v1/shares/${id}`)
   }
 
   cancelModel(id: string): Promise<Model> {

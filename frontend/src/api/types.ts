@@ -26,3 +26,17 @@ export type ClipInfo = Schemas['ClipInfo']
 export type ClipTraceAnswer = Schemas['ClipTraceAnswer']
 export type Tracks = Schemas['Tracks']
 export type UploadInfo = Schemas['UploadInfo']
+
+export type Share = Schemas['ShareInfo']
+export type Maker = Schemas['MakerInfo']
+export type Role = 'owner' | 'member' | 'viewer'
+
+/** Who is signed in to a hosted service; an embedded one has one person, who need not sign in. */
+export interface Session {
+  readonly hosted: boolean
+  readonly member: { readonly id: string; readonly name: string; readonly role: Role }
+  readonly team: { readonly id: string; readonly name: string }
+  readonly scopes: readonly string[]
+  readonly read_only: boolean
+  readonly expires: number | null
+}

@@ -1,14 +1,18 @@
-import type { Client } from '../api/client'
+import type { Client, Wanted } from '../api/client'
 import { isFinished } from '../api/follow'
 import type { Model } from '../api/types'
 import type { State, Store } from '../state'
 import { faultOf } from './faultText'
 import type { Grower } from './grower'
 
-/** The models of the service, newest first, page by page; faults go to the state. */
+/** The most pages that are asked for in a row while none holds anything: a search looks through so many models a page. */
+const MOST_EMPTY = 10
+
+/** The models of the service, newest first, page by page, all or those of a search; faults go to the state. */
 export class Gallery {
   /** The cursor of the next page. */
   #next: string | null = null
+  #wanted: Partial<Wanted> = {}
   /** The model that was shown when it was deleted. */
   #deleted: Pick<State, 'model' | 'shows'> | null = null
 
@@ -22,12 +26,32 @@ export class Gallery {
     return this.#next !== null
   }
 
-  /** Return the next page; null after a fault. */
+  /** Look for models: the next page is the first of these. */
+  search(wanted: Partial<Wanted>): void {
+    this.#wanted = wanted
+    this.#next = null
+  }
+
+  /** Return the next page; null after a fault. A page of a search that began before the last one counts as empty. */
   more(): Promise<Model[] | null> {
+    const wanted = this.#wanted
     return this.#attempt(async () => {
-      const { models, next } = await this.client.listModels(this.#next)
-      this.#next = next
-      return models
+      for (let page = 0; page < MOST_EMPTY; page++) {
+        const { models, next } = await this.client.listModels(this.#next, wanted)
+        if (wanted !== this.#wanted) return []
+        this.#next = next
+        if (models.length || !next) return models
+      }
+      return []
+    })
+  }
+
+  /** Give a model new tags; null after a fault. */
+  tag(id: string, tags: readonly string[]): Promise<Model | null> {
+    return this.#attempt(async () => {
+      const model = await this.client.tagModel(id, tags)
+      this.store.setModel(id, { info: model })
+      return model
     })
   }
 

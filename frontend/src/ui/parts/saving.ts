@@ -11,16 +11,6 @@ export function saveFile(file: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(href), KEPT_MS) // the browser may still be reading it
 }
 
-/** Copy a text; false where the browser refuses it. */
-export async function copyText(text: string): Promise<boolean> {
-  try {
-    await navigator.clipboard.writeText(text)
-    return true
-  } catch {
-    return false
-  }
-}
-
 /** Save the drawing as a project file among the browser's downloads. */
 export async function saveProject({ store, captures, clips }: Studio): Promise<void> {
   const { sheets, name, settings, seed, leaf, fruit } = store.state

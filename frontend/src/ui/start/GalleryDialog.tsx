@@ -1,15 +1,17 @@
 import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
 import { isFinished } from '../../api/follow'
-import type { Model } from '../../api/types'
+import type { Model, Session } from '../../api/types'
 import { Gallery } from '../../studio/gallery'
 import { text } from '../../text'
 import { Sapling } from '../parts/Sapling'
 import { useStore, useStudio } from '../parts/useStore'
 import { Dialog } from './Dialog'
-import { ModelCard, nameOf } from './ModelCard'
+import { ModelCard, type Narrowed, nameOf } from './ModelCard'
 import './gallery.css'
 
 const LOOK_MS = 2000
+/** How long nothing must be typed before it is searched for. */
+const TYPING_MS = 300
 
 /** A model in the gallery; a deleted one leaves its place to an undo. */
 interface Entry {
@@ -31,7 +33,9 @@ export function GalleryDialog() {
 function Models() {
   const { store, client, grower } = useStudio()
   const [gallery] = useState(() => new Gallery(store, client, grower))
-  const { entries, page, load, change } = usePages(gallery)
+  const [words, setWords] = useState('')
+  const [narrowed, setNarrowed] = useState<Narrowed | null>(null)
+  const { entries, page, load, change } = usePages(gallery, words, narrowed)
   const [focused, setFocused] = useState<string | null>(null)
   const list = useRef<HTMLUListElement>(null)
   const fault = useStore(({ faults }) => faults.gallery)
@@ -43,6 +47,7 @@ function Models() {
   }
   return (
     <div class="gallery">
+      <SearchField setWords={setWords} narrowed={narrowed} widen={() => setNarrowed(null)} />
       <div class="fault gallery-fault" hidden={!fault}>
         <p role="alert">{fault?.text}</p>
         <button type="button" class="button outlined" hidden={page === 'loaded'} onClick={loadAndFocus}>
@@ -55,13 +60,13 @@ function Models() {
           return deleted ? (
             <DeletedModel {...one} focus={setFocused} />
           ) : (
-            <ListedModel {...one} focused={focused === model.id} />
+            <ListedModel {...one} focused={focused === model.id} narrow={setNarrowed} />
           )
         })}
       </ul>
       <p class="gallery-empty" hidden={page !== 'loaded' || entries.length > 0}>
         <Sapling />
-        {text.gallery.empty}
+        {words || narrowed ? text.gallery.nothing : text.gallery.empty}
       </p>
       <p class="gallery-loading" role="status" hidden={page !== 'loading'}>
         {text.gallery.loading}
@@ -73,8 +78,37 @@ function Models() {
   )
 }
 
-/** Load the models page by page, and look again and again how those under way are. */
-function usePages(gallery: Gallery) {
+interface SearchProps {
+  readonly narrowed: Narrowed | null
+  setWords(words: string): void
+  widen(): void
+}
+
+/** The field with the words that are looked for, and the tag or the person to which the gallery is narrowed. */
+function SearchField({ narrowed, setWords, widen }: SearchProps) {
+  const timer = useRef<ReturnType<typeof setTimeout> | undefined>(undefined)
+  useEffect(() => () => clearTimeout(timer.current), [])
+  const type = (words: string) => {
+    clearTimeout(timer.current)
+    timer.current = setTimeout(() => setWords(words.trim()), TYPING_MS)
+  }
+  return (
+    <div class="gallery-search" role="search">
+      <input
+        type="search"
+        aria-label={text.gallery.search}
+        placeholder={text.gallery.search}
+        onInput={event => type(event.currentTarget.value)}
+      />
+      <button type="button" class="button outlined" hidden={!narrowed} onClick={widen}>
+        {text.gallery.found(narrowed?.shown ?? '')}
+      </button>
+    </div>
+  )
+}
+
+/** Load the models that are looked for page by page, and look again and again how those under way are. */
+function usePages(gallery: Gallery, words: string, narrowed: Narrowed | null) {
   const { store } = useStudio()
   const [entries, setEntries] = useState<readonly Entry[]>([])
   const [page, setPage] = useState<'loading' | 'loaded' | 'failed'>('loading')
@@ -87,8 +121,10 @@ function usePages(gallery: Gallery) {
   }
   useEffect(() => {
     store.fault('gallery', null)
+    setEntries([])
+    gallery.search({ q: words, ...(narrowed && { [narrowed.by]: narrowed.value }) })
     void load()
-  }, [])
+  }, [words, narrowed])
   useEffect(() => {
     const growing = entries.filter(({ model, deleted }) => !deleted && !isFinished(model))
     if (!growing.length) return
@@ -111,8 +147,14 @@ interface EntryProps {
   readonly change: Change
 }
 
-function ListedModel({ model, gallery, change, focused }: EntryProps & { readonly focused: boolean }) {
+interface ListedProps extends EntryProps {
+  readonly focused: boolean
+  narrow(wanted: Narrowed): void
+}
+
+function ListedModel({ model, gallery, change, focused, narrow }: ListedProps) {
   const { store, opener } = useStudio()
+  const session = useStore(state => state.session)
   const open = () => {
     store.set({ dialog: null })
     void opener.openModel(model.id)
@@ -126,7 +168,19 @@ function ListedModel({ model, gallery, change, focused }: EntryProps & { readonl
     change(model.id, { deleted: true })
     store.announce(text.gallery.removed(nameOf(model)))
   }
-  return <ModelCard model={model} focused={focused} open={open} rename={rename} remove={remove} />
+  const tag = async (tags: readonly string[]) => {
+    const tagged = await gallery.tag(model.id, tags)
+    if (tagged) change(model.id, { model: tagged })
+  }
+  const may = rightsIn(session, model)
+  return <ModelCard {...{ model, focused, may, open, rename, tag, remove, narrow }} />
+}
+
+/** Tell what one may do with a model: owners all, members delete their own, viewers and read-only keys nothing. */
+function rightsIn(session: Session | null, { maker }: Model): { change: boolean; remove: boolean } {
+  if (!session) return { change: true, remove: true }
+  const change = session.member.role !== 'viewer' && !session.read_only
+  return { change, remove: change && (session.member.role === 'owner' || maker?.id === session.member.id) }
 }
 
 /** The place of a deleted model, with the button that brings it back. */

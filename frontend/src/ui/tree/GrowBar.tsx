@@ -13,6 +13,7 @@ import { detailsOf, sentenceOf } from './growthText'
 import { openerAttributes } from './Panel'
 import { ScorePanel } from './ScorePanel'
 import { SettingsPanel, type SettingsView } from './SettingsPanel'
+import { SharePanel, sharedId } from './SharePanel'
 import './growBar.css'
 
 /** The id of the words that say where growing stands. */
@@ -28,6 +29,7 @@ interface Props {
 export function GrowBar({ settings, picture }: Props) {
   const canDownload = useStore(hasDownloads)
   const hasTree = useStore(({ model }) => model?.info.status === 'succeeded')
+  const canShare = useStore(state => sharedId(state) !== null)
   const grow = useRef<HTMLButtonElement>(null)
   return (
     <div class="growbar">
@@ -38,6 +40,9 @@ export function GrowBar({ settings, picture }: Props) {
         <AnotherButton />
         <Opener panel="siblings" label={text.siblings.title} hidden={!hasTree}>
           <Icon path={ICONS.trees} />
+        </Opener>
+        <Opener panel="share" label={text.sharing.title} hidden={!canShare}>
+          <Icon path={ICONS.link} />
         </Opener>
         <Opener panel="settings" label={text.grow.settings}>
           <Icon path={ICONS.sliders} />
@@ -51,13 +56,14 @@ export function GrowBar({ settings, picture }: Props) {
       <SettingsPanel {...settings} />
       <ScorePanel />
       <SiblingsPanel />
+      <SharePanel />
       <DownloadsPanel picture={picture} moreFormats={() => settings.open('file')} />
     </div>
   )
 }
 
 interface OpenerProps {
-  readonly panel: 'settings' | 'downloads' | 'siblings'
+  readonly panel: 'settings' | 'downloads' | 'siblings' | 'share'
   readonly label: string
   readonly hidden?: boolean
   readonly children: ComponentChildren
