@@ -6,12 +6,13 @@ import { followTitle } from './ui/start/title'
 import { warnUnkept, warnUnopened } from './ui/start/warnings'
 
 const studio = new Studio()
-const { store, client } = studio
+const { store, client, session } = studio
 
 render(<App studio={studio} />, document.body)
 followTitle(store)
 warnUnkept(studio)
 warnUnopened(studio)
+void session.find()
 client.getLimits().then(
   limits => store.set({ limits }),
   () => {}, // the service tells its limits again when one is passed

@@ -90,7 +90,17 @@ export type BranchTool = 'move' | 'add' | 'join'
 export type Selection = StrokeRef | { readonly kind: 'traced'; readonly joint: number }
 
 /** Where a fault is shown on the page. */
-export type Place = 'photo' | 'capture' | 'clip' | 'strokes' | 'grow' | 'preview' | 'gallery' | 'leaf' | 'fruit'
+export type Place =
+  | 'photo'
+  | 'capture'
+  | 'clip'
+  | 'strokes'
+  | 'grow'
+  | 'preview'
+  | 'gallery'
+  | 'account'
+  | 'leaf'
+  | 'fruit'
 
 /** A sentence that says what is wrong and what to do. */
 export interface Fault {
@@ -147,6 +157,9 @@ export interface ShownModel extends OwnPictures {
   readonly glb: ArrayBuffer | null
 }
 
+/** The parts of the dialog about one's account. */
+export type AccountTab = 'keys' | 'team' | 'limits'
+
 export interface State extends OwnPictures {
   /** Null while nothing is open. */
   readonly sheets: Sheets | null
@@ -182,13 +195,15 @@ export interface State extends OwnPictures {
   /** Whether the preview shows the live tree or the model. */
   readonly shows: 'live' | 'model'
   /** The dialog that is open. */
-  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | 'clip' | 'filming' | 'grove' | null
+  readonly dialog: 'gallery' | 'shortcuts' | 'photos' | 'advice' | 'clip' | 'filming' | 'grove' | AccountTab | null
   /** Photos that were chosen together, while it is asked what becomes of them. */
   readonly offer: Offer | null
   /** A video that was chosen, while it is said what becomes of it, and while it is sent. */
   readonly clipOffer: File | null
   /** Who is signed in to a hosted service; null while nobody is, and where nobody needs to. */
   readonly session: Session | null
+  /** Whether one has to sign in: for the first time, or again in the midst of something. */
+  readonly signIn: 'first' | 'again' | null
   /** The service's limits, once it has told them. */
   readonly limits: Limits | null
   /** False while the browser cannot save the drawing. */
@@ -229,6 +244,7 @@ export const EMPTY: State = {
   offer: null,
   clipOffer: null,
   session: null,
+  signIn: null,
   limits: null,
   kept: true,
   online: true,
@@ -238,8 +254,8 @@ export const EMPTY: State = {
 }
 
 /** Return the state with nothing open; what does not belong to the drawing stays. */
-export function closed({ limits, online, notices, announcement }: State): State {
-  return { ...EMPTY, limits, online, notices, announcement }
+export function closed({ session, signIn, limits, online, notices, announcement }: State): State {
+  return { ...EMPTY, session, signIn, limits, online, notices, announcement }
 }
 
 /** Holds the page's one state, and calls listeners when it changes. */

@@ -1,3 +1,4 @@
+import { accessText } from './text/access'
 import { captureText } from './text/capture'
 import { clipText } from './text/clip'
 import { drawingText } from './text/drawing'
@@ -18,6 +19,7 @@ export const text = {
   ...welcomeText,
   ...drawingText,
   ...treeText,
+  access: accessText,
   capture: captureText,
   clip: clipText,
   sharing: sharingText,

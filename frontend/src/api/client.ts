@@ -1,4 +1,5 @@
 import { frameToWire, type Point, type Strokes, toWire, viewsToWire } from '../strokes'
+import { json, request, send } from './request'
 import type { components } from './schema'
 import type {
   CaptureInfo,
@@ -16,24 +17,6 @@ import type {
 } from './types'
 
 type Schemas = components['schemas']
-
-/** Codes of problems that pass by themselves, so that the request can be sent again. */
-const BUSY = ['overloaded', 'database_busy', 'database_unavailable', 'too_many_files']
-
-/** A problem that the service answered: the message says what is wrong, `pointer` where, such as /branches/0. */
-export class Refused extends Error {
-  constructor(
-    readonly status: number,
-    readonly code: string,
-    detail: string,
-    readonly pointer: string | null,
-  ) {
-    super(detail)
-  }
-}
-
-/** The service cannot be reached, or cannot answer at present. */
-export class Unreachable extends Error {}
 
 type Sketches = Schemas['Sketches']
 
@@ -249,26 +232,6 @@ function drawnIn({ strokes, capture, clip }: Inputs) {
 
 function editsIn({ edits }: Strokes) {
   return edits?.length ? { edits } : {}
-}
-
-async function request<T>(method: string, url: string, init: RequestInit = {}): Promise<T> {
-  const response = await send(method, url, init)
-  return (response.status === 204 ? null : await response.json()) as T
-}
-
-/** Return a successful response, or throw `Refused` or `Unreachable`. */
-async function send(method: string, url: string, init: RequestInit = {}): Promise<Response> {
-  const response = await fetch(url, { ...init, method }).catch(() => {
-    throw new Unreachable()
-  })
-  if (response.ok) return response
-  const problem: Partial<Schemas['Problem']> | null = await response.json().catch(() => null)
-  if (!problem?.code || !problem.detail || BUSY.includes(problem.code)) throw new Unreachable()
-  throw new Refused(response.status, problem.code, problem.detail, problem.errors?.[0]?.pointer ?? null)
-}
-
-function json(body: unknown, headers: Record<string, string> = {}): RequestInit {
-  return { body: JSON.stringify(body), headers: { 'Content-Type': 'application/json', ...headers } }
 }
 
 /** Return a file in base64; the browser's reader does not block the page, however large the file is. */

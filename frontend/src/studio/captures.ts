@@ -1,5 +1,6 @@
-import { type Client, Refused, Unreachable } from '../api/client'
+import type { Client } from '../api/client'
 import { followCapture, isSolving } from '../api/follow'
+import { Refused, Unreachable } from '../api/request'
 import type { CaptureInfo, CapturePhoto, CaptureState } from '../api/types'
 import { captureOf, captureSheet } from '../sheets'
 import type { Capture, Sheets, Store } from '../state'

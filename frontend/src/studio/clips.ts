@@ -1,5 +1,6 @@
 import { frameUrl, videoUrl } from '../api/addresses'
-import { type Client, Unreachable } from '../api/client'
+import type { Client } from '../api/client'
+import { Unreachable } from '../api/request'
 import type { ClipInfo, UploadInfo } from '../api/types'
 import { clipOf, frameSheet } from '../sheets'
 import type { Clip, Sheets, Store } from '../state'

@@ -1,7 +1,11 @@
-import { Refused, Unreachable } from '../api/client'
+import { Refused, Unreachable } from '../api/request'
 import type { Fault } from '../state'
 import { type PhotoStrokes, strokeAt } from '../strokes'
 import { text } from '../text'
+import { duration } from '../text/numbers'
+
+/** Codes of problems that say what a team has too much of, and not when that ends. */
+const QUOTAS = ['quota_exceeded', 'queue_full']
 
 /** A fault that the page itself finds; its message is a sentence for the user. */
 export class PageFault extends Error {}
@@ -12,7 +16,12 @@ export function faultOf(error: unknown, views: readonly PhotoStrokes[] = []): Fa
   if (error instanceof PageFault) return { text: error.message }
   if (!(error instanceof Refused)) throw error
   const stroke = strokeAt(error.pointer, views)
-  return { text: textFor(error.code) ?? sentenceOf(error.message), ...(stroke && { stroke }) }
+  const sentence = textFor(error.code) ?? sentenceOf(error.message)
+  const later =
+    error.retryAfter === null || !QUOTAS.includes(error.code)
+      ? ''
+      : ` ${text.access.tryAgain(duration(error.retryAfter))}`
+  return { text: `${sentence}${later}`, ...(stroke && { stroke }) }
 }
 
 function textFor(code: string): string | undefined {

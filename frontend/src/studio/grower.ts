@@ -1,5 +1,7 @@
-import { type Client, type SiblingsOrder, Unreachable } from '../api/client'
+import { lookingOnly } from '../access'
+import type { Client, SiblingsOrder } from '../api/client'
 import { follow, isFinished } from '../api/follow'
+import { Refused, Unreachable } from '../api/request'
 import type { Model } from '../api/types'
 import type { OwnPictures, Store } from '../state'
 import type { Strokes } from '../strokes'
@@ -15,6 +17,8 @@ const RETRY_MS = 2000
 /** Requests models, follows their growth, and fetches their finished trees. */
 export class Grower {
   #stopFollowing = () => {}
+  /** The model that is followed, by its id. */
+  #followed: string | null = null
   /** GLBs of the shown model that were fetched, by their addresses. */
   readonly #trees = new Map<string, ArrayBuffer>()
 
@@ -25,10 +29,10 @@ export class Grower {
 
   /** Request a model of what is drawn. */
   async grow(): Promise<void> {
-    const { settings, seed, name, leaf, fruit, faults } = this.store.state
+    const { settings, seed, name, leaf, fruit, faults, session } = this.store.state
     const strokes = this.store.strokes
     const inputs = inputsOf(this.store.state)
-    if (!inputs || faults.strokes?.stroke || this.isGrowing) return
+    if (!inputs || faults.strokes?.stroke || this.isGrowing || lookingOnly(session)) return
     this.store.fault('grow', null)
     this.store.set({ asking: true })
     try {
@@ -68,15 +72,7 @@ export class Grower {
       model: { info, strokes, leaf, fruit, variant: 1, sibling: 0, growth: null, glb: null },
       shows: 'model',
     })
-    this.#stopFollowing = follow(info.id, {
-      changed: now => this.#update(now),
-      grew: growth => {
-        this.store.setModel(info.id, { growth })
-        this.store.set({ shows: 'model' })
-      },
-      connected: online => this.store.set({ online }),
-      gone: () => this.#forget(),
-    })
+    this.#follow(info.id)
   }
 
   /** Show another of the model's trees, by its number from 1, or a sibling; the present one stays until it is fetched. */
@@ -112,6 +108,7 @@ export class Grower {
 
   /** Stop following the model. */
   stopFollowing(): void {
+    this.#followed = null
     this.#stopFollowing()
     this.#stopFollowing = () => {}
   }
@@ -125,6 +122,36 @@ export class Grower {
     } catch (error) {
       this.store.fault('grow', faultOf(error))
     }
+  }
+
+  #follow(id: string): void {
+    this.#followed = id
+    this.#stopFollowing = follow(id, {
+      changed: now => this.#update(now),
+      grew: growth => {
+        this.store.setModel(id, { growth })
+        this.store.set({ shows: 'model' })
+      },
+      connected: online => this.store.set({ online }),
+      gone: () => void this.#look(id),
+    })
+  }
+
+  /** Look how the model is whose events have ended, then follow it again: it may be gone, or too many may be followed at once. */
+  async #look(id: string): Promise<void> {
+    try {
+      const info = await this.client.getModel(id)
+      if (this.#followed !== id) return
+      this.#update(info)
+      if (isFinished(info)) return
+    } catch (error) {
+      if (this.#followed !== id) return
+      if (error instanceof Refused && error.status === 404) return this.#forget()
+      if (!(error instanceof Unreachable)) return this.store.fault('grow', faultOf(error))
+      this.store.set({ online: false })
+    }
+    await pause()
+    if (this.#followed === id) this.#follow(id)
   }
 
   #update(model: Model): void {
@@ -171,7 +198,11 @@ async function retrying<T>(call: (key: string) => Promise<T>): Promise<T> {
       return await call(key)
     } catch (error) {
       if (!(error instanceof Unreachable) || triesLeft === 1) throw error
-      await new Promise(done => setTimeout(done, RETRY_MS))
+      await pause()
     }
   }
+}
+
+function pause(): Promise<void> {
+  return new Promise(done => setTimeout(done, RETRY_MS))
 }

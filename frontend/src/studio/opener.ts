@@ -1,5 +1,6 @@
-import { type Client, Refused } from '../api/client'
+import type { Client } from '../api/client'
 import { DEFAULT_SETTINGS } from '../api/defaults'
+import { Refused } from '../api/request'
 import type { CaptureInfo, Model } from '../api/types'
 import { begin, type History } from '../history'
 import { captureSheet, drawnOn, fittedTo, paper, sheetOf, sheetOfSize } from '../sheets'

@@ -1,3 +1,4 @@
+import { Accounts } from '../api/accounts'
 import { Client } from '../api/client'
 import { Playhead } from '../playhead'
 import { Store } from '../state'
@@ -8,6 +9,7 @@ import { BranchEdits } from './edits'
 import { Grower } from './grower'
 import { Opener } from './opener'
 import { OwnPictureActions } from './ownPictures'
+import { SessionActions } from './session'
 import { SheetActions } from './sheetActions'
 import { StrokeActions } from './strokeActions'
 import { TakenActions } from './takenActions'
@@ -30,5 +32,10 @@ export class Studio {
   readonly captures = new Captures(this.store, this.client, this.thumbnails)
   readonly clips = new Clips(this.store, this.client, this.thumbnails)
   readonly opener = new Opener(this.store, this.client, this.drafts, this.grower, this.captures, this.clips)
+  readonly accounts = new Accounts()
+  readonly session = new SessionActions(this.store, this.accounts, () => {
+    this.opener.close()
+    location.reload()
+  })
   readonly tracer = new Tracer(this.store, this.client)
 }

@@ -1,4 +1,5 @@
-import { type Client, Refused, Unreachable } from '../api/client'
+import type { Client } from '../api/client'
+import { Refused, Unreachable } from '../api/request'
 import type { Grown } from '../api/types'
 import { captureOf, hasPhoto, replaceSheet } from '../sheets'
 import type { PhotoSheet, Sheets, Store, Traced } from '../state'

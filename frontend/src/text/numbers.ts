@@ -7,9 +7,9 @@ const rounded = new Intl.NumberFormat(LANGUAGE, { minimumSignificantDigits: 2, m
 const written = new Intl.NumberFormat(LANGUAGE, { useGrouping: false, maximumSignificantDigits: 17 })
 const shares = new Intl.NumberFormat(LANGUAGE, { style: 'percent', maximumFractionDigits: 0 })
 const [wholeSeconds, tenthSeconds] = [inUnits('second', 0), inUnits('second', 1)]
-const minutes = inUnits('minute', 0)
+const [minutes, hours] = [inUnits('minute', 0), inUnits('hour', 0)]
 const lengths = new Intl.NumberFormat(LANGUAGE, { style: 'unit', unit: 'meter', maximumSignificantDigits: 3 })
-const [kilobytes, megabytes] = [inUnits('kilobyte', 0), inUnits('megabyte', 1)]
+const [kilobytes, megabytes, gigabytes] = [inUnits('kilobyte', 0), inUnits('megabyte', 1), inUnits('gigabyte', 1)]
 
 /** Write a whole number. */
 export function whole(number: number): string {
@@ -36,9 +36,10 @@ export function percent(share: number): string {
   return shares.format(share)
 }
 
-/** Write a duration that is left: whole seconds or minutes. */
+/** Write a duration that is left: whole seconds, minutes or hours. */
 export function duration(seconds: number): string {
-  return seconds < 90 ? wholeSeconds.format(seconds) : minutes.format(seconds / 60)
+  if (seconds < 90) return wholeSeconds.format(seconds)
+  return seconds < 90 * 60 ? minutes.format(seconds / 60) : hours.format(seconds / 3600)
 }
 
 /** Write a duration that was measured, in tenths of a second. */
@@ -53,7 +54,8 @@ export function metres(number: number): string {
 
 /** Write a number of bytes. */
 export function bytes(number: number): string {
-  return number < 1e6 ? kilobytes.format(number / 1e3) : megabytes.format(number / 1e6)
+  if (number < 1e6) return kilobytes.format(number / 1e3)
+  return number < 1e9 ? megabytes.format(number / 1e6) : gigabytes.format(number / 1e9)
 }
 
 function inUnits(unit: string, maximumFractionDigits: number): Intl.NumberFormat {

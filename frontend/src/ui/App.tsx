@@ -1,7 +1,9 @@
 import type { ComponentType, TargetedMouseEvent } from 'preact'
 import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
+import { isAccountTab } from '../access'
 import type { Studio } from '../studio/studio'
 import { text } from '../text'
+import { AccountTabs, SignIn } from './account/Account'
 import { StudioProvider, useStore, useStudio } from './parts/useStore'
 import { DropArea } from './start/DropArea'
 import { Header } from './start/Header'
@@ -20,6 +22,7 @@ export function App({ studio }: { readonly studio: Studio }) {
       <DropArea />
       <LiveRegion />
       <Overlaid />
+      <SignIn />
     </StudioProvider>
   )
 }
@@ -96,10 +99,11 @@ function LiveRegion() {
 
 /** The open dialog, loaded before the first is opened; it lies over everything else, so notices are shown within it. */
 function Overlaid() {
-  const isOpen = useStore(({ dialog }) => dialog !== null)
+  const dialog = useStore(state => state.dialog)
   const [Dialogs, setDialogs] = useState<ComponentType | null>(null)
   useEffect(() => {
     void import('./start/Dialogs').then(module => setDialogs(() => module.Dialogs))
   }, [])
-  return isOpen && Dialogs ? <Dialogs /> : <Notices />
+  if (isAccountTab(dialog)) return <AccountTabs />
+  return dialog && Dialogs ? <Dialogs /> : <Notices />
 }

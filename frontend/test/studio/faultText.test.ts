@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest'
-import { Refused, Unreachable } from '../../src/api/client'
+import { Refused, Unreachable } from '../../src/api/request'
 import { faultOf, PageFault } from '../../src/studio/faultText'
 
 test("the service's message becomes a sentence without the field's path", () => {
@@ -14,4 +14,11 @@ test('a service that does not answer has another sentence than one that refuses'
 
 test('an error of the page itself is not hidden', () => {
   expect(() => faultOf(new RangeError('ours'))).toThrow('ours')
+})
+
+test('of a quota it is said when to try again', () => {
+  const full = new Refused(429, 'queue_full', 'as many trees wait as may', null, 600)
+  expect(faultOf(full).text).toBe('As many trees wait as your team may have waiting. Try again in 10 min.')
+  const day = new Refused(429, 'quota_exceeded', 'your team has asked for 500 models in 24 hours', null, 7200)
+  expect(faultOf(day).text).toBe('Your team has asked for 500 models in 24 hours. Try again in 2 hr.')
 })

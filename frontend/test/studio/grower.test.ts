@@ -150,13 +150,32 @@ test('the page is offline from a broken connection until events arrive again', a
 })
 
 test('a model that is gone is no longer shown, with a fault', async () => {
-  service(serve)
+  service(call => (call.method === 'GET' ? problem(404, 'model_not_found', 'gone') : serve(call)))
   const { store, grower } = begin()
   await grower.grow()
   Events.last.close()
   Events.last.onerror()
+  await settle()
   expect([store.state.model, store.state.shows]).toEqual([null, 'live'])
   expect(store.state.faults.grow?.text).toContain('no longer there')
+})
+
+test('where too many trees are followed one asks how it is, and tries to follow it again', async () => {
+  vi.useFakeTimers()
+  let now = model({ status: 'running', progress: 0.5 })
+  service(({ method }) => Response.json(method === 'GET' ? now : model()))
+  const { store, grower } = begin()
+  await grower.grow()
+  const refuse = async () => {
+    Events.last.close()
+    Events.last.onerror()
+    await vi.advanceTimersByTimeAsync(5000)
+  }
+  await refuse()
+  expect([store.state.model?.info.progress, Events.all.length]).toEqual([0.5, 2])
+  now = model({ status: 'canceled' })
+  await refuse()
+  expect([store.state.model?.info.status, Events.all.length]).toEqual(['canceled', 2])
 })
 
 test('a canceled tree is no longer growing', async () => {

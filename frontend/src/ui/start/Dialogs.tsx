@@ -1,3 +1,4 @@
+import { isAccountTab } from '../../access'
 import { text } from '../../text'
 import { ShortcutsDialog } from '../drawing/ShortcutsDialog'
 import { useStore } from '../parts/useStore'
@@ -19,9 +20,9 @@ const SHOWN = {
   shortcuts: Shortcuts,
 } as const
 
-/** The open dialog. */
+/** The open dialog, but that about the account. */
 export function Dialogs() {
-  const dialog = useStore(state => state.dialog)
+  const dialog = useStore(({ dialog: open }) => (isAccountTab(open) ? null : open))
   if (!dialog) return null
   const Shown = SHOWN[dialog]
   return <Shown />

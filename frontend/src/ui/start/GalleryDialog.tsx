@@ -1,4 +1,5 @@
 import { useEffect, useLayoutEffect, useRef, useState } from 'preact/hooks'
+import { lookingOnly } from '../../access'
 import { isFinished } from '../../api/follow'
 import type { Model, Session } from '../../api/types'
 import { Gallery } from '../../studio/gallery'
@@ -178,9 +179,9 @@ function ListedModel({ model, gallery, change, focused, narrow }: ListedProps) {
 
 /** Tell what one may do with a model: owners all, members delete their own, viewers and read-only keys nothing. */
 function rightsIn(session: Session | null, { maker }: Model): { change: boolean; remove: boolean } {
-  if (!session) return { change: true, remove: true }
-  const change = session.member.role !== 'viewer' && !session.read_only
-  return { change, remove: change && (session.member.role === 'owner' || maker?.id === session.member.id) }
+  const change = lookingOnly(session) === null
+  const { role, id } = session?.member ?? { role: 'owner', id: null }
+  return { change, remove: change && (role === 'owner' || maker?.id === id) }
 }
 
 /** The place of a deleted model, with the button that brings it back. */

@@ -1,5 +1,7 @@
 import type { TargetedKeyboardEvent, TargetedMouseEvent } from 'preact'
+import { lookingOnly } from '../../access'
 import { text } from '../../text'
+import { Account } from '../account/Account'
 import { choose, mayLeave } from '../parts/files'
 import { Icon } from '../parts/Icon'
 import { ICONS } from '../parts/icons'
@@ -25,6 +27,7 @@ export function Header() {
         <Popover opener={opener} class="head-menu" label={text.header.menu}>
           <Actions />
         </Popover>
+        <Account />
       </div>
     </header>
   )
@@ -80,10 +83,11 @@ function NameField() {
 function Actions() {
   const studio = useStudio()
   const { header } = text
+  const draws = useStore(({ session }) => lookingOnly(session) === null)
   const show = (dialog: 'gallery' | 'shortcuts') => studio.store.set({ dialog })
   return (
     <>
-      <Action label={header.newPhoto} icon="photo" act={() => choose(studio, 'photo')} ofDrawing />
+      {draws && <Action label={header.newPhoto} icon="photo" act={() => choose(studio, 'photo')} ofDrawing />}
       <Action label={header.open} icon="open" shortcut={withCtrl('O')} act={() => choose(studio)} ofDrawing />
       <Action label={header.save} icon="save" shortcut={withCtrl('S')} act={() => saveProject(studio)} ofDrawing />
       <Action label={header.gallery} icon="gallery" act={() => show('gallery')} />

@@ -1,5 +1,6 @@
 import type { ComponentChildren } from 'preact'
 import { useEffect, useState } from 'preact/hooks'
+import { type LookingOnly, lookingOnly } from '../../access'
 import type { Model } from '../../api/types'
 import type { Draft } from '../../studio/draftStore'
 import { EXAMPLES, SKETCH_EXAMPLES } from '../../studio/examples'
@@ -21,12 +22,23 @@ const TREES = 4
 /** What is seen while nothing is open: what this is, and every way to start. `late`: it waits a moment for a drawing that is opened again. */
 export function Welcome({ late }: { readonly late: boolean }) {
   const closed = useStore(({ sheets }) => sheets === null)
-  const { welcome, sheets } = text
+  const draws = useStore(({ session }) => lookingOnly(session) === null)
   const device = matchMedia('(pointer: coarse)').matches ? 'touch' : 'mouse'
   return (
     <div class={late ? 'welcome is-late' : 'welcome'} hidden={!closed}>
       <Hero />
       <Drafts closed={closed} />
+      {draws && <Beginnings device={device} />}
+      <GrownTrees closed={closed} />
+    </div>
+  )
+}
+
+/** What else there is to begin with. */
+function Beginnings({ device }: { readonly device: 'touch' | 'mouse' }) {
+  const { welcome, sheets } = text
+  return (
+    <>
       <Section id="examples" title={welcome.examples} hint={welcome.examplesHint[device]}>
         <ul class="picks">
           {EXAMPLES.map(example => (
@@ -47,12 +59,12 @@ export function Welcome({ late }: { readonly late: boolean }) {
           ))}
         </ul>
       </Section>
-      <GrownTrees closed={closed} />
-    </div>
+    </>
   )
 }
 
 function Hero() {
+  const why = useStore(({ session }) => lookingOnly(session))
   const { welcome } = text
   return (
     <section class="hero">
@@ -66,9 +78,9 @@ function Hero() {
           ])}
         </h1>
         <Lead />
-        <StartButtons />
+        {why ? <Looking why={why} /> : <StartButtons />}
         <OpeningFault />
-        <p class="soft">{welcome.formats}</p>
+        {!why && <p class="soft">{welcome.formats}</p>}
       </div>
       <div class="hero-art">
         <Illustration />
@@ -88,6 +100,20 @@ function Lead() {
         return stroke ? <span class={`lead-${stroke}`}>{leadStrokes[stroke]}</span> : part
       })}
     </p>
+  )
+}
+
+/** The way to the trees of others, for who may look only. */
+function Looking({ why }: { readonly why: LookingOnly }) {
+  const { store } = useStudio()
+  return (
+    <>
+      <p>{text.access.lookingOnly[why]}</p>
+      <button type="button" class="button primary hero-choose" onClick={() => store.set({ dialog: 'gallery' })}>
+        <Icon path={ICONS.gallery} />
+        {text.access.toGallery}
+      </button>
+    </>
   )
 }
 

@@ -1,5 +1,6 @@
 import type { ButtonHTMLAttributes, ComponentChildren, RefObject } from 'preact'
 import { useLayoutEffect, useRef } from 'preact/hooks'
+import { lookingOnly } from '../../access'
 import type { State } from '../../state'
 import { text } from '../../text'
 import { Icon } from '../parts/Icon'
@@ -30,21 +31,22 @@ export function GrowBar({ settings, picture }: Props) {
   const canDownload = useStore(hasDownloads)
   const hasTree = useStore(({ model }) => model?.info.status === 'succeeded')
   const canShare = useStore(state => sharedId(state) !== null)
+  const grows = useStore(({ session }) => lookingOnly(session) === null)
   const grow = useRef<HTMLButtonElement>(null)
   return (
     <div class="growbar">
       <ProgressBar />
       <StatusLine grow={grow} />
       <div class="grow-actions">
-        <GrowButton describedBy={STATUS} buttonRef={grow} />
-        <AnotherButton />
-        <Opener panel="siblings" label={text.siblings.title} hidden={!hasTree}>
+        {grows && <GrowButton describedBy={STATUS} buttonRef={grow} />}
+        {grows && <AnotherButton />}
+        <Opener panel="siblings" label={text.siblings.title} hidden={!hasTree || !grows}>
           <Icon path={ICONS.trees} />
         </Opener>
         <Opener panel="share" label={text.sharing.title} hidden={!canShare}>
           <Icon path={ICONS.link} />
         </Opener>
-        <Opener panel="settings" label={text.grow.settings}>
+        <Opener panel="settings" label={text.grow.settings} hidden={!grows}>
           <Icon path={ICONS.sliders} />
         </Opener>
         <TreeLink />
@@ -109,6 +111,7 @@ function percentOf(state: State): number {
 /** The line that says where growing stands, what is wrong, and what can be done about it. */
 function StatusLine({ grow }: { readonly grow: RefObject<HTMLButtonElement | null> }) {
   const { grower } = useStudio()
+  const grows = useStore(({ session }) => lookingOnly(session) === null)
   const status = useStore(growthStatusOf)
   const sentence = useStore(sentenceOf)
   const details = useStore(detailsOf)
@@ -122,7 +125,11 @@ function StatusLine({ grow }: { readonly grow: RefObject<HTMLButtonElement | nul
         </p>
         <span class="status-details">{details}</span>
       </div>
-      <LineButton shown={status === 'queued' || status === 'growing'} next={grow} onClick={() => void grower.cancel()}>
+      <LineButton
+        shown={grows && (status === 'queued' || status === 'growing')}
+        next={grow}
+        onClick={() => void grower.cancel()}
+      >
         {text.grow.cancel}
       </LineButton>
       <LineButton shown={isFault && canGrow(status)} next={grow} onClick={() => void grower.grow()}>

@@ -1,3 +1,4 @@
+import { lookingOnly } from '../../access'
 import { isFinished } from '../../api/follow'
 import type { Sheets, ShownModel, State } from '../../state'
 import type { Strokes } from '../../strokes'
@@ -6,6 +7,7 @@ import { isOfFile, sameValue } from './settingGroups'
 
 /** Where growing stands, as the page says it. */
 export type GrowthStatus =
+  | 'looking'
   | 'noPhoto'
   | 'noCrown'
   | 'noTrunk'
@@ -26,7 +28,10 @@ export type GrowthStatus =
   | 'canceled'
 
 const BUSY: readonly GrowthStatus[] = ['asking', 'queued', 'growing']
+/** A tree is shown, or about to be. */
+const SHOWN: readonly GrowthStatus[] = ['loading', 'grown']
 const INCOMPLETE: readonly GrowthStatus[] = [
+  'looking',
   'noPhoto',
   'noCrown',
   'noTrunk',
@@ -38,6 +43,11 @@ const INCOMPLETE: readonly GrowthStatus[] = [
 
 /** Return where growing stands. */
 export function growthStatusOf(state: State): GrowthStatus {
+  const status = statusOf(state)
+  return lookingOnly(state.session) && canGrow(status) && !SHOWN.includes(status) ? 'looking' : status
+}
+
+function statusOf(state: State): GrowthStatus {
   const { asking, model, sheets, faults } = state
   if (asking) return 'asking'
   if (model && !isFinished(model.info)) return model.info.status === 'queued' ? 'queued' : 'growing'

@@ -1,3 +1,4 @@
+import { lookingOnly } from '../../access'
 import type { Model } from '../../api/types'
 import type { State } from '../../state'
 import { withVariant } from '../../studio/variants'
@@ -19,6 +20,7 @@ export function sentenceOf(state: State): string {
   if (faults.grow && sheets) return faults.grow.text
   const status = growthStatusOf(state)
   if (status === 'grown') return matchOf(withVariant(model!.info, model!.variant))
+  if (status === 'looking') return text.access.lookingOnly[lookingOnly(state.session)!]
   return stepOf(state) ?? text.grow.status[status as keyof typeof text.grow.status]
 }
 

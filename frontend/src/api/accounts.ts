@@ -1,0 +1,66 @@
+import { json, request, requestOnce } from './request'
+import type { Key, MadeKey, Member, Role, Session, Team } from './types'
+
+/** What a key that is to be made may do. */
+export interface KeyOrder {
+  readonly name: string
+  /** The member whose key it is; absent for one's own. */
+  readonly member?: string
+  readonly scopes: readonly Scope[]
+  readonly read_only: boolean
+  /** After how many days it expires. */
+  readonly days: number
+}
+
+/** What a key reaches: models and all they are made of, or members, keys and the team itself. */
+export type Scope = 'trees' | 'team'
+
+/** The page's calls about who is signed in, and about the team; each may throw `Refused` or `Unreachable`. */
+export class Accounts {
+  /** Return who is signed in; refused with `unauthenticated` where nobody is. */
+  getSession(): Promise<Session> {
+    return requestOnce('GET', '/v1/session')
+  }
+
+  signIn(key: string): Promise<Session> {
+    return requestOnce('POST', '/v1/session', json({ key }))
+  }
+
+  signOut(): Promise<void> {
+    return requestOnce('DELETE', '/v1/session')
+  }
+
+  /** Return one's own keys; for an owner those of the whole team. */
+  async listKeys(): Promise<readonly Key[]> {
+    return (await request<{ readonly keys: readonly Key[] }>('GET', '/v1/keys')).keys
+  }
+
+  /** Make a key; the answer alone has it whole. */
+  makeKey(order: KeyOrder): Promise<MadeKey> {
+    return request('POST', '/v1/keys', json(order))
+  }
+
+  revokeKey(id: string): Promise<void> {
+    return request('DELETE', `/v1/keys/${id}`)
+  }
+
+  async listMembers(): Promise<readonly Member[]> {
+    return (await request<{ readonly members: readonly Member[] }>('GET', '/v1/members')).members
+  }
+
+  addMember(name: string, role: Role): Promise<Member> {
+    return request('POST', '/v1/members', json({ name, role }))
+  }
+
+  changeMember(id: string, change: { readonly role: Role }): Promise<Member> {
+    return request('PATCH', `/v1/members/${id}`, json(change))
+  }
+
+  removeMember(id: string): Promise<void> {
+    return request('DELETE', `/v1/members/${id}`)
+  }
+
+  renameTeam(name: string): Promise<Team> {
+    return request('PATCH', '/v1/team', json({ name }))
+  }
+}
