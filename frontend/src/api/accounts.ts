@@ -1,19 +1,8 @@
 import { json, request, requestOnce } from './request'
-import type { Key, MadeKey, Member, Role, Session, Team } from './types'
+import type { components } from './schema'
+import type { Key, KeyOrder, MadeKey, Member, Role, Session, Team } from './types'
 
-/** What a key that is to be made may do. */
-export interface KeyOrder {
-  readonly name: string
-  /** The member whose key it is; absent for one's own. */
-  readonly member?: string
-  readonly scopes: readonly Scope[]
-  readonly read_only: boolean
-  /** After how many days it expires. */
-  readonly days: number
-}
-
-/** What a key reaches: models and all they are made of, or members, keys and the team itself. */
-export type Scope = 'trees' | 'team'
+type Schemas = components['schemas']
 
 /** The page's calls about who is signed in, and about the team; each may throw `Refused` or `Unreachable`. */
 export class Accounts {
@@ -32,7 +21,7 @@ export class Accounts {
 
   /** Return one's own keys; for an owner those of the whole team. */
   async listKeys(): Promise<readonly Key[]> {
-    return (await request<{ readonly keys: readonly Key[] }>('GET', '/v1/keys')).keys
+    return (await request<Schemas['KeyList']>('GET', '/v1/keys')).keys
   }
 
   /** Make a key; the answer alone has it whole. */
@@ -45,7 +34,7 @@ export class Accounts {
   }
 
   async listMembers(): Promise<readonly Member[]> {
-    return (await request<{ readonly members: readonly Member[] }>('GET', '/v1/members')).members
+    return (await request<Schemas['MemberList']>('GET', '/v1/members')).members
   }
 
   addMember(name: string, role: Role): Promise<Member> {

@@ -1,7 +1,6 @@
 import type { TargetedEvent } from 'preact'
 import { useLayoutEffect, useRef, useState } from 'preact/hooks'
-import type { KeyOrder } from '../../api/accounts'
-import type { MadeKey, Member } from '../../api/types'
+import type { KeyOrder, MadeKey, Member } from '../../api/types'
 import { accountText } from '../../text/account'
 import { copyText } from '../parts/copying'
 import { useStudio } from '../parts/useStore'
