@@ -29,7 +29,8 @@ _MIGRATED = "migrated"
 class PostgresServer:
     """`postgres` on a port of 127.0.0.1, with a folder of its own; it can be stopped, killed and started again.
 
-    Postgres refuses to run as root, so root runs it as the user that Debian's package makes.
+    Postgres refuses to run as root, so root runs it as the user that Debian's package makes. It ends with the process of
+    the tests, however that ends.
     """
 
     def __init__(self, folder: Path, *options: str) -> None:
@@ -87,8 +88,8 @@ class PostgresServer:
             return connection.execute(statement).rowcount
 
     def _command(self, program: str, *arguments: str) -> list[str]:
-        user = ["setpriv", "--reuid=postgres", "--regid=postgres", "--clear-groups"] if os.geteuid() == 0 else []
-        return [*user, str(_programs() / program), "-D", str(self._folder), *arguments]
+        user = ["--reuid=postgres", "--regid=postgres", "--clear-groups"] if os.geteuid() == 0 else []
+        return ["setpriv", "--pdeathsig=INT", *user, str(_programs() / program), "-D", str(self._folder), *arguments]
 
     def _answers(self) -> bool:
         try:
