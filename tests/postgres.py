@@ -29,8 +29,8 @@ _MIGRATED = "migrated"
 class PostgresServer:
     """`postgres` on a port of 127.0.0.1, with a folder of its own; it can be stopped, killed and started again.
 
-    Postgres refuses to run as root, so root runs it as the user that Debian's package makes. It ends with the process of
-    the tests, however that ends.
+    Postgres refuses to run as root, so root runs it as the user that Debian's package makes. It ends with the process
+    of the tests, however that ends.
     """
 
     def __init__(self, folder: Path, *options: str) -> None:
