@@ -198,9 +198,9 @@ def test_a_damaged_structure_is_found_anew(resources: Resources) -> None:
 
 def test_other_photos_stop_the_solve_of_the_ones_before(resources: Resources) -> None:
     queued, running = of_five(resources), of_five(resources)
-    for id in (queued, running):
-        captures.solve(resources, id)
+    captures.solve(resources, running)
     job = work(resources, running)
+    captures.solve(resources, queued)
     for id in (queued, running):
         photo = found(resources, id).photos[0]
         captures.remove_photo(resources.database, id, photo.id)
