@@ -23,6 +23,11 @@ def test_a_variable_sets_and_a_flag_goes_before_it(monkeypatch: pytest.MonkeyPat
     assert (settings.port, settings.tracers) == (8002, 3)
 
 
+def test_only_where_teams_share_the_service_their_jobs_under_way_are_limited() -> None:
+    assert read_settings().most_running == 0
+    assert read_settings(database_url="postgresql:///trees").most_running == 2
+
+
 def test_an_empty_variable_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("TREESTROKE_WORKERS", "")
     assert read_settings() == Settings()

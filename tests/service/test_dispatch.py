@@ -2,10 +2,12 @@
 
 import threading
 import time
+from pathlib import Path
 
 import pytest
 from sqlalchemy import text
 from tests.faults.processes import wait_for
+from tests.postgres import PostgresServer
 from tests.rows import Messages, add_capture, add_model, add_solve, find
 
 from treestroke.service.dispatch import (
@@ -187,3 +189,23 @@ def test_a_dispatcher_that_fails_again_and_again_says_so(
     dispatcher.start()
     wait_for(lambda: "has finished no round for 1 s" in dispatcher.state, 60, "a state that says so", 0.1)
     dispatcher.stop()
+
+
+def test_of_two_dispatchers_on_one_database_the_second_stands_by(
+    postgres: PostgresServer, tmp_path: Path, messages: Messages
+) -> None:
+    database = Database(tmp_path, postgres.fresh_with_tables()).of(SERVICE)
+    record_heartbeat(database, "run-1", 1, "treestroke")
+    add_model(database.of(Scope("oaks", "ann")), parts={})
+    first, second = (Dispatcher(database, Blobs(tmp_path), messages, 0) for _ in range(2))
+    first.lead()
+    second.start()
+    wait_for(lambda: second.state == "standby", 60, "the second's state")
+    second.dispatch()
+    assert messages.sent == 0
+    first.dispatch()
+    assert messages.sent == 1
+    first._leadership.release()  # as where its process ends
+    wait_for(lambda: second.state == "ok", 60, "the second's lead")
+    second.stop()
+    database.close()
