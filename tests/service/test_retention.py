@@ -13,7 +13,9 @@ from tests.sweeping import DAY, HOUR, NOTHING, Kept
 from treestroke.service import captures, retention, stored_models
 from treestroke.service.photos import NotFound
 from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
+from treestroke.store.database import Database
 from treestroke.store.queries import photo as photo_by_id
+from treestroke.store.scope import SERVICE
 from treestroke.store.tables import (
     BlobRow,
     CapturePhoto,
@@ -204,25 +206,26 @@ def test_a_sweep_writes_in_small_steps_between_which_others_write(kept: Kept, mo
         kept.delete(kept.model())
     kept.sweep()
     left: list[int] = []
-    writing = kept.database.writing
+    writing = Database.writing
 
     @contextmanager
-    def watched() -> Iterator[Session]:
+    def watched(own: Database) -> Iterator[Session]:
         left.append(kept.count(ModelRow))
-        with writing() as session:
+        with writing(own) as session:
             yield session
 
-    monkeypatch.setattr(kept.database, "writing", watched)
+    monkeypatch.setattr(Database, "writing", watched)
     kept.clocks.pass_(DAY)
     assert kept.sweep().models == 35
     assert sorted(set(left), reverse=True) == [35, 25, 15, 5, 0]
 
 
 def test_a_sweep_reads_no_whole_table(kept: Kept) -> None:
-    kept.restart(keep_days=1)
     kept.delete(kept.model())
     kept.model()
     kept.photo("pho_1")
+    kept.database = kept.database.of(SERVICE)
+    kept.restart(keep_days=1)
     kept.sweep()
     kept.clocks.pass_(2 * DAY)
     with planned() as steps:
