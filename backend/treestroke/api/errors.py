@@ -213,7 +213,7 @@ def _limited(_: Request, error: RateLimited) -> JSONResponse:
     return problem("rate_limited", detail, headers={"Retry-After": retry_s, **standing.headers})
 
 
-def _exceeded(_: Request, error: QuotaExceeded) -> JSONResponse:
+def _quota_exceeded(_: Request, error: QuotaExceeded) -> JSONResponse:
     code = "queue_full" if error.quota == QUEUED else "quota_exceeded"
     headers = {"Retry-After": str(max(math.ceil(error.retry_s), 1))}
     return problem(code, f"{_EXCEEDED[error.quota]} (the limit is {error.limit})", headers=headers)
@@ -221,7 +221,7 @@ def _exceeded(_: Request, error: QuotaExceeded) -> JSONResponse:
 
 def _no_room(request: Request, _: NoRoom) -> JSONResponse:
     if limit := request.app.state.resources.quotas.stored_bytes:
-        return _exceeded(request, stored_full(limit))
+        return _quota_exceeded(request, stored_full(limit))
     detail = (
         "all photos and clips together would take more than they may here; delete some, whose room is free a day later"
     )
@@ -306,7 +306,7 @@ _ANSWERS: dict[type[Exception], Any] = {
     Exceeded: _beyond_scopes,
     NoRoom: _no_room,
     RateLimited: _limited,
-    QuotaExceeded: _exceeded,
+    QuotaExceeded: _quota_exceeded,
     WrongOffset: _misplaced,
     Superseded: _superseded,
     Overloaded: _busy,
