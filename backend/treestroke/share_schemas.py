@@ -14,7 +14,7 @@ class ShareInfo(Wire):
         json_schema_extra={
             "example": {
                 "id": "shr_4d5e6f708192a3b4c5d6e7f8",
-                "url": "https://trees.example.org/s/mZ2m3Qw0sN1bX5yT7uV9aA",
+                "url": "http://127.0.0.1:8000/s/mZ2m3Qw0sN1bX5yT7uV9aA",
                 "created": "2026-05-04T09:33:00.000Z",
                 "expires": "2026-06-03T09:33:00.000Z",
                 "revoked": None,
