@@ -1,7 +1,11 @@
 """A tree that was shared, seen by somebody who has only its link."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
@@ -70,6 +74,24 @@ def page(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
     context.close()
 
 
+@contextmanager
+def elsewhere(content: str) -> Iterator[str]:
+    """Serve one page of another origin, and give its address."""
+
+    class Answer(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(HTTPStatus.OK)
+            self.send_header("Content-Type", "text/html")
+            self.end_headers()
+            self.wfile.write(content.encode())
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Answer)
+    Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http:{'//'}127.0.0.1:{server.server_port}/"
+    server.shutdown()
+    server.server_close()
+
+
 @pytest.mark.parametrize("page", [False, True], indirect=True, ids=["light", "dark"])
 def test_a_link_shows_the_tree_on_a_phone(shared: Shared, page: Page, request: pytest.FixtureRequest) -> None:
     visitor, path = Visitor(page, shared.url), shared.link(photo=True)["path"]
@@ -79,6 +101,10 @@ def test_a_link_shows_the_tree_on_a_phone(shared: Shared, page: Page, request: p
     expect(page.get_by_text("9 m high")).to_be_visible()
     expect(page).to_have_title("The old oak – treestroke")
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    box = page.locator("canvas").bounding_box()
+    assert box is not None
+    assert box["height"] > 400
+    visitor.wait_for_rest()
     visitor.shot(f"shared-{request.node.callspec.id}")
     assert visitor.violations() == []
     with page.expect_download() as download:
@@ -94,8 +120,10 @@ def test_a_link_shows_the_tree_on_a_phone(shared: Shared, page: Page, request: p
 
 def test_a_link_stands_in_another_page_and_its_own_page_does_not(shared: Shared, page: Page) -> None:
     path = shared.link(download=False)["path"]
-    frames = "".join(f'<iframe src="{shared.url}{path}{end}" width=360 height=300></iframe>' for end in ("?embed", ""))
-    page.set_content(f"<title>elsewhere</title>{frames}")
+    sizes = "width=360 height=300"
+    frames = "".join(f'<iframe src="{shared.url}{path}{end}" {sizes}></iframe>' for end in ("?embed", ""))
+    with elsewhere(f"<title>elsewhere</title>{frames}") as address:
+        page.goto(address)
     tree = page.frame_locator("iframe >> nth=0")
     expect(tree.locator("[data-state]")).to_have_attribute("data-state", "model")
     expect(tree.get_by_role("link", name="The old oak treestroke")).to_be_visible()

@@ -107,3 +107,20 @@ test('without models it says how to get some', async () => {
   await open()
   expect(document.querySelector<HTMLElement>('.gallery-empty')!.hidden).toBe(false)
 })
+
+test('the gallery is searched, and narrowed to a tag or to somebody', async () => {
+  const maker = { id: 'usr_2', name: 'Ben' }
+  models = [model({ status: 'failed', tags: ['park'], maker })]
+  await open()
+  const asked = () => calls.at(-1)!.path
+  click(document.querySelector('.card-tag'))
+  await act(settle)
+  expect(asked()).toContain('tag=park')
+  click(document.querySelector('.card-maker'))
+  await act(settle)
+  expect(asked()).toContain('maker=usr_2')
+  const field = document.querySelector<HTMLInputElement>('input[type=search]')!
+  field.value = 'oak '
+  field.dispatchEvent(new Event('input', { bubbles: true }))
+  await vi.waitFor(() => expect(asked()).toContain('q=oak'))
+})
