@@ -79,7 +79,7 @@ def test_a_link_shows_the_tree_on_a_phone(shared: Shared, page: Page, request: p
     expect(page.get_by_text("9 m high")).to_be_visible()
     expect(page).to_have_title("The old oak – treestroke")
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    box = page.locator("canvas").bounding_box()
+    box = page.locator(".preview-canvas").bounding_box()
     assert box is not None
     assert box["height"] > 400
     visitor.wait_for_rest()
