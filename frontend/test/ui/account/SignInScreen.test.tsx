@@ -20,8 +20,8 @@ beforeEach(async () => {
   studio = new Studio()
   page = mount(studio, <SignIn />)
   await act(() => studio.session.find())
-  await vi.waitFor(() => expect(dialog()).not.toBeNull())
-})
+  await vi.waitFor(() => expect(dialog()).not.toBeNull(), { timeout: 30_000 }) // it is loaded
+}, 40_000)
 afterEach(() => vi.unstubAllGlobals())
 
 function serve({ method, body }: Call): Response {

@@ -4,7 +4,8 @@ import { paper } from '../../../src/sheets'
 import { EMPTY, type ShownModel, type State } from '../../../src/state'
 import { type Strokes, withPhoto, withStroke } from '../../../src/strokes'
 import { canGrow, growthStatusOf, isBusy } from '../../../src/ui/tree/growthStatus'
-import { progressOf, stepOf } from '../../../src/ui/tree/growthText'
+import { progressOf, sentenceOf, stepOf } from '../../../src/ui/tree/growthText'
+import { session } from '../../accounts'
 import { CROWN, camera, captureSheets, model, photoSheets, shownModel, sketchSheets, TRUNK } from '../../builders'
 
 const crown = withStroke(EMPTY.history.present, 'crown', CROWN)
@@ -119,4 +120,12 @@ test('a sketch needs a trunk and no crown; another fruit is another tree', () =>
   )
   expect(growthStatusOf(state({ sheets: sketchSheets(paper()), history: begin(bare) }))).toBe('ready')
   expect(growthStatusOf(finished({ fruit: new Blob(['a pear']) }))).toBe('settingsChanged')
+})
+
+test('who may look only is told why nothing can be grown, and sees what is grown as all others do', () => {
+  const looking = { session: session({ read_only: true }) }
+  const drawnOnly = state(looking)
+  expect([growthStatusOf(drawnOnly), canGrow('looking')]).toEqual(['looking', false])
+  expect(sentenceOf(drawnOnly)).toContain('a key that only reads')
+  expect(growthStatusOf(finished(looking))).toBe(growthStatusOf(finished()))
 })
