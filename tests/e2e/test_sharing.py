@@ -1,13 +1,17 @@
 """A tree that was shared, seen by somebody who has only its link."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page, expect
 from tests.api.sketched import FRONT, SIDE
-from tests.e2e.visitor import PATIENCE_MS, Visitor
+from tests.e2e.visitor import PATIENCE_MS, SHOTS, Visitor
 from tests.hosted import ORIGIN, Hosted, hosting
 from tests.postgres import PostgresServer
 from tests.rows import add_model
@@ -70,6 +74,24 @@ def page(browser: Browser, request: pytest.FixtureRequest) -> Iterator[Page]:
     context.close()
 
 
+@contextmanager
+def elsewhere(content: str) -> Iterator[str]:
+    """Serve one page of another origin, and give its address."""
+
+    class Answer(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(HTTPStatus.OK)
+            self.send_header("Content-Type", "text/html")
+            self.end_headers()
+            self.wfile.write(content.encode())
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), Answer)
+    Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http:{'//'}127.0.0.1:{server.server_port}/"
+    server.shutdown()
+    server.server_close()
+
+
 @pytest.mark.parametrize("page", [False, True], indirect=True, ids=["light", "dark"])
 def test_a_link_shows_the_tree_on_a_phone(shared: Shared, page: Page, request: pytest.FixtureRequest) -> None:
     visitor, path = Visitor(page, shared.url), shared.link(photo=True)["path"]
@@ -94,6 +116,20 @@ def test_a_link_shows_the_tree_on_a_phone(shared: Shared, page: Page, request: p
     expect(page.get_by_label("Put this into a page of yours:")).to_have_value(code)
     visitor.shot(f"shared-embed-{request.node.callspec.id}")
     assert visitor.unexpected() == []
+
+
+def test_a_link_stands_in_another_page_and_its_own_page_does_not(shared: Shared, page: Page) -> None:
+    path = shared.link(download=False)["path"]
+    sizes = "width=360 height=300"
+    frames = "".join(f'<iframe src="{shared.url}{path}{end}" {sizes}></iframe>' for end in ("?embed", ""))
+    with elsewhere(f"<title>elsewhere</title>{frames}") as address:
+        page.goto(address)
+    tree = page.frame_locator("iframe >> nth=0")
+    expect(tree.locator("[data-state]")).to_have_attribute("data-state", "model")
+    expect(tree.get_by_role("link", name="The old oak")).to_be_visible()
+    assert tree.get_by_role("link", name="Download").count() == 0
+    page.screenshot(path=SHOTS / "shared-embedded.png", timeout=PATIENCE_MS)
+    assert page.frame_locator("iframe >> nth=1").locator(".share").count() == 0
 
 
 def test_who_comes_too_late_is_told_so(shared: Shared, page: Page) -> None:

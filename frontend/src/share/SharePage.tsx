@@ -83,8 +83,7 @@ function About({ tree, link }: { readonly tree: SharedModel; readonly link: stri
 function Caption({ tree, link }: { readonly tree: SharedModel; readonly link: string }) {
   return (
     <a class="share-caption" href={link} target="_blank" rel="noopener">
-      {nameOf(tree)}
-      <span>{text.app}</span>
+      {nameOf(tree)} <span>{text.app}</span>
     </a>
   )
 }
