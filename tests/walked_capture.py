@@ -15,6 +15,7 @@ from treestroke.codec.structure import encode_structure
 from treestroke.core.capture import PointCloud, Shot, SolvedPhoto, Structure, UnusedPhoto
 from treestroke.core.strokes import CameraDistance, CaptureStrokes
 from treestroke.service import captures
+from treestroke.service.capture_photos import fingerprint
 from treestroke.service.engine_version import engine_version
 from treestroke.service.photos import Resources
 from treestroke.store.blobs import Blobs, open_blobs
@@ -70,7 +71,7 @@ def write_structure(database: Database, blobs: Blobs, id: str, found: Structure)
     """Write what was found of a capture's photos; give its blob."""
     blob = blobs.put(encode_structure(found))
     photos = captures.find_capture(database, id).photos
-    known = {"status": "succeeded", "fingerprint": captures.fingerprint(photos), "engine": engine_version()}
+    known = {"status": "succeeded", "fingerprint": fingerprint(photos), "engine": engine_version()}
     add_solve(database, id, structure=blob, **known)
     return blob
 

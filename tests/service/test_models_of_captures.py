@@ -15,6 +15,7 @@ from treestroke.codec.project import read_project
 from treestroke.codec.structure import encode_structure
 from treestroke.core.errors import CaptureError, StrokesError, TreestrokeError
 from treestroke.service import captures, model_request, stored_models
+from treestroke.service.capture_photos import warnings_of
 from treestroke.service.jobs import grow_model
 from treestroke.service.model import Options, make_tree
 from treestroke.service.photos import NotFound, Resources
@@ -114,9 +115,7 @@ def test_what_was_mended_in_a_photo_is_told_by_its_name(resources: Resources, ca
         row = session.query(CapturePhoto).filter_by(capture=capture, name="3.png").one()
         row.warnings = [{"code": "photo_cut_short", "stroke": "photo", "detail": "the rest is grey"}]
     photos = captures.find_capture(resources.database, capture).photos
-    assert captures.warnings_of(photos) == [
-        {"code": "photo_cut_short", "stroke": "photos/3.png", "detail": "the rest is grey"}
-    ]
+    assert warnings_of(photos) == [{"code": "photo_cut_short", "stroke": "photos/3.png", "detail": "the rest is grey"}]
     plain = ask(resources, **request(make_solved(resources)))
     assert ask(resources, **request(capture)).row.fingerprint != plain.row.fingerprint
 

@@ -1,7 +1,8 @@
 """Traces of stored captures: asked of the process that traces captures."""
 
 from treestroke.service import capture_tracer
-from treestroke.service.captures import find_capture, solved_structure, warnings_of
+from treestroke.service.capture_photos import warnings_of
+from treestroke.service.captures import find_capture, solved_structure
 from treestroke.service.photos import Resources
 
 

@@ -4,7 +4,7 @@ import hashlib
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import structlog
 from sqlalchemy import delete as delete_from
@@ -17,9 +17,9 @@ from treestroke.core.capture import Structure
 from treestroke.core.errors import CaptureError, TreestrokeError
 from treestroke.limits import MAX_PHOTOS, MIN_PHOTOS
 from treestroke.service import tracer
+from treestroke.service.capture_photos import fingerprint
 from treestroke.service.engine_version import engine_version
 from treestroke.service.file_names import file_name, free_name
-from treestroke.service.fingerprints import digest
 from treestroke.service.makers import Maker, makers_of
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
@@ -306,16 +306,6 @@ def solved_structure(capture: StoredCapture) -> str:
         fault = f"its cameras are not known, it is {capture.status}; solve it first"
         raise CaptureError.at(("capture",), fault, "capture_unsolved")
     return structure
-
-
-def warnings_of(photos: Sequence[CapturePhoto]) -> list[dict[str, Any]]:
-    """Return what was mended when photos were read, each with the photo's name as its place."""
-    return [{**warning, "stroke": f"photos/{photo.name}"} for photo in photos for warning in photo.warnings]
-
-
-def fingerprint(photos: Sequence[CapturePhoto]) -> str:
-    """Return a digest of what decides over a structure beside the engine: photos in the order of their names."""
-    return digest([[photo.name, photo.blob, photo.focal_length_px] for photo in photos])
 
 
 def _row(session: Session, id: str, deleted: bool = False) -> CaptureRow:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from treestroke.service import captures, clips, tracer
+from treestroke.service.capture_photos import warnings_of
 from treestroke.service.model_request import ModelOrder
 from treestroke.service.photos import Resources
 from treestroke.store.tables import ModelPart, PhotoRow
@@ -68,7 +69,7 @@ def _drawn_over_capture(resources: Resources, order: ModelOrder) -> Base:
     resources.tracers(structure, tracer.check_views, path, order.drawing.views, sizes)
     cameras = ModelPart(name="structure", blob=structure, media_type="application/json")
     pictures = {name: _picture(name, photo.blob) for photo in capture.photos for name in [f"photos/{photo.name}"]}
-    return Base({**pictures, "structure": cameras}, captures.warnings_of(capture.photos))
+    return Base({**pictures, "structure": cameras}, warnings_of(capture.photos))
 
 
 def _picture(name: str, blob: str) -> ModelPart:

@@ -16,7 +16,7 @@ from treestroke.codec.skeleton import plain_grown
 from treestroke.core.pipeline.grown_tree import LiveTree
 from treestroke.core.progress import Report
 from treestroke.service.attempts import Heartbeat, carry_out, persist, publish
-from treestroke.service.captures import warnings_of
+from treestroke.service.capture_photos import warnings_of
 from treestroke.service.clip_loading import StoredClip
 from treestroke.service.files import Bundle
 from treestroke.service.loading import PartLike, load_settings, load_stored_capture

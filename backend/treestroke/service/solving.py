@@ -16,7 +16,7 @@ from treestroke.service.attempts import (
     persist,
     publish,
 )
-from treestroke.service.captures import fingerprint
+from treestroke.service.capture_photos import fingerprint
 from treestroke.service.loading import load_stored_capture
 from treestroke.service.model import SOLVE_BOUNDS
 from treestroke.service.progress_estimate import ProgressEstimate
