@@ -197,7 +197,7 @@ def test_of_two_dispatchers_on_one_database_the_second_stands_by(
     database = Database(tmp_path, postgres.fresh_with_tables()).of(SERVICE)
     record_heartbeat(database, "run-1", 1, "treestroke")
     add_model(database.of(Scope("oaks", "ann")), parts={})
-    first, second = (Dispatcher(database, Blobs(tmp_path), messages, 0) for _ in range(2))
+    first, second = (Dispatcher(database, open_blobs(database, tmp_path), messages, 0) for _ in range(2))
     first.lead()
     second.start()
     wait_for(lambda: second.state == "standby", 60, "the second's state")
