@@ -20,7 +20,7 @@ from tests.rows import add_model
 
 from treestroke.api.routes.page import PAGE
 from treestroke.codec.image import encode_png
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.scope import SERVICE, Scope
 from treestroke.store.tables import File, ModelRow, Share
 
@@ -56,11 +56,14 @@ class Team:
 
 def finished_model(hosted: Hosted, folder: Path, who: dict[str, Any], **values: Any) -> str:
     """Write a finished model of a member as its worker would."""
-    database, blobs = hosted.database.of(Scope(who["team"]["id"], who["member"]["id"])), Blobs(folder)
+    database = hosted.database.of(Scope(who["team"]["id"], who["member"]["id"]))
+    blobs = open_blobs(database, folder)
     row = add_model(database, {"photo": blobs.put(PHOTO)}, status="succeeded", name="The <old> oak", **values)
+    files = {"tree.glb": GLB, "preview.png": PREVIEW}
+    stored = {name: blobs.put(content) for name, content in files.items()}
     with database.writing() as session:
-        for name, content in (("tree.glb", GLB), ("preview.png", PREVIEW)):
-            session.add(File(model=row.id, name=name, blob=blobs.put(content), bytes=len(content)))
+        for name, content in files.items():
+            session.add(File(model=row.id, name=name, blob=stored[name], bytes=len(content)))
     return row.id
 
 

@@ -19,7 +19,7 @@ from tests.rows import add_model
 import treestroke
 from treestroke.api.routes.page import PAGE
 from treestroke.codec.image import encode_png
-from treestroke.store.blobs import Blobs
+from treestroke.store.blobs import open_blobs
 from treestroke.store.scope import Scope
 from treestroke.store.tables import File
 
@@ -31,12 +31,15 @@ class Shared:
         self._hosted, self._key = hosted, hosted.key("owner")
         who = hosted.ask(self._key, "GET", "/v1/session").json()
         tree = treestroke.sketch(FRONT, SIDE, {"height": 9})
-        database, blobs = hosted.database.of(Scope(who["team"]["id"], who["member"]["id"])), Blobs(folder)
+        database = hosted.database.of(Scope(who["team"]["id"], who["member"]["id"]))
+        blobs = open_blobs(database, folder)
         photo = blobs.put(encode_png(np.full((600, 400, 3), 150, dtype=np.uint8)))
         row = add_model(database, {"photo": photo}, status="succeeded", name="The old oak", report=tree.report)
+        files = {"tree.glb": tree.files["tree.glb"], "preview.png": encode_png(tree.preview())}
+        stored = {name: blobs.put(content) for name, content in files.items()}
         with database.writing() as session:
-            for name, content in (("tree.glb", tree.files["tree.glb"]), ("preview.png", encode_png(tree.preview()))):
-                session.add(File(model=row.id, name=name, blob=blobs.put(content), bytes=len(content)))
+            for name, content in files.items():
+                session.add(File(model=row.id, name=name, blob=stored[name], bytes=len(content)))
         self.model = row.id
         self.url = str(hosted.client.base_url).rstrip("/")
 

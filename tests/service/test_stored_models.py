@@ -37,9 +37,9 @@ def finished(resources: Resources, id: str, glb: bytes, by: str = "") -> None:
         with resources.database.writing() as session:
             change_engine(session, row.engine, by)
             row.engine = by
-    job = claim(resources.database, row)
+    job, blob = claim(resources.database, row), resources.blobs.put(glb)
     with resources.database.writing() as session:
-        assert succeed(session, job, {"score": {}}, {"tree.glb": (resources.blobs.put(glb), len(glb))})
+        assert succeed(session, job, {"score": {}}, {"tree.glb": (blob, len(glb))})
 
 
 def count(resources: Resources, table: type[ModelRow] | type[PhotoRow]) -> int:
@@ -170,7 +170,7 @@ def test_a_model_that_there_is_not_is_not_found(resources: Resources) -> None:
         with pytest.raises(NotFound):
             ask(resources.database, "mdl_0")
     with pytest.raises(NotFound):
-        stored_models.rename(resources.database, "mdl_0", "x")
+        stored_models.change(resources.database, "mdl_0", {"name": "x"})
 
 
 @contextmanager
@@ -206,7 +206,7 @@ def test_only_what_changed_is_shown_anew(database: Database) -> None:
     rows = [add_model(database) for _ in range(3)]
     versions = {row.id: stored_models.find_model(database, row.id).version for row in rows}
     assert stored_models.find_changed(database, versions) == {}
-    stored_models.rename(database, rows[0].id, "Oak")
+    stored_models.change(database, rows[0].id, {"name": "Oak"})
     stored_models.cancel(database, rows[1].id)  # the third moves up
     changed = stored_models.find_changed(database, {**versions, "mdl_gone": None})
     assert changed.keys() == {rows[0].id, rows[1].id, rows[2].id, "mdl_gone"}

@@ -14,7 +14,6 @@ from tests.rows import add_capture, add_model, find
 
 from treestroke.service.failures import code_of
 from treestroke.store import queries
-from treestroke.store.blobs import Blobs
 from treestroke.store.data_folder import DataFolderError
 from treestroke.store.database import Database
 from treestroke.store.scope import LOCAL
@@ -154,7 +153,8 @@ def test_photos_stand_in_one_order_whatever_language_the_database_has(tmp_path: 
 
 
 def test_files_of_another_database_are_not_taken_for_leftovers(tmp_path: Path, postgres_url: str) -> None:
-    Blobs(tmp_path).put(b"tree")
+    (tmp_path / "blobs").mkdir()
+    (tmp_path / "blobs" / "left").touch()
     database = Database(tmp_path, postgres_url.replace("postgres@", "postgres:secret@"))
     with pytest.raises(DataFolderError, match="the database is lost or empty") as refused:
         database.check()

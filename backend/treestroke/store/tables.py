@@ -248,7 +248,7 @@ class Worker(Table):
     id: Mapped[str] = mapped_column(String(120), primary_key=True)
     slots: Mapped[int]
     beat: Mapped[int]
-    engine: Mapped[str] = mapped_column(String(40), server_default="")
+    engine: Mapped[str] = mapped_column(String(40), server_default="unknown")
 
 
 class Turn(Table):

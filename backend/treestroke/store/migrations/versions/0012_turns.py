@@ -9,7 +9,7 @@ down_revision = "0011"
 
 def upgrade() -> None:
     """Make the change."""
-    op.add_column("workers", sa.Column("engine", sa.String(length=40), server_default="", nullable=False))
+    op.add_column("workers", sa.Column("engine", sa.String(length=40), server_default="unknown", nullable=False))
     turns = op.create_table(
         "turns",
         *(sa.Column(name, sa.String(length=40), nullable=False) for name in ("team", "maker", "kind")),

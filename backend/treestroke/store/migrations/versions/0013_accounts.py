@@ -11,7 +11,7 @@ def upgrade() -> None:
     """Make the change."""
     op.create_table(
         "teams",
-        sa.Column("team", sa.String(length=40), server_default="local", nullable=False),
+        sa.Column("team", sa.String(length=40), nullable=False),
         sa.Column("name", sa.String(length=200), nullable=False),
         sa.Column("created", sa.Float(), nullable=False),
         sa.PrimaryKeyConstraint("team", name="pk_teams"),
