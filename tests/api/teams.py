@@ -1,7 +1,7 @@
 """What one team has of every kind, and how each operation of the API is asked for it."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -54,10 +54,11 @@ BODIES: dict[str, tuple[str, bytes]] = {
     "trace_photo": ("application/json", STROKES),
     "trace_capture": ("application/json", b'{"views": []}'),
     "trace_clip": ("application/json", STROKES),
-    "rename_model": ("application/json", b'{"name": "theirs"}'),
+    "change_model": ("application/json", b'{"name": "theirs"}'),
     "rename_capture": ("application/json", b'{"name": "theirs"}'),
     "add_capture_photo": ("image/png", drawn.encoded(seed=3)),
     "add_piece": ("application/partial-upload", b"more"),
+    "share_model": ("application/json", b"{}"),
     "change_member": ("application/json", b'{"name": "theirs"}'),
     "ask_for_siblings": ("application/json", b'{"count": 1}'),
 }
@@ -65,8 +66,8 @@ BODIES: dict[str, tuple[str, bytes]] = {
 HEADERS = {"add_piece": {"upload-offset": "4"}}
 
 
-def own_one_of_each(client: httpx.Client, folder: Path) -> Belongings:
-    """Make one of each kind, by the API itself."""
+def own_one_of_each(client: httpx.Client, folder: Path, finish: Callable[[str], None]) -> Belongings:
+    """Make one of each kind, by the API itself; ``finish`` ends a model as its worker would."""
 
     def made(answer: httpx.Response) -> str:
         assert answer.status_code in (201, 202), answer.text
@@ -75,6 +76,8 @@ def own_one_of_each(client: httpx.Client, folder: Path) -> Belongings:
     photo = made(client.post("/v1/photos", files={"file": drawn.encoded()}))
     capture = made(client.post("/v1/captures", json={"name": "ours"}))
     part = made(client.post(f"/v1/captures/{capture}/photos", files={"file": drawn.encoded(seed=1)}))
+    model = made(client.post("/v1/models", json=drawn.request(photo, name="ours")))
+    finish(model)
     key = client.post("/v1/keys", json={"name": "ours"})
     member = client.post("/v1/members", json={"name": "Ours", "role": "viewer"})
     begun = client.post("/v1/clips", headers={"upload-complete": "?0"}, content=b"four")
@@ -83,7 +86,8 @@ def own_one_of_each(client: httpx.Client, folder: Path) -> Belongings:
         "cap": capture,
         "clp": made(client.post("/v1/clips", files={"file": clip_bytes(folder)})),
         "upl": begun.headers["location"].rpartition("/")[2],
-        "mdl": made(client.post("/v1/models", json=drawn.request(photo, name="ours"))),
+        "mdl": model,
+        "shr": made(client.post(f"/v1/models/{model}/shares", json={})),
         "key": made(key),
         "usr": made(member),
     }
@@ -100,7 +104,7 @@ def operations(document: Mapping[str, Any], owned: Belongings) -> Iterator[Asked
     """
     for path, verbs in document["paths"].items():
         for verb in METHODS:
-            if verb in verbs and "{" in path:
+            if verb in verbs and "{" in path and "{token}" not in path:  # a link is for anybody
                 yield _asked(path, verb, verbs[verb], owned)
 
 

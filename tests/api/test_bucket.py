@@ -73,7 +73,8 @@ def test_a_tree_is_grown_and_sent_by_way_of_a_bucket_that_may_be_away(stored: St
     assert client.get("/readyz").json()["checks"]["storage"] == "the bucket does not respond"
     stored.server.start()
     assert stored.objects() == before
-    assert list((stored.service.data / "tmp").rglob("*")) == []
+    left = [path for path in (stored.service.data / "tmp").iterdir() if not path.name.startswith("pymp-")]
+    assert left == []  # but for Python's own folder for sockets
     assert client.get(place).content == whole.content
     assert client.get("/readyz").json()["checks"]["storage"] == "ok"
 

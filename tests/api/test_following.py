@@ -41,7 +41,7 @@ def test_a_change_wakes_those_who_follow_that_model_and_nobody_else(database: Da
     async def story(watcher: Watcher) -> None:
         with ExitStack() as places:
             one, same, other = (places.enter_context(watcher.follow(seen)) for seen in (first, first, second))
-            stored_models.rename(database, first.row.id, "Oak")
+            stored_models.change(database, first.row.id, {"name": "Oak"})
             for told in [await news(one), await news(same)]:
                 assert told is not None
                 assert told.row.name == "Oak"
@@ -144,7 +144,7 @@ def test_streams_end_whose_key_was_revoked_whatever_else_happens_to_the_model(
         with watcher.follow(seen, ANN) as revoked, watcher.follow(seen, BEN) as stays:
             while await news(revoked) is not None:
                 pass
-            stored_models.rename(database, seen.id, "Oak")
+            stored_models.change(database, seen.id, {"name": "Oak"})
             assert await news(stays) is not None
             revoked.update(seen)
             assert await news(revoked) is None

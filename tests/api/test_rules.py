@@ -26,8 +26,10 @@ def test_every_route_has_a_rule_and_every_rule_a_route() -> None:
     assert {route.name for route in found if isinstance(route, APIRoute)} == set(RULES)
 
 
-def test_only_health_page_and_signing_in_are_open() -> None:
-    assert {name for name, rule in RULES.items() if rule is None} == {"live", "ready", "page", "icon", "sign_in"}
+def test_only_health_page_signing_in_and_links_are_open() -> None:
+    shared = {"get_shared_page", "get_shared_model", "get_shared_tree", "get_shared_preview", "get_shared_photo"}
+    open_to_all = {"live", "ready", "page", "icon", "sign_in", "get_oembed", *shared}
+    assert {name for name, rule in RULES.items() if rule is None} == open_to_all
 
 
 def test_whatever_is_sent_to_change_something_is_a_write() -> None:

@@ -56,8 +56,8 @@ class Team:
 
 def finished_model(hosted: Hosted, folder: Path, who: dict[str, Any], **values: Any) -> str:
     """Write a finished model of a member as its worker would."""
-    database = hosted.database.of(Scope(who["team"]["id"], who["member"]["id"]))
-    blobs = open_blobs(database, folder)
+    scope = Scope(who["team"]["id"], who["member"]["id"])
+    database, blobs = hosted.database.of(scope), open_blobs(hosted.database, folder).of(scope)
     row = add_model(database, {"photo": blobs.put(PHOTO)}, status="succeeded", name="The <old> oak", **values)
     files = {"tree.glb": GLB, "preview.png": PREVIEW}
     stored = {name: blobs.put(content) for name, content in files.items()}

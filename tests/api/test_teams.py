@@ -5,10 +5,14 @@ from typing import Any
 
 import httpx
 import pytest
+from sqlalchemy import select
 from tests.api import drawn
 from tests.api.teams import Belongings, operations, own_one_of_each
 from tests.hosted import Hosted, hosting
 from tests.postgres import PostgresServer
+
+from treestroke.store.scope import SERVICE
+from treestroke.store.tables import File, ModelPart, ModelRow
 
 
 @pytest.fixture(scope="module")
@@ -35,9 +39,18 @@ def elms(hosted: Hosted) -> Iterator[httpx.Client]:
 
 
 @pytest.fixture(scope="module")
-def theirs(oaks: httpx.Client, tmp_path_factory: pytest.TempPathFactory) -> Belongings:
+def theirs(hosted: Hosted, oaks: httpx.Client, tmp_path_factory: pytest.TempPathFactory) -> Belongings:
     """What the oaks have."""
-    return own_one_of_each(oaks, tmp_path_factory.mktemp("oaks"))
+
+    def finish(model: str) -> None:
+        with hosted.database.of(SERVICE).writing() as session:
+            row = session.scalars(select(ModelRow).where(ModelRow.id == model)).one()
+            part = session.scalars(select(ModelPart).where(ModelPart.model == model)).first()
+            assert part is not None
+            row.status, row.progress = "succeeded", 1.0
+            session.add(File(team=row.team, model=model, name="tree.glb", blob=part.blob, bytes=1))
+
+    return own_one_of_each(oaks, tmp_path_factory.mktemp("oaks"), finish)
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +72,7 @@ def test_each_operation_finds_the_teams_own(oaks: httpx.Client, document: dict[s
     reading = [one for one in operations(document, theirs) if one.verb == "GET"]
     found = {one.name for one in reading if one.ask(oaks).status_code == 200}
     assert {"get_photo", "get_image", "get_capture", "get_capture_photo", "get_capture_image", "get_clip"} <= found
-    assert {"get_clip_video", "get_clip_frame", "get_model", "get_strokes"} <= found
+    assert {"get_clip_video", "get_clip_frame", "get_model", "get_strokes", "get_tree"} <= found
 
 
 def test_lists_hold_the_teams_own_alone(
@@ -95,7 +108,7 @@ def test_an_idempotency_key_is_another_one_in_another_team(oaks: httpx.Client, e
     made = []
     for client in (oaks, elms):
         photo = client.post("/v1/photos", files={"file": drawn.encoded()}).json()["id"]
-        request = drawn.request(photo)
+        request = drawn.request(photo, seed=5)
         answers = [client.post("/v1/models", json=request, headers={"Idempotency-Key": "one"}) for _ in range(2)]
         assert [answer.status_code for answer in answers] == [202, 202]
         assert answers[0].json()["id"] == answers[1].json()["id"]

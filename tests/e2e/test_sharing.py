@@ -31,8 +31,8 @@ class Shared:
         self._hosted, self._key = hosted, hosted.key("owner")
         who = hosted.ask(self._key, "GET", "/v1/session").json()
         tree = treestroke.sketch(FRONT, SIDE, {"height": 9})
-        database = hosted.database.of(Scope(who["team"]["id"], who["member"]["id"]))
-        blobs = open_blobs(database, folder)
+        scope = Scope(who["team"]["id"], who["member"]["id"])
+        database, blobs = hosted.database.of(scope), open_blobs(hosted.database, folder).of(scope)
         photo = blobs.put(encode_png(np.full((600, 400, 3), 150, dtype=np.uint8)))
         row = add_model(database, {"photo": photo}, status="succeeded", name="The old oak", report=tree.report)
         files = {"tree.glb": tree.files["tree.glb"], "preview.png": encode_png(tree.preview())}

@@ -37,7 +37,7 @@ def test_a_key_is_stored_nowhere(database: Database) -> None:
     assert token.encode() not in content
 
 
-@pytest.mark.parametrize("wrong", [new_key(), new_key()[:-1], "", "ts_", "x" * 10_000])
+@pytest.mark.parametrize("wrong", [new_key(), new_key()[:-1], "", "ts_", "x" * 10_000], ids=range(5))
 def test_nobody_has_another_key(database: Database, wrong: str) -> None:
     make(database)
     with pytest.raises(Unauthenticated):
