@@ -8,6 +8,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 import pytest
+from tests.hosted import SECRET
 from tests.postgres import KINDS
 from tests.running import serving
 
@@ -57,7 +58,7 @@ def test_a_newer_database_is_one_line_and_nothing_is_started(
     database: Database, capfd: pytest.CaptureFixture[str], command: str
 ) -> None:
     folder = database.path.parent
-    os.environ["TREESTROKE_DATABASE_URL"] = database.url
+    os.environ |= {"TREESTROKE_DATABASE_URL": database.url, "TREESTROKE_SECRET": SECRET}
     folder.chmod(0o700)
     with database.writing() as session:
         session.connection().exec_driver_sql("UPDATE alembic_version SET version_num = '9999'")
@@ -73,7 +74,8 @@ def test_a_newer_database_is_one_line_and_nothing_is_started(
 def test_a_postgres_that_is_away_is_one_line_that_tells_no_password(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    os.environ["TREESTROKE_DATABASE_URL"] = f"postgresql:{'//'}ann:secret@127.0.0.1:1/trees"
+    url = f"postgresql:{'//'}ann:secret@127.0.0.1:1/trees"
+    os.environ |= {"TREESTROKE_DATABASE_URL": url, "TREESTROKE_SECRET": SECRET}
     assert main(["serve", "--data", str(tmp_path / "data"), "--port", "0"]) == 1
     (line,) = capfd.readouterr().err.splitlines()
     assert line.startswith(f"treestroke: postgresql:{'//'}ann:***@127.0.0.1:1/trees: Postgres cannot be used (")

@@ -51,7 +51,7 @@ class MemberRequest(RequestPart):
 class MemberChange(RequestPart):
     """What is to be changed of a member."""
 
-    model_config = ConfigDict(json_schema_extra={"example": {"role": "viewer"}})
+    model_config = ConfigDict(json_schema_extra={"example": {"role": "viewer"}, "minProperties": 1})
 
     name: Title | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)
     role: Role | SkipJsonSchema[None] = Field(default=None, json_schema_extra=no_default)

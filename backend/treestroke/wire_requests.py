@@ -276,7 +276,9 @@ Tag = Annotated[str, Strict(), Field(min_length=1, max_length=MAX_TAG, pattern=N
 class ModelChange(RequestPart):
     """A model's new name, its new tags, or both."""
 
-    model_config = ConfigDict(json_schema_extra={"example": {"name": "The old oak", "tags": ["park", "oak"]}})
+    model_config = ConfigDict(
+        json_schema_extra={"example": {"name": "The old oak", "tags": ["park", "oak"]}, "minProperties": 1}
+    )
 
     name: Name | SkipJsonSchema[None] = Field(
         default=None, description="in place of the one that it has", json_schema_extra=no_default

@@ -4,14 +4,22 @@ from pathlib import Path
 
 from tests.faults.harness import PATIENCE_SECONDS, POISONED, Service
 from tests.faults.processes import wait_for
+from tests.hosted import SECRET, Hosted
 from tests.postgres import PostgresServer
 from tests.promises import kept
+
+from treestroke.store.database import Database
 
 
 def test_a_model_outlives_a_postgres_that_is_away_while_it_is_finished(
     tmp_path: Path, postgres: PostgresServer
 ) -> None:
-    with Service(tmp_path / "service", program=POISONED, database_url=postgres.fresh(), workers=1) as service:
+    url = postgres.fresh()
+    settings = {"database_url": url, "secret": SECRET, "workers": 1}
+    with Service(tmp_path / "service", program=POISONED, **settings) as service:
+        database = Database(service.data, url)
+        service.client.headers["Authorization"] = f"Bearer {Hosted(service.client, database).key()}"
+        database.close()
         id = service.ask("held")
         wait_for(lambda: service.get(id)["status"] == "running", PATIENCE_SECONDS, "a model under way")
         body = service.body()
