@@ -75,6 +75,7 @@ export const drawingText = {
     refine: 'Add branches you see, or grow the tree.',
     growing: 'Your tree is growing. You can keep drawing.',
     done: 'Here is your tree. To refine it, add strokes and grow again.',
+    shown: 'Here is the tree, with the strokes that it was grown from.',
     measure: 'Draw along something of known length, such as a door.',
     measureNear: 'It must be as far from the camera as the trunk.',
     measured: 'Enter the length of the line. It sets the tree’s size.',

@@ -26,6 +26,7 @@ export const welcomeText = {
     draftDeleted: (name: string) => `“${name}” is deleted.`,
     undo: 'Undo',
     grown: 'Trees you have grown',
+    grownByTeam: 'Trees of your team',
     drop: 'Drop to open',
     unknownFile: 'This file cannot be opened. Drop a photo, a video, a drawing or a .treestroke project.',
     pasted: 'Pasted photo',
@@ -68,6 +69,7 @@ export const welcomeText = {
   } as Readonly<Record<string, readonly [string, string]>>,
   gallery: {
     title: 'Your trees',
+    teamTitle: 'Trees of your team',
     unnamed: 'Unnamed tree',
     loading: 'Loading your trees …',
     empty: 'No trees yet. Draw two strokes on a photo, then press Grow. Your trees are saved here.',

@@ -1,3 +1,4 @@
+import { lookingOnly } from '../../access'
 import { isFinished, isSolving } from '../../api/follow'
 import { doubtIn, remarksOn, type StrokeRemark } from '../../doubts'
 import { captureOf, clipOf, drawnOn, isPaper, photoDrawnOn } from '../../sheets'
@@ -106,10 +107,12 @@ function sideStep({ sheets, history }: State, how: string): Hint | null {
   return sheets?.source === 'photo' ? stepTo(hints.mixedGrow) : null
 }
 
-function laterStep({ tool, history, liveTree, model, sheets }: State, pointer: PointerKind): Hint {
+function laterStep(state: State, pointer: PointerKind): Hint {
+  const { tool, history, liveTree, model, sheets, session } = state
   if (tool === 'select') return stepTo(text.hints.select, text.hints.how[pointer].select)
   if (model && !isFinished(model.info)) return stepTo(text.hints.growing)
-  if (model?.info.status === 'succeeded' && model.strokes === history.present) return stepTo(text.hints.done)
+  if (model?.info.status === 'succeeded' && model.strokes === history.present)
+    return stepTo(lookingOnly(session) ? text.hints.shown : text.hints.done)
   if (!liveTree) return stepTo(text.hints.waiting)
   return stepTo(sheets?.source === 'sketch' ? text.sheets.hints.refine : text.hints.refine)
 }

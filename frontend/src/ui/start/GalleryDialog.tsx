@@ -22,10 +22,11 @@ interface Entry {
 
 type Change = (id: string, changed: Partial<Entry>) => void
 
-/** One's trees: to open, rename, download and delete. */
+/** One's trees, or those of one's team: to open, rename, download and delete. */
 export function GalleryDialog() {
+  const isShared = useStore(({ session }) => session !== null)
   return (
-    <Dialog title={text.gallery.title} class="gallery-dialog">
+    <Dialog title={isShared ? text.gallery.teamTitle : text.gallery.title} class="gallery-dialog">
       <Models />
     </Dialog>
   )

@@ -199,6 +199,7 @@ function Drafts({ closed }: { readonly closed: boolean }) {
 /** The way to the gallery, with its latest trees; hidden before the first tree. */
 function GrownTrees({ closed }: { readonly closed: boolean }) {
   const { store, client } = useStudio()
+  const isShared = useStore(({ session }) => session !== null)
   const [models, setModels] = useState<readonly Model[]>([])
   useEffect(() => {
     if (!closed) return
@@ -210,7 +211,7 @@ function GrownTrees({ closed }: { readonly closed: boolean }) {
     <div class="welcome-section" hidden={!models.length}>
       <button type="button" class="button outlined grown" onClick={() => store.set({ dialog: 'gallery' })}>
         <Icon path={ICONS.gallery} />
-        {text.welcome.grown}
+        {isShared ? text.welcome.grownByTeam : text.welcome.grown}
         <span class="grown-pictures">
           {pictures.map(url => (
             <img key={url} src={url} alt="" />

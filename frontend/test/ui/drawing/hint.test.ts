@@ -6,6 +6,7 @@ import { EMPTY, type State } from '../../../src/state'
 import { type Line, NO_STROKES, withPhoto, withSheet, withStroke } from '../../../src/strokes'
 import { text } from '../../../src/text'
 import { hintOf } from '../../../src/ui/drawing/hint'
+import { BO, session } from '../../accounts'
 import {
   camera,
   captureAnswer,
@@ -48,6 +49,8 @@ test('the finished tree is announced until the strokes change', () => {
   const done = { tool: 'branch', liveTree: grown(), model } as const
   expect(said({ ...done, history: begin(trunk) })).toBe(text.hints.done)
   expect(said({ ...done, history: begin(two) })).toBe(text.hints.refine)
+  const viewer = session({ member: { ...BO, role: 'viewer' } })
+  expect(said({ ...done, history: begin(trunk), session: viewer })).toBe(text.hints.shown)
 })
 
 test('with another tool chosen the right one is named', () => {
