@@ -4,6 +4,7 @@ import logging
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Hashable
 from typing import TextIO
 
@@ -12,6 +13,10 @@ import structlog
 _REPEAT_SECONDS = 10.0
 """Time during which repetitions of a line are counted instead of written."""
 _MAX_LINES = 500
+REQUEST = "request_id"
+"""By which name lines that are written while a request is handled have its id."""
+_MAX_REQUESTS = 100
+"""Ids of requests that the summary of a repeated line names, the last."""
 
 
 class _Line:
@@ -20,6 +25,7 @@ class _Line:
     def __init__(self, written: float) -> None:
         self.written, self.repeated = written, 0
         self.last: logging.LogRecord | None = None
+        self.requests: deque[str] = deque(maxlen=_MAX_REQUESTS)
 
 
 class ThinnedHandler(logging.StreamHandler[TextIO]):
@@ -42,6 +48,8 @@ class ThinnedHandler(logging.StreamHandler[TextIO]):
             super().emit(record)
             return
         line.repeated, line.last = line.repeated + 1, record
+        if request := structlog.contextvars.get_contextvars().get(REQUEST):
+            line.requests.append(request)
         if self._timer is None or not self._timer.is_alive():  # a forked process has the timer, but not its thread
             self._timer = threading.Timer(self._seconds, self._write_repeated)
             self._timer.daemon = True
@@ -57,31 +65,30 @@ class ThinnedHandler(logging.StreamHandler[TextIO]):
             lines, self._lines, self._timer = self._lines, {}, None
             for line in lines.values():
                 if line.last is not None:
-                    super().emit(_summary(line.last, line.repeated))
+                    super().emit(_summary(line.last, line))
 
 
 def _content(record: logging.LogRecord) -> Hashable:
-    """Return what a line says, without its time: lines about different jobs are different."""
+    """Return what a line says, without its time and request: lines about different jobs are different."""
     values = record.msg if isinstance(record.msg, dict) else {"event": record.getMessage()}
     error = record.exc_info or values.get("exc_info")
     error = sys.exception() if error is True else error[1] if isinstance(error, tuple) else error
-    content = {**values, "timestamp": None, "exc_info": repr(error)}
+    content = {**values, "timestamp": None, REQUEST: None, "exc_info": repr(error)}
     return record.name, record.levelno, repr(sorted(content.items()))
 
 
-def _summary(record: logging.LogRecord, repeated: int) -> logging.LogRecord:
-    """Return a record that stands for several; the traceback was written with the first of them."""
-    record.repeated = repeated
+def _summary(record: logging.LogRecord, line: _Line) -> logging.LogRecord:
+    """Return a record that stands for all of a line; the traceback was written with the first of them."""
+    record.counted = {"repeated": line.repeated, **({"requests": [*line.requests]} if line.requests else {})}
     record.exc_info = record.exc_text = None
     if isinstance(record.msg, dict):
-        record.msg = {name: value for name, value in record.msg.items() if name != "exc_info"}
+        record.msg = {name: value for name, value in record.msg.items() if name not in ("exc_info", REQUEST)}
     return record
 
 
-def _add_repeated(_logger: object, _name: str, event: structlog.typing.EventDict) -> structlog.typing.EventDict:
-    """Add the number of lines that a summary stands for."""
-    repeated = getattr(event["_record"], "repeated", 0)
-    return {**event, "repeated": repeated} if repeated else event
+def _add_counted(_logger: object, _name: str, event: structlog.typing.EventDict) -> structlog.typing.EventDict:
+    """Add what a summary tells of the lines that it stands for."""
+    return {**event, **getattr(event["_record"], "counted", {})}
 
 
 def _is_needed(record: logging.LogRecord) -> bool:
@@ -113,7 +120,7 @@ def start_logging() -> None:
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(
             foreign_pre_chain=shared,
-            processors=[_add_repeated, structlog.stdlib.ProcessorFormatter.remove_processors_meta, *renderers],
+            processors=[_add_counted, structlog.stdlib.ProcessorFormatter.remove_processors_meta, *renderers],
         )
     )
     root = logging.getLogger()

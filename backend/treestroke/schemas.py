@@ -235,6 +235,7 @@ class Problem(BaseModel):
                 "errors": [
                     {"pointer": "/branches/0", "code": "trunk_outside_crown", "detail": "the trunk neither touches .."}
                 ],
+                "request_id": "0d6c1f3a9be84572a1c05e7d42f8b963",
             }
         }
     )
@@ -245,6 +246,8 @@ class Problem(BaseModel):
     detail: str
     code: str
     errors: list[Fault] = Field(default_factory=list)
+    request_id: str = ""
+    """By which the service's log tells of this request."""
 
 
 class Health(Wire):

@@ -11,7 +11,8 @@ from typing import Any
 from fastapi import Depends, FastAPI
 from fastapi.routing import APIRoute
 from pydantic.json_schema import models_json_schema
-from starlette.types import Scope
+from starlette.types import ASGIApp, Scope
+from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
@@ -21,6 +22,7 @@ from treestroke.api.metrics import add_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
 from treestroke.api.rates import RateHeadersMiddleware, limit_rate
 from treestroke.api.request_counts import RequestCounts
+from treestroke.api.request_ids import RequestIdMiddleware
 from treestroke.api.routes import (
     captures,
     clips,
@@ -111,12 +113,20 @@ _BODIES = (
 _REF = "#/components/schemas/{model}"
 
 
+class _App(FastAPI):
+    """An application whose requests have an id before all else, and come from whom a trusted proxy says."""
+
+    def build_middleware_stack(self) -> ASGIApp:
+        proxied = ProxyHeadersMiddleware(super().build_middleware_stack(), self.state.settings.trusted_proxies)  # type: ignore[arg-type]
+        return RequestIdMiddleware(proxied, proxied.trusted_hosts)  # type: ignore[arg-type]
+
+
 def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     """Return the application; it opens database, queue and tracing processes when it starts.
 
     At most ``places`` requests may follow models and captures at once.
     """
-    app = FastAPI(
+    app = _App(
         title="treestroke",
         version=__version__,
         summary="One photo of a tree and a few strokes, several photos of it, or two sketches, become a 3D tree.",

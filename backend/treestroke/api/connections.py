@@ -7,11 +7,11 @@ from typing import Any
 
 import h11
 import structlog
-from fastapi.responses import JSONResponse
 from uvicorn.protocols.http.h11_impl import STATUS_PHRASES, H11Protocol
 
 from treestroke.api.errors import problem
 from treestroke.api.request_counts import REDIS_CONNECTIONS
+from treestroke.api.request_ids import identify
 
 MAX_CONNECTIONS = 1000
 MIN_CONNECTIONS = 8
@@ -132,8 +132,8 @@ class Connection(H11Protocol):
 
     def send_400_response(self, msg: str) -> None:  # noqa: ARG002 - uvicorn's text
         """Refuse bytes that are not HTTP."""
+        self._refuse("bad_request", "this is not a valid HTTP request; send it again", LINGER_SECONDS)
         log.warning("request_invalid", peer=self.client and self.client[0])
-        self._refuse(problem("bad_request", "this is not a valid HTTP request; send it again"), LINGER_SECONDS)
 
     @property
     def responding(self) -> bool:
@@ -156,7 +156,7 @@ class Connection(H11Protocol):
         """Close, so that another connection can be open."""
         self.connections.discard(self)
         if self._head_timer is not None:
-            self._refuse(problem("overloaded", "too many connections are open at the moment; try again"))
+            self._refuse("overloaded", "too many connections are open at the moment; try again")
         else:
             self.transport.abort()
 
@@ -189,13 +189,14 @@ class Connection(H11Protocol):
 
     def _head_late(self) -> None:
         if self.conn.trailing_data[0]:
-            slow = "the request's head arrives too slowly; send it again"
-            self._refuse(problem("request_too_slow", slow), LINGER_SECONDS)
+            self._refuse("request_too_slow", "the request's head arrives too slowly; send it again", LINGER_SECONDS)
         else:
             self.transport.close()
 
-    def _refuse(self, response: JSONResponse, linger_s: float = 0.0) -> None:
+    def _refuse(self, code: str, detail: str, linger_s: float = 0.0) -> None:
         """Respond instead of the application, unless it has begun to respond, and close the connection."""
+        identify()
+        response = problem(code, detail)
         if self.conn.our_state not in (h11.IDLE, h11.SEND_RESPONSE):
             self.transport.close()
             return

@@ -18,6 +18,7 @@ from starlette.routing import Mount, compile_path
 
 from treestroke.api.following import TooManyFollowers
 from treestroke.api.request_counts import RateLimited
+from treestroke.api.request_ids import HEADER, request_id
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
 from treestroke.service.failures import code_of, problem_of
@@ -126,7 +127,8 @@ def problem(
 def _response(
     status: int, code: str, detail: str, errors: Sequence[Fault] = (), headers: Mapping[str, str] | None = None
 ) -> JSONResponse:
-    headers = dict(headers or {})
+    id = request_id()
+    headers = {**(headers or {}), HEADER: id}
     if status == HTTPStatus.SERVICE_UNAVAILABLE:
         headers["Retry-After"] = str(_RETRY_SECONDS)
     if status == HTTPStatus.UNAUTHORIZED:
@@ -138,6 +140,7 @@ def _response(
         detail=detail,
         code=code,
         errors=list(errors),
+        request_id=id,
     )
     return JSONResponse(body.model_dump(), status, headers, MEDIA_TYPE)
 
@@ -291,7 +294,7 @@ def _gone(_: Request, __: ClientDisconnect) -> JSONResponse:
 
 def _ours(_: Request, error: Exception) -> JSONResponse:
     log.error("request_failed", exc_info=error)
-    return problem("internal", "this is our mistake, and it is in the log; try again later")
+    return problem("internal", f"this is our mistake; try again later. The log has more by request_id {request_id()}")
 
 
 _ANSWERS: dict[type[Exception], Any] = {

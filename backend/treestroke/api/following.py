@@ -9,6 +9,7 @@ import time
 from collections import defaultdict
 from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from contextvars import Context
 from typing import Any, Generic, TypeVar
 
 import structlog
@@ -102,7 +103,7 @@ class Watcher:
         follower = Follower(known, principal)
         self._followers.add(follower)
         if self._polling is None:
-            self._polling = asyncio.create_task(self._run())
+            self._polling = asyncio.create_task(self._run(), context=Context())  # it outlives the request
         try:
             yield follower
         finally:

@@ -4,6 +4,7 @@ import asyncio
 import math
 import time
 from contextlib import suppress
+from contextvars import Context
 from dataclasses import dataclass
 from typing import Any
 
@@ -129,7 +130,7 @@ class RequestCounts:
         """Count in memory from now on, until the Redis counts again."""
         if self._probing is None:
             log.warning("rates_in_memory", error=str(error) or type(error).__name__)
-            self._probing = asyncio.create_task(self._probe(shared))
+            self._probing = asyncio.create_task(self._probe(shared), context=Context())  # it outlives the request
 
     async def _probe(self, shared: SlidingWindowCounterRateLimiter) -> None:
         while True:

@@ -3029,6 +3029,11 @@ export interface components {
             code: string;
             /** Errors */
             errors?: components["schemas"]["Fault"][];
+            /**
+             * Request Id
+             * @default
+             */
+            request_id: string;
         };
         /**
          * RadiusEdit
