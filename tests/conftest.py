@@ -22,7 +22,17 @@ FIRST = ("tests/api/test_events.py", "tests/faults/", "tests/test_installed.py",
 
 NO_SHARED_SERVICE = tuple(
     f"tests/api/test_{name}.py"
-    for name in ("schemathesis", "connections", "following", "limits", "bucket", "rates", "request_counts", "teams")
+    for name in (
+        "schemathesis",
+        "connections",
+        "following",
+        "limits",
+        "bucket",
+        "rates",
+        "request_counts",
+        "teams",
+        "audit",
+    )
 )
 
 

@@ -1,9 +1,10 @@
 """What the service sends of teams, members, keys and sessions in its responses, for its documents and its clients."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
+from treestroke.schemas import MakerInfo
 from treestroke.wire_strokes import Wire
 
 Role = Literal["viewer", "member", "owner"]
@@ -80,3 +81,24 @@ class KeyList(Wire):
     """Keys, the newest first."""
 
     keys: list[KeyInfo]
+
+
+class AuditEntry(Wire):
+    """Something that was done in a team."""
+
+    id: str
+    at: float = Field(description=_SECONDS)
+    who: MakerInfo | None = Field(description="null: whoever runs the service, or somebody who is not known")
+    credential: str = Field(description="id of the key or session that they came with, or `command line`")
+    action: str
+    subject: str = Field(description="id of what it was done to")
+    details: dict[str, Any]
+    address: str
+    request_id: str
+
+
+class AuditList(Wire):
+    """What was done in a team, the newest first."""
+
+    entries: list[AuditEntry]
+    next: str | None = Field(description="`before` of the next page; null: there is no more")

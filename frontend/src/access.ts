@@ -12,7 +12,7 @@ export function lookingOnly(session: Session | null): LookingOnly | null {
   return session.scopes.includes('trees') ? null : 'noTrees'
 }
 
-const TABS: readonly (string | null)[] = ['keys', 'team', 'limits'] satisfies AccountTab[]
+const TABS: readonly (string | null)[] = ['keys', 'team', 'audit', 'limits'] satisfies AccountTab[]
 
 /** Whether an open dialog is a part of one's account. */
 export function isAccountTab(dialog: State['dialog']): dialog is AccountTab {
@@ -22,5 +22,6 @@ export function isAccountTab(dialog: State['dialog']): dialog is AccountTab {
 /** Return the parts of one's account that are open to one: with a key for trees alone one sees no keys. */
 export function accountTabs(session: Session): readonly AccountTab[] {
   if (!session.scopes.includes('team')) return ['limits']
-  return session.member.role === 'owner' && !session.read_only ? ['keys', 'team', 'limits'] : ['keys', 'limits']
+  if (session.member.role !== 'owner') return ['keys', 'limits']
+  return session.read_only ? ['keys', 'audit', 'limits'] : ['keys', 'team', 'audit', 'limits']
 }

@@ -1,6 +1,7 @@
 """What one team has of every kind, and how each operation of the API is asked for it."""
 
 import re
+import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any
 
 import httpx
 from tests.api import drawn
+from tests.api.conftest import PATIENCE_SECONDS
 from tests.clips import clip_bytes
 
 METHODS = ("get", "put", "post", "delete", "patch")
@@ -73,9 +75,9 @@ def own_one_of_each(client: httpx.Client, folder: Path, finish: Callable[[str], 
         assert answer.status_code in (201, 202), answer.text
         return str(answer.json()["id"])
 
-    photo = made(client.post("/v1/photos", files={"file": drawn.encoded()}))
+    photo = made(_insisting(client, "/v1/photos", drawn.encoded()))
     capture = made(client.post("/v1/captures", json={"name": "ours"}))
-    part = made(client.post(f"/v1/captures/{capture}/photos", files={"file": drawn.encoded(seed=1)}))
+    part = made(_insisting(client, f"/v1/captures/{capture}/photos", drawn.encoded(seed=1)))
     model = made(client.post("/v1/models", json=drawn.request(photo, name="ours")))
     finish(model)
     key = client.post("/v1/keys", json={"name": "ours"})
@@ -84,7 +86,7 @@ def own_one_of_each(client: httpx.Client, folder: Path, finish: Callable[[str], 
     ids = {
         "pho": photo,
         "cap": capture,
-        "clp": made(client.post("/v1/clips", files={"file": clip_bytes(folder)})),
+        "clp": made(_insisting(client, "/v1/clips", clip_bytes(folder))),
         "upl": begun.headers["location"].rpartition("/")[2],
         "mdl": model,
         "shr": made(client.post(f"/v1/models/{model}/shares", json={})),
@@ -92,6 +94,15 @@ def own_one_of_each(client: httpx.Client, folder: Path, finish: Callable[[str], 
         "usr": made(member),
     }
     return Belongings(ids, part)
+
+
+def _insisting(client: httpx.Client, path: str, content: bytes) -> httpx.Response:
+    """Send a file again while the processes that read it are not ready, as on a busy machine."""
+    deadline = time.monotonic() + PATIENCE_SECONDS
+    while True:
+        answer = client.post(path, files={"file": content})
+        if answer.status_code != 503 or time.monotonic() > deadline:
+            return answer
 
 
 def operations(document: Mapping[str, Any], owned: Belongings) -> Iterator[Asked]:

@@ -28,6 +28,7 @@ OPERATIONS = {
     "get_shared_preview",
     "get_shared_tree",
     "get_team",
+    "list_audit",
     "list_keys",
     "list_members",
     "list_shares",

@@ -1,11 +1,13 @@
 """Teams, members and keys as the API shows them."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
-from treestroke.account_schemas import KeyInfo, KeyScope, Member, MemberInfo, NewKey, TeamInfo
+from treestroke.account_schemas import AuditEntry, KeyInfo, KeyScope, Member, MemberInfo, NewKey, TeamInfo
+from treestroke.schemas import MakerInfo
 from treestroke.service.keys import MadeKey
 from treestroke.service.principals import SCOPES, Principal
 from treestroke.store.account_tables import KeyRow, MemberRow, TeamRow
+from treestroke.store.tables import AuditRow
 
 
 def team_view(row: TeamRow) -> TeamInfo:
@@ -47,3 +49,18 @@ def new_key_view(made: MadeKey) -> NewKey:
 def scope_names(scopes: Collection[str]) -> list[KeyScope]:
     """Return scopes in the order in which all answers have them."""
     return [scope for scope in SCOPES if scope in scopes]
+
+
+def audit_view(row: AuditRow, names: Mapping[str, str]) -> AuditEntry:
+    """Return an entry of the audit, with the name of who did it."""
+    return AuditEntry(
+        id=str(row.number),
+        at=row.at,
+        who=None if row.who is None else MakerInfo(id=row.who, name=names.get(row.who, "")),
+        credential=row.credential,
+        action=row.action,
+        subject=row.subject,
+        details=row.details,
+        address=row.address,
+        request_id=row.request_id,
+    )

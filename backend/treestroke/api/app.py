@@ -24,6 +24,7 @@ from treestroke.api.rates import RateHeadersMiddleware, limit_rate
 from treestroke.api.request_counts import RequestCounts
 from treestroke.api.request_ids import RequestIdMiddleware
 from treestroke.api.routes import (
+    audit,
     captures,
     clips,
     events,
@@ -85,7 +86,7 @@ _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
 _ROUTES = (
     *(photos, sketches, captures, clips, uploads, models, events, files, shares, shared),
-    *(session, keys, team, status),
+    *(session, keys, team, audit, status),
 )
 _ANYWHERE = ("unauthenticated", "foreign_host", "rate_limited", "internal", "overloaded")
 """Codes of problems that every route may answer with."""

@@ -9,9 +9,11 @@ from starlette.exceptions import HTTPException
 
 from treestroke.api.errors import Refusal
 from treestroke.api.middleware import READING_METHODS, own_origin
+from treestroke.api.request_ids import request_id
 from treestroke.api.rules import RULES, check
 from treestroke.service.accounts import Accounts, Unauthenticated
 from treestroke.service.principals import LOCAL_PERSON, Principal
+from treestroke.store.audit import ORIGIN, Origin
 
 COOKIE = "__Host-treestroke"
 """Browsers take a cookie of such a name only from this very host, over TLS, and for all of its paths."""
@@ -32,6 +34,7 @@ async def admit(request: Request) -> None:
     HTTPException
         They may not know that there is anything.
     """
+    ORIGIN.set(Origin(request.client.host if request.client else "", request_id()))
     rule, hosted = RULES[request.scope["route"].name], request.app.state.settings.hosted
     request.state.principal = None if hosted else LOCAL_PERSON
     if rule is None or not hosted:

@@ -45,6 +45,7 @@ RULES: dict[str, Rule | None] = {
     **dict.fromkeys(("delete_model", "restore_model", "share_model", "revoke_share"), _CHANGE),
     "list_shares": _LOOK,
     **dict.fromkeys(("get_team", "list_members", "list_keys"), _LOOK_AT_TEAM),
+    "list_audit": Rule("team", "owner"),
     **dict.fromkeys(("make_key", "revoke_key"), _CHANGE_OWN_KEYS),
     **dict.fromkeys(("rename_team", "add_member", "change_member", "remove_member"), _CHANGE_TEAM),
 }

@@ -16,9 +16,10 @@ from treestroke.service.key_format import digest_of, is_key
 from treestroke.service.model_request import read_body
 from treestroke.service.principals import SCOPES, Principal
 from treestroke.store.account_tables import KeyRow, MemberRow, SessionRow
+from treestroke.store.audit import record
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
-from treestroke.store.scope import SERVICE
+from treestroke.store.scope import SERVICE, Scope
 from treestroke.wire_accounts import SignIn
 
 SESSION_SECONDS = 7 * 86_400.0
@@ -87,7 +88,11 @@ class Accounts:
         Unauthenticated
             As `by_key`.
         """
-        by = self.by_key(key)
+        try:
+            by = self.by_key(key)
+        except Unauthenticated:
+            self._record_refusal(key)
+            raise
         return self.begin(by, by.credential)
 
     def begin(self, who: Principal, key: str | None) -> tuple[str, Principal]:
@@ -105,12 +110,25 @@ class Accounts:
         with self.database.writing() as session:
             session.execute(delete(SessionRow).where(SessionRow.expires < now))
             session.add(row)
+            record(session, "signed_in", who.id, who.scope, session=row.id)
         return token, self.by_session(token)
 
     def sign_out(self, token: str) -> None:
         """End a session, if there is one."""
         with self.database.writing() as session:
-            session.execute(delete(SessionRow).where(SessionRow.digest == digest_of(self.secret, token)))
+            own = delete(SessionRow).where(SessionRow.digest == digest_of(self.secret, token))
+            ended = session.execute(own.returning(SessionRow.id, SessionRow.team, SessionRow.member)).all()
+            for id, team, who in ended:
+                record(session, "signed_out", who, Scope(team, who, credential=id), session=id)
+
+    def _record_refusal(self, key: str) -> None:
+        """Record that somebody tried to sign in by a key that is valid no more; of an unknown one no team is known."""
+        with self.database.reading() as session:
+            found = session.scalars(select(KeyRow).where(KeyRow.digest == digest_of(self.secret, key))).first()
+        if found is not None:
+            by = Scope(found.team, SERVICE.maker, credential=found.id)
+            with self.database.writing() as session:
+                record(session, "sign_in.refused", found.id, by, name=found.name, member=found.member)
 
     def _note(self, key: str, now: float) -> None:
         """Write down that a key was used; it is no less valid where that cannot be written."""

@@ -25,6 +25,7 @@ from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources, kept_columns
 from treestroke.service.quotas import admit_job, admit_upload
 from treestroke.store import leases, queries
+from treestroke.store.audit import record
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.objects import Damaged
@@ -236,6 +237,7 @@ def remove_photo(database: Database, id: str, photo: str) -> None:
         _row(session, id)
         queries.check_removable(session, _photo(session, id, photo))
         session.execute(delete_from(CapturePhoto).where(CapturePhoto.id == photo))
+        record(session, "capture_photo.removed", photo, capture=id)
         _note_change(session, id)
 
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import select, update
+from sqlalchemy.orm import Session
 
 from treestroke.codec.refusals import checked
 from treestroke.core.errors import TreestrokeError
@@ -13,8 +14,10 @@ from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound
 from treestroke.service.principals import Principal
 from treestroke.store.account_tables import KeyRow, MemberRow
+from treestroke.store.audit import record
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
+from treestroke.store.scope import Scope
 from treestroke.wire_accounts import KeyRequest
 
 _DAY_SECONDS = 86_400.0
@@ -83,6 +86,8 @@ def make_key(database: Database, secret: str, who: Principal, wanted: KeyRequest
             expires=now + wanted.days * _DAY_SECONDS,
         )
         session.add(row)
+        about = {"name": row.name, "scopes": row.scopes, "read_only": row.read_only, "days": wanted.days}
+        record(session, "key.made", row.id, member=owner, **about)
     return MadeKey(row, member, key)
 
 
@@ -98,4 +103,11 @@ def revoke_key(database: Database, who: Principal, id: str) -> None:
     with database.writing() as session:
         if session.scalars(select(KeyRow.id).where(*own)).first() is None:
             raise NotFound("key")
-        session.execute(update(KeyRow).where(KeyRow.id == id, KeyRow.revoked.is_(None)).values(revoked=time.time()))
+        end_key(session, id)
+
+
+def end_key(session: Session, id: str, by: Scope | None = None) -> None:
+    """Revoke a key in a session, and record who did it: whose session it is, or ``by``."""
+    valid = update(KeyRow).where(KeyRow.id == id, KeyRow.revoked.is_(None)).values(revoked=time.time())
+    for name, member in session.execute(valid.returning(KeyRow.name, KeyRow.member)).all():
+        record(session, "key.revoked", id, by, name=name, member=member)

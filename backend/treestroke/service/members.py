@@ -12,6 +12,7 @@ from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound
 from treestroke.service.principals import Principal
 from treestroke.store.account_tables import KeyRow, MemberRow, SessionRow, TeamRow
+from treestroke.store.audit import record
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
 from treestroke.wire_accounts import MemberChange, MemberRequest, TeamChange
@@ -44,6 +45,7 @@ def rename_team(database: Database, who: Principal, body: bytes) -> TeamRow:
     name = checked(TeamChange, read_body(body), TreestrokeError).name
     with database.writing() as session:
         team = _team(session, who)
+        record(session, "team.renamed", team.team, name=name, before=team.name)
         team.name = name
     return team
 
@@ -67,6 +69,7 @@ def add_member(database: Database, body: bytes) -> MemberRow:
     row = MemberRow(id=new_id("usr"), name=wanted.name, role=wanted.role, created=time.time())
     with database.writing() as session:
         session.add(row)
+        record(session, "member.added", row.id, name=row.name, role=row.role)
     return row
 
 
@@ -83,7 +86,9 @@ def change_member(database: Database, who: Principal, id: str, body: bytes) -> M
         member = _member(session, who, id)
         if wanted.role not in (None, "owner"):
             _keep_an_owner(session, member)
+        before = {"name": member.name, "role": member.role}
         member.name, member.role = wanted.name or member.name, wanted.role or member.role
+        record(session, "member.changed", id, name=member.name, role=member.role, before=before)
     return member
 
 
@@ -102,6 +107,7 @@ def remove_member(database: Database, who: Principal, id: str) -> None:
         member.removed = now
         session.execute(update(KeyRow).where(KeyRow.member == id, KeyRow.revoked.is_(None)).values(revoked=now))
         session.execute(delete(SessionRow).where(SessionRow.member == id))
+        record(session, "member.removed", id, name=member.name)
 
 
 def _team(session: Session, who: Principal, lock: bool = False) -> TeamRow:

@@ -33,7 +33,7 @@ class Principal:
     @property
     def scope(self) -> Scope:
         """Whose rows are seen, whose new ones are, and which may be deleted."""
-        return Scope(self.team, self.id, _REMOVES[self.role])
+        return Scope(self.team, self.id, _REMOVES[self.role], self.credential)
 
 
 LOCAL_PERSON = Principal(LOCAL.maker, str(LOCAL.team), "", "owner")

@@ -15,6 +15,7 @@ from treestroke.service.jobs import GLB
 from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound, Resources
 from treestroke.service.stored_models import StoredModel, find_model
+from treestroke.store.audit import record
 from treestroke.store.queries import check_removable, new_id
 from treestroke.store.scope import SERVICE, Scope
 from treestroke.store.tables import Share
@@ -77,6 +78,7 @@ def make_share(resources: Resources, id: str, body: bytes) -> tuple[Share, str]:
     )
     with resources.database.writing() as session:
         session.add(share)
+        record(session, "share.made", share.id, model=id, photo=share.photo, download=share.download)
     return share, token
 
 
@@ -107,7 +109,9 @@ def revoke_share(resources: Resources, id: str) -> None:
         if share is None:
             raise NotFound("share")
         check_removable(session, share)
-        share.revoked = share.revoked or time.time()
+        if share.revoked is None:
+            share.revoked = time.time()
+            record(session, "share.revoked", id, model=share.model)
 
 
 def open_share(resources: Resources, token: str) -> Shared:

@@ -5,14 +5,15 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from sqlalchemy import select, update
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from treestroke.account_schemas import Role
 from treestroke.core.errors import SettingsError
-from treestroke.service.keys import MadeKey, make_key
+from treestroke.service.keys import MadeKey, end_key, make_key
 from treestroke.service.principals import Principal
 from treestroke.store.account_tables import KeyRow, MemberRow, TeamRow
+from treestroke.store.audit import operator_of, record
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
 from treestroke.store.scope import SERVICE
@@ -47,7 +48,7 @@ def add_key(database: Database, secret: str, person: Person, wanted: KeyRequest)
     with database.of(SERVICE).writing() as session:
         member = _member_of(session, _team_of(session, person.team), person)
     who = Principal(member.id, member.team, member.name, "owner")
-    return make_key(database.of(who.scope), secret, who, wanted)
+    return make_key(database.of(operator_of(member.team)), secret, who, wanted)
 
 
 def list_all_keys(database: Database, team: str) -> Sequence[ListedKey]:
@@ -72,9 +73,10 @@ def revoke_any_key(database: Database, id: str) -> None:
         There is no such key.
     """
     with database.of(SERVICE).writing() as session:
-        if session.get(KeyRow, id) is None:
+        key = session.get(KeyRow, id)
+        if key is None:
             raise SettingsError(f"{id}: there is no such key; `treestroke keys list` names all")
-        session.execute(update(KeyRow).where(KeyRow.id == id, KeyRow.revoked.is_(None)).values(revoked=time.time()))
+        end_key(session, id, operator_of(key.team))
 
 
 def _team_of(session: Session, name: str) -> TeamRow:
@@ -88,6 +90,7 @@ def _team_of(session: Session, name: str) -> TeamRow:
         return found[0]
     team = TeamRow(team=new_id("team"), name=name, created=time.time())
     session.add(team)
+    record(session, "team.made", team.team, operator_of(team.team), name=name)
     return team
 
 
@@ -102,6 +105,7 @@ def _member_of(session: Session, team: TeamRow, person: Person) -> MemberRow:
         role = person.role or ("member" if members else "owner")
         row = MemberRow(id=new_id("usr"), team=team.team, name=person.member, role=role, created=time.time())
         session.add(row)
+        record(session, "member.added", row.id, operator_of(team.team), name=row.name, role=role)
         return row
     if person.role not in (None, found[0].role):
         raise SettingsError(

@@ -11,6 +11,7 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from treestroke.store.account_tables import MemberRow
+from treestroke.store.audit import record
 from treestroke.store.leases import TERMINAL, JobRow
 from treestroke.store.scope import Authored, scope_of
 from treestroke.store.tables import (
@@ -239,6 +240,8 @@ def _mark(session: Session, table: type[Kept], *chosen: ColumnElement[bool], del
     check_removable(session, row)
     if row.deleted != deleted:
         row.deleted, row.seen = deleted, None
+        kind, done = table.__tablename__.removesuffix("s"), "restored" if deleted is None else "deleted"
+        record(session, f"{kind}.{done}", row.id)
         session.flush()
     return True
 

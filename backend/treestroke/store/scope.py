@@ -17,11 +17,13 @@ class Scope:
     """A team whose rows are seen, and who makes new ones in it; without a team, all rows are seen.
 
     ``removes`` tells which of the rows that are seen may be deleted and restored (`store.queries.check_removable`).
+    ``credential`` is the id of the key or session by which this person came, for the audit.
     """
 
     team: str | None
     maker: str
     removes: Removes = "all"
+    credential: str = ""
 
 
 SERVICE = Scope(None, "service")

@@ -190,6 +190,24 @@ class Share(Authored, Table):
     revoked: Mapped[float | None]
 
 
+class AuditRow(Owned, Table):
+    """An act that a team may have to account for (`store.audit`). It is never changed; Postgres may enforce that."""
+
+    __tablename__ = "audit"
+
+    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    at: Mapped[float]
+    who: Mapped[str | None] = mapped_column(String(40))
+    """A member's id; None: whoever runs the service, or somebody who is not known."""
+    credential: Mapped[str] = mapped_column(String(40))
+    """Id of the key or session that they came with."""
+    action: Mapped[str] = mapped_column(String(40))
+    subject: Mapped[str] = mapped_column(String(40))
+    details: Mapped[dict[str, Any]]
+    address: Mapped[str] = mapped_column(String(64))
+    request_id: Mapped[str] = mapped_column(String(64))
+
+
 class CaptureRow(Authored, Aged, Table):
     """Photos of one tree from several places; ``seq`` rises with every change of their number."""
 
@@ -315,6 +333,7 @@ for _table in (ModelRow, PhotoRow, CaptureRow, ClipRow):
     Index(f"ix_{_table.__tablename__}_deleted", _table.seen, sqlite_where=_deleted, postgresql_where=_deleted)
 for _listed in (ModelRow, CaptureRow):
     Index(f"ix_{_listed.__tablename__}_team", _listed.team, _listed.number)
+Index("ix_audit_team", AuditRow.team, AuditRow.number)
 Index("ix_shares_model", Share.model, Share.number)
 Index("ix_replays_seen", Replay.seen)
 Index("ix_uploads_seen", UploadRow.seen)

@@ -33,6 +33,11 @@ export class Accounts {
     return request('DELETE', `/v1/keys/${id}`)
   }
 
+  /** Return a page of what was done in the team, the newest first; the next one begins `before` what the page says. */
+  listAudit(before: string | null): Promise<Schemas['AuditList']> {
+    return request('GET', `/v1/audit${before === null ? '' : `?before=${before}`}`)
+  }
+
   async listMembers(): Promise<readonly Member[]> {
     return (await request<Schemas['MemberList']>('GET', '/v1/members')).members
   }

@@ -38,4 +38,5 @@ export type Key = Schemas['KeyInfo']
 /** A key that was just made, which is told whole this once. */
 export type MadeKey = Schemas['NewKey']
 export type KeyOrder = Schemas['KeyRequest']
+export type AuditEntry = Schemas['AuditEntry']
 export type Quota = Schemas['QuotaNow']

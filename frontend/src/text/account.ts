@@ -32,6 +32,7 @@ export const accountText = {
     place: (role: Role, team: string) => `${accountText.roles[role]} in ${team}`,
     keys: 'Your keys',
     team: 'Team',
+    audit: 'Activity',
     limits: 'Limits',
     signOut: 'Sign out',
     signOutWhy: 'Your drawings stay in this browser.',

@@ -6,6 +6,7 @@ import { accountText } from '../../text/account'
 import { useStore, useStudio } from '../parts/useStore'
 import { Dialog } from '../start/Dialog'
 import { Tabs } from '../tree/Tabs'
+import { AuditPart } from './AuditPart'
 import { KeyList } from './KeyList'
 import { KeyMaker } from './KeyMaker'
 import { LimitBars } from './LimitBars'
@@ -15,7 +16,7 @@ import './accountDialog.css'
 
 const { dialog: words, menu, keys: keyWords } = accountText
 
-/** One's keys, for owners the team, and the limits; the state says which of them is shown. */
+/** One's keys, for owners the team and what was done in it, and the limits; the state says which of them is shown. */
 export function AccountDialog() {
   const session = useStore(state => state.session)
   return (
@@ -34,6 +35,7 @@ function Parts({ session }: { readonly session: Session }) {
   const parts = {
     keys: lists && <OwnKeys session={session} lists={lists} change={change} />,
     team: lists && <TeamPart session={session} lists={lists} change={change} />,
+    audit: chosen === 'audit' && <AuditPart />,
     limits: <LimitBars />,
   }
   return (

@@ -113,7 +113,7 @@ test('the only owner stays one: it is said why, and the role is as it was', asyn
 test('with a key that only reads nothing is offered that changes anything', async () => {
   await open('keys', { read_only: true })
   const labels = [...page.querySelectorAll('[role=tab]')].map(({ textContent }) => textContent)
-  expect([labels, part().querySelector('form, button')]).toEqual([['Your keys', 'Limits'], null])
+  expect([labels, part().querySelector('form, button')]).toEqual([['Your keys', 'Activity', 'Limits'], null])
   expect(part().textContent).toContain('a key that only reads')
 })
 
