@@ -1,6 +1,7 @@
 """An S3 server of the tests' own (SeaweedFS, from a package): it can be killed and started again."""
 
 import json
+import signal
 import socket
 import subprocess
 import sys
@@ -66,6 +67,16 @@ class S3Server:
             self._process.kill()
             self._process.wait()
             self._process = None
+
+    def freeze(self) -> None:
+        """Stop it where it stands."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        """Let it go on."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGCONT)
 
     def client(self) -> Any:
         """Return a client with the credentials."""

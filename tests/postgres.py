@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import tempfile
@@ -13,7 +14,7 @@ from pathlib import Path
 import psycopg
 import pytest
 from psycopg import sql
-from tests.faults.processes import wait_for
+from tests.faults.processes import processes, wait_for
 
 from treestroke.store.database import Database
 
@@ -53,7 +54,7 @@ class PostgresServer:
 
     def start(self) -> None:
         """Start the server and wait until it answers."""
-        settings = ("fsync=off", "max_connections=60", "unix_socket_directories=", *self._options)
+        settings = ("fsync=off", "max_connections=120", "unix_socket_directories=", *self._options)
         self._process = subprocess.Popen(
             self._command("postgres", "-p", str(self.port), *(part for each in settings for part in ("-c", each))),
             stderr=subprocess.DEVNULL,
@@ -66,6 +67,21 @@ class PostgresServer:
             subprocess.run(self._command("pg_ctl", "stop", "--mode=fast"), stdout=subprocess.DEVNULL, check=True)
             self._process.wait()
             self._process = None
+
+    def crash(self) -> None:
+        """End the server at once, as a power cut does; it recovers when it is started again."""
+        if self._process is not None:
+            subprocess.run(self._command("pg_ctl", "stop", "--mode=immediate"), stdout=subprocess.DEVNULL, check=True)
+            self._process.wait()
+            self._process = None
+
+    def freeze(self) -> None:
+        """Stop all of its processes where they stand."""
+        self._signal(signal.SIGSTOP)
+
+    def thaw(self) -> None:
+        """Let them go on."""
+        self._signal(signal.SIGCONT)
 
     def fresh(self, like: str = "template1") -> str:
         """Make a database like another and return its URL."""
@@ -90,6 +106,12 @@ class PostgresServer:
     def _command(self, program: str, *arguments: str) -> list[str]:
         user = ["--reuid=postgres", "--regid=postgres", "--clear-groups"] if os.geteuid() == 0 else []
         return ["setpriv", "--pdeathsig=INT", *user, str(_programs() / program), "-D", str(self._folder), *arguments]
+
+    def _signal(self, number: signal.Signals) -> None:
+        assert self._process is not None
+        for process in processes():
+            if self._process.pid in (process.pid, process.parent):
+                process.hit(number)
 
     def _answers(self) -> bool:
         try:

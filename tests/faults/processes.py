@@ -25,8 +25,8 @@ class Process:
             os.kill(self.pid, number)
 
 
-def processes(sessions: set[int]) -> list[Process]:
-    """List the processes of some sessions; the dead, all of whose threads are gone, do not count."""
+def processes(sessions: set[int] | None = None) -> list[Process]:
+    """List the processes of some sessions, or all; the dead, all of whose threads are gone, do not count."""
     found = []
     for folder in Path("/proc").iterdir():
         if folder.name.isdecimal():
@@ -34,7 +34,7 @@ def processes(sessions: set[int]) -> list[Process]:
                 state, parent, _, session, *others = (folder / "stat").read_text().rpartition(")")[2].split()
                 threads = int(others[13])
                 command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()
-                if (state not in "ZX" or threads > 1) and int(session) in sessions:
+                if (state not in "ZX" or threads > 1) and (sessions is None or int(session) in sessions):
                     found.append(Process(int(folder.name), int(parent), int(session), command.strip()))
     return found
 
