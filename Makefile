@@ -19,7 +19,7 @@ PORT ?= 8000
 unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(CURDIR)/$(VENV)/bytecode
 
-.PHONY: run page test redis postgres chromium check types pictures bench golden nightly readers usd chaos setup
+.PHONY: run page test redis postgres chromium check types pictures bench golden nightly readers usd chaos soak setup
 .DEFAULT_GOAL := run
 
 # Models an example, then serves until Ctrl+C (or SIGTERM): its last line names the page.
@@ -79,6 +79,7 @@ bench: $(STAMP) page
 	    --benchmark-sort=fullname
 	@$(BIN)/python -m tests.benchmarks.service_times
 	@$(BIN)/python -m tests.benchmarks.stream_times
+	@$(BIN)/python -m tests.benchmarks.hosted_times
 	@$(BIN)/python -m tests.benchmarks.store_times
 	@$(BIN)/python -m tests.benchmarks.page_times
 	@$(BIN)/python -m tests.benchmarks.files_table
@@ -106,10 +107,16 @@ readers: $(STAMP) page chromium .venv-bpy/ready .venv-usd/ready
 usd: $(STAMP)
 	@$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r requirements-usd.txt
 
-# Three minutes a broker: workers are killed at random while 200 jobs come in. No job may be lost or made twice.
-chaos: $(STAMP)
-	$(BIN)/python -m tests.faults.chaos --broker files
-	$(BIN)/python -m tests.faults.chaos --broker redis
+# Jobs come in while everything breaks: workers on one machine for three minutes; then two web processes, three workers,
+# Redis, Postgres and S3. No job may be lost or made twice.
+chaos: $(STAMP) redis postgres
+	$(BIN)/python -m tests.faults.chaos
+	$(BIN)/python -m tests.chaos --seed 1
+	$(BIN)/python -m tests.chaos --seed 2
+
+# An hour of mixed load on the same, and what its processes take meanwhile.
+soak: $(STAMP) redis postgres
+	$(BIN)/python -m tests.chaos.soak
 
 setup: $(STAMP)
 

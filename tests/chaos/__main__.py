@@ -5,6 +5,7 @@ It prints a table in Markdown, and ends with 1 where a promise of the service wa
 
 import argparse
 import random
+import signal
 import statistics
 import sys
 import tempfile
@@ -68,7 +69,7 @@ def torment(stack: Stack, jobs: int, seconds: float, seed: int) -> Outcome:
         asker.thread.start()
     chance = random.Random(seed)
     while any(asker.thread.is_alive() for asker in askers):
-        time.sleep(chance.uniform(*PAUSE_SECONDS))
+        blows.go_on(chance.uniform(*PAUSE_SECONDS))
         blows.strike()
     blows.mend()
     stack.wait_until_ready()
@@ -118,6 +119,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=480, help="in which they come in")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that nothing is left running
     with ExitStack() as opened:
         folder = Path(opened.enter_context(tempfile.TemporaryDirectory(prefix="treestroke-chaos-")))
         for name in ("web-1", "worker-1"):

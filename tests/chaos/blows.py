@@ -4,7 +4,6 @@ import ctypes
 import os
 import random
 import signal
-import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,6 +16,7 @@ from tests.chaos.stack import Program, Stack
 LONGER_THAN_A_LEASE = (12.0, 15.0)
 AWAY = (2.0, 8.0)
 FULL = (3.0, 8.0)
+_LOOK_SECONDS = 0.1
 DISK = "size=96m"
 _libc = ctypes.CDLL(None, use_errno=True)
 
@@ -32,13 +32,15 @@ class Blow:
 
 
 class Blows:
-    """Strikes at a stack at random; what is broken is mended a while later, by a thread of its own."""
+    """Strikes at a stack at random, and mends what is broken a while later.
+
+    All is done by the thread that calls: some servers end with the thread that started them.
+    """
 
     def __init__(self, stack: Stack, seed: int) -> None:
         self.done: list[Blow] = []
         self._stack, self._chance = stack, random.Random(seed)
-        self._mending: list[threading.Thread] = []
-        self._down = set[str]()
+        self._mending: list[tuple[float, str, Blow, Callable[[], object]]] = []
         self._kinds: dict[str, tuple[int, Callable[[Blow], None]]] = {
             "child of a worker killed": (5, lambda blow: self._strike_worker(blow, child=True)),
             "worker killed": (4, lambda blow: self._strike_worker(blow, child=False)),
@@ -57,20 +59,33 @@ class Blows:
             "disk of a machine full": (2, self._fill_disk),
         }
 
+    def go_on(self, seconds: float) -> None:
+        """Mend what is due, for so long."""
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            self._mend(time.monotonic())
+            time.sleep(_LOOK_SECONDS)
+
+    def mend(self) -> None:
+        """Mend everything, each thing at its time."""
+        while self._mending:
+            self.go_on(_LOOK_SECONDS)
+
     def strike(self) -> None:
         """Do one thing that does not concern a part that is down already."""
         kind = self._chance.choices(list(self._kinds), [weight for weight, _ in self._kinds.values()])[0]
-        part = kind.split()[0]
-        if part in self._down:
+        if kind.split()[0] in {part for _, part, _, _ in self._mending}:
             return
         blow = Blow(kind, time.monotonic(), running=self._running(None))
         self._kinds[kind][1](blow)
         self.done.append(blow)
 
-    def mend(self) -> None:
-        """Wait until everything is whole again."""
-        for thread in self._mending:
-            thread.join()
+    def _mend(self, now: float) -> None:
+        due = [each for each in self._mending if each[0] <= now]
+        self._mending = [each for each in self._mending if each[0] > now]
+        for _, _, blow, mend in due:
+            mend()
+            blow.ended = time.monotonic()
 
     # Workers and web processes, which are started again by the stack
 
@@ -154,16 +169,7 @@ class Blows:
 
     def _later(self, blow: Blow, seconds: float, part: str, mend: Callable[[], object]) -> None:
         """Mend after a while; until then the part is not struck again."""
-
-        def wait_and_mend() -> None:
-            time.sleep(seconds)
-            mend()
-            blow.ended = time.monotonic()
-            self._down.discard(part)
-
-        self._down.add(part)
-        self._mending.append(threading.Thread(target=wait_and_mend))
-        self._mending[-1].start()
+        self._mending.append((time.monotonic() + seconds, part, blow, mend))
 
     def _running(self, worker: Program | None) -> set[tuple[str, int]]:
         """Give the attempts that are under way, of all workers or of one."""

@@ -7,6 +7,7 @@ first minutes after the warm-up and the last ones.
 import argparse
 import os
 import random
+import signal
 import statistics
 import sys
 import tempfile
@@ -214,6 +215,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description="Load a hosted service for an hour and watch what it takes.")
     parser.add_argument("--minutes", type=float, default=60)
     options = parser.parse_args()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that nothing is left running
     with (
         tempfile.TemporaryDirectory(prefix="treestroke-soak-") as folder,
         running_stack(Path(folder), webs=2, workers=1) as stack,

@@ -20,7 +20,6 @@ from pathlib import Path
 
 import httpx
 from tests.faults.harness import Change, Row, Service
-from tests.faults.redis_server import RedisServer
 
 PAUSE_SECONDS = (2.0, 6.0)
 """Between two blows."""
@@ -161,19 +160,13 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--broker", choices=["files", "redis"], default="files")
     options = parser.parse_args()
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="treestroke-chaos-")))
-        url = ""
-        if options.broker == "redis":
-            redis = RedisServer(folder / "redis")
-            stack.callback(redis.kill)
-            url = redis.url
-        service = stack.enter_context(Service(folder / "service", broker_url=url, workers=options.workers))
+        service = stack.enter_context(Service(folder / "service", workers=options.workers))
         service.wait_for_workers(1)
         outcome = torment(service, options.seconds, options.jobs, options.seed)
-        sys.stdout.write("\n".join((f"broker: {options.broker}", *outcome.lines(), "")))
+        sys.stdout.write("\n".join((*outcome.lines(), "")))
         if outcome.violations:
             kept = Path(tempfile.gettempdir()) / "treestroke-chaos.log"
             kept.write_text(service.log())
