@@ -74,7 +74,8 @@ class Blows:
     def strike(self) -> None:
         """Do one thing that does not concern a part that is down already."""
         kind = self._chance.choices(list(self._kinds), [weight for weight, _ in self._kinds.values()])[0]
-        if kind.split()[0] in {part for _, part, _, _ in self._mending}:
+        part, down = kind.split()[0], {part for _, part, _, _ in self._mending}
+        if part in down or (part == "disk" and not small_disks(self._stack)):
             return
         blow = Blow(kind, time.monotonic(), running=self._running(None))
         self._kinds[kind][1](blow)

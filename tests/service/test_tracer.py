@@ -52,8 +52,15 @@ def test_one_more_stroke_is_answered_from_what_is_known(photo: Path, monkeypatch
     assert second["skeleton"]["points"]
 
 
-def test_the_photos_that_were_used_longest_ago_are_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tracer, "_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT)
+@pytest.mark.parametrize(
+    ("bound", "most"),
+    [("_KEPT_PIXELS", 2.5 * drawn.WIDTH * drawn.HEIGHT), ("_KEPT_PHOTOS", 2)],
+    ids=["pixels", "photos"],
+)
+def test_the_photos_that_were_used_longest_ago_are_forgotten(
+    bound: str, most: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tracer, bound, most)
     monkeypatch.setattr(tracer, "_known", type(tracer._known)())
     photos = [written(tmp_path, drawn.encoded(seed=seed)) for seed in range(3)]
     for at in (0, 1, 0, 2):

@@ -5,6 +5,7 @@ from tests.rows import add_model
 from treestroke.store import queries
 from treestroke.store.database import Database
 from treestroke.store.tables import File, ModelRow, PhotoRow
+from treestroke.store.turns import note_turn, wait_for_turn
 
 
 def test_ids_say_their_kind_and_cannot_be_guessed() -> None:
@@ -34,6 +35,17 @@ def test_places_in_the_queue_count_from_the_next_one(database: Database) -> None
             queued[2].number: 3,
         }
         assert queries.queue_positions(session, ModelRow, []) == {}
+
+
+def test_people_of_a_team_take_turns_in_the_queue(database: Database) -> None:
+    anns = [add_model(database, maker="ann") for _ in range(3)]
+    bobs = [add_model(database, maker="bob") for _ in range(2)]
+    with database.writing() as session:
+        note_turn(session, wait_for_turn(session), anns[0])  # Ann was served last
+    with database.reading() as session:
+        found = queries.queue_positions(session, ModelRow, [row.number for row in (*anns, *bobs)])
+    order = sorted(found, key=lambda number: found[number])
+    assert order == [row.number for row in (bobs[0], anns[0], bobs[1], anns[1], anns[2])]
 
 
 def test_the_usual_time_is_the_median_of_late_and_a_guess_before(database: Database) -> None:

@@ -36,8 +36,8 @@ from treestroke.wire_requests import SketchTraceRequest, TraceRequest
 
 P = ParamSpec("P")
 T = TypeVar("T")
-_KEPT_PIXELS = 60_000_000
-"""Most pixels of all photos that one process remembers."""
+_KEPT_PIXELS, _KEPT_PHOTOS = 60_000_000, 16
+"""Most that one process remembers: pixels of all photos, and photos, each with a trace of up to 25 MB."""
 
 
 @dataclass
@@ -182,9 +182,13 @@ def _recall(photo: Path) -> Known:
     """Return a photo from memory or disk; those used longest ago are forgotten."""
     known = _known.pop(photo, None) or Known(decode_stored(read_blob(photo)))
     _known[photo] = known
-    while len(_known) > 1 and sum(known_photo.picture.size // 3 for known_photo in _known.values()) > _KEPT_PIXELS:
+    while len(_known) > 1 and _too_much_is_known():
         _known.popitem(last=False)
     return known
+
+
+def _too_much_is_known() -> bool:
+    return len(_known) > _KEPT_PHOTOS or sum(one.picture.size // 3 for one in _known.values()) > _KEPT_PIXELS
 
 
 def answer_of(rev: int | None, answer: Mapping[str, Any]) -> bytes:

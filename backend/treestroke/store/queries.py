@@ -27,6 +27,7 @@ from treestroke.store.tables import (
     PhotoRow,
     Replay,
     SolveRow,
+    Turn,
 )
 
 FileRow = TypeVar("FileRow", File, ModelPart)
@@ -182,14 +183,21 @@ def referenced(session: Session, beginning: str = "") -> set[str]:
 
 
 def queue_positions(session: Session, table: type[AnyJob], numbers: Collection[int]) -> dict[int, int]:
-    """Return each queued job's place among its team's of its table, by number: 1 is the next; others are left out."""
+    """Return each queued job's place among its team's of its table, by number: 1 is the next; others are left out.
+
+    The people of a team are served in turn (`store.turns`): the first job of each, then the second of each.
+    """
     if not numbers:
         return {}
-    places = (
-        select(table.number, func.row_number().over(partition_by=table.team, order_by=table.number).label("place"))
-        .where(table.status == "queued", table.number <= max(numbers))
-        .subquery()
+    round_ = func.row_number().over(partition_by=[table.team, table.maker], order_by=table.number)
+    queued = (
+        select(table.number, table.team, table.maker, round_.label("round")).where(table.status == "queued").subquery()
     )
+    served = select(Turn.team, Turn.maker, func.max(Turn.last).label("last")).group_by(Turn.team, Turn.maker).subquery()
+    order = queued.c.round, func.coalesce(served.c.last, 0), queued.c.number
+    place = func.row_number().over(partition_by=queued.c.team, order_by=order)
+    same = (served.c.team == queued.c.team) & (served.c.maker == queued.c.maker)
+    places = select(queued.c.number, place.label("place")).outerjoin(served, same).subquery()
     query = select(places.c.number, places.c.place).where(places.c.number.in_(numbers))
     return dict(session.execute(query).all())
 
