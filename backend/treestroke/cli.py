@@ -14,6 +14,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from treestroke import __version__
+from treestroke.cli_backup import add_backup_flags, add_restore_flags, backup, restore
 from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, project_stem, whole
 from treestroke.cli_keys import add_key_flags, keys
 from treestroke.cli_outputs import ProgressLine, check_further, outputs_of, stem
@@ -71,8 +72,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _fail(OUR_FAULT, str(error), "--debug" in arguments)
     except (OSError, MemoryError) as error:
         return _fail(OUR_FAULT, f"{_fault(error)}; nothing was written", "--debug" in arguments)
-    except KeyboardInterrupt:
-        return _fail(INTERRUPTED, "interrupted; nothing was written", debug=False)
+    except KeyboardInterrupt as error:
+        return _fail(INTERRUPTED, str(error) or "interrupted; nothing was written", debug=False)
     return 0
 
 
@@ -157,7 +158,11 @@ def _add_service(commands: "Commands") -> None:
     doctor = _add_command(commands, "doctor", _doctor, "say what is missing or broken")
     keys = _add_command(commands, "keys", _keys, "make, list and revoke the keys of a team")
     add_key_flags(keys)
-    for command in (serve, worker, doctor, keys):
+    backup = _add_command(commands, "backup", _backup, "write a service's rows and files into a folder")
+    add_backup_flags(backup)
+    restore = _add_command(commands, "restore", _restore, "write a backup into an empty service")
+    add_restore_flags(restore)
+    for command in (serve, worker, doctor, keys, backup, restore):
         command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
 
 
@@ -336,6 +341,14 @@ def _doctor(options: argparse.Namespace) -> None:
 
 def _keys(options: argparse.Namespace) -> None:
     keys(_service_settings(options), options)
+
+
+def _backup(options: argparse.Namespace) -> None:
+    backup(_service_settings(options), options)
+
+
+def _restore(options: argparse.Namespace) -> None:
+    restore(_service_settings(options), options)
 
 
 def _service_settings(options: argparse.Namespace) -> Any:

@@ -36,7 +36,7 @@ def keys(settings: "Settings", options: argparse.Namespace) -> None:
     TreestrokeError
         The service has no keys, or what was given cannot be used.
     DataFolderError
-        The database does not answer.
+        The database does not answer, or was made by a newer program.
     """
     if not settings.hosted:
         raise SettingsError(
@@ -48,6 +48,7 @@ def keys(settings: "Settings", options: argparse.Namespace) -> None:
 
     database = Database(settings.folder, settings.database_url)
     try:
+        database.check()
         database.migrate()
         _ACTS[options.action](settings, database, options)
     except OperationalError as error:

@@ -23,7 +23,20 @@ from treestroke.settings import PREFIX, Settings
 from treestroke.wire_requests import CaptureTraceRequest, ModelRequest
 from treestroke.wire_strokes import CaptureStrokes, FrameStrokes, Strokes, StrokeSketch
 
-COMMANDS = ("model", "views", "video", "sketch", "siblings", "trace", "serve", "worker", "doctor", "keys")
+COMMANDS = (
+    "model",
+    "views",
+    "video",
+    "sketch",
+    "siblings",
+    "trace",
+    "serve",
+    "worker",
+    "doctor",
+    "keys",
+    "backup",
+    "restore",
+)
 INVOCATION = re.compile(r"^(?:\$ )?treestroke (\w+)(.*)$", re.M)
 
 

@@ -8,11 +8,12 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from sqlalchemy import delete, exists, or_, select, tuple_, update
+from sqlalchemy import delete, select, tuple_, update
 
 from treestroke.store.blobs import Blobs, insert_blobs
 from treestroke.store.database import Database
-from treestroke.store.tables import REFERENCES, BlobRow
+from treestroke.store.queries import used
+from treestroke.store.tables import BlobRow
 
 _PAGE_ROWS = 500
 """Rows that are read at once."""
@@ -20,7 +21,7 @@ _STEP_ROWS = 50
 """Blobs that are removed in one transaction."""
 _PAUSE_SECONDS = 0.02
 """Pause between two steps, in which others write."""
-_USED = or_(*(exists().where(column == BlobRow.sha256, column.class_.team == BlobRow.team) for column in REFERENCES))
+_USED = used()
 
 
 class _Seen(NamedTuple):
@@ -77,7 +78,7 @@ class BlobSweeper:
             self._mark(team, [row.sha256 for row in found if not row.used and row.seen is None], age_s)
             due = [row.sha256 for row in found if not row.used and row.seen is not None and row.seen <= before]
             for start in range(0, len(due), _STEP_ROWS):
-                if not self._over.is_set():
+                if not self._over.is_set() and not self._database.held():
                     removed += self._remove(team, due[start : start + _STEP_ROWS], before)
                     self._over.wait(_PAUSE_SECONDS)
         return removed

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from treestroke.store.copies import Copies
-from treestroke.store.objects import Damaged, StorageAway
+from treestroke.store.objects import Damaged, StorageAway, write_verified
 
 T = TypeVar("T")
 
@@ -79,6 +79,13 @@ class BucketObjects:
                 return self._asked(lambda: self._fetch(team, name))
             except _Missing:
                 raise Damaged(f"{name}: missing") from None
+
+    def copy(self, team: str, name: str, path: Path) -> None:
+        """Copy an object, not its copy on this machine; as `store.objects.Objects.copy`."""
+        try:
+            self._asked(lambda: write_verified(path, name, self._pieces(self._get(team, name))))
+        except _Missing:
+            raise Damaged(f"{name}: missing") from None
 
     def verify(self, team: str, name: str) -> None:
         """Compare an object, not its copy, with its name; as `store.objects.Objects.verify`."""

@@ -1,13 +1,11 @@
 """Copies of blobs on this machine: bounded, each compared with its name when it arrives."""
 
-import hashlib
 import os
-import secrets
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 
-from treestroke.store.objects import Damaged
+from treestroke.store.objects import write_verified
 
 MAX_BYTES = 8_000_000_000
 """Size of all copies; those that were used longest ago go first."""
@@ -39,23 +37,14 @@ class Copies:
             The disk is full.
         """
         self._make_room(size)
-        self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        arriving, found = self._folder / f".arriving-{secrets.token_hex(8)}", hashlib.sha256()
-        try:
-            with arriving.open("xb") as file:
-                for piece in pieces:
-                    found.update(piece)
-                    file.write(piece)
-            if found.hexdigest() != name:
-                raise Damaged(f"{name}: damaged")
-            return self._move(team, name, arriving)
-        finally:
-            arriving.unlink(missing_ok=True)
+        place = self._place(team, name)
+        write_verified(place, name, pieces)
+        return place
 
     def take(self, team: str, name: str, path: Path) -> None:
         """Make a file, which is in the data folder, a copy."""
         self._make_room(path.stat().st_size)
-        self._move(team, name, path)
+        path.replace(self._place(team, name))
 
     def remove(self, team: str, name: str) -> None:
         """Remove a copy, which need not exist."""
@@ -64,10 +53,11 @@ class Copies:
     def _path(self, team: str, name: str) -> Path:
         return self._folder / team / name[:2] / name
 
-    def _move(self, team: str, name: str, path: Path) -> Path:
+    def _place(self, team: str, name: str) -> Path:
+        """Return the path of a copy that is about to be made, in a folder that is there."""
         place = self._path(team, name)
         place.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        return path.replace(place)
+        return place
 
     def _make_room(self, size: int) -> None:
         """Remove the copies that were used longest ago, until one of this size fits in."""

@@ -6,12 +6,11 @@ import stat
 from contextlib import closing
 from pathlib import Path
 
-DATABASE = "treestroke.sqlite3"
+DATABASE, BLOBS = "treestroke.sqlite3", "blobs"
 _DATABASE_FILES = {DATABASE, *(f"{DATABASE}-{part}" for part in ("journal", "shm", "wal"))}
-_SERVICE_NAMES = {"blobs", "cache", "projects", "queue", "tmp", "uploads", *_DATABASE_FILES, "lock"}
+_SERVICE_NAMES = {BLOBS, "cache", "projects", "queue", "tmp", "uploads", *_DATABASE_FILES, "lock"}
 """Names that the service creates; ``lock`` is left of earlier versions."""
 _FILE_SYSTEM_NAMES = {"lost+found"}
-_BLOBS = "blobs"
 _MIGRATIONS = Path(__file__).parent / "migrations" / "versions"
 _BUSY_SECONDS = 10
 
@@ -86,10 +85,10 @@ def check_revisions(found: set[str], folder: Path, place: str, other: str) -> No
     DataFolderError
         The database is lost, or was made by a newer program.
     """
-    if not found and any(files for _, _, files in os.walk(folder / _BLOBS)):
+    if not found and any(files for _, _, files in os.walk(folder / BLOBS)):
         raise DataFolderError(
-            f"{place}: the database is lost or empty, but there are files in {folder / _BLOBS}; restore it from a "
-            f"copy, or move the folder {_BLOBS!r} away to start with an empty database"
+            f"{place}: the database is lost or empty, but there are files in {folder / BLOBS}; restore it from a "
+            f"copy, or move the folder {BLOBS!r} away to start with an empty database"
         )
     if unknown := found - known_revisions():
         raise DataFolderError(

@@ -2,11 +2,11 @@
 
 import copy
 from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, Self
 
-from sqlalchemy import Connection
+from sqlalchemy import Connection, inspect
 from sqlalchemy.orm import Session
 
 from treestroke.store.data_folder import DATABASE, known_revisions
@@ -32,6 +32,9 @@ class _Form(Protocol):
     def writing(self) -> AbstractContextManager[Connection]: ...
     def autocommitting(self) -> AbstractContextManager[Connection]: ...
     def migrating(self) -> AbstractContextManager[Connection]: ...
+    def copying(self) -> AbstractContextManager[Connection]: ...
+    def hold(self) -> AbstractContextManager[None]: ...
+    def held(self) -> bool: ...
     def close(self) -> None: ...
 
 
@@ -87,6 +90,10 @@ class Database:
         with self._session(self._form.autocommitting()) as session:
             yield session
 
+    def within(self, connection: Connection) -> AbstractContextManager[Session]:
+        """Open a session in the transaction of a connection, by which alone its changes are committed."""
+        return self._session(nullcontext(connection))
+
     @contextmanager
     def _session(self, opened: AbstractContextManager[Connection]) -> Iterator[Session]:
         info = scoped(self._scope)
@@ -94,18 +101,14 @@ class Database:
             yield session
 
     def migrate(self) -> None:
-        """Create the tables, or migrate them from any older revision, in one transaction.
+        """Create the tables, or migrate them from any older revision, in one transaction."""
+        if not self.current():
+            with self.migrating() as connection:
+                upgrade(connection)
 
-        Alembic, which takes long to import, is imported only where there is something to do.
-        """
-        if self.current():
-            return
-        from alembic import command
-
-        with self._form.migrating() as connection:
-            settings = _migrations()
-            settings.attributes["connection"] = connection
-            command.upgrade(settings, "head")
+    def migrating(self) -> AbstractContextManager[Connection]:
+        """Open a connection in one transaction that changes the tables, while no other process does (`upgrade`)."""
+        return self._form.migrating()
 
     def current(self) -> bool:
         """Tell whether the tables have the revision that this program needs."""
@@ -117,6 +120,25 @@ class Database:
     def exists(self) -> bool:
         """Tell whether there may be tables: SQLite's file is there, or a Postgres was named."""
         return self._form.exists()
+
+    def empty(self) -> bool:
+        """Tell whether there are no tables, of whatever program."""
+        if not self.exists():
+            return True
+        with self._form.reading() as connection:
+            return not inspect(connection).get_table_names()
+
+    def copying(self) -> AbstractContextManager[Connection]:
+        """Open a connection to all rows that reads one snapshot for as long as that takes."""
+        return self._form.copying()
+
+    def hold(self) -> AbstractContextManager[None]:
+        """Keep the sweeps of all processes from removing blobs meanwhile; several may do so at once."""
+        return self._form.hold()
+
+    def held(self) -> bool:
+        """Tell whether somebody keeps sweeps from removing blobs."""
+        return self._form.held()
 
     def check(self) -> None:
         """Check that this program can use the database; one without tables and files is new.
@@ -137,6 +159,18 @@ class Database:
     def close(self) -> None:
         """Close all connections."""
         self._form.close()
+
+
+def upgrade(connection: Connection, revision: str = "head") -> None:
+    """Create the tables as they were at a revision, or migrate them to it, in the connection's transaction.
+
+    Alembic, which takes long to import, is imported only where there is something to do.
+    """
+    from alembic import command
+
+    settings = _migrations()
+    settings.attributes["connection"] = connection
+    command.upgrade(settings, revision)
 
 
 def _migrations() -> "Config":

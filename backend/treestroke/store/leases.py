@@ -101,10 +101,16 @@ def take_back(session: Session, job: AnyJob, error: dict[str, Any] | None) -> bo
     if error is not None and job.attempt >= MAX_ATTEMPTS:
         change = lost.values(**_ended(table, "failed"), error=error)
     else:
-        change = lost.values(
-            status="queued", seq=table.seq + 1, claim=None, worker=None, phase=None, phase_fraction=0.0, progress=0.0
-        )
+        change = lost.values(**_queued(table))
     return session.scalars(change.returning(table.id)).first() is not None
+
+
+def queue_running(session: Session) -> None:
+    """Queue all running jobs again, or end those that were to stop: none of their workers is there any more."""
+    for table in JOBS:
+        running = update(table).where(table.status == "running")
+        session.execute(running.where(table.cancel.is_(True)).values(**_ended(table, "canceled")))
+        session.execute(running.values(**_queued(table)))
 
 
 def change_engine(session: Session, old: str, new: str) -> None:
@@ -135,6 +141,11 @@ def _start(job: AnyJob, holder: Holder) -> None:
 def _attempt(job: AnyJob) -> Any:
     table = type(job)
     return update(table).where(table.id == job.id, table.status == "running", table.attempt == job.attempt)
+
+
+def _queued(table: type[AnyJob]) -> dict[str, Any]:
+    no_attempt = {"claim": None, "worker": None, "phase": None, "phase_fraction": 0.0, "progress": 0.0}
+    return {"status": "queued", "seq": table.seq + 1, **no_attempt}
 
 
 def _ended(table: type[AnyJob], status: Ending) -> dict[str, Any]:

@@ -2,9 +2,11 @@
 
 import errno
 import hashlib
+import os
+import secrets
 import threading
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Protocol
@@ -12,6 +14,10 @@ from typing import Protocol
 from treestroke.store.atomic_write import sync_folder, write_atomically
 from treestroke.store.scope import LOCAL
 
+ARRIVING = ".arriving-"
+"""Beginning of the names of files that are being written."""
+_PIECE = 2**20
+"""Bytes that are in memory at once."""
 _MAX_VERIFIED = 1024
 """Files whose content was verified and need not be read again while their metadata stays the same."""
 _SETTLED_NS = 10**9
@@ -61,6 +67,17 @@ class Objects(Protocol):
             There is no such file, or what was fetched has another SHA-256.
         OSError
             The place is away.
+        """
+
+    def copy(self, team: str, name: str, path: Path) -> None:
+        """Copy a file to a path elsewhere, whole or not at all; it is compared with its name and synced.
+
+        Raises
+        ------
+        Damaged
+            It is missing, cannot be read, or has another SHA-256.
+        OSError
+            There is no room at the path, or the place is away.
         """
 
     def verify(self, team: str, name: str) -> None:
@@ -122,6 +139,10 @@ class FolderObjects:
     def local(self, team: str, name: str, again: bool = False) -> Path:  # noqa: ARG002 - nothing is fetched here
         """Return the path of a file, which need not exist."""
         return self._of(team) / name[:2] / name
+
+    def copy(self, team: str, name: str, path: Path) -> None:
+        """Copy a file; as `Objects.copy`."""
+        write_verified(path, name, pieces_of(self.local(team, name)))
 
     def verify(self, team: str, name: str) -> None:
         """Compare a file with its name; as `Objects.verify`."""
@@ -209,6 +230,49 @@ def sha256_of(path: Path) -> str:
     """Return the SHA-256 of a file's content."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def pieces_of(path: Path) -> Iterator[bytes]:
+    """Yield the content of the blob at ``path`` in pieces, which nobody has verified.
+
+    Raises
+    ------
+    Damaged
+        The blob is missing or cannot be read.
+    """
+    try:
+        with path.open("rb") as file:
+            while piece := file.read(_PIECE):
+                yield piece
+    except OSError as error:
+        raise _read_error(path, error) from error
+
+
+def write_verified(path: Path, sha256: str, pieces: Iterable[bytes]) -> None:
+    """Write a file of pieces that together have this SHA-256, whole or not at all, and wait until it is on disk.
+
+    Its rename is on disk only after `store.atomic_write.sync_folder`.
+
+    Raises
+    ------
+    Damaged
+        They have another SHA-256.
+    OSError
+        The disk is full, or the file may not be written.
+    """
+    arriving, found = path.with_name(f"{ARRIVING}{secrets.token_hex(8)}"), hashlib.sha256()
+    try:
+        with arriving.open("xb") as file:
+            for piece in pieces:
+                found.update(piece)
+                file.write(piece)
+            file.flush()
+            os.fsync(file.fileno())
+        if found.hexdigest() != sha256:
+            raise Damaged(f"{sha256}: damaged")
+        arriving.replace(path)
+    finally:
+        arriving.unlink(missing_ok=True)
 
 
 def read_blob(path: Path) -> bytes:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from sqlalchemy import Connection, Engine, NullPool, create_engine, make_url, text
+from sqlalchemy import Connection, Engine, NullPool, create_engine, func, make_url, select, text
 from sqlalchemy.engine.interfaces import IsolationLevel
 
 from treestroke.store.data_folder import check_revisions
@@ -23,10 +23,14 @@ _LIMITS = {
 }
 """What the server ends: the transaction of a process that was stopped must not keep others from its rows."""
 _MIGRATION_LIMITS = {"statement_timeout": "0", "lock_timeout": "60s"}
+_COPYING_LIMITS = {"statement_timeout": "0", "idle_in_transaction_session_timeout": "10min"}
+"""Limits of a transaction that copies all rows to a disk, which may be slow. It locks none."""
 _NETWORK = {"keepalives_idle": 5, "keepalives_interval": 2, "keepalives_count": 3, "tcp_user_timeout": 10_000}
 """How soon a server whose machine or network is gone is noticed."""
 _MIGRATING = 0x7472_6565
 """Number of the advisory lock that whoever migrates holds."""
+_HOLDING = 0x7472_6566
+"""Number of the advisory lock that whoever holds the blobs shares."""
 
 
 class Postgres:
@@ -83,6 +87,29 @@ class Postgres:
         with engine.connect() as connection, connection.begin():
             connection.execute(text("SELECT pg_advisory_xact_lock(:number)"), {"number": _MIGRATING})
             yield connection
+
+    @contextmanager
+    def copying(self) -> Iterator[Connection]:
+        """Open a connection that reads one snapshot for as long as that takes."""
+        with self.reading() as connection:
+            for name, value in _COPYING_LIMITS.items():
+                connection.exec_driver_sql(f"SET LOCAL {name} = '{value}'")
+            yield connection
+
+    @contextmanager
+    def hold(self) -> Iterator[None]:
+        """Have `held` tell so meanwhile, in all processes; it ends with this connection."""
+        with self.autocommitting() as connection:
+            connection.execute(select(func.pg_advisory_lock_shared(_HOLDING)))
+            try:
+                yield
+            finally:
+                connection.invalidate()  # by which the server unlocks, whatever became of the connection
+
+    def held(self) -> bool:
+        """Tell whether somebody holds the blobs."""
+        with self.reading() as connection:
+            return not connection.scalar(select(func.pg_try_advisory_xact_lock(_HOLDING)))
 
     def close(self) -> None:
         """Close all connections."""

@@ -6,9 +6,9 @@ from collections.abc import Collection, Iterable, Sequence
 from contextlib import suppress
 from typing import Any, TypeVar
 
-from sqlalchemy import ColumnElement, Select, func, select, union
+from sqlalchemy import ColumnElement, Select, exists, func, or_, select, union
 from sqlalchemy.exc import IntegrityError
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from treestroke.store.account_tables import MemberRow
 from treestroke.store.audit import record
@@ -18,6 +18,7 @@ from treestroke.store.tables import (
     REFERENCES,
     UPLOADED,
     AnyJob,
+    BlobRow,
     CapturePhoto,
     CaptureRow,
     ClipRow,
@@ -180,6 +181,11 @@ def referenced(session: Session, beginning: str = "") -> set[str]:
     end = f"{beginning}g"  # sorts after all hexadecimal digits
     columns = (select(column).where(column >= beginning, column < end) for column in REFERENCES)
     return set(session.scalars(union(*columns)))
+
+
+def used(references: Iterable[InstrumentedAttribute[Any]] = REFERENCES) -> ColumnElement[bool]:
+    """Return the condition that a row of the same team refers to a blob (`BlobRow`) by one of some columns."""
+    return or_(*(exists().where(column == BlobRow.sha256, column.class_.team == BlobRow.team) for column in references))
 
 
 def queue_positions(session: Session, table: type[AnyJob], numbers: Collection[int]) -> dict[int, int]:

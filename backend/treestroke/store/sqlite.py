@@ -1,16 +1,18 @@
 """SQLite: a file in the data folder, for one machine."""
 
+import fcntl
+import os
 import sqlite3
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import Any
 
 from sqlalchemy import URL, Connection, Engine, create_engine, event
 from sqlalchemy.exc import OperationalError
 
-from treestroke.store.data_folder import DATABASE, check_version
+from treestroke.store.data_folder import BLOBS, DATABASE, check_version
 
 _WRITE, _AUTOCOMMIT = "treestroke_write", "treestroke_autocommit"
 """Execution options of connections: a transaction that writes, or one for each statement."""
@@ -92,6 +94,36 @@ class Sqlite:
                 yield connection
         finally:
             engine.dispose()
+
+    def copying(self) -> AbstractContextManager[Connection]:
+        """Open a connection that reads one snapshot for as long as that takes."""
+        return self.reading()
+
+    @contextmanager
+    def hold(self) -> Iterator[None]:
+        """Have `held` tell so meanwhile, in this process and in others."""
+        with self._locking(fcntl.LOCK_SH):
+            yield
+
+    def held(self) -> bool:
+        """Tell whether somebody holds the blobs."""
+        try:
+            with self._locking(fcntl.LOCK_EX | fcntl.LOCK_NB):
+                return False
+        except BlockingIOError:
+            return True
+
+    @contextmanager
+    def _locking(self, kind: int) -> Iterator[None]:
+        """Lock the folder of the blobs, which ends with this process: the data folder itself is the launcher's."""
+        folder = self._path.parent / BLOBS
+        folder.mkdir(mode=0o700, exist_ok=True)
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            fcntl.flock(descriptor, kind)
+            yield
+        finally:
+            os.close(descriptor)
 
     def close(self) -> None:
         """Close all connections."""
