@@ -1,5 +1,6 @@
 # Three stages: the first builds the page, the second compiles treestroke and sets up what it needs, the third runs it.
-FROM node:20-bookworm-slim AS page
+# Digests are those of the images' indexes, which hold all platforms; tag and digest change together.
+FROM node:20.20.2-bookworm-slim@sha256:2cf067cfed83d5ea958367df9f966191a942351a2df77d6f0193e162b5febfc0 AS page
 WORKDIR /build/frontend
 COPY frontend/package.json frontend/package-lock.json frontend/.npmrc ./
 RUN npm ci
@@ -7,7 +8,7 @@ COPY examples /build/examples
 COPY frontend ./
 RUN node_modules/.bin/vite build
 
-FROM python:3.11-slim-bookworm AS build
+FROM python:3.11.17-slim-bookworm@sha256:2333bd330d12de02514770b3585cad313644316047cdee24a7acfdece6de6efb AS build
 RUN apt-get update \
     && apt-get install --yes --no-install-recommends gcc libc6-dev \
     && rm -rf /var/lib/apt/lists/*
@@ -24,7 +25,7 @@ RUN sed -n '/^setuptools==/,/[^\\]$/p' requirements-dev.txt > build.txt \
     && /venv/bin/pip install --no-cache-dir --no-deps dist/*.whl \
     && /venv/bin/python -c "import treestroke.core.grow._engine"
 
-FROM python:3.11-slim-bookworm
+FROM python:3.11.17-slim-bookworm@sha256:2333bd330d12de02514770b3585cad313644316047cdee24a7acfdece6de6efb
 RUN useradd --system --uid 10001 --home-dir /data treestroke \
     && install --directory --owner treestroke --group treestroke /data
 COPY --from=build /venv /venv
@@ -34,5 +35,5 @@ WORKDIR /data
 VOLUME /data
 HEALTHCHECK --interval=10s --timeout=5s --start-period=60s --retries=3 \
     CMD ["python", "-c", "import os, urllib.request as r; r.urlopen(f\"http://127.0.0.1:{os.environ.get('TREESTROKE_PORT') or 8000}/livez\", timeout=4)"]
-# The service listens on 127.0.0.1 only: run it with the host's network (docker-compose.yml says how and why).
+# Without a database of its own the service listens on 127.0.0.1 only: run it with the host's network then.
 CMD ["treestroke", "serve"]

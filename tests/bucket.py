@@ -6,7 +6,7 @@ import socket
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, suppress
 from itertools import count
 from pathlib import Path
@@ -21,18 +21,16 @@ START_SECONDS = 120
 """Emergency exit of waiting for the server, which starts slowly where the machine is busy."""
 _PARTS = ("master", "volume", "filer", "s3")
 _NUMBERS = count(1)
-_MAY = {
-    "identities": [{"name": "tests", "credentials": [{"accessKey": KEY, "secretKey": SECRET}], "actions": ["Admin"]}]
-}
+_TESTS = {"name": "tests", "credentials": [{"accessKey": KEY, "secretKey": SECRET}], "actions": ["Admin"]}
 
 
 class S3Server:
-    """SeaweedFS on ports and in a folder of its own, with one pair of credentials."""
+    """SeaweedFS on ports and in a folder of its own, with one pair of credentials, and perhaps more identities."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, more: Sequence[object] = ()) -> None:
         self._folder, self._ports = folder, _free_ports(2 * len(_PARTS))
         folder.mkdir(exist_ok=True)
-        (folder / "may.json").write_text(json.dumps(_MAY))
+        (folder / "may.json").write_text(json.dumps({"identities": [_TESTS, *more]}))
         self._process: subprocess.Popen[bytes] | None = None
         self.start()
 

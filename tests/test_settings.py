@@ -33,6 +33,26 @@ def test_an_empty_variable_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     assert read_settings() == Settings()
 
 
+def test_a_file_among_the_secrets_gives_what_a_variable_does_not(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("treestroke.settings.SECRETS", tmp_path)
+    monkeypatch.setenv("TREESTROKE_PORT", "8001")
+    for name, value in {"TREESTROKE_SECRET": "oak" * 20, "TREESTROKE_PORT": "1", "of_another_program": "x"}.items():
+        (tmp_path / name).write_text(f"{value}\n")
+    settings = read_settings()
+    assert (settings.secret, settings.port) == ("oak" * 20, 8001)
+
+
+def test_a_file_among_the_secrets_that_is_no_setting_is_refused(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("treestroke.settings.SECRETS", tmp_path)
+    (tmp_path / "TREESTROKE_SECRETS").touch()
+    with pytest.raises(SettingsError, match="TREESTROKE_SECRETS: there is no such setting"):
+        read_settings()
+
+
 def test_what_is_handed_to_another_process_is_read_there_alike(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     settings = read_settings(data=tmp_path, port=0, keep_days=1.5, broker_url="redis://127.0.0.1:1/0")
     for name, value in settings.environment().items():

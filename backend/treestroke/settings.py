@@ -11,6 +11,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 from treestroke.core.errors import SettingsError, shown
 
 PREFIX = "TREESTROKE_"
+SECRETS = Path("/run/secrets")
+"""Folder of files that are called as variables are: so containers are given secrets."""
 _POSTGRES = ("postgresql://", "postgres://")
 CLIENT_VARIABLES = ("TREESTROKE_KEY",)
 """Variables with the same prefix that are not the service's but its clients'."""
@@ -116,25 +118,29 @@ class Settings(BaseSettings):
 
 
 def read_settings(**flags: object) -> Settings:
-    """Return the settings from the environment; ``flags`` of the command line take precedence.
+    """Return the settings from the environment, or from files of `SECRETS`; ``flags`` take precedence.
 
     Raises
     ------
     SettingsError
-        A variable or a flag has a value that is not allowed, or a variable with the prefix is not a setting.
+        A variable, a file or a flag has a value that is not allowed, a variable or file with the prefix is not a
+        setting, or a file cannot be read.
     """
     known = {_variable(name) for name in Settings.model_fields}
-    for name in sorted(os.environ):
+    for name in sorted({*os.environ, *_secret_files()}):
         if name.upper().startswith(PREFIX) and name.upper() not in {*known, *CLIENT_VARIABLES}:
             raise SettingsError(f"{name}: there is no such setting; the settings are {', '.join(sorted(known))}")
     try:
-        settings = Settings(**flags)  # type: ignore[arg-type]
+        folder = SECRETS if _secret_files() else None  # pydantic warns of a folder that is missing
+        settings = Settings(**flags, _secrets_dir=folder)  # type: ignore[arg-type, call-arg]
         settings.folder  # noqa: B018 - raises if the home folder is unknown
     except ValidationError as error:
         first = error.errors()[0]
         name = str(first["loc"][0])
         where = f"--{name}" if name in flags else _variable(name)
         raise SettingsError(f"{where}: {shown(first['input'])} is not allowed; {_allowed(first['msg'])}") from None
+    except OSError as error:
+        raise SettingsError(f"{error.filename}: {error.strerror}; let the user of treestroke read it") from None
     except RuntimeError:
         raise SettingsError(
             "the user's home folder is unknown; name a data folder by --data or TREESTROKE_DATA"
@@ -169,6 +175,13 @@ def check_secret(settings: Settings) -> None:
             f"{_variable('secret')}: a service with keys needs a secret of at least {_SECRET_CHARACTERS} characters; "
             "make one by `openssl rand -hex 32`, and keep it: no key is valid with another"
         )
+
+
+def _secret_files() -> list[str]:
+    """Return the names of the files that are called as variables are, where there are any."""
+    if not os.access(SECRETS, os.R_OK | os.X_OK):
+        return []
+    return [path.name for path in SECRETS.iterdir() if path.name.upper().startswith(PREFIX)]
 
 
 def _names(text: str) -> list[str]:

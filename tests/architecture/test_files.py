@@ -10,7 +10,8 @@ ROOT = Path(__file__).parents[2]
 PATH_OF_A_MACHINE = re.compile(r"(?<![\w.])/(?:work|root|home|opt|Users|mnt|srv)/\w|\.\./shared|[A-Z]:\\\\")
 NAMESPACE = re.compile(r"\bhttp:/{2}www\.w3\.org/\d{4}/[\w/]+")
 """A name that looks like an address and that nobody asks for."""
-OWN = r"(?:127\.0\.0\.1|localhost|\[::1\]|redis|testserver)\b"
+OWN = r"(?:127\.0\.0\.1|localhost|\[::1\]|redis|s3|testserver|treestroke|treestroke_owner)\b"
+"""This machine, and the names in docker-compose.yml."""
 HOST = re.compile(rf"\b\w+:/{{2}}(?!{OWN}|HOST\b|BUCKET\b|USER\b)\w[\w.-]*|\b(?:pypi|pythonhosted|npmjs)\.org")
 
 
