@@ -152,4 +152,5 @@ def test_scaling_and_alarms_ask_for_figures_that_exist(database: Database) -> No
     assert asked <= figures
     assert len({rule["alert"] for rule in alarms}) == len(alarms)
     documented = (ROOT / "docs" / "operating.md").read_text()
+    assert set(re.findall(r"`(treestroke_\w+)`", documented)) <= figures
     assert [rule["alert"] for rule in alarms if f"`{rule['alert']}`" not in documented] == []

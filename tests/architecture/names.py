@@ -20,6 +20,7 @@ DOCUMENTS = [
 _BUILT = {"node_modules", "__pycache__", ".git", "out", "dist"}
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.S)
+_LINE_OF_COMMENT = re.compile(r"^\s*#.*$", re.M)
 
 
 @cache
@@ -155,6 +156,8 @@ def _other_files() -> list[Path]:
     page = ROOT / "frontend"
     return [
         *PACKAGE.rglob("*.c"),
+        ROOT / "docker-compose.yml",
+        *(path for path in (ROOT / "deploy").rglob("*") if path.is_file()),
         *page.glob("*.ts"),
         *(page / "src").rglob("*.ts"),
         *(page / "src").rglob("*.tsx"),
@@ -163,4 +166,5 @@ def _other_files() -> list[Path]:
 
 
 def _without_comments(path: Path) -> str:
-    return _COMMENT.sub("", path.read_text())
+    comment = _COMMENT if path.suffix in (".c", ".ts", ".tsx", ".html") else _LINE_OF_COMMENT
+    return comment.sub("", path.read_text())

@@ -29,6 +29,8 @@ ALLOWED = {
     "out/e2e/": "made by `make test`",
     "api/page": "made by `make page`",
     "<Method>Params": "a pattern of names",
+    "secrets/": "made by deploy/secrets.sh",
+    "secrets/TREESTROKE_SECRET": "made by deploy/secrets.sh",
     "UPDATE": "SQL",
     "GaussianMixture": "scikit-learn's class, which 0005 decides against",
     "vertex_indices": "PLY's property, which trimesh writes",
@@ -44,7 +46,9 @@ MEDIA_TYPE = re.compile(r"(?:application|audio|image|model|text|multipart)/[\w.+
 PLACEHOLDER = re.compile(r"[A-Z]{2,}[._]\w*[a-z].*|/?STEM|NAME")
 PRODUCT = re.compile(r"\w+(?:\.\w+)*\.(?:csv|glb|gltf|jpg|json|mtl|obj|ply|png|swc|usdc|usdz|zip)")
 """A file that treestroke reads or writes."""
-FOREIGN = (MEDIA_TYPE, PLACEHOLDER, PRODUCT)
+OF_A_MACHINE = re.compile(r"/(?:etc|run|var)(?:/[\w.-]+)+")
+"""A path on the machine of an operator."""
+FOREIGN = (MEDIA_TYPE, PLACEHOLDER, PRODUCT, OF_A_MACHINE)
 ROUTE = re.compile(r"(?:(GET|POST|PUT|PATCH|DELETE) )?(/[\w{}./-]*|\.\.\./[\w.]+)(?:\?[\w=&]*)?")
 DOTTED = re.compile(r"(\w+)(?:\.\w+)+")
 NAME = re.compile(r"_?[a-z]\w*_\w+|_[a-z]\w*|_?[A-Z][A-Z0-9_]{2,}|_?[A-Z]\w*[a-z]\w*")
@@ -112,6 +116,7 @@ _FORMS = {
         re.search(rf"^{found[2]} \?=", (ROOT / "Makefile").read_text(), re.M)
     ),
     r"TREESTROKE_(\w+)": _is_variable,
+    r"treestroke_(\w+)": lambda found: found[1] in source_words(),
     r"(--[a-z_-]+)(?: [\w.,]+)?": _is_flag,
     r"treestroke ([a-z]+)": _is_command,
     r"npm run (\w+)": _is_script,
