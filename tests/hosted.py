@@ -52,9 +52,9 @@ def page_headers(signed_in: httpx.Response) -> dict[str, str]:
 
 
 @contextmanager
-def hosting(folder: Path, database_url: str) -> Iterator[Hosted]:
-    """Run a hosted service on a database that has its tables."""
-    settings = {"database_url": database_url, "secret": SECRET, "hosts": HOST, "proxies": "127.0.0.1"}
+def hosting(folder: Path, database_url: str, **more: object) -> Iterator[Hosted]:
+    """Run a hosted service on a database that has its tables, perhaps with more settings."""
+    settings = {"database_url": database_url, "secret": SECRET, "hosts": HOST, "proxies": "127.0.0.1", **more}
     database = Database(folder, database_url)
     with (
         serving(folder, workers=0, tracers=1, **settings) as url,

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from treestroke import __version__
 from treestroke.cli_backup import add_backup_flags, add_restore_flags, backup, restore
 from treestroke.cli_inputs import UsageError, chosen_settings, inputs_of, project_stem, whole
-from treestroke.cli_keys import add_key_flags, keys
+from treestroke.cli_keys import add_key_flags, keys, migrate
 from treestroke.cli_outputs import ProgressLine, check_further, outputs_of, stem
 from treestroke.codec.inputs import BESIDE, PARTS, SOURCES, Source
 from treestroke.codec.photo_kinds import ACCEPTED_FORMATS
@@ -162,7 +162,8 @@ def _add_service(commands: "Commands") -> None:
     add_backup_flags(backup)
     restore = _add_command(commands, "restore", _restore, "write a backup into an empty service")
     add_restore_flags(restore)
-    for command in (serve, worker, doctor, keys, backup, restore):
+    migrate = _add_command(commands, "migrate", _migrate, "bring the tables of a service up to date")
+    for command in (serve, worker, doctor, keys, backup, restore, migrate):
         command.add_argument("--data", metavar="DIR", help="folder of the service's data (default ~/.treestroke)")
 
 
@@ -349,6 +350,10 @@ def _backup(options: argparse.Namespace) -> None:
 
 def _restore(options: argparse.Namespace) -> None:
     restore(_service_settings(options), options)
+
+
+def _migrate(options: argparse.Namespace) -> None:
+    migrate(_service_settings(options))
 
 
 def _service_settings(options: argparse.Namespace) -> Any:

@@ -65,7 +65,7 @@ def restore(settings: "Settings", options: argparse.Namespace) -> None:
     from treestroke.store.database import Database
 
     mend = "mend that and run it again: no row was written"
-    database = Database(settings.folder, settings.database_url)
+    database = Database(settings.folder, settings.database_url, settings.owner_database_url)
     with _one_line(f"{options.folder}: it was not restored", mend), _progress() as report, closing(database):
         prepare_folder(settings.folder)
         blobs = open_blobs(database, settings.folder, settings.bucket_url, _PATIENCE_SECONDS)

@@ -1,6 +1,8 @@
-"""`treestroke keys`: how a team and its first owner begin, and what its operator sees and revokes."""
+"""`treestroke keys` and `treestroke migrate`: how a team begins, what its operator revokes, and the tables."""
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -42,18 +44,54 @@ def keys(settings: "Settings", options: argparse.Namespace) -> None:
         raise SettingsError(
             "keys: a service without a database of its own has one person and no keys; set TREESTROKE_DATABASE_URL"
         )
-    from sqlalchemy.exc import OperationalError
-
-    from treestroke.store.database import Database
-
-    database = Database(settings.folder, settings.database_url)
-    try:
+    with opened(settings) as database:
         database.check()
         database.migrate()
         _ACTS[options.action](settings, database, options)
+
+
+def migrate(settings: "Settings") -> None:
+    """Bring the tables up to date, and grant the service's user what it may.
+
+    Raises
+    ------
+    DataFolderError
+        The database does not answer, was made by a newer program, or has tables that belong to another user.
+    """
+    from treestroke.store.data_folder import prepare_folder
+
+    prepare_folder(settings.folder)
+    with opened(settings) as database:
+        database.check()
+        database.migrate(again=True)
+    print(f"treestroke: the tables of {database.place} are up to date")
+
+
+@contextmanager
+def opened(settings: "Settings") -> Iterator["Database"]:
+    """Open the database for a command; what its server says is one line.
+
+    Raises
+    ------
+    DataFolderError
+        The database does not answer, or refuses what is done.
+    """
+    from sqlalchemy.exc import DBAPIError, OperationalError
+
+    from treestroke.store.database import Database
+
+    database = Database(settings.folder, settings.database_url, settings.owner_database_url)
+    try:
+        yield database
     except OperationalError as error:
         raise DataFolderError(
             f"TREESTROKE_DATABASE_URL: the database does not answer ({error.orig}); start it, or correct the address"
+        ) from error
+    except DBAPIError as error:
+        why = str(error.orig).partition("\n")[0]
+        raise DataFolderError(
+            f"{database.place}: the database refuses ({why}); name the owner of all tables by "
+            "TREESTROKE_OWNER_DATABASE_URL"
         ) from error
     finally:
         database.close()

@@ -106,6 +106,7 @@ def serve(settings: Settings) -> int:
     """
     _check_reach(settings)
     with _listen(settings) as listener:
+        _check_metrics_port(settings)
         prepare_folder(settings.folder)
         _lock(settings.folder)
         _check_database(settings)
@@ -121,7 +122,8 @@ def _check_database(settings: Settings) -> None:
     Raises
     ------
     DataFolderError
-        The database is lost, cannot be read, was made by a newer program, or Postgres is away.
+        The database is lost, cannot be read, was made by a newer program, or Postgres is away; or its tables are not
+        up to date and belong to another user.
     """
     if not settings.hosted:
         check_version(settings.folder)
@@ -130,9 +132,10 @@ def _check_database(settings: Settings) -> None:
 
     from treestroke.store.database import Database
 
-    database = Database(settings.folder, settings.database_url)
+    database = Database(settings.folder, settings.database_url, settings.owner_database_url)
     try:
         database.check()
+        database.check_owner()
     except OperationalError as error:
         why = " ".join(str(error.orig).split())
         raise DataFolderError(f"{database.place}: Postgres cannot be used ({why}); {database.mend}") from error
@@ -203,6 +206,17 @@ def _listen(settings: Settings) -> socket.socket:
         raise SettingsError(
             f"--port {settings.port}: {why}; take another: --port {other}, or `make run PORT={other}`"
         ) from None
+
+
+def _check_metrics_port(settings: Settings) -> None:
+    """Check that the port of the metrics, which the web process listens on, is free."""
+    if settings.metrics_port:
+        family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+        try:
+            socket.create_server((settings.host, settings.metrics_port), family=family).close()
+        except OSError as error:
+            why = os.strerror(error.errno or 0)
+            raise SettingsError(f"TREESTROKE_METRICS_PORT {settings.metrics_port}: {why}; take another port") from None
 
 
 def _lock(folder: Path) -> None:

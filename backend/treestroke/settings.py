@@ -33,7 +33,13 @@ class Settings(BaseSettings):
     data: Annotated[Path, _setting(Path("~/.treestroke"), "folder of the database, the files and the embedded queue")]
     host: Annotated[str, _setting("127.0.0.1", "address that the web process listens on")]
     port: Annotated[int, _setting(8000, "port that it listens on; 0 takes a free one", ge=0, le=65535)]
+    metrics_port: Annotated[
+        int, _setting(0, "port on which GET /metrics is answered to whoever reaches it; 0: none", ge=0, le=65535)
+    ]
     database_url: Annotated[str, _setting("", "a Postgres (postgresql://...); empty: SQLite in the data folder")]
+    owner_database_url: Annotated[
+        str, _setting("", "the same Postgres by its tables' owner, who alone makes and changes them")
+    ]
     hosts: Annotated[str, _setting("", "names that it answers to beside 127.0.0.1, with commas between")]
     proxies: Annotated[str, _setting("", "addresses of proxies before it that are trusted, with commas between")]
     secret: Annotated[str, _setting("", "at least 32 characters, by which keys are digested")]
@@ -153,6 +159,11 @@ def read_settings(**flags: object) -> Settings:
         raise SettingsError(
             f"{_variable('database_url')}: only Postgres is supported; give postgresql://HOST:PORT/NAME, "
             "or leave it out"
+        )
+    if settings.owner_database_url and not (settings.hosted and settings.owner_database_url.startswith(_POSTGRES)):
+        raise SettingsError(
+            f"{_variable('owner_database_url')}: it goes with {_variable('database_url')}, as the same Postgres by "
+            "another user; give postgresql://OWNER@HOST:PORT/NAME, or leave it out"
         )
     if settings.bucket_url and not _BUCKET.fullmatch(settings.bucket_url):
         raise SettingsError(

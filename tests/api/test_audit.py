@@ -1,4 +1,4 @@
-"""Whatever changes keys, members, the team or links, and whatever deletes, leaves one row of the audit, and no other."""
+"""Whatever changes keys, members, the team or links, and whatever deletes, leaves one entry of the audit."""
 
 from collections.abc import Iterator
 from typing import Any

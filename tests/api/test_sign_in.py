@@ -63,12 +63,6 @@ def test_a_key_does_what_its_rule_allows(hosted: Hosted) -> None:
     assert code(hosted.ask(reads, "POST", "/v1/members", json={"name": "Ben"})) == (403, "read_only")
 
 
-def test_figures_are_shown_to_owners_alone(hosted: Hosted) -> None:
-    assert code(hosted.client.get("/metrics")) == (404, "not_found")
-    assert code(hosted.ask(hosted.key("member"), "GET", "/metrics")) == (404, "not_found")
-    assert hosted.ask(hosted.key("owner"), "GET", "/metrics").status_code == 200
-
-
 def test_a_browser_signs_in_by_a_cookie_that_no_script_and_no_other_site_has(hosted: Hosted) -> None:
     key = hosted.key("owner")
     answer = hosted.client.post("/v1/session", json={"key": key})

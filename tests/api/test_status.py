@@ -143,7 +143,8 @@ def test_the_version_is_told(client: httpx.Client) -> None:
 
 def test_the_figures_of_the_queue_and_the_requests_are_told(client: httpx.Client, made: dict[str, Any]) -> None:
     told = client.get("/metrics").text
-    for name in ("models_queued", "models_running", "solves_queued", "worker_slots", "tracers_replaced_total"):
+    ages = ("queue_age_seconds", "models_queue_age_seconds", "solves_queue_age_seconds")
+    for name in ("models_queued", "models_running", "solves_queued", "worker_slots", "tracers_replaced_total", *ages):
         assert re.search(rf"^treestroke_{name}\b", told, re.M), name
     assert 'handler="/v1/models"' in told
     assert made["id"] not in told

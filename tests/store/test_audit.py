@@ -28,10 +28,14 @@ def test_an_act_is_recorded_with_who_did_it_and_from_where(database: Database) -
 
 
 def test_what_is_rolled_back_was_not_done(database: Database) -> None:
-    with pytest.raises(ZeroDivisionError), database.of(OAKS).writing() as session:
-        record(session, "key.made", "key_2")
-        session.flush()
-        raise ZeroDivisionError
+    def fail() -> None:
+        with database.of(OAKS).writing() as session:
+            record(session, "key.made", "key_2")
+            session.flush()
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
     assert entries(database) == []
 
 

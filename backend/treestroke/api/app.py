@@ -18,7 +18,7 @@ from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import STREAMS_A_PERSON, Watcher
 from treestroke.api.identity import SECURITY_SCHEMES, admit
-from treestroke.api.metrics import add_metrics
+from treestroke.api.metrics import add_metrics, private_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
 from treestroke.api.rates import RateHeadersMiddleware, limit_rate
 from treestroke.api.request_counts import RequestCounts
@@ -143,7 +143,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
     counted = [Depends(limit_rate)] if settings.hosted else []
     for routes in _ROUTES:
         app.include_router(routes.router, responses=documented(*_ANYWHERE), dependencies=counted)
-    add_metrics(app)
+    add_metrics(app, settings.hosted)
     add_page(app)
     if settings.hosted:
         app.add_middleware(RateHeadersMiddleware)
@@ -158,7 +158,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     settings: Settings = app.state.settings
     prepare_folder(settings.folder)
-    database = Database(settings.folder, settings.database_url)
+    database = Database(settings.folder, settings.database_url, settings.owner_database_url)
     database.check()
     database.migrate()
     blobs = open_blobs(database, settings.folder, settings.bucket_url)
@@ -189,7 +189,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.watcher = Watcher(database.of(SERVICE), app.state.places, streams)
     dispatcher.start()
     try:
-        yield
+        with private_metrics(settings):
+            yield
     finally:
         dispatcher.stop()
         packers.close()

@@ -1,11 +1,9 @@
 """Who sends a request: found by a key in the header Authorization, or by the cookie of a browser that has signed in."""
 
-from http import HTTPStatus
 from typing import Any
 
 from fastapi import Request
 from fastapi.concurrency import run_in_threadpool
-from starlette.exceptions import HTTPException
 
 from treestroke.api.errors import Refusal
 from treestroke.api.middleware import READING_METHODS, own_origin
@@ -31,21 +29,14 @@ async def admit(request: Request) -> None:
     ------
     Refusal
         Nobody is known by what came with the request, or they may not do this.
-    HTTPException
-        They may not know that there is anything.
     """
     ORIGIN.set(Origin(request.client.host if request.client else "", request_id()))
     rule, hosted = RULES[request.scope["route"].name], request.app.state.settings.hosted
     request.state.principal = None if hosted else LOCAL_PERSON
     if rule is None or not hosted:
         return
-    try:
-        request.state.principal = await run_in_threadpool(_identified, request)
-        check(rule, request.state.principal)
-    except Refusal:
-        if rule.hidden:
-            raise HTTPException(HTTPStatus.NOT_FOUND) from None
-        raise
+    request.state.principal = await run_in_threadpool(_identified, request)
+    check(rule, request.state.principal)
 
 
 def _identified(request: Request) -> Principal:

@@ -14,8 +14,6 @@ class Rule:
     scope: KeyScope | None
     role: Role
     writes: bool = False
-    hidden: bool = False
-    """Whether all others are told that there is nothing at its address."""
 
 
 _LOOK = Rule("trees", "viewer")
@@ -27,10 +25,10 @@ _CHANGE_TEAM = Rule("team", "owner", writes=True)
 
 RULES: dict[str, Rule | None] = {
     **dict.fromkeys(("live", "ready", "page", "icon", "sign_in"), None),
+    "metrics": None,  # a route of a service with one person alone
     **dict.fromkeys(("get_shared_page", "get_shared_model", "get_shared_tree"), None),
     **dict.fromkeys(("get_shared_preview", "get_shared_photo", "get_oembed"), None),
     **dict.fromkeys(("limits", "version", "get_session", "sign_out"), _SIGNED_IN),
-    "metrics": Rule("team", "owner", hidden=True),
     **dict.fromkeys(("list_photos", "get_photo", "get_image", "trace_photo", "trace_sketches"), _LOOK),
     **dict.fromkeys(("add_photo", "delete_photo"), _CHANGE),
     **dict.fromkeys(("list_captures", "get_capture", "get_capture_photo", "get_capture_image"), _LOOK),

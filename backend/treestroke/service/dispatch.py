@@ -262,10 +262,7 @@ def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
     """Return the queue's metrics by name, each with its description."""
     with database.reading() as session:
         models, solves = (_by_status(session, table) for table in (ModelRow, SolveRow))
-        waiting = (
-            select(table.created).where(table.status == "queued").order_by(table.number).limit(1) for table in JOBS
-        )
-        oldest = min((at for query in waiting if (at := session.scalar(query))), default=None)
+        models_age_s, solves_age_s = (_queue_age_s(session, table) for table in (ModelRow, SolveRow))
         slots = session.scalar(select(func.sum(Worker.slots))) or 0
     return {
         "models_queued": ("Models that are queued.", models.get("queued", 0)),
@@ -274,9 +271,11 @@ def queue_figures(database: Database) -> dict[str, tuple[str, float]]:
         "models_succeeded": ("Finished models that are kept.", models.get("succeeded", 0)),
         "solves_queued": ("Captures that are queued for their cameras to be found.", solves.get("queued", 0)),
         "solves_running": ("Captures whose cameras are being found.", solves.get("running", 0)),
+        "models_queue_age_seconds": ("Time since the oldest queued model was requested, in seconds.", models_age_s),
+        "solves_queue_age_seconds": ("Time since the oldest queued capture was requested, in seconds.", solves_age_s),
         "queue_age_seconds": (
             "Time since the oldest queued job was requested, in seconds.",
-            max(time.time() - oldest, 0.0) if oldest else 0.0,
+            max(models_age_s, solves_age_s),
         ),
         "worker_slots": ("Jobs that all running workers can do at once.", slots),
     }
@@ -297,6 +296,12 @@ def _counts(session: Session, status: str) -> Counts[tuple[str, str]]:
         for engine, team, count in session.execute(counted.group_by(table.engine, table.team)):
             found[engine, team] += count
     return found
+
+
+def _queue_age_s(session: Session, table: type[AnyJob]) -> float:
+    """Return the time since the oldest queued job of a table was requested, in seconds; 0 where none waits."""
+    oldest = session.scalar(select(table.created).where(table.status == "queued").order_by(table.number).limit(1))
+    return 0.0 if oldest is None else max(time.time() - oldest, 0.0)
 
 
 def _by_status(session: Session, table: type[AnyJob]) -> dict[str, int]:

@@ -22,7 +22,8 @@ class Origin:
     request_id: str = ""
 
 
-ORIGIN: ContextVar[Origin] = ContextVar("origin", default=Origin())
+_NOWHERE = Origin()
+ORIGIN: ContextVar[Origin] = ContextVar("origin", default=_NOWHERE)
 """Of the request that is handled, also in the threads that handle it."""
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Protocol, Self
 from sqlalchemy import Connection, inspect
 from sqlalchemy.orm import Session
 
-from treestroke.store.data_folder import DATABASE, known_revisions
+from treestroke.store.data_folder import DATABASE, DataFolderError, known_revisions
 from treestroke.store.postgres import Postgres
 from treestroke.store.revisions import revisions_of
 from treestroke.store.scope import Scope, ScopedSession, scoped
@@ -31,6 +31,7 @@ class _Form(Protocol):
     def reading(self) -> AbstractContextManager[Connection]: ...
     def writing(self) -> AbstractContextManager[Connection]: ...
     def autocommitting(self) -> AbstractContextManager[Connection]: ...
+    def may_migrate(self) -> bool: ...
     def migrating(self) -> AbstractContextManager[Connection]: ...
     def copying(self) -> AbstractContextManager[Connection]: ...
     def hold(self) -> AbstractContextManager[None]: ...
@@ -39,12 +40,15 @@ class _Form(Protocol):
 
 
 class Database:
-    """A Postgres by its URL; without one, SQLite in the data folder. Each session has a scope (`of`)."""
+    """A Postgres by its URL; without one, SQLite in the data folder. Each session has a scope (`of`).
 
-    def __init__(self, folder: Path, url: str = "") -> None:
+    Tables are made and migrated by ``owner_url``, where their owner is another user than the service's.
+    """
+
+    def __init__(self, folder: Path, url: str = "", owner_url: str = "") -> None:
         self.path = folder / DATABASE
         self.url = url
-        self._form: _Form = Postgres(folder, url) if url else Sqlite(folder)
+        self._form: _Form = Postgres(folder, url, owner_url) if url else Sqlite(folder)
         self._scope: Scope | None = None
 
     def of(self, scope: Scope) -> Self:
@@ -100,15 +104,39 @@ class Database:
         with opened as connection, ScopedSession(connection, expire_on_commit=False, info=info) as session:
             yield session
 
-    def migrate(self) -> None:
-        """Create the tables, or migrate them from any older revision, in one transaction."""
-        if not self.current():
-            with self.migrating() as connection:
-                upgrade(connection)
+    def migrate(self, again: bool = False) -> None:
+        """Create the tables, or migrate them from any older revision, in one transaction.
+
+        With ``again`` also grant anew what the service's user may.
+
+        Raises
+        ------
+        DataFolderError
+            They belong to another user.
+        """
+        if self.current() and not again:
+            return
+        self.check_owner()
+        with self.migrating() as connection:
+            upgrade(connection)
 
     def migrating(self) -> AbstractContextManager[Connection]:
         """Open a connection in one transaction that changes the tables, while no other process does (`upgrade`)."""
         return self._form.migrating()
+
+    def check_owner(self) -> None:
+        """Check that tables which are not up to date can be brought up to date.
+
+        Raises
+        ------
+        DataFolderError
+            They belong to another user.
+        """
+        if not self.current() and not self._form.may_migrate():
+            raise DataFolderError(
+                f"{self.place}: its tables are not up to date and belong to another user; run `treestroke migrate` "
+                "with TREESTROKE_OWNER_DATABASE_URL"
+            )
 
     def current(self) -> bool:
         """Tell whether the tables have the revision that this program needs."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, NullPool, create_engine, func, make_url, select, text
 from sqlalchemy.engine.interfaces import IsolationLevel
 
-from treestroke.store.data_folder import check_revisions
+from treestroke.store.data_folder import DataFolderError, check_revisions
 from treestroke.store.revisions import revisions_of
 
 _CONNECTIONS = 10
@@ -27,10 +27,27 @@ _COPYING_LIMITS = {"statement_timeout": "0", "idle_in_transaction_session_timeou
 """Limits of a transaction that copies all rows to a disk, which may be slow. It locks none."""
 _NETWORK = {"keepalives_idle": 5, "keepalives_interval": 2, "keepalives_count": 3, "tcp_user_timeout": 10_000}
 """How soon a server whose machine or network is gone is noticed."""
+_APPEND_ONLY = "audit"
+"""The table whose rows nobody but the owner changes or removes."""
 _MIGRATING = 0x7472_6565
 """Number of the advisory lock that whoever migrates holds."""
 _HOLDING = 0x7472_6566
 """Number of the advisory lock that whoever holds the blobs shares."""
+
+
+_MAY_MIGRATE = """
+    SELECT coalesce(
+        (SELECT pg_has_role(tableowner, 'USAGE') FROM pg_tables
+         WHERE schemaname = current_schema() AND tablename = 'alembic_version'),
+        has_schema_privilege(current_schema(), 'CREATE'))
+"""
+_GRANTS = (
+    "GRANT USAGE ON SCHEMA {schema} TO {user}",
+    "GRANT SELECT, INSERT, UPDATE, DELETE ON ALL TABLES IN SCHEMA {schema} TO {user}",
+    "GRANT USAGE ON ALL SEQUENCES IN SCHEMA {schema} TO {user}",
+    f"REVOKE UPDATE, DELETE ON {{schema}}.{_APPEND_ONLY}, {{schema}}.alembic_version FROM {{user}}",
+    "REVOKE INSERT ON {schema}.alembic_version FROM {user}",
+)
 
 
 class Postgres:
@@ -40,8 +57,9 @@ class Postgres:
     locks the row first. One that reads sees a snapshot. A connection that was lost is replaced before it is used.
     """
 
-    def __init__(self, folder: Path, url: str) -> None:
-        self._folder, self._url = folder, url
+    def __init__(self, folder: Path, url: str, owner_url: str = "") -> None:
+        self._folder, self._owner_url = folder, owner_url or url
+        self._granting = bool(owner_url)
         self.place = make_url(url).render_as_string(hide_password=True)
         self.mend = "start Postgres, or correct TREESTROKE_DATABASE_URL"
         self._engine = _engine(url, _LIMITS, pool=True)
@@ -80,13 +98,38 @@ class Postgres:
         with self._connect("AUTOCOMMIT") as connection:
             yield connection
 
+    def may_migrate(self) -> bool:
+        """Tell whether tables can be made and changed: by their owner, or as one who may make tables."""
+        if self._granting:
+            return True
+        with self.reading() as connection:
+            return bool(connection.execute(text(_MAY_MIGRATE)).scalar())
+
     @contextmanager
     def migrating(self) -> Iterator[Connection]:
-        """Open a connection in one transaction while no other process migrates."""
-        engine = _engine(self._url, _MIGRATION_LIMITS, pool=False)
+        """Open a connection in one transaction while no other process migrates.
+
+        It is the tables' owner's, where there is one of their own. Then the service's user gets in the same transaction
+        what it may.
+        """
+        engine = _engine(self._owner_url, _MIGRATION_LIMITS, pool=False)
         with engine.connect() as connection, connection.begin():
             connection.execute(text("SELECT pg_advisory_xact_lock(:number)"), {"number": _MIGRATING})
             yield connection
+            if self._granting:
+                self._grant(connection)
+
+    def _grant(self, owner: Connection) -> None:
+        """Let the service's user read and write all rows, but of the audit only read and add some."""
+        who = text("SELECT quote_ident(current_user::text), quote_ident(current_schema()::text)")
+        with self.reading() as connection:
+            user, schema = connection.execute(who).one()
+        if owner.execute(who).one()[0] == user:
+            raise DataFolderError(
+                f"TREESTROKE_OWNER_DATABASE_URL: {user} is the service's own user; name another, who owns the tables"
+            )
+        for statement in _GRANTS:
+            owner.execute(text(statement.format(user=user, schema=schema)))
 
     @contextmanager
     def copying(self) -> Iterator[Connection]:

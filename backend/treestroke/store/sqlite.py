@@ -81,6 +81,10 @@ class Sqlite:
         with self._write_by(_AUTOCOMMIT) as connection:
             yield connection
 
+    def may_migrate(self) -> bool:
+        """Tell whether tables can be made and changed: whoever may write the file may."""
+        return True
+
     @contextmanager
     def migrating(self) -> Iterator[Connection]:
         """Open a connection in one transaction, which creates the file.
