@@ -4,11 +4,15 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sqlalchemy import select
+
 from treestroke.codec.inputs import part_of
 from treestroke.store.database import Database
-from treestroke.store.leases import Holder, JobRow, claim_next
+from treestroke.store.leases import Holder, claim_next
 from treestroke.store.queries import new_id
-from treestroke.store.tables import CapturePhoto, CaptureRow, ModelPart, ModelRow, PhotoRow, SolveRow
+from treestroke.store.tables import CapturePhoto, CaptureRow, JobRow, ModelPart, ModelRow, PhotoRow, SolveRow
+from treestroke.store.webhook_tables import DeliveryRow, WebhookRow
+from treestroke.webhook_schemas import JOB_EVENTS
 
 PARTS = {"photo": "a" * 64, "strokes": "b" * 64}
 
@@ -113,3 +117,18 @@ def find(database: Database, id: str) -> ModelRow:
     """Return a model's row."""
     with database.reading() as session:
         return session.query(ModelRow).filter_by(id=id).one()
+
+
+def add_webhook(database: Database, **values: Any) -> WebhookRow:
+    """Write the row of a webhook that is told of everything, and return it."""
+    usual: dict[str, Any] = {"id": new_id("hook"), "url": "https://hooks.example/", "salt": "s", "created": 0.0}
+    row = WebhookRow(**{**usual, "events": list(JOB_EVENTS), **values})
+    with database.writing() as session:
+        session.add(row)
+    return row
+
+
+def deliveries(database: Database) -> Sequence[DeliveryRow]:
+    """Return all messages to webhooks, the first one first."""
+    with database.reading() as session:
+        return session.scalars(select(DeliveryRow).order_by(DeliveryRow.number)).all()

@@ -12,7 +12,7 @@ export function lookingOnly(session: Session | null): LookingOnly | null {
   return session.scopes.includes('trees') ? null : 'noTrees'
 }
 
-const TABS: readonly (string | null)[] = ['keys', 'team', 'audit', 'limits'] satisfies AccountTab[]
+const TABS: readonly (string | null)[] = ['keys', 'team', 'webhooks', 'audit', 'limits'] satisfies AccountTab[]
 
 /** Whether an open dialog is a part of one's account. */
 export function isAccountTab(dialog: State['dialog']): dialog is AccountTab {
@@ -23,5 +23,5 @@ export function isAccountTab(dialog: State['dialog']): dialog is AccountTab {
 export function accountTabs(session: Session): readonly AccountTab[] {
   if (!session.scopes.includes('team')) return ['limits']
   if (session.member.role !== 'owner') return ['keys', 'limits']
-  return session.read_only ? ['keys', 'audit', 'limits'] : ['keys', 'team', 'audit', 'limits']
+  return session.read_only ? ['keys', 'audit', 'limits'] : ['keys', 'team', 'webhooks', 'audit', 'limits']
 }

@@ -158,7 +158,7 @@ export interface ShownModel extends OwnPictures {
 }
 
 /** The parts of the dialog about one's account. */
-export type AccountTab = 'keys' | 'team' | 'audit' | 'limits'
+export type AccountTab = 'keys' | 'team' | 'webhooks' | 'audit' | 'limits'
 
 export interface State extends OwnPictures {
   /** Null while nothing is open. */

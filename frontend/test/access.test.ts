@@ -10,5 +10,6 @@ test('everybody may draw where nobody signs in; else all but viewers and keys th
 
 test('owners see the team, others their keys, and a key for trees alone only the limits', () => {
   const sessions = [session(), session({ member: BO }), session({ member: ANN, scopes: ['trees'] })]
-  expect(sessions.map(accountTabs)).toEqual([['keys', 'team', 'audit', 'limits'], ['keys', 'limits'], ['limits']])
+  const all = ['keys', 'team', 'webhooks', 'audit', 'limits']
+  expect(sessions.map(accountTabs)).toEqual([all, ['keys', 'limits'], ['limits']])
 })

@@ -61,6 +61,7 @@ BODIES: dict[str, tuple[str, bytes]] = {
     "add_capture_photo": ("image/png", drawn.encoded(seed=3)),
     "add_piece": ("application/partial-upload", b"more"),
     "share_model": ("application/json", b"{}"),
+    "change_webhook": ("application/json", b'{"enabled": false}'),
     "change_member": ("application/json", b'{"name": "theirs"}'),
     "ask_for_siblings": ("application/json", b'{"count": 1}'),
 }
@@ -82,6 +83,8 @@ def own_one_of_each(client: httpx.Client, folder: Path, finish: Callable[[str], 
     finish(model)
     key = client.post("/v1/keys", json={"name": "ours"})
     member = client.post("/v1/members", json={"name": "Ours", "role": "viewer"})
+    wanted = {"url": f"https:{'//'}hooks.invalid/", "events": ["model.failed"]}
+    webhook = made(client.post("/v1/webhooks", json=wanted))
     begun = client.post("/v1/clips", headers={"upload-complete": "?0"}, content=b"four")
     ids = {
         "pho": photo,
@@ -92,6 +95,8 @@ def own_one_of_each(client: httpx.Client, folder: Path, finish: Callable[[str], 
         "shr": made(client.post(f"/v1/models/{model}/shares", json={})),
         "key": made(key),
         "usr": made(member),
+        "hook": webhook,
+        "msg": made(client.post(f"/v1/webhooks/{webhook}/ping")),
     }
     return Belongings(ids, part)
 

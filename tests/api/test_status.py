@@ -32,6 +32,13 @@ OPERATIONS = {
     "list_keys",
     "list_members",
     "list_shares",
+    "list_webhooks",
+    "make_webhook",
+    "change_webhook",
+    "remove_webhook",
+    "ping_webhook",
+    "list_deliveries",
+    "resend_delivery",
     "make_key",
     "remove_member",
     "rename_team",
@@ -287,6 +294,8 @@ def test_every_body_has_an_example(document: dict[str, Any]) -> None:
         "post /v1/members",
         "patch /v1/members/{id}",
         "patch /v1/team",
+        "post /v1/webhooks",
+        "patch /v1/webhooks/{id}",
     }
     for bytes_ in ("post /v1/photos", "post /v1/captures/{id}/photos", "post /v1/clips", "patch /v1/uploads/{id}"):
         del asking[bytes_]

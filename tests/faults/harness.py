@@ -27,9 +27,9 @@ from tests.running import FAR_LIMITS
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import TERMINAL
 from treestroke.store.queries import referenced
 from treestroke.store.scope import LOCAL
+from treestroke.store.tables import TERMINAL
 
 ROOT = Path(__file__).parents[2]
 PHOTO = ROOT / "tests" / "data" / "beech_round.jpg"

@@ -11,7 +11,7 @@ from treestroke.store import leases
 from treestroke.store.database import Database
 from treestroke.store.queries import files
 from treestroke.store.scope import LOCAL
-from treestroke.store.tables import ModelRow, SolveRow
+from treestroke.store.tables import TERMINAL, ModelRow, SolveRow
 
 LOST = {"code": "worker_lost", "detail": "lost", "retryable": True}
 GONE = {"code": "engine_error", "detail": "broke", "retryable": False}
@@ -67,7 +67,7 @@ def test_a_claim_begins_an_attempt_afresh(database: Database) -> None:
     assert (job.beat, job.seq, job.started is None) == (row.beat + 1, row.seq + 1, False)
 
 
-@pytest.mark.parametrize("status", ["running", *leases.TERMINAL])
+@pytest.mark.parametrize("status", ["running", *TERMINAL])
 def test_only_a_queued_job_is_claimed(database: Database, status: str) -> None:
     row = add_model(database, status=status)
     assert claimed(database) is None
@@ -132,7 +132,7 @@ def test_a_stale_attempt_changes_nothing(database: Database, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", STALE)
-@pytest.mark.parametrize("status", leases.TERMINAL)
+@pytest.mark.parametrize("status", TERMINAL)
 def test_a_job_that_is_over_stays_as_it_is(database: Database, name: str, status: Any) -> None:
     change, arguments, wanted = STALE[name]
     job = started(database)

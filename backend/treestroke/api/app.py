@@ -39,6 +39,7 @@ from treestroke.api.routes import (
     status,
     team,
     uploads,
+    webhooks,
 )
 from treestroke.api.routes.page import add_page
 from treestroke.api.rules import RULES
@@ -52,6 +53,8 @@ from treestroke.service.photos import Resources
 from treestroke.service.projects import AT_ONCE, Projects
 from treestroke.service.quotas import quotas_of
 from treestroke.service.tracing_pool import TracingPool
+from treestroke.service.webhook_calls import Caller
+from treestroke.service.webhook_sender import WebhookSender
 from treestroke.settings import Settings
 from treestroke.store.blobs import open_blobs
 from treestroke.store.data_folder import prepare_folder
@@ -73,6 +76,7 @@ from treestroke.wire_requests import (
     TraceRequest,
 )
 from treestroke.wire_strokes import Strokes
+from treestroke.wire_webhooks import WebhookChange, WebhookRequest
 
 HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_FOLLOWERS = 500
@@ -86,7 +90,7 @@ _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
 _ROUTES = (
     *(photos, sketches, captures, clips, uploads, models, events, files, shares, shared),
-    *(session, keys, team, audit, status),
+    *(session, keys, team, webhooks, audit, status),
 )
 _ANYWHERE = ("unauthenticated", "foreign_host", "rate_limited", "internal", "overloaded")
 """Codes of problems that every route may answer with."""
@@ -108,6 +112,8 @@ _BODIES = (
     MemberRequest,
     MemberChange,
     TeamChange,
+    WebhookRequest,
+    WebhookChange,
     Problem,
 )
 """What bodies hold that FastAPI does not read."""
@@ -188,10 +194,15 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     streams = STREAMS_A_PERSON if settings.hosted else 0
     app.state.watcher = Watcher(database.of(SERVICE), app.state.places, streams)
     dispatcher.start()
+    app.state.webhook_caller = Caller()
+    app.state.webhook_sender = WebhookSender(database.of(SERVICE), settings.secret, app.state.webhook_caller)
+    if settings.hosted:
+        app.state.webhook_sender.start()
     try:
         with private_metrics(settings):
             yield
     finally:
+        app.state.webhook_sender.stop()
         dispatcher.stop()
         packers.close()
         await app.state.counts.close()

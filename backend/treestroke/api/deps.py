@@ -15,6 +15,8 @@ from treestroke.service.dispatch import Dispatcher
 from treestroke.service.photos import Resources
 from treestroke.service.principals import Principal
 from treestroke.service.projects import Projects
+from treestroke.service.webhook_calls import Caller
+from treestroke.service.webhook_sender import WebhookSender
 from treestroke.settings import Settings
 from treestroke.store.scope import SERVICE
 
@@ -94,6 +96,16 @@ def _projects(request: Request) -> Projects:
     return projects
 
 
+def _webhook_caller(request: Request) -> Caller:
+    caller: Caller = request.app.state.webhook_caller
+    return caller
+
+
+def _webhook_sender(request: Request) -> WebhookSender:
+    sender: WebhookSender = request.app.state.webhook_sender
+    return sender
+
+
 def _watcher(request: Request) -> Watcher:
     watcher: Watcher = request.app.state.watcher
     return watcher
@@ -156,6 +168,8 @@ ShareId = Annotated[str, _id("shr")]
 CapturePhotoId = Annotated[str, _id("cph")]
 MemberId = Annotated[str, _id("usr")]
 KeyId = Annotated[str, _id("key")]
+WebhookId = Annotated[str, _id("hook")]
+DeliveryId = Annotated[str, _id("msg")]
 SettingsOf = Annotated[Settings, Depends(_settings)]
 AskerOf = Annotated[Principal | None, Depends(_asker)]
 """Who asks; None without a key."""
@@ -165,5 +179,7 @@ AllResources = Annotated[Resources, Depends(_all_resources)]
 """The service's parts with the rows of all teams: for what tells of the service itself."""
 ProjectsOf = Annotated[Projects, Depends(_projects)]
 DispatcherOf = Annotated[Dispatcher, Depends(_dispatcher)]
+WebhookCallerOf = Annotated[Caller, Depends(_webhook_caller)]
+WebhookSenderOf = Annotated[WebhookSender, Depends(_webhook_sender)]
 WatcherOf = Annotated[Watcher, Depends(_watcher)]
 JsonBody = Annotated[bytes, Depends(_json_body)]

@@ -21,6 +21,7 @@ from treestroke.api.request_counts import RateLimited
 from treestroke.api.request_ids import HEADER, request_id
 from treestroke.core.errors import TreestrokeError
 from treestroke.schemas import Fault, Problem
+from treestroke.service.deliveries import Disabled
 from treestroke.service.failures import code_of, problem_of
 from treestroke.service.keys import Exceeded
 from treestroke.service.members import LastOwner
@@ -30,6 +31,7 @@ from treestroke.service.shares import ShareOver, Unfinished
 from treestroke.service.stored_models import KeyReused
 from treestroke.service.tracer import NoRoom
 from treestroke.service.tracing_pool import CannotStart, Crashed, Overloaded
+from treestroke.service.webhooks import MOST_WEBHOOKS, TooManyWebhooks
 from treestroke.store.objects import Damaged
 from treestroke.store.queries import NotYours
 from treestroke.store.uploads import Superseded, WrongOffset
@@ -59,6 +61,8 @@ _STATUS = {
     "member_not_found": 404,
     "team_not_found": 404,
     "share_not_found": 404,
+    "webhook_not_found": 404,
+    "delivery_not_found": 404,
     "frame_not_found": 404,
     "file_not_found": 404,
     "method_not_allowed": 405,
@@ -69,6 +73,8 @@ _STATUS = {
     "upload_offset_wrong": 409,
     "upload_superseded": 409,
     "last_owner": 409,
+    "webhook_disabled": 409,
+    "too_many_webhooks": 409,
     "share_revoked": 410,
     "share_expired": 410,
     "body_too_large": 413,
@@ -76,6 +82,7 @@ _STATUS = {
     "range_not_satisfiable": 416,
     "invalid": 422,
     "idempotency_key_reused": 422,
+    "webhook_address": 422,
     "rate_limited": 429,
     "quota_exceeded": 429,
     "queue_full": 429,
@@ -205,6 +212,14 @@ def _last_owner(_: Request, __: LastOwner) -> JSONResponse:
     return problem("last_owner", "this is the team's only owner; make another member owner first")
 
 
+def _webhook_disabled(_: Request, __: Disabled) -> JSONResponse:
+    return problem("webhook_disabled", "this webhook is disabled, so that nothing is sent to it; enable it first")
+
+
+def _too_many_webhooks(_: Request, __: TooManyWebhooks) -> JSONResponse:
+    return problem("too_many_webhooks", f"a team has at most {MOST_WEBHOOKS} webhooks; remove one first")
+
+
 def _beyond_scopes(_: Request, error: Exceeded) -> JSONResponse:
     return problem("scope_missing", f"your key has not the scope {error}, so it can make none that has; use another")
 
@@ -306,6 +321,8 @@ _ANSWERS: dict[type[Exception], Any] = {
     ShareOver: _share_over,
     KeyReused: _reused,
     LastOwner: _last_owner,
+    Disabled: _webhook_disabled,
+    TooManyWebhooks: _too_many_webhooks,
     Exceeded: _beyond_scopes,
     NoRoom: _no_room,
     RateLimited: _limited,

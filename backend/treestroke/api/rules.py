@@ -21,6 +21,7 @@ _CHANGE = Rule("trees", "member", writes=True)
 _SIGNED_IN = Rule(None, "viewer")
 _LOOK_AT_TEAM = Rule("team", "viewer")
 _CHANGE_OWN_KEYS = Rule("team", "viewer", writes=True)
+_LOOK_AT_WEBHOOKS = Rule("team", "owner")
 _CHANGE_TEAM = Rule("team", "owner", writes=True)
 
 RULES: dict[str, Rule | None] = {
@@ -45,6 +46,9 @@ RULES: dict[str, Rule | None] = {
     **dict.fromkeys(("get_team", "list_members", "list_keys"), _LOOK_AT_TEAM),
     "list_audit": Rule("team", "owner"),
     **dict.fromkeys(("make_key", "revoke_key"), _CHANGE_OWN_KEYS),
+    **dict.fromkeys(("list_webhooks", "list_deliveries"), _LOOK_AT_WEBHOOKS),
+    **dict.fromkeys(("make_webhook", "change_webhook", "remove_webhook"), _CHANGE_TEAM),
+    **dict.fromkeys(("ping_webhook", "resend_delivery"), _CHANGE_TEAM),
     **dict.fromkeys(("rename_team", "add_member", "change_member", "remove_member"), _CHANGE_TEAM),
 }
 """The rule of each route by its name; None: open to all, without a key."""

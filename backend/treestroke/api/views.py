@@ -1,7 +1,6 @@
 """Stored photos, models and captures as the API shows them."""
 
 from collections.abc import Sequence
-from datetime import UTC, datetime
 from typing import Any
 
 from treestroke import capture_schemas, clip_schemas, schemas
@@ -16,6 +15,7 @@ from treestroke.service.shares import Shared
 from treestroke.service.stored_models import StoredModel
 from treestroke.share_schemas import SharedModel, ShareInfo
 from treestroke.store.tables import CapturePhoto, ClipRow, PhotoRow, Share
+from treestroke.store.times import iso_time
 
 
 def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
@@ -25,7 +25,7 @@ def photo_view(row: PhotoRow) -> schemas.PhotoInfo:
         width=row.width,
         height=row.height,
         sha256=row.sha256,
-        created=_time(row.created),
+        created=iso_time(row.created),
         image=f"/v1/photos/{row.id}/image",
         warnings=[schemas.StrokeWarning(**warning) for warning in row.warnings],
     )
@@ -45,7 +45,7 @@ def clip_view(row: ClipRow, makers: Makers) -> clip_schemas.ClipInfo:
         bytes=row.bytes,
         sha256=row.sha256,
         media_type=row.media_type,
-        created=_time(row.created),
+        created=iso_time(row.created),
         video=f"/v1/clips/{row.id}/video",
         notes=[schemas.StrokeWarning(**note) for note in row.warnings],
     )
@@ -78,9 +78,9 @@ def model_view(model: StoredModel) -> schemas.ModelInfo:
         settings=row.settings,
         seed=row.seed,
         engine=row.engine,
-        created=_time(row.created),
-        started=None if row.started is None else _time(row.started),
-        finished=None if row.finished is None else _time(row.finished),
+        created=iso_time(row.created),
+        started=None if row.started is None else iso_time(row.started),
+        finished=None if row.finished is None else iso_time(row.finished),
     )
 
 
@@ -120,7 +120,7 @@ def capture_photo_view(row: CapturePhoto, structure: Structure | None = None) ->
         height=row.height,
         sha256=row.sha256,
         focal_px=row.focal_length_px,
-        created=_time(row.created),
+        created=iso_time(row.created),
         image=f"/v1/captures/{row.capture}/photos/{row.id}/image",
         warnings=[schemas.StrokeWarning(**warning) for warning in row.warnings],
         used=None if structure is None else any(one.name == row.name for one in structure.photos),
@@ -134,8 +134,8 @@ def _state(capture: StoredCapture) -> dict[str, Any]:
     if solve is not None:
         known = {
             "engine": solve.engine,
-            "started": None if solve.started is None else _time(solve.started),
-            "finished": None if solve.finished is None else _time(solve.finished),
+            "started": None if solve.started is None else iso_time(solve.started),
+            "finished": None if solve.finished is None else iso_time(solve.finished),
             "error": schemas.Failure(**solve.error) if solve.error else None,
             "phase": solve.phase,
         }
@@ -151,7 +151,7 @@ def _state(capture: StoredCapture) -> dict[str, Any]:
         "eta_s": None if capture.eta_s is None else round(capture.eta_s, 1),
         "attempt": 0 if solve is None else solve.attempt,
         "photo_count": len(capture.photos),
-        "created": _time(row.created),
+        "created": iso_time(row.created),
     }
 
 
@@ -160,9 +160,9 @@ def share_view(share: Share, url: str | None = None) -> ShareInfo:
     return ShareInfo(
         id=share.id,
         url=url,
-        created=_time(share.created),
-        expires=_time(share.expires),
-        revoked=None if share.revoked is None else _time(share.revoked),
+        created=iso_time(share.created),
+        expires=iso_time(share.expires),
+        revoked=None if share.revoked is None else iso_time(share.revoked),
         photo=share.photo,
         download=share.download,
     )
@@ -180,7 +180,7 @@ def shared_view(shared: Shared) -> SharedModel:
         height=report.get("measures", {}).get("height", {}).get("value"),
         photo=share.photo,
         download=share.download,
-        expires=_time(share.expires),
+        expires=iso_time(share.expires),
     )
 
 
@@ -195,7 +195,3 @@ def _score(report: dict[str, Any] | None) -> dict[str, float] | None:
 def _taken(report: dict[str, Any] | None) -> schemas.Taken | None:
     taken = (report or {}).get("taken")  # older reports have none
     return None if taken is None else schemas.Taken(**taken)
-
-
-def _time(seconds: float) -> str:
-    return datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

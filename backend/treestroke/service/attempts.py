@@ -15,9 +15,9 @@ from treestroke.core.errors import TreestrokeError
 from treestroke.service.failures import WORTH_WAITING, code_of, problem_of, problem_of_input
 from treestroke.service.progress_estimate import ProgressEstimate
 from treestroke.store.database import Database
-from treestroke.store.leases import Holder, JobRow, claim_next, end, heartbeat, take_back
+from treestroke.store.leases import Holder, claim_next, end, heartbeat, take_back
 from treestroke.store.objects import Damaged
-from treestroke.store.tables import AnyJob
+from treestroke.store.tables import AnyJob, JobRow
 
 _BEAT_SECONDS = 2.0
 _LOOK_SECONDS = 0.5

@@ -29,7 +29,7 @@ from treestroke.store.audit import record
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
 from treestroke.store.objects import Damaged
-from treestroke.store.tables import CapturePhoto, CaptureRow, SolveRow
+from treestroke.store.tables import TERMINAL, UNFINISHED, CapturePhoto, CaptureRow, SolveRow
 from treestroke.wire_requests import CaptureRequest
 
 _STATUS = {"succeeded": "solved", "canceled": "unsolved"}
@@ -261,7 +261,7 @@ def solve(resources: Resources, id: str) -> StoredCapture:
             raise CaptureError(f"photos: {need}", code="too_few_photos")
         made = _new_solve(now, ready)
         if made is not None:
-            if made.status not in leases.TERMINAL:
+            if made.status not in TERMINAL:
                 admit_job(session, resources.quotas)
             leases.cancel(session, SolveRow, SolveRow.capture == id)
             session.add(made)
@@ -373,7 +373,7 @@ def _new_solve(capture: StoredCapture, ready: SolveRow | None) -> SolveRow | Non
     if ready is not None and ready.fingerprint != wanted:
         ready = None  # the photos have changed since
     if last is not None:
-        waits = last.status in leases.UNFINISHED and not last.cancel
+        waits = last.status in UNFINISHED and not last.cancel
         if waits or (ready is not None and last.structure == ready.structure):
             return None
     over = ready is not None

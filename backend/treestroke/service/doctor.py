@@ -24,11 +24,10 @@ from treestroke.settings import Settings
 from treestroke.store.blobs import Blobs, open_blobs
 from treestroke.store.data_folder import DataFolderError, is_open_to_others
 from treestroke.store.database import Database
-from treestroke.store.leases import UNFINISHED
 from treestroke.store.objects import Damaged, StorageAway
 from treestroke.store.queries import referenced
 from treestroke.store.scope import SERVICE, Scope
-from treestroke.store.tables import JOBS, BlobRow, Worker
+from treestroke.store.tables import JOBS, UNFINISHED, BlobRow, Worker
 
 _BROKER_SECONDS = 2
 _WEB_SECONDS = 5.0

@@ -12,14 +12,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, delete, exists, inspect, select, update
+from sqlalchemy import ColumnElement, delete, exists, func, inspect, select, update
 
 from treestroke.service.stored_models import RESTORABLE_SECONDS
 from treestroke.service.unreferenced import BlobSweeper
 from treestroke.store.blobs import Blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import UNFINISHED
 from treestroke.store.tables import (
+    UNFINISHED,
     CaptureRow,
     ClipRow,
     ModelRow,
@@ -30,11 +30,15 @@ from treestroke.store.tables import (
     UploadRow,
 )
 from treestroke.store.upload_pieces import open_uploads
+from treestroke.store.webhook_tables import DeliveryRow
 
 UNREFERENCED_SECONDS = 3600.0
 """A blob that no row refers to is kept this long: a row that does may be about to be written."""
 UNWATCHED_SECONDS = 12 * 3600.0
 """The most that time without a running process counts, so that a wall clock that jumped cannot add a day."""
+DELIVERY_SECONDS = 30 * 86_400.0
+MOST_DELIVERIES = 1000
+"""Messages to webhooks are kept this long, and so many of one webhook."""
 _STEP_ROWS = 50
 _PAUSE_SECONDS = 0.02
 """Pause between two steps, in which others write."""
@@ -88,7 +92,7 @@ class Sweeper:
         """
         first, age_s = self._last is None, self._advance_clock()
         removed_until = age_s - RESTORABLE_SECONDS
-        for table in (ModelRow, PhotoRow, CaptureRow, ClipRow, UploadRow, Replay):
+        for table in (ModelRow, PhotoRow, CaptureRow, ClipRow, UploadRow, Replay, DeliveryRow):
             self._in_steps(table, update(table).values(seen=age_s), table.seen.is_(None))
         if self._keep_days:
             self._delete_older_than(age_s - self._keep_days * _DAY, age_s)
@@ -103,6 +107,7 @@ class Sweeper:
         )
         clips = self._in_steps(ClipRow, delete(ClipRow), ClipRow.deleted.is_not(None), ClipRow.seen <= removed_until)
         self._in_steps(Replay, delete(Replay), Replay.seen <= removed_until)
+        self._sweep_deliveries(age_s - DELIVERY_SECONDS)
         uploads = self._sweep_uploads(removed_until)
         blobs = self._blobs.sweep(age_s, age_s - (math.inf if first else unreferenced_s))
         return Swept(models, photos, captures, clips, uploads, blobs)
@@ -117,6 +122,20 @@ class Sweeper:
             if id not in kept:
                 self._uploads.remove(id)
         return removed
+
+    def _sweep_deliveries(self, removed_until: float) -> None:
+        """Remove old messages to webhooks, and the oldest of many; those that still wait are kept."""
+        over, removal = DeliveryRow.state != "waiting", delete(DeliveryRow)
+        self._in_steps(DeliveryRow, removal, over, DeliveryRow.seen <= removed_until)
+        number, many = DeliveryRow.number, func.count() > MOST_DELIVERIES
+        with self._database.reading() as session:
+            full = session.scalars(select(DeliveryRow.webhook).group_by(DeliveryRow.webhook).having(many)).all()
+        for webhook in full:
+            own = DeliveryRow.webhook == webhook
+            newest = select(number).where(own).order_by(number.desc()).limit(1).offset(MOST_DELIVERIES)
+            with self._database.reading() as session:
+                last = session.scalars(newest).one()
+            self._in_steps(DeliveryRow, removal, own, over, number <= last)
 
     def _advance_clock(self) -> float:
         """Advance the store's clock and return its time, seconds.

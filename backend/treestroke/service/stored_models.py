@@ -21,6 +21,7 @@ from treestroke.service.quotas import admit_model
 from treestroke.store import leases, queries
 from treestroke.store.database import Database
 from treestroke.store.objects import Damaged
+from treestroke.store.outbox import note_ended
 from treestroke.store.search import Search, search
 from treestroke.store.tables import File, ModelPart, ModelRow, PhotoRow, Replay
 
@@ -348,6 +349,7 @@ def copy_files(session: Session, equal: ModelRow, row: ModelRow) -> None:
         row.status, row.progress, row.finished = "succeeded", 1.0, time.time()
         row.report, row.preview_seq = equal.report, 1
         session.add_all(File(model=row.id, name=name, blob=file.blob, bytes=file.bytes) for name, file in files.items())
+        note_ended(session, ModelRow, [row.id])
 
 
 def _row(session: Session, id: str, deleted: bool = False) -> ModelRow:

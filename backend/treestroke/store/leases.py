@@ -1,22 +1,22 @@
 """The lease on a job: claimed, kept by heartbeats, taken back or ended. Each change applies to one attempt only.
 
 queued -> running -> succeeded | failed | canceled        running -> queued where an attempt was lost
+
+Whatever ends a job tells the outbox in the same transaction (`store.outbox`).
 """
 
 import time
-from typing import Any, Literal, NamedTuple, TypeVar
+from typing import Any, Literal, NamedTuple
 
 from sqlalchemy import ColumnElement, select, update
 from sqlalchemy.orm import Session
 
-from treestroke.store.tables import JOBS, AnyJob, File, ModelRow, SolveRow
+from treestroke.store.outbox import note_ended
+from treestroke.store.tables import JOBS, UNFINISHED, AnyJob, File, ModelRow
 from treestroke.store.turns import next_job, note_turn, wait_for_turn
 
 MAX_ATTEMPTS = 3
-UNFINISHED = ("queued", "running")
-TERMINAL = ("succeeded", "failed", "canceled")
 Ending = Literal["succeeded", "failed", "canceled"]
-JobRow = TypeVar("JobRow", ModelRow, SolveRow)
 
 
 class Holder(NamedTuple):
@@ -75,14 +75,13 @@ def complete(session: Session, job: AnyJob, **result: Any) -> bool:
     """End an attempt with its result, by columns; False if it was taken back or is to stop."""
     table = type(job)
     change = _attempt(job).where(table.cancel.is_(False)).values(**_ended(table, "succeeded"), progress=1.0, **result)
-    return session.scalars(change.returning(table.id)).first() is not None
+    return _end_by(session, table, change)
 
 
 def end(session: Session, job: AnyJob, status: Literal["failed", "canceled"], error: dict[str, Any] | None) -> bool:
     """End an attempt without a result; False if it was taken back."""
     table = type(job)
-    change = _attempt(job).values(**_ended(table, status), error=error)
-    return session.scalars(change.returning(table.id)).first() is not None
+    return _end_by(session, table, _attempt(job).values(**_ended(table, status), error=error))
 
 
 def take_back(session: Session, job: AnyJob, error: dict[str, Any] | None) -> bool:
@@ -96,12 +95,11 @@ def take_back(session: Session, job: AnyJob, error: dict[str, Any] | None) -> bo
     # The row decides, not ``job``: the request to stop may have arrived a moment ago. None comes while it is locked.
     session.execute(select(table.id).where(table.id == job.id).with_for_update())
     stopped = lost.where(table.cancel.is_(True)).values(**_ended(table, "canceled"))
-    if session.scalars(stopped.returning(table.id)).first() is not None:
+    if _end_by(session, table, stopped):
         return True
     if error is not None and job.attempt >= MAX_ATTEMPTS:
-        change = lost.values(**_ended(table, "failed"), error=error)
-    else:
-        change = lost.values(**_queued(table))
+        return _end_by(session, table, lost.values(**_ended(table, "failed"), error=error))
+    change = lost.values(**_queued(table))
     return session.scalars(change.returning(table.id)).first() is not None
 
 
@@ -124,7 +122,7 @@ def cancel(session: Session, table: type[AnyJob], *chosen: ColumnElement[bool]) 
     """Cancel the chosen jobs of a table that are queued at once, and ask the workers of running ones to stop them."""
     # Locked first: one that is taken back between the two statements would be missed by both.
     session.execute(select(table.id).where(*chosen, table.status.in_(UNFINISHED)).with_for_update())
-    session.execute(update(table).where(*chosen, table.status == "queued").values(**_ended(table, "canceled")))
+    _end_by(session, table, update(table).where(*chosen, table.status == "queued").values(**_ended(table, "canceled")))
     session.execute(
         update(table)
         .where(*chosen, table.status == "running", table.cancel.is_(False))
@@ -146,6 +144,13 @@ def _attempt(job: AnyJob) -> Any:
 def _queued(table: type[AnyJob]) -> dict[str, Any]:
     no_attempt = {"claim": None, "worker": None, "phase": None, "phase_fraction": 0.0, "progress": 0.0}
     return {"status": "queued", "seq": table.seq + 1, **no_attempt}
+
+
+def _end_by(session: Session, table: type[AnyJob], change: Any) -> bool:
+    """End jobs by a statement, and tell the outbox; return whether there were any."""
+    ended = session.scalars(change.returning(table.id)).all()
+    note_ended(session, table, ended)
+    return bool(ended)
 
 
 def _ended(table: type[AnyJob], status: Ending) -> dict[str, Any]:

@@ -12,10 +12,10 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from treestroke.store.account_tables import MemberRow
 from treestroke.store.audit import record
-from treestroke.store.leases import TERMINAL, JobRow
 from treestroke.store.scope import Authored, scope_of
 from treestroke.store.tables import (
     REFERENCES,
+    TERMINAL,
     UPLOADED,
     AnyJob,
     BlobRow,
@@ -23,6 +23,7 @@ from treestroke.store.tables import (
     CaptureRow,
     ClipRow,
     File,
+    JobRow,
     ModelPart,
     ModelRow,
     PhotoRow,

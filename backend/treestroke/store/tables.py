@@ -1,6 +1,6 @@
 """The tables. Times are seconds since 1970 (UTC); they are shown, and never decide when something is due."""
 
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import JSON, BigInteger, Float, ForeignKey, Index, Integer, MetaData, String, UniqueConstraint, false
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
@@ -13,7 +13,7 @@ _NAMES = {
     "ix": "ix_%(table_name)s_%(column_0_name)s",
     "fk": "fk_%(table_name)s_%(column_0_name)s",
 }
-_NUMBER = BigInteger().with_variant(Integer, "sqlite")
+NUMBER = BigInteger().with_variant(Integer, "sqlite")
 
 
 class Table(DeclarativeBase):
@@ -41,14 +41,14 @@ class Aged:
 class Uploaded(Authored):
     """A row of an uploaded photo or clip, whose file is a blob; of a photo, upright sRGB pixels without metadata."""
 
-    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    number: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     sha256: Mapped[str] = mapped_column(String(64))
     """SHA-256 of the uploaded bytes."""
     width: Mapped[int]
     height: Mapped[int]
     blob: Mapped[str] = mapped_column(String(64))
-    bytes: Mapped[int] = mapped_column(_NUMBER, insert_default=0, server_default="0")
+    bytes: Mapped[int] = mapped_column(NUMBER, insert_default=0, server_default="0")
     """Size of the blob, which may be many times that of the upload."""
     warnings: Mapped[list[dict[str, Any]]] = mapped_column(insert_default=list, server_default="[]")
     """What was mended or left out when it was read: code, stroke and detail of each."""
@@ -107,7 +107,7 @@ class Job(Authored):
     the job. ``beat`` rises while that attempt lives. ``seq`` rises with every change that viewers are shown.
     """
 
-    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    number: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     engine: Mapped[str] = mapped_column(String(40))
     """Engine that it was accepted for: workers of this engine alone take it."""
@@ -165,7 +165,7 @@ class File(Owned, Table):
     model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"), primary_key=True)
     name: Mapped[str] = mapped_column(String(40), primary_key=True)
     blob: Mapped[str] = mapped_column(String(64))
-    bytes: Mapped[int] = mapped_column(_NUMBER)
+    bytes: Mapped[int] = mapped_column(NUMBER)
 
 
 class Share(Authored, Table):
@@ -176,7 +176,7 @@ class Share(Authored, Table):
 
     __tablename__ = "shares"
 
-    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    number: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     model: Mapped[str] = mapped_column(ForeignKey("models.id", ondelete="CASCADE"))
     digest: Mapped[str] = mapped_column(String(64), unique=True)
@@ -213,7 +213,7 @@ class CaptureRow(Authored, Aged, Table):
 
     __tablename__ = "captures"
 
-    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    number: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     id: Mapped[str] = mapped_column(String(40), unique=True)
     name: Mapped[str] = mapped_column(String(200))
     seq: Mapped[int]
@@ -251,7 +251,7 @@ class Replay(Authored, Aged, Table):
     __tablename__ = "replays"
     __table_args__ = (UniqueConstraint("team", "maker", "key"),)
 
-    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    number: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     key: Mapped[str] = mapped_column(String(255))
     fingerprint: Mapped[str] = mapped_column(String(64))
     model: Mapped[str] = mapped_column(String(40))
@@ -281,7 +281,7 @@ class Turn(Table):
     maker: Mapped[str] = mapped_column(String(40), primary_key=True)
     kind: Mapped[str] = mapped_column(String(40), primary_key=True)
     """Name of the jobs' table."""
-    last: Mapped[int] = mapped_column(_NUMBER)
+    last: Mapped[int] = mapped_column(NUMBER)
 
 
 class StoreClock(Table):
@@ -310,8 +310,11 @@ class BlobRow(Owned, Table):
 
 
 AnyJob = ModelRow | SolveRow
+JobRow = TypeVar("JobRow", ModelRow, SolveRow)
 JOBS: tuple[type[ModelRow] | type[SolveRow], ...] = (ModelRow, SolveRow)
 """Every table whose rows are work for a worker."""
+UNFINISHED = ("queued", "running")
+TERMINAL = ("succeeded", "failed", "canceled")
 UPLOADED: tuple[type[PhotoRow] | type[CapturePhoto] | type[ClipRow], ...] = (PhotoRow, CapturePhoto, ClipRow)
 """Every table of uploaded photos and clips."""
 REFERENCES = (*(table.blob for table in UPLOADED), ModelPart.blob, File.blob, SolveRow.structure, PieceRow.blob)

@@ -40,3 +40,12 @@ export type MadeKey = Schemas['NewKey']
 export type KeyOrder = Schemas['KeyRequest']
 export type AuditEntry = Schemas['AuditEntry']
 export type Quota = Schemas['QuotaNow']
+
+export type Webhook = Schemas['WebhookInfo']
+/** A webhook that was just made or changed, with its secret where that is new. */
+export type MadeWebhook = Schemas['WebhookSecret']
+export type WebhookOrder = Schemas['WebhookRequest']
+export type WebhookChange = Partial<Schemas['WebhookChange']>
+export type WebhookEvent = WebhookOrder['events'][number]
+/** A message to a webhook, and what became of it. */
+export type Delivery = Schemas['DeliveryInfo']

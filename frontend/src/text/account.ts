@@ -33,6 +33,7 @@ export const accountText = {
     keys: 'Your keys',
     team: 'Team',
     audit: 'Activity',
+    webhooks: 'Webhooks',
     limits: 'Limits',
     signOut: 'Sign out',
     signOutWhy: 'Your drawings stay in this browser.',

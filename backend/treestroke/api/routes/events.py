@@ -16,8 +16,8 @@ from treestroke.service import stored_models
 from treestroke.service.jobs import GROWTH
 from treestroke.service.photos import Resources
 from treestroke.service.stored_models import StoredModel
-from treestroke.store.leases import TERMINAL
 from treestroke.store.objects import Damaged, StorageAway
+from treestroke.store.tables import TERMINAL
 
 log = structlog.get_logger()
 router = APIRouter(prefix="/v1/models", tags=["models"])

@@ -39,9 +39,8 @@ from treestroke.service.model_request import ModelOrder, read_change, read_form,
 from treestroke.service.photos import Resources
 from treestroke.service.sibling_request import read_siblings
 from treestroke.service.stored_models import StoredModel
-from treestroke.store.leases import TERMINAL
 from treestroke.store.search import Search
-from treestroke.store.tables import PhotoRow
+from treestroke.store.tables import TERMINAL, PhotoRow
 from treestroke.wire_requests import MODEL_EXAMPLE, FormRequest
 from treestroke.wire_strokes import STROKES_EXAMPLE
 

@@ -2,7 +2,7 @@
 
 from alembic import context
 
-from treestroke.store import account_tables  # noqa: F401 - its tables belong to the metadata
+from treestroke.store import account_tables, webhook_tables  # noqa: F401 - their tables belong to the metadata
 from treestroke.store.tables import Table
 
 connection = context.config.attributes["connection"]

@@ -12,6 +12,7 @@ import { KeyMaker } from './KeyMaker'
 import { LimitBars } from './LimitBars'
 import { TeamPart } from './TeamPart'
 import { type Change, type TeamLists, useTeam } from './useTeam'
+import { WebhookPart } from './WebhookPart'
 import './accountDialog.css'
 
 const { dialog: words, menu, keys: keyWords } = accountText
@@ -36,6 +37,7 @@ function Parts({ session }: { readonly session: Session }) {
     keys: lists && <OwnKeys session={session} lists={lists} change={change} />,
     team: lists && <TeamPart session={session} lists={lists} change={change} />,
     audit: chosen === 'audit' && <AuditPart />,
+    webhooks: <WebhookPart />,
     limits: <LimitBars />,
   }
   return (

@@ -1,10 +1,10 @@
 import type { TargetedEvent } from 'preact'
-import { useLayoutEffect, useRef, useState } from 'preact/hooks'
+import { useState } from 'preact/hooks'
 import type { KeyOrder, MadeKey, Member } from '../../api/types'
 import { accountText } from '../../text/account'
-import { copyText } from '../parts/copying'
 import { useStudio } from '../parts/useStore'
 import { Choice, NameField } from './Fields'
+import { ShownOnce } from './ShownOnce'
 import type { Change } from './useTeam'
 
 const { keys: words } = accountText
@@ -28,7 +28,16 @@ interface Props {
 /** A form for a new key; once it is made, the key in its place, to be copied. */
 export function KeyMaker(props: Props) {
   const [made, setMade] = useState<MadeKey | null>(null)
-  return made ? <NewKey made={made} done={() => setMade(null)} /> : <KeyForm {...props} take={setMade} />
+  if (!made) return <KeyForm {...props} take={setMade} />
+  return (
+    <ShownOnce
+      title={words.made(made.name)}
+      lead={words.once}
+      label={words.whole}
+      value={made.key}
+      done={() => setMade(null)}
+    />
+  )
 }
 
 function KeyForm({ change, members, member, take }: Props & { take(made: MadeKey): void }) {
@@ -65,32 +74,5 @@ function KeyForm({ change, members, member, take }: Props & { take(made: MadeKey
         {words.make}
       </button>
     </form>
-  )
-}
-
-/** A key that was just made: it is seen this once. */
-function NewKey({ made, done }: { readonly made: MadeKey; done(): void }) {
-  const [copied, setCopied] = useState<boolean | null>(null)
-  const field = useRef<HTMLInputElement>(null)
-  useLayoutEffect(() => field.current!.select(), [])
-  const copy = async () => {
-    setCopied(await copyText(made.key))
-    field.current?.select()
-  }
-  return (
-    <div class="new-key" role="group" aria-label={words.made(made.name)}>
-      <p class="new-key-title">{words.made(made.name)}</p>
-      <p>{words.once}</p>
-      <div class="new-key-line">
-        <input class="account-field" aria-label={words.whole} readOnly value={made.key} ref={field} />
-        <button type="button" class="button primary" onClick={copy}>
-          {copied ? words.copied : words.copy}
-        </button>
-        <button type="button" class="button outlined" onClick={done}>
-          {words.done}
-        </button>
-      </div>
-      <p role="status">{copied === false && words.copyYourself}</p>
-    </div>
   )
 }
