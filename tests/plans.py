@@ -40,5 +40,6 @@ def scans(steps: list[str]) -> list[str]:
         "members",
         "keys",
         "sessions",
+        "deliveries",
     )
     return [step for step in steps if any(step == f"SCAN {table}" for table in tables)]

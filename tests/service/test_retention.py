@@ -7,13 +7,14 @@ import pytest
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 from tests.plans import planned, scans
-from tests.rows import add_capture, add_solve
+from tests.rows import add_capture, add_solve, add_webhook, deliveries
 from tests.sweeping import DAY, HOUR, NOTHING, Kept
 
 from treestroke.service import captures, retention, stored_models
 from treestroke.service.photos import NotFound
 from treestroke.service.retention import UNWATCHED_SECONDS, Sweeper, Swept
 from treestroke.store.database import Database
+from treestroke.store.outbox import message
 from treestroke.store.queries import photo as photo_by_id
 from treestroke.store.scope import SERVICE
 from treestroke.store.tables import (
@@ -305,3 +306,38 @@ def test_what_arrived_for_an_upload_without_a_row_goes_at_once(kept: Kept) -> No
         writer.write(b"video")
     kept.sweep()
     assert kept.uploads.ids() == []
+
+
+def add_messages(kept: Kept, *states: str) -> None:
+    """Write messages to a new webhook that are in some states, the first one first."""
+    webhook = add_webhook(kept.database)
+    for state in states:
+        row = message(webhook, "ping", {})
+        row.state = state
+        with kept.database.writing() as session:
+            session.add(row)
+
+
+def states(kept: Kept) -> list[str]:
+    return [row.state for row in deliveries(kept.database)]
+
+
+def test_messages_to_webhooks_are_kept_for_thirty_days_unless_they_wait(
+    kept: Kept, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    add_messages(kept, "delivered", "waiting", "failed")
+    monkeypatch.setattr(retention, "DELIVERY_SECONDS", 2 * DAY)  # hourly sweeps of a month take long
+    kept.sweep_for(47 * HOUR)
+    assert states(kept) == ["delivered", "waiting", "failed"]
+    kept.sweep_for(3 * HOUR)
+    assert states(kept) == ["waiting"]
+
+
+def test_of_many_messages_to_a_webhook_the_oldest_go_unless_they_wait(
+    kept: Kept, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(retention, "MOST_DELIVERIES", 2)
+    add_messages(kept, "delivered", "waiting", "failed", "blocked", "canceled")
+    add_messages(kept, "delivered", "delivered")
+    kept.sweep()
+    assert states(kept) == ["waiting", "blocked", "canceled", "delivered", "delivered"]
