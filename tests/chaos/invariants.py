@@ -18,7 +18,7 @@ from tests.faults.processes import wait_for
 from treestroke.service.retention import Sweeper
 from treestroke.store.blobs import open_blobs
 from treestroke.store.database import Database
-from treestroke.store.leases import MAX_ATTEMPTS, TERMINAL
+from treestroke.store.leases import MAX_ATTEMPTS
 from treestroke.store.queries import referenced
 from treestroke.store.scope import SERVICE
 

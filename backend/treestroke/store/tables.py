@@ -195,7 +195,7 @@ class AuditRow(Owned, Table):
 
     __tablename__ = "audit"
 
-    number: Mapped[int] = mapped_column(_NUMBER, primary_key=True, autoincrement=True)
+    number: Mapped[int] = mapped_column(NUMBER, primary_key=True, autoincrement=True)
     at: Mapped[float]
     who: Mapped[str | None] = mapped_column(String(40))
     """A member's id; None: whoever runs the service, or somebody who is not known."""
