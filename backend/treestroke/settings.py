@@ -163,7 +163,7 @@ def read_settings(**flags: object) -> Settings:
     if settings.owner_database_url and not (settings.hosted and settings.owner_database_url.startswith(_POSTGRES)):
         raise SettingsError(
             f"{_variable('owner_database_url')}: it goes with {_variable('database_url')}, as the same Postgres by "
-            "another user; give postgresql://OWNER@HOST:PORT/NAME, or leave it out"
+            "another user; give postgresql://USER@HOST:PORT/NAME, or leave it out"
         )
     if settings.bucket_url and not _BUCKET.fullmatch(settings.bucket_url):
         raise SettingsError(

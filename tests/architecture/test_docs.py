@@ -36,6 +36,7 @@ COMMANDS = (
     "keys",
     "backup",
     "restore",
+    "migrate",
 )
 INVOCATION = re.compile(r"^(?:\$ )?treestroke (\w+)(.*)$", re.M)
 
