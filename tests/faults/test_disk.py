@@ -13,9 +13,12 @@ import httpx
 import pytest
 from tests.faults.harness import PATIENCE_SECONDS, POISONED, Service, small_tree
 from tests.faults.processes import wait_for
+from tests.sweeping import Clocks, Kept
 
+from treestroke.cli import main
 from treestroke.queue import Hints, make_queue
 from treestroke.settings import Settings
+from treestroke.store.backup_folder import BackupFolder
 
 SIZE = "40m"
 _libc = ctypes.CDLL(None, use_errno=True)
@@ -88,6 +91,26 @@ def refused_for_space(answer: httpx.Response) -> None:
     assert answer.status_code == 507, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     assert answer.json()["code"] == "storage_full"
+
+
+def test_a_backup_that_does_not_fit_on_the_disk_is_none_until_there_is_room(
+    tmp_path: Path, small_disk: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = tmp_path / "data"
+    data.mkdir()
+    kept = Kept(data, Clocks(monkeypatch))
+    kept.model()
+    kept.database.close()
+    disk, folder = Filler(small_disk), small_disk / "backup"
+    command = ["backup", str(folder), "--data", str(data)]
+    disk.fill()
+    assert main(command) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f"{folder}: the backup was not finished (No space left on device); mend that and run it again" in line
+    assert BackupFolder(folder).manifest() is None
+    disk.free()
+    assert main(command) == 0
+    assert BackupFolder(folder).manifest() is not None
 
 
 def test_a_hint_that_does_not_fit_on_the_disk_leaves_nothing_behind(small_disk: Path) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from sqlalchemy import select, update
 from tests.accounts import accounts, make
-from tests.postgres import KINDS
-from tests.rows import add_model, claim
+from tests.postgres import KINDS, PostgresServer
+from tests.rows import add_model, claim, photo_row
 from tests.sweeping import HOUR, Kept
 
 from treestroke.core.progress import silent
@@ -106,14 +106,23 @@ def test_a_job_that_was_running_waits_again_with_its_attempt(kept: Kept, folder:
     assert found == [("queued", 1, None), ("canceled", 1, None)]
 
 
-def test_a_key_of_a_team_is_valid_after_it(
-    database: Database, tmp_path: Path, folder: BackupFolder, postgres_url: str
+def test_what_a_team_has_is_there_after_it_and_its_keys_are_valid(
+    tmp_path: Path, folder: BackupFolder, postgres: PostgresServer
 ) -> None:
-    made = make(database)
-    back_up(database, open_blobs(database, tmp_path), folder, silent)
-    with a_target(tmp_path.with_name(f"{tmp_path.name}-target"), postgres_url) as target:
+    database = Database(tmp_path, postgres.fresh_with_tables())
+    made, blobs = make(database), open_blobs(database, tmp_path)
+    who = accounts(database).by_key(made.key)
+    photo = photo_row(blobs.of(who.scope).put(b"photo"), 5)
+    with database.of(who.scope).writing() as session:
+        session.add(photo)
+    back_up(database, blobs, folder, silent)
+    database.close()
+    with a_target(tmp_path.with_name(f"{tmp_path.name}-target"), postgres.fresh()) as target:
         target.restore(folder)
-        assert accounts(target.database).by_key(made.key).name == "Ann"
+        assert accounts(target.database).by_key(made.key) == who
+        assert target.blobs.of(who.scope).get(photo.blob) == b"photo"
+        with target.database.of(SERVICE).reading() as session:
+            assert session.scalars(select(TeamRow.name)).all() == ["Oaks"]
 
 
 def test_what_teams_made_goes_to_a_service_for_teams_alone(

@@ -304,3 +304,24 @@ def test_a_database_whose_file_is_removed_or_replaced_takes_nothing_until_it_is_
 def test_a_database_that_cannot_be_opened_says_so(tmp_path: Path) -> None:
     with pytest.raises(OperationalError):
         Database(tmp_path / "missing").migrate()
+
+
+def test_a_hold_is_seen_by_all_until_it_ends(database: Database) -> None:
+    other = Database(database.path.parent, database.url).of(LOCAL)
+    with database.hold(), database.hold():
+        assert database.held()
+        assert other.held()
+        add_model(other)  # and nobody else is kept from anything
+    assert not database.held()
+    assert not other.held()
+    other.close()
+
+
+def test_a_session_within_a_connection_s_transaction_is_taken_back_with_it(database: Database) -> None:
+    with suppress(ZeroDivisionError), database.migrating() as connection:
+        with database.within(connection) as session:
+            session.add(Worker(id="w", slots=1, beat=1))
+            session.commit()
+        raise ZeroDivisionError
+    with database.reading() as session:
+        assert session.get(Worker, "w") is None
