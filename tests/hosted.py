@@ -53,7 +53,7 @@ def page_headers(signed_in: httpx.Response) -> dict[str, str]:
 
 @contextmanager
 def hosting(folder: Path, database_url: str, **more: object) -> Iterator[Hosted]:
-    """Run a hosted service on a database that has its tables, perhaps with more settings."""
+    """Run a hosted service on a database that has its tables, with ``more`` settings."""
     settings = {"database_url": database_url, "secret": SECRET, "hosts": HOST, "proxies": "127.0.0.1", **more}
     database = Database(folder, database_url)
     with (

@@ -92,6 +92,11 @@ def test_an_unknown_variable_is_refused(name: str, monkeypatch: pytest.MonkeyPat
         ("KEEP_DAYS", "-1"),
         ("BROKER_URL", "amqp:"),
         ("DATABASE_URL", "mysql://127.0.0.1/trees"),
+        ("OIDC_ISSUER", f"http:{'//'}id.example"),
+        ("OIDC_ISSUER", "https:"),
+        ("OIDC_ISSUER", f"https:{'//'}id.example?realm=trees"),
+        ("OIDC_ISSUER", f"https:{'//'}id.example"),
+        ("OIDC_ROLE", "owner"),
         ("PORT", "9" * 5000),
     ],
 )
@@ -103,6 +108,13 @@ def test_a_value_that_is_not_allowed_is_one_line(
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith(f"treestroke: {PREFIX}{name}: ")
     assert len(line) < 250
+
+
+def test_an_issuer_needs_a_client(monkeypatch: pytest.MonkeyPatch) -> None:
+    shared = {"database_url": "postgresql://127.0.0.1/trees", "oidc_issuer": f"http:{'//'}127.0.0.1:9000/realm"}
+    with pytest.raises(SettingsError, match=r"^TREESTROKE_OIDC_CLIENT: "):
+        read_settings(**shared)
+    assert read_settings(**shared, oidc_client="trees").oidc_role == "member"
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,18 @@ class SessionInfo(Wire):
     expires: float | None = Field(description=f"{_SECONDS}; null: never")
 
 
+class SignInIssuer(Wire):
+    """An issuer that people sign in at (OpenID Connect)."""
+
+    name: str = Field(description="its host, as people know it")
+
+
+class SignInWays(Wire):
+    """How one may sign in beside by a key."""
+
+    oidc: SignInIssuer | None = Field(description="null: by a key alone")
+
+
 class KeyInfo(Wire):
     """A key, without itself."""
 

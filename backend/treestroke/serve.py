@@ -19,10 +19,9 @@ from types import FrameType
 
 from treestroke.core.errors import SettingsError
 from treestroke.parent_process import LISTENER, PARENT_HOLDS_STDIN, PREVIOUS_RUN_ID, RUN_ID
-from treestroke.settings import Settings, check_secret
+from treestroke.settings import LOOPBACK, Settings, check_oidc_installed, check_secret
 from treestroke.store.data_folder import DataFolderError, check_version, prepare_folder
 
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
 STOP_SECONDS = 10.0
 """Time that the processes have to finish or give back their work."""
 _POLL_SECONDS = 0.2
@@ -147,6 +146,7 @@ def _check_reach(settings: Settings) -> None:
     """Check that whoever can reach the service needs a key, or is on this machine."""
     if settings.hosted:
         check_secret(settings)
+        check_oidc_installed(settings)
         if settings.host not in LOOPBACK and not settings.host_names:
             raise SettingsError(
                 f"--host {settings.host}: name what the service answers to by TREESTROKE_HOSTS, such as trees.example"

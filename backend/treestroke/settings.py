@@ -2,8 +2,10 @@
 
 import os
 import re
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
+from urllib.parse import urlsplit
 
 from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -18,6 +20,7 @@ CLIENT_VARIABLES = ("TREESTROKE_KEY",)
 """Variables with the same prefix that are not the service's but its clients'."""
 _SECRET_CHARACTERS = 32
 _BUCKET = re.compile(r"s3://[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/[\w.=-]+)*/?")
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
 PHOTO_MB, PHOTOS_MB = 120, 20_000
 
 
@@ -43,6 +46,11 @@ class Settings(BaseSettings):
     hosts: Annotated[str, _setting("", "names that it answers to beside 127.0.0.1, with commas between")]
     proxies: Annotated[str, _setting("", "addresses of proxies before it that are trusted, with commas between")]
     secret: Annotated[str, _setting("", "at least 32 characters, by which keys are digested")]
+    oidc_issuer: Annotated[str, _setting("", "an issuer to sign in at (https://...); empty: by a key alone")]
+    oidc_client: Annotated[str, _setting("", "id by which the issuer knows this service")]
+    oidc_client_secret: Annotated[str, _setting("", "the secret that goes with it; empty: a public client")]
+    oidc_team: Annotated[str, _setting("", "team that whoever is new at the issuer joins; empty: nobody new may")]
+    oidc_role: Annotated[Literal["viewer", "member"], _setting("member", "role of whoever joins so: viewer or member")]
     broker_url: Annotated[str, _setting("", "a Redis to queue on (redis://...); empty: files in the data folder")]
     bucket_url: Annotated[str, _setting("", "a bucket for the files (s3://BUCKET/PREFIX); empty: the data folder")]
     workers: Annotated[
@@ -170,7 +178,36 @@ def read_settings(**flags: object) -> Settings:
             f"{_variable('bucket_url')}: {shown(settings.bucket_url)} names no bucket; give s3://BUCKET/PREFIX, or "
             "leave it out"
         )
+    _check_oidc(settings)
     return settings
+
+
+def _check_oidc(settings: Settings) -> None:
+    """Check that people can sign in at an issuer, where there is to be one."""
+    if not settings.oidc_issuer:
+        return
+    where = _variable("oidc_issuer")
+    if not is_secure(settings.oidc_issuer) or {"?", "#"} & set(settings.oidc_issuer):
+        raise SettingsError(
+            f"{where}: {shown(settings.oidc_issuer)} is no issuer; give https://HOST, as the issuer calls itself"
+        )
+    if not settings.hosted:
+        raise SettingsError(
+            f"{where}: a service without teams has nobody to sign in; set {_variable('database_url')}, or leave it out"
+        )
+    if not settings.oidc_client:
+        raise SettingsError(
+            f"{_variable('oidc_client')}: give the id by which {settings.oidc_issuer} knows this service"
+        )
+
+
+def is_secure(address: str) -> bool:
+    """Tell whether what is asked at an address stays secret: it has TLS, or is on this machine."""
+    try:
+        url = urlsplit(address)
+    except ValueError:
+        return False
+    return bool(url.hostname) and (url.scheme == "https" or (url.scheme == "http" and url.hostname in LOOPBACK))
 
 
 def check_secret(settings: Settings) -> None:
@@ -185,6 +222,20 @@ def check_secret(settings: Settings) -> None:
         raise SettingsError(
             f"{_variable('secret')}: a service with keys needs a secret of at least {_SECRET_CHARACTERS} characters; "
             "make one by `openssl rand -hex 32`, and keep it: no key is valid with another"
+        )
+
+
+def check_oidc_installed(settings: Settings) -> None:
+    """Check that the packages are there by which people sign in at an issuer.
+
+    Raises
+    ------
+    SettingsError
+        They are not.
+    """
+    if settings.oidc_issuer and find_spec("joserfc") is None:
+        raise SettingsError(
+            f"{_variable('oidc_issuer')}: this needs a further package; install it: pip install 'treestroke[oidc]'"
         )
 
 

@@ -39,7 +39,7 @@ def test_nothing_contradicts_the_document(tried: Service, tmp_path: Path, less: 
         [program, *options], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=1200
     )
     assert ran.returncode == 0, ran.stdout[-20_000:] + ran.stderr
-    assert "Tested: 82" in ran.stdout
+    assert "Tested: 85" in ran.stdout
     log = (tried.data.parent / "data.log").read_text()
     assert "request_failed" not in log
     assert "Traceback" not in log

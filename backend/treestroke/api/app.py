@@ -18,6 +18,7 @@ from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
 from treestroke.api.following import STREAMS_A_PERSON, Watcher
 from treestroke.api.identity import SECURITY_SCHEMES, admit
+from treestroke.api.issuer import Issuer
 from treestroke.api.metrics import add_metrics, private_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
 from treestroke.api.rates import RateHeadersMiddleware, limit_rate
@@ -31,6 +32,7 @@ from treestroke.api.routes import (
     files,
     keys,
     models,
+    oidc,
     photos,
     session,
     shared,
@@ -43,7 +45,7 @@ from treestroke.api.routes import (
 )
 from treestroke.api.routes.page import add_page
 from treestroke.api.rules import RULES
-from treestroke.api.sign_ins import FailedSignIns
+from treestroke.api.sign_ins import FAILED_KEYS, FAILED_SIGN_INS, Failures
 from treestroke.limits import MAX_CLIP_BYTES, MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import Hints, make_queue
 from treestroke.schemas import Problem
@@ -90,7 +92,7 @@ _SMALL_BYTES = 100_000
 _CAPTURE_PHOTOS = re.compile(r"/v1/captures/[^/]+/photos")
 _ROUTES = (
     *(photos, sketches, captures, clips, uploads, models, events, files, shares, shared),
-    *(session, keys, team, webhooks, audit, status),
+    *(session, oidc, keys, team, webhooks, audit, status),
 )
 _ANYWHERE = ("unauthenticated", "foreign_host", "rate_limited", "internal", "overloaded")
 """Codes of problems that every route may answer with."""
@@ -144,7 +146,7 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
         generate_unique_id_function=_operation_id,
         dependencies=[Depends(admit)],
     )
-    app.state.settings, app.state.places, app.state.failed_sign_ins = settings, places, FailedSignIns()
+    app.state.settings, app.state.places = settings, places
     add_handlers(app)
     counted = [Depends(limit_rate)] if settings.hosted else []
     for routes in _ROUTES:
@@ -187,6 +189,9 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     )
     app.state.accounts = Accounts.of(database, settings.secret)
     app.state.counts = RequestCounts(settings.broker_url)
+    app.state.failed_sign_ins = Failures(app.state.counts, FAILED_SIGN_INS)
+    app.state.failed_keys = Failures(app.state.counts, FAILED_KEYS)
+    app.state.issuer = Issuer(settings) if settings.oidc_issuer else None
     packers = TracingPool(AT_ONCE, settings.capture_trace_seconds, settings.memory_mb)
     app.state.projects = Projects(blobs, packers)
     app.state.dispatcher = dispatcher
@@ -206,6 +211,8 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         dispatcher.stop()
         packers.close()
         await app.state.counts.close()
+        if app.state.issuer:
+            await app.state.issuer.close()
         app.state.projects.close()
         tracers.close()
         capture_tracers.close()

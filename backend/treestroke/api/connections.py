@@ -10,6 +10,7 @@ import structlog
 from uvicorn.protocols.http.h11_impl import STATUS_PHRASES, H11Protocol
 
 from treestroke.api.errors import problem
+from treestroke.api.issuer import ISSUER_CONNECTIONS
 from treestroke.api.request_counts import REDIS_CONNECTIONS
 from treestroke.api.request_ids import identify
 
@@ -32,7 +33,7 @@ BEHIND_SECONDS = 5.0
 """A connection whose client is this far behind is closed before others when room is needed."""
 _CHECK_SHARE = 0.25
 """Time between two checks of a client's reading, as a share of the seconds that it may be behind."""
-_PROCESS_FILES = 30 + 2 * ACCEPTED_AT_ONCE + REDIS_CONNECTIONS
+_PROCESS_FILES = 30 + 2 * ACCEPTED_AT_ONCE + REDIS_CONNECTIONS + ISSUER_CONNECTIONS
 """Descriptors of the process itself: log, event loop, listening socket, resource tracker, connections being closed."""
 _DATABASE_FILES = 15 * 3
 """Descriptors of SQLAlchemy's pool at its largest: database, WAL and WAL index of each connection."""

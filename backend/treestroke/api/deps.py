@@ -51,6 +51,11 @@ def _settings(request: Request) -> Settings:
     return settings
 
 
+def address_of(request: Request) -> str:
+    """Return the address that a request came from."""
+    return request.client.host if request.client else ""
+
+
 def _asker(request: Request) -> Principal | None:
     """Return who was admitted; None where nobody needs to be known."""
     asker: Principal | None = request.state.principal

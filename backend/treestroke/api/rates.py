@@ -4,7 +4,7 @@ from fastapi import Request
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from treestroke.api.deps import AskerOf
+from treestroke.api.deps import AskerOf, address_of
 from treestroke.api.request_counts import Rate, RequestCounts
 
 TRACES, MODELS, UPLOADS = Rate("traces", 10, 1), Rate("models", 60, 60), Rate("uploads", 60, 60)
@@ -29,7 +29,7 @@ RATES: dict[str, Rate | None] = {
 
 def asker_id(request: Request, asker: AskerOf) -> str:
     """Return by what requests are counted: who asks, or without a key the address."""
-    return asker.id if asker is not None else f"at {request.client.host if request.client else ''}"
+    return asker.id if asker is not None else f"at {address_of(request)}"
 
 
 async def limit_rate(request: Request, asker: AskerOf) -> None:

@@ -27,6 +27,7 @@ _CHANGE_TEAM = Rule("team", "owner", writes=True)
 RULES: dict[str, Rule | None] = {
     **dict.fromkeys(("live", "ready", "page", "icon", "sign_in"), None),
     "metrics": None,  # a route of a service with one person alone
+    **dict.fromkeys(("ways_to_sign_in", "begin_oidc", "finish_oidc"), None),
     **dict.fromkeys(("get_shared_page", "get_shared_model", "get_shared_tree"), None),
     **dict.fromkeys(("get_shared_preview", "get_shared_photo", "get_oembed"), None),
     **dict.fromkeys(("limits", "version", "get_session", "sign_out"), _SIGNED_IN),

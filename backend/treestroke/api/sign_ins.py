@@ -1,44 +1,41 @@
-"""How often one address may fail to sign in."""
+"""How often one address may come with a wrong key: to sign in by it, or to ask with it."""
 
-import math
-import time
+from contextlib import suppress
 from ipaddress import IPv6Address, ip_address
 
-from limits import RateLimitItemPerMinute
-from limits.storage import MemoryStorage
-from limits.strategies import MovingWindowRateLimiter
-
 from treestroke.api.errors import Refusal
+from treestroke.api.request_counts import Rate, RateLimited, RequestCounts
 
 MOST_A_MINUTE = 10
+FAILED_SIGN_INS, FAILED_KEYS = (Rate(name, MOST_A_MINUTE, 60) for name in ("failed sign-ins", "failed keys"))
 _PREFIX_BITS = 64
 """Of an IPv6 address, what belongs to one network, whose hosts take any address in it."""
 
 
-class FailedSignIns:
-    """Counts, in this process, who failed to sign in during the last minute."""
+class Failures:
+    """Counts failures of one kind by address, where the requests of all web processes are counted."""
 
-    def __init__(self) -> None:
-        self._most = RateLimitItemPerMinute(MOST_A_MINUTE)
-        self._failed = MovingWindowRateLimiter(MemoryStorage())
+    def __init__(self, counts: RequestCounts, rate: Rate) -> None:
+        self._counts, self._rate = counts, rate
 
-    def check(self, address: str) -> None:
-        """Check that an address may try to sign in.
+    async def check(self, address: str) -> None:
+        """Check that an address may fail once more.
 
         Raises
         ------
         Refusal
             It failed too often.
         """
-        network = _network(address)
-        if not self._failed.test(self._most, network):
-            seconds = math.ceil(self._failed.get_window_stats(self._most, network).reset_time - time.time())
-            detail = f"too many keys were wrong; try again in {max(seconds, 1)} seconds"
-            raise Refusal("rate_limited", detail, headers={"Retry-After": str(max(seconds, 1))})
+        standing = await self._counts.standing(self._rate, _network(address))
+        if not standing.remaining:
+            retry_s = str(standing.more_in_s)
+            detail = f"too many keys were wrong; try again in {retry_s} seconds"
+            raise Refusal("rate_limited", detail, headers={"Retry-After": retry_s})
 
-    def count(self, address: str) -> None:
+    async def count(self, address: str) -> None:
         """Count a failure."""
-        self._failed.hit(self._most, _network(address))
+        with suppress(RateLimited):
+            await self._counts.take(self._rate, _network(address))
 
 
 def _network(address: str) -> str:

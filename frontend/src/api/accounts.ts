@@ -11,6 +11,11 @@ export class Accounts {
     return requestOnce('GET', '/v1/session')
   }
 
+  /** Return how one may sign in beside by a key. */
+  getSignInWays(): Promise<Schemas['SignInWays']> {
+    return requestOnce('GET', '/v1/sign-in')
+  }
+
   signIn(key: string): Promise<Session> {
     return requestOnce('POST', '/v1/session', json({ key }))
   }

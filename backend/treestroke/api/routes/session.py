@@ -1,43 +1,43 @@
 """Signing in and out: the session of a browser."""
 
 from http import HTTPStatus
-from typing import Any
 
 from fastapi import APIRouter, Request, Response
+from fastapi.concurrency import run_in_threadpool
 
 from treestroke.account_schemas import SessionInfo, Team
 from treestroke.api.account_views import member_view, scope_names
-from treestroke.api.deps import AllResources, JsonBody, PrincipalOf, SettingsOf, body_of
+from treestroke.api.deps import AllResources, JsonBody, PrincipalOf, SettingsOf, address_of, body_of
 from treestroke.api.errors import BODY, Refusal, documented
-from treestroke.api.identity import COOKIE
-from treestroke.api.sign_ins import FailedSignIns
-from treestroke.service.accounts import SESSION_SECONDS, Accounts, Unauthenticated, read_sign_in
+from treestroke.api.identity import COOKIE, COOKIE_FLAGS, begin_session
+from treestroke.api.sign_ins import Failures
+from treestroke.service.accounts import Accounts, Unauthenticated, read_sign_in
 from treestroke.service.members import get_team
 from treestroke.service.photos import Resources
 from treestroke.service.principals import LOCAL_PERSON, Principal
 
 router = APIRouter(prefix="/v1/session", tags=["session"])
-_COOKIE: dict[str, Any] = {"path": "/", "secure": True, "httponly": True, "samesite": "strict"}
 
 
 @router.post("", responses=documented(*BODY, "unauthenticated", "rate_limited"), openapi_extra=body_of("SignIn"))
-def sign_in(request: Request, resources: AllResources, body: JsonBody, response: Response) -> SessionInfo:
+async def sign_in(request: Request, resources: AllResources, body: JsonBody, response: Response) -> SessionInfo:
     """Sign in by a key: the answer sets the cookie of a new session, which no script can read."""
     key = read_sign_in(body)
     if not request.app.state.settings.hosted:
         return _answer(resources, LOCAL_PERSON)
-    accounts: Accounts = request.app.state.accounts
-    failed: FailedSignIns = request.app.state.failed_sign_ins
-    address = request.client.host if request.client else ""
-    failed.check(address)
+    failed: Failures = request.app.state.failed_sign_ins
+    await failed.check(address_of(request))
     try:
-        token, who = accounts.sign_in(key)
+        return await run_in_threadpool(_sign_in, request, resources, key, response)
     except Unauthenticated as error:
-        failed.count(address)
+        await failed.count(address_of(request))
         raise Refusal("unauthenticated", str(error)) from None
-    if before := request.cookies.get(COOKIE):
-        accounts.sign_out(before)
-    response.set_cookie(COOKIE, token, max_age=int(SESSION_SECONDS), **_COOKIE)
+
+
+def _sign_in(request: Request, resources: Resources, key: str, response: Response) -> SessionInfo:
+    accounts: Accounts = request.app.state.accounts
+    token, who = accounts.sign_in(key)
+    begin_session(request, response, token)
     return _answer(resources, who)
 
 
@@ -54,7 +54,7 @@ def sign_out(request: Request, settings: SettingsOf, response: Response) -> None
     if settings.hosted and token is not None:
         accounts: Accounts = request.app.state.accounts
         accounts.sign_out(token)
-        response.delete_cookie(COOKIE, **_COOKIE)
+        response.delete_cookie(COOKIE, **COOKIE_FLAGS)
 
 
 def _answer(resources: Resources, who: Principal) -> SessionInfo:

@@ -4,6 +4,7 @@ import { text } from '../../text'
 import { accountText } from '../../text/account'
 import { useStore, useStudio } from '../parts/useStore'
 import { Illustration } from '../start/Illustration'
+import { IssuerSignIn } from './IssuerSignIn'
 import './signIn.css'
 
 const { signIn: words } = accountText
@@ -38,6 +39,7 @@ export function SignInScreen() {
           <p class="sign-in-app">{text.app}</p>
           <h2 id={title}>{words.title[when]}</h2>
           <p class="sign-in-lead">{words.lead[when]}</p>
+          <IssuerSignIn isAgain={when === 'again'} />
           <KeyForm />
           <details class="sign-in-more">
             <summary>{words.question}</summary>

@@ -42,7 +42,8 @@ function writeAddress(model: string | null): void {
   history.replaceState(null, '', model ? `#${model}` : location.pathname + location.search)
 }
 
-function modelInAddress(): string | null {
+/** Return the id of the model that the address names. */
+export function modelInAddress(): string | null {
   return MODEL.exec(location.hash)?.[1] ?? null
 }
 
