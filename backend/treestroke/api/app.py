@@ -2,6 +2,7 @@
 
 import re
 import sys
+from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -21,7 +22,7 @@ from treestroke.api.identity import SECURITY_SCHEMES, admit
 from treestroke.api.issuer import Issuer
 from treestroke.api.metrics import add_metrics, private_metrics
 from treestroke.api.middleware import BodyLimitMiddleware, MethodMiddleware, SecurityMiddleware, is_streamed
-from treestroke.api.rates import RateHeadersMiddleware, limit_rate
+from treestroke.api.rates import RateHeadersMiddleware, limit_rate, limit_uploads
 from treestroke.api.request_counts import RequestCounts
 from treestroke.api.request_ids import RequestIdMiddleware
 from treestroke.api.routes import (
@@ -147,8 +148,9 @@ def make_app(settings: Settings, places: int = MAX_FOLLOWERS) -> FastAPI:
         dependencies=[Depends(admit)],
     )
     app.state.settings, app.state.places = settings, places
+    app.state.uploads = Counter()
     add_handlers(app)
-    counted = [Depends(limit_rate)] if settings.hosted else []
+    counted = [Depends(limit_rate), Depends(limit_uploads)] if settings.hosted else []
     for routes in _ROUTES:
         app.include_router(routes.router, responses=documented(*_ANYWHERE), dependencies=counted)
     add_metrics(app, settings.hosted)
