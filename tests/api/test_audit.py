@@ -27,19 +27,28 @@ AUDITED = {
     "change_member": "member.changed",
     "remove_member": "member.removed",
     "revoke_key": "key.revoked",
+    "change_webhook": "webhook.changed",
+    "remove_webhook": "webhook.removed",
 }
 """Action of each operation that names an id, in an order in which each finds what it changes."""
 SENT: dict[str, tuple[str, str, dict[str, Any]]] = {
     "make_key": ("POST", "/v1/keys", {"name": "laptop"}),
     "add_member": ("POST", "/v1/members", {"name": "Ben", "role": "member"}),
     "rename_team": ("PATCH", "/v1/team", {"name": "Oaks"}),
+    "make_webhook": ("POST", "/v1/webhooks", {"url": f"https:{'//'}trees.example/told", "events": ["model.succeeded"]}),
 }
 """The others, but for signing in and out."""
-ACTIONS = {"make_key": "key.made", "add_member": "member.added", "rename_team": "team.renamed"}
+ACTIONS = {
+    "make_key": "key.made",
+    "add_member": "member.added",
+    "rename_team": "team.renamed",
+    "make_webhook": "webhook.made",
+}
 UNAUDITED = {
     *("add_photo", "trace_photo", "trace_sketches", "make_capture", "add_capture_photo", "solve_capture"),
     *("cancel_solve", "trace_capture", "rename_capture", "add_clip", "trace_clip", "add_piece", "delete_upload"),
     *("ask_for_model", "ask_for_siblings", "change_model", "cancel_model"),
+    *("ping_webhook", "resend_delivery"),
 }
 """Operations that only look, or make what a later deletion tells of."""
 

@@ -21,6 +21,7 @@ from treestroke.store.database import Database
 from treestroke.store.leases import MAX_ATTEMPTS
 from treestroke.store.queries import referenced
 from treestroke.store.scope import SERVICE
+from treestroke.store.tables import TERMINAL
 
 END_SECONDS = 900.0
 """Emergency exit of waiting for the last model."""

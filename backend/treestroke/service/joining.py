@@ -11,9 +11,10 @@ from treestroke.account_schemas import Role
 from treestroke.limits import MAX_NAME
 from treestroke.service.principals import Principal
 from treestroke.store.account_tables import MemberRow, TeamRow
+from treestroke.store.audit import record
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
-from treestroke.store.scope import SERVICE
+from treestroke.store.scope import SERVICE, Scope
 
 log = structlog.get_logger()
 
@@ -72,4 +73,6 @@ def _add(session: Session, person: Vouched, name: str, role: Role) -> MemberRow:
         created=time.time(),
     )
     session.add(member)
+    by = Scope(member.team, member.id, credential="issuer")
+    record(session, "member.added", member.id, by, name=member.name, role=role)
     return member

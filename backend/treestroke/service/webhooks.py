@@ -15,6 +15,7 @@ from treestroke.service.model_request import read_body
 from treestroke.service.photos import NotFound
 from treestroke.service.webhook_calls import Caller, CallFailed, NotPublic, read_url
 from treestroke.service.webhook_secrets import secret_of
+from treestroke.store.audit import record
 from treestroke.store.database import Database
 from treestroke.store.queries import new_id
 from treestroke.store.usage import lock_team
@@ -64,6 +65,7 @@ def make_webhook(database: Database, service_secret: str, caller: Caller, body: 
         if (session.scalar(select(func.count()).select_from(WebhookRow)) or 0) >= MOST_WEBHOOKS:
             raise TooManyWebhooks
         session.add(row)
+        record(session, "webhook.made", row.id, url=row.url)
     return Told(row, secret=secret_of(service_secret, row.id, row.salt))
 
 
@@ -83,6 +85,7 @@ def change_webhook(database: Database, service_secret: str, caller: Caller, id: 
         if row is None:
             raise NotFound("webhook")
         _apply(session, row, wanted)
+        record(session, "webhook.changed", id, url=row.url)
         told = _told(session, row)
     return Told(row, told.last, secret_of(service_secret, id, row.salt) if wanted.rotate else None)
 
@@ -96,8 +99,10 @@ def remove_webhook(database: Database, id: str) -> None:
         There is no such webhook.
     """
     with database.writing() as session:
-        if session.scalars(delete(WebhookRow).where(WebhookRow.id == id).returning(WebhookRow.id)).first() is None:
+        url = session.scalars(delete(WebhookRow).where(WebhookRow.id == id).returning(WebhookRow.url)).first()
+        if url is None:
             raise NotFound("webhook")
+        record(session, "webhook.removed", id, url=url)
 
 
 def check_address(caller: Caller, url: str) -> None:

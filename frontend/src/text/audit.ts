@@ -39,6 +39,9 @@ const SENTENCES: Readonly<Record<string, (details: Details) => string>> = {
   'capture_photo.removed': () => 'removed a photo from a set',
   'photo.deleted': () => 'deleted a photo',
   'clip.deleted': () => 'deleted a video',
+  'webhook.made': ({ url }) => `made a webhook to ${url}`,
+  'webhook.changed': ({ url }) => `changed the webhook to ${url}`,
+  'webhook.removed': ({ url }) => `removed the webhook to ${url}`,
 }
 
 /** Return what was done as a sentence without its end; of an action that the page does not know, its name. */
