@@ -43,6 +43,11 @@ class S3Server:
 
     def start(self) -> None:
         """Start it and wait until it answers."""
+        self.launch()
+        wait_for(self._answers, START_SECONDS, "an answer from the S3 server")
+
+    def launch(self) -> None:
+        """Start it; it answers a while later."""
         own = [f"-{part}.port={port}" for part, port in zip(_PARTS, self._ports[::2], strict=True)]
         own += [f"-{part}.port.grpc={port}" for part, port in zip(_PARTS, self._ports[1::2], strict=True)]
         own += [
@@ -57,7 +62,6 @@ class S3Server:
         self._process = subprocess.Popen(
             [*program, *own], cwd=self._folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
-        wait_for(self._answers, START_SECONDS, "an answer from the S3 server")
 
     def kill(self) -> None:
         """Kill it, as a power cut does; what it has stored is there when it starts again."""

@@ -23,8 +23,8 @@ from tests.chaos.stack import Row, Stack, running_stack
 from tests.faults.harness import Change
 
 TEAMS = ("Oaks", "Elms", "Firs")
-PAUSE_SECONDS = (2.0, 6.0)
-"""Between two blows."""
+PAUSE_SECONDS = (6.0, 14.0)
+"""Between two blows: about as long as a process takes to start again on a small machine."""
 KEPT = Path(tempfile.gettempdir()) / "treestroke-chaos"
 """Where the logs go of a run that broke a promise."""
 
@@ -116,7 +116,7 @@ def _part(ordered: list[float], part: float) -> float:
 def main() -> int:
     parser = argparse.ArgumentParser(description="Break everything around a hosted service while jobs come in.")
     parser.add_argument("--jobs", type=int, default=500)
-    parser.add_argument("--seconds", type=float, default=480, help="in which they come in")
+    parser.add_argument("--seconds", type=float, default=900, help="in which they come in")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that nothing is left running

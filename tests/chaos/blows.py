@@ -153,7 +153,7 @@ class Blows:
 
     def _lose_s3(self, blow: Blow) -> None:
         self._stack.s3.kill()
-        self._later(blow, self._away(), "S3", self._stack.s3.start)
+        self._later(blow, self._away(), "S3", self._stack.s3.launch)
 
     def _freeze_s3(self, blow: Blow) -> None:
         self._stack.s3.freeze()
