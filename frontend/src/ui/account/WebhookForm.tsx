@@ -55,7 +55,7 @@ export function WebhookForm({ change, made }: Props) {
               type="checkbox"
               checked={events.includes(event)}
               onChange={({ currentTarget }) => choose(event, currentTarget.checked)}
-            />{' '}
+            />
             {words.eventNames[event]}
           </label>
         ))}
