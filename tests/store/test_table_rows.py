@@ -12,7 +12,7 @@ from treestroke.store.scope import LOCAL, Scope
 from treestroke.store.table_rows import LEFT_OUT, dump, fill, read
 from treestroke.store.tables import BlobRow, Replay, Table, UploadRow, Worker
 
-WRITABLE = {"VARCHAR", "INTEGER", "BIGINT", "FLOAT", "BOOLEAN", "JSON"}
+WRITABLE = {"VARCHAR", "TEXT", "INTEGER", "BIGINT", "FLOAT", "BOOLEAN", "JSON"}
 """Types whose values are the same in JSON."""
 
 
