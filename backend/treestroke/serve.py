@@ -2,6 +2,7 @@
 
 import errno
 import fcntl
+import math
 import os
 import secrets
 import shutil
@@ -240,16 +241,19 @@ def _empty(folder: Path) -> None:
 
 
 def _announce(page: str, host: str, port: int) -> None:
-    """Print the page's address as soon as it responds."""
-    deadline = time.monotonic() + _START_SECONDS
-    while time.monotonic() < deadline:
+    """Print the page's address as soon as it responds; say where that takes long."""
+    late = time.monotonic() + _START_SECONDS
+    while True:
         with suppress(OSError), closing(HTTPConnection(host, port, timeout=_START_SECONDS)) as connection:
             connection.request("GET", "/livez")
             connection.getresponse()
             print(f"treestroke: open {page} in a browser; Ctrl+C ends it", flush=True)
             return
+        if time.monotonic() > late:
+            late = math.inf
+            message = "treestroke: it does not respond yet; `treestroke doctor` says what is missing"
+            print(message, file=sys.stderr, flush=True)
         time.sleep(_POLL_SECONDS)
-    print("treestroke: it does not respond; `treestroke doctor` says what is missing", file=sys.stderr, flush=True)
 
 
 def address(settings: Settings, port: int) -> str:

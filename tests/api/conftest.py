@@ -17,6 +17,11 @@ PATIENCE_SECONDS = 300.0
 """Emergency exit of what is waited for: nothing is expected to take this long, however busy the machine is."""
 
 
+def problem_of(answer: httpx.Response) -> dict[str, Any]:
+    """Return a problem without the id of its request, which no other has."""
+    return {key: value for key, value in answer.json().items() if key != "request_id"}
+
+
 @dataclass(frozen=True)
 class Service:
     """A service that runs: its address, its data folder, and a client of it."""

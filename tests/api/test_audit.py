@@ -35,7 +35,7 @@ SENT: dict[str, tuple[str, str, dict[str, Any]]] = {
     "make_key": ("POST", "/v1/keys", {"name": "laptop"}),
     "add_member": ("POST", "/v1/members", {"name": "Ben", "role": "member"}),
     "rename_team": ("PATCH", "/v1/team", {"name": "Oaks"}),
-    "make_webhook": ("POST", "/v1/webhooks", {"url": f"https:{'//'}trees.example/told", "events": ["model.succeeded"]}),
+    "make_webhook": ("POST", "/v1/webhooks", {"url": f"https:{'//'}hooks.invalid/told", "events": ["model.succeeded"]}),
 }
 """The others, but for signing in and out."""
 ACTIONS = {

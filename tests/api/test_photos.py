@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from tests.api import drawn
-from tests.api.conftest import Service
+from tests.api.conftest import Service, problem_of
 from tests.api.corpora import picture, saved
 
 import treestroke
@@ -116,7 +116,7 @@ def test_a_picture_of_another_kind_is_refused_by_name_however_it_is_sent(
     asked = client.post("/v1/models", **drawn.form(content))
     assert (raw.status_code, raw.json()["code"]) == (422, "format_not_allowed")
     assert what in raw.json()["detail"]
-    assert raw.json() == form.json() == asked.json()
+    assert problem_of(raw) == problem_of(form) == problem_of(asked)
 
 
 def test_what_was_mended_in_a_photo_is_told_wherever_it_is_used(service: Service, client: httpx.Client) -> None:
