@@ -189,11 +189,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         *limits,
         quotas_of(settings),
     )
-    app.state.accounts = Accounts.of(database, settings.secret)
-    app.state.counts = RequestCounts(settings.broker_url)
-    app.state.failed_sign_ins = Failures(app.state.counts, FAILED_SIGN_INS)
-    app.state.failed_keys = Failures(app.state.counts, FAILED_KEYS)
-    app.state.issuer = Issuer(settings) if settings.oidc_issuer else None
+    _set_up_identity(app, database)
     packers = TracingPool(AT_ONCE, settings.capture_trace_seconds, settings.memory_mb)
     app.state.projects = Projects(blobs, packers)
     app.state.dispatcher = dispatcher
@@ -220,6 +216,16 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         capture_tracers.close()
         clip_tracers.close()
         database.close()
+
+
+def _set_up_identity(app: FastAPI, database: Database) -> None:
+    """Prepare what tells who asks, and counts how often they do."""
+    settings: Settings = app.state.settings
+    app.state.accounts = Accounts.of(database, settings.secret)
+    app.state.counts = RequestCounts(settings.broker_url)
+    app.state.failed_sign_ins = Failures(app.state.counts, FAILED_SIGN_INS)
+    app.state.failed_keys = Failures(app.state.counts, FAILED_KEYS)
+    app.state.issuer = Issuer(settings) if settings.oidc_issuer else None
 
 
 def _limit_of(scope: Scope) -> int:

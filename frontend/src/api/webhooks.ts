@@ -5,7 +5,7 @@ import type { Delivery, MadeWebhook, Webhook, WebhookChange, WebhookOrder } from
 type Schemas = components['schemas']
 
 /** The page's calls about webhooks; each may throw `Refused` or `Unreachable`. */
-export class Webhooks {
+class Webhooks {
   async list(): Promise<readonly Webhook[]> {
     return (await request<Schemas['WebhookList']>('GET', '/v1/webhooks')).webhooks
   }
@@ -36,3 +36,5 @@ export class Webhooks {
     return request('POST', `/v1/deliveries/${id}/resend`)
   }
 }
+
+export const webhooks = new Webhooks()

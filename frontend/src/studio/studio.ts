@@ -1,6 +1,5 @@
 import { Accounts } from '../api/accounts'
 import { Client } from '../api/client'
-import { Webhooks } from '../api/webhooks'
 import { Playhead } from '../playhead'
 import { Store } from '../state'
 import { Captures } from './captures'
@@ -34,7 +33,6 @@ export class Studio {
   readonly clips = new Clips(this.store, this.client, this.thumbnails)
   readonly opener = new Opener(this.store, this.client, this.drafts, this.grower, this.captures, this.clips)
   readonly accounts = new Accounts()
-  readonly webhooks = new Webhooks()
   readonly session = new SessionActions(this.store, this.accounts, () => {
     this.opener.close()
     location.reload()

@@ -1,5 +1,6 @@
 import { useEffect, useState } from 'preact/hooks'
 import type { Delivery, Webhook } from '../../api/types'
+import { webhooks } from '../../api/webhooks'
 import { attempt } from '../../studio/attempt'
 import { webhookText as words } from '../../text/webhooks'
 import { useStudio } from '../parts/useStore'
@@ -18,7 +19,7 @@ interface Log {
 
 /** The messages to a webhook, newest first, with what became of each. */
 export function DeliveryLog({ webhook, change }: Props) {
-  const { store, webhooks } = useStudio()
+  const { store } = useStudio()
   const [log, setLog] = useState<Log | null>(null)
   const { id, last_delivery: last } = webhook
   const load = async () => setLog(await webhooks.deliveries(id))

@@ -1,9 +1,8 @@
 import { useEffect, useState } from 'preact/hooks'
-import { accountText } from '../../text/account'
+import { issuerText as words } from '../../text/issuer'
 import { useStudio } from '../parts/useStore'
 import { modelInAddress } from '../start/session'
 
-const { issuer: words } = accountText.signIn
 const FAILED = 'sign-in'
 
 /** The way to the issuer, where the service has one, and what went wrong when one last came back from it. */

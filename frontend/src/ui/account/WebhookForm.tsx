@@ -1,8 +1,8 @@
 import type { TargetedEvent } from 'preact'
 import { useId, useState } from 'preact/hooks'
 import type { MadeWebhook, WebhookEvent } from '../../api/types'
+import { webhooks } from '../../api/webhooks'
 import { webhookText as words } from '../../text/webhooks'
-import { useStudio } from '../parts/useStore'
 import type { Change } from './useTeam'
 
 const LONGEST_URL = 2000
@@ -16,7 +16,6 @@ interface Props {
 
 /** A form for a new webhook: its address, and what it is told. */
 export function WebhookForm({ change, made }: Props) {
-  const { webhooks } = useStudio()
   const id = useId()
   const [url, setUrl] = useState('')
   const [events, setEvents] = useState(USUAL)

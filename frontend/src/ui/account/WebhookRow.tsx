@@ -1,5 +1,6 @@
 import { useState } from 'preact/hooks'
 import type { MadeWebhook, Webhook } from '../../api/types'
+import { webhooks } from '../../api/webhooks'
 import { webhookText as words } from '../../text/webhooks'
 import { useStudio } from '../parts/useStore'
 import { DeliveryLog } from './DeliveryLog'
@@ -15,7 +16,7 @@ interface Props {
 
 /** A webhook, with what can be done with it and its log. */
 export function WebhookRow({ webhook, change, rotated }: Props) {
-  const { store, webhooks } = useStudio()
+  const { store } = useStudio()
   const [asked, setAsked] = useState<'remove' | 'rotate' | null>(null)
   const [isOpen, setOpen] = useState(false)
   const { id, url, enabled } = webhook

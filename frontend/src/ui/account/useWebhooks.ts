@@ -1,5 +1,6 @@
 import { useEffect, useState } from 'preact/hooks'
 import type { Webhook } from '../../api/types'
+import { webhooks } from '../../api/webhooks'
 import { attempt } from '../../studio/attempt'
 import { useStudio } from '../parts/useStore'
 import type { Change } from './useTeam'
@@ -8,7 +9,7 @@ const LOOK_MS = 2000
 
 /** Return the team's webhooks, null until they are there, with what changes them; faults go to the state. */
 export function useWebhooks() {
-  const { store, webhooks } = useStudio()
+  const { store } = useStudio()
   const [listed, setListed] = useState<readonly Webhook[] | null>(null)
   const list = async () => setListed(await webhooks.list())
   const change: Change = call =>
