@@ -197,10 +197,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     streams = STREAMS_A_PERSON if settings.hosted else 0
     app.state.watcher = Watcher(database.of(SERVICE), app.state.places, streams)
     dispatcher.start()
-    app.state.webhook_caller = Caller()
-    app.state.webhook_sender = WebhookSender(database.of(SERVICE), settings.secret, app.state.webhook_caller)
-    if settings.hosted:
-        app.state.webhook_sender.start()
+    _set_up_webhooks(app, database)
     try:
         with private_metrics(settings):
             yield
@@ -226,6 +223,15 @@ def _set_up_identity(app: FastAPI, database: Database) -> None:
     app.state.failed_sign_ins = Failures(app.state.counts, FAILED_SIGN_INS)
     app.state.failed_keys = Failures(app.state.counts, FAILED_KEYS)
     app.state.issuer = Issuer(settings) if settings.oidc_issuer else None
+
+
+def _set_up_webhooks(app: FastAPI, database: Database) -> None:
+    """Prepare what tells addresses of teams about their jobs; where there are teams, it begins."""
+    settings: Settings = app.state.settings
+    app.state.webhook_caller = Caller()
+    app.state.webhook_sender = WebhookSender(database.of(SERVICE), settings.secret, app.state.webhook_caller)
+    if settings.hosted:
+        app.state.webhook_sender.start()
 
 
 def _limit_of(scope: Scope) -> int:
