@@ -18,10 +18,11 @@ from tests.running import serving
 from treestroke.cli import main
 from treestroke.store.backup_folder import BackupFolder
 from treestroke.store.database import Database
-from treestroke.store.leases import TERMINAL
 from treestroke.store.scope import SERVICE
 from treestroke.store.table_rows import read
-from treestroke.store.tables import ModelRow
+from treestroke.store.tables import TERMINAL, ModelRow
+
+pytestmark = pytest.mark.nightly
 
 
 class Place:

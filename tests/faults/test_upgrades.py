@@ -14,10 +14,11 @@ from tests.running import serving
 
 from treestroke.core.progress import silent
 from treestroke.store.database import Database, upgrade
-from treestroke.store.leases import TERMINAL
 from treestroke.store.scope import SERVICE
 from treestroke.store.table_rows import dump, read
-from treestroke.store.tables import ModelRow
+from treestroke.store.tables import TERMINAL, ModelRow
+
+pytestmark = pytest.mark.nightly
 
 OLDER = "0012"
 GONE = "UPDATE models SET status = 'running', attempt = 1, beat = 7, claim = 'c', worker = 'gone' WHERE number = 1"
