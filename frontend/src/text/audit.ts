@@ -12,7 +12,7 @@ export const auditText = {
   lead: 'Who changed members, keys and links, and what was deleted and restored.',
   none: 'Nothing was done yet.',
   more: 'Show older ones',
-  service: 'Who runs the service',
+  operator: 'The operator of this service',
   unknown: 'Somebody',
   day: (at: number) => days.format(at * 1000),
   time: (at: number) => times.format(at * 1000),
@@ -46,7 +46,7 @@ const SENTENCES: Readonly<Record<string, (details: Details) => string>> = {
 
 /** Return what was done as a sentence without its end; of an action that the page does not know, its name. */
 export function auditSentence({ who, credential, action, details }: AuditEntry): string {
-  const operator = credential === 'command line' ? auditText.service : auditText.unknown
+  const operator = credential === 'command line' ? auditText.operator : auditText.unknown
   return `${who ? who.name || who.id : operator} ${SENTENCES[action]?.(details) ?? action}`
 }
 

@@ -56,7 +56,7 @@ test('who is no member is named by how they came', async () => {
   ]
   await open(() => Response.json({ entries, next: null }))
   expect(texts('li p')).toEqual([
-    'Who runs the service made the key “first”',
+    'The operator of this service made the key “first”',
     'Somebody tried to sign in by the key “old”, which has ended',
     'Ann Bauer something.new',
   ])
