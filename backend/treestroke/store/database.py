@@ -122,6 +122,8 @@ class Database:
 
     def migrating(self) -> AbstractContextManager[Connection]:
         """Open a connection in one transaction that changes the tables, while no other process does (`upgrade`)."""
+        import alembic.command  # noqa: F401 - takes long, so it is imported before the others have to wait
+
         return self._form.migrating()
 
     def check_owner(self) -> None:

@@ -18,6 +18,8 @@ _WRITE, _AUTOCOMMIT = "treestroke_write", "treestroke_autocommit"
 """Execution options of connections: a transaction that writes, or one for each statement."""
 _BUSY_SECONDS = 10
 """Time that a writer waits for another."""
+_MIGRATION_SECONDS = 60
+"""Time that whoever migrates waits for another who does: that takes longer than writing."""
 _READERS = 10
 """Connections in the pool for reading; each has two files open."""
 
@@ -92,7 +94,7 @@ class Sqlite:
         Foreign keys are not enforced meanwhile: a table that changes is dropped and created again, and the rows that
         refer to it must stay.
         """
-        engine = _engine(URL.create("sqlite", database=str(self._path)), 1, foreign_keys=False)
+        engine = _engine(URL.create("sqlite", database=str(self._path)), 1, migrates=True)
         try:
             with engine.connect().execution_options(**{_WRITE: True}) as connection, connection.begin():
                 yield connection
@@ -167,18 +169,19 @@ def _identity(path: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-def _engine(url: URL, connections: int, foreign_keys: bool = True) -> Engine:
+def _engine(url: URL, connections: int, migrates: bool = False) -> Engine:
+    busy_s, foreign_keys = (_MIGRATION_SECONDS, "OFF") if migrates else (_BUSY_SECONDS, "ON")
     engine = create_engine(
         url,
         pool_size=connections,
         max_overflow=0,
-        connect_args={"timeout": _BUSY_SECONDS, "check_same_thread": False},
+        connect_args={"timeout": busy_s, "check_same_thread": False},
     )
 
     @event.listens_for(engine, "connect")
     def _prepare(connection: Any, _: object) -> None:
         connection.isolation_level = None  # transactions begin in `_begin` below, not implicitly in the driver
-        for pragma in ("journal_mode=WAL", "synchronous=FULL", f"foreign_keys={'ON' if foreign_keys else 'OFF'}"):
+        for pragma in ("journal_mode=WAL", "synchronous=FULL", f"foreign_keys={foreign_keys}"):
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")
