@@ -1,10 +1,7 @@
 from pathlib import Path
 
-import pytest
 from tests.chaos.__main__ import torment
 from tests.chaos.stack import running_stack
-
-pytestmark = pytest.mark.nightly
 
 
 def test_nothing_is_lost_made_twice_or_left_over_while_everything_breaks(tmp_path: Path) -> None:

@@ -22,8 +22,6 @@ from treestroke.store.scope import SERVICE
 from treestroke.store.table_rows import read
 from treestroke.store.tables import TERMINAL, ModelRow
 
-pytestmark = pytest.mark.nightly
-
 
 class Place:
     """Where a service keeps its rows and files; the command line and services get it by variables."""

@@ -18,8 +18,6 @@ from treestroke.store.scope import SERVICE
 from treestroke.store.table_rows import dump, read
 from treestroke.store.tables import TERMINAL, ModelRow
 
-pytestmark = pytest.mark.nightly
-
 OLDER = "0012"
 GONE = "UPDATE models SET status = 'running', attempt = 1, beat = 7, claim = 'c', worker = 'gone' WHERE number = 1"
 
