@@ -4,13 +4,16 @@ import json
 import math
 import secrets
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from queue import Empty
 from typing import Any
 
 from celery import Celery
+from kombu.exceptions import OperationalError
 from kombu.transport import filesystem
+from redis.exceptions import RedisError
 
 from treestroke.settings import Settings
 
@@ -28,6 +31,9 @@ _LOST_SECONDS = 0.5
 """Time from a process's death until its job is taken back; its results are in the database, not in messages."""
 DRAIN_SECONDS = 7.0
 """Time that a worker which is told to stop has for its running jobs."""
+_DEAF_LOOKS = 23
+"""A worker that has nothing to do takes a message at once, or after the 30 seconds at most in which it notices that its
+broker is back; one that has taken none after so many looks never will."""
 
 
 def make_queue(settings: Settings) -> Celery:
@@ -90,6 +96,30 @@ class Hints:
             The broker does not accept it.
         """
         self._app.send_task(WORK, retry=False, ignore_result=True)
+
+
+class Hearing:
+    """Tells whether a worker still takes messages: a consumer may hang for ever after its broker was away."""
+
+    def __init__(self, hints: Hints) -> None:
+        self._hints = hints
+        self._missed = 0
+        """Looks in a row that found messages waiting; not seconds, for the whole process may have stood still."""
+
+    def heard(self) -> None:
+        """Note that the worker has taken a message."""
+        self._missed = 0
+
+    def is_lost(self, idle: Callable[[], bool]) -> bool:
+        """Look once, and tell whether messages have waited for long while the worker was ``idle`` and took none."""
+        self._missed = self._missed + 1 if self._some_wait() and idle() else 0
+        return self._missed >= _DEAF_LOOKS
+
+    def _some_wait(self) -> bool:
+        try:
+            return self._hints.waiting() > 0
+        except (OperationalError, RedisError, OSError):
+            return False  # nobody can take a message from a broker that is away
 
 
 class _FolderChannel(filesystem.Channel):

@@ -22,7 +22,7 @@ from sqlalchemy.exc import OperationalError, SQLAlchemyError
 
 from treestroke.logs import start_logging
 from treestroke.parent_process import PREVIOUS_RUN_ID, RUN_ID, kill_with_parent, stop_with_parent
-from treestroke.queue import DRAIN_SECONDS, EARLIER_TASKS, WORK, hard_limit, make_queue
+from treestroke.queue import DRAIN_SECONDS, EARLIER_TASKS, WORK, Hearing, Hints, hard_limit, make_queue
 from treestroke.service.attempts import claim_job
 from treestroke.service.dispatch import holds_jobs, record_heartbeat, remove_worker
 from treestroke.service.engine_version import engine_version
@@ -41,6 +41,8 @@ from treestroke.store.tables import JOBS, AnyJob, ModelRow
 NICENESS = 10
 """Growing runs at low priority: tracing has a person waiting for it."""
 _HEARTBEAT_SECONDS = 2.0
+_LOOK_SECONDS = 2.0
+"""How often it is seen whether messages are left waiting."""
 _TABLES_SECONDS = 60.0
 """Time that the web process has to make the database's tables."""
 _PATIENCE_SECONDS = 120.0
@@ -88,14 +90,22 @@ def main() -> int:
 def _run(app: Celery, database: Database, name: str, engine: str) -> None:
     """Run Celery's worker until it is told to stop, with heartbeats in the database while it runs."""
     slots = app.conf.worker_concurrency
-    stopped = threading.Event()
+    stopped, hearing = threading.Event(), Hearing(Hints(app))
     arguments = (database, (name, slots, engine), stopped)
     heartbeats = threading.Thread(target=_send_heartbeats, args=arguments, name="heartbeats", daemon=True)
+    listening = threading.Thread(
+        target=_end_when_deaf, args=(database, name, hearing, stopped), name="listening", daemon=True
+    )
 
     @signals.worker_ready.connect(weak=False)
     def _begin(**_: object) -> None:
         heartbeats.start()
+        listening.start()
         log.info("worker_ready", worker=name, slots=slots, engine=engine, process=os.getpid())
+
+    @signals.task_received.connect(weak=False)
+    def _hear(**_: object) -> None:
+        hearing.heard()
 
     @signals.worker_shutting_down.connect(weak=False)
     def _end(**_: object) -> None:
@@ -247,6 +257,22 @@ def _send_heartbeats(database: Database, worker: tuple[str, int, str], stopped: 
         except SQLAlchemyError as error:
             log.warning("heartbeat_missed", error=str(error))
         stopped.wait(_HEARTBEAT_SECONDS)
+
+
+def _end_when_deaf(database: Database, name: str, hearing: Hearing, stopped: threading.Event) -> None:
+    """End this process where it has stopped taking messages; whatever started it starts it again."""
+
+    def idle() -> bool:
+        with _without_forks(database):
+            return not holds_jobs(database, name)
+
+    while not stopped.wait(_LOOK_SECONDS):
+        with suppress(SQLAlchemyError):
+            if hearing.is_lost(idle):
+                log.error("worker_deaf", worker=name, mend="nothing: it ends, and is started again")
+                with _without_forks(database):
+                    remove_worker(database, name)
+                os._exit(1)
 
 
 def _wait_for_tables(database: Database) -> bool:

@@ -14,6 +14,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+from celery import signals
+from celery.worker.consumer import Consumer
 from tests.faults.held import released
 
 from treestroke import queue, worker
@@ -26,6 +28,8 @@ from treestroke.store.database import Database
 from treestroke.store.tables import AnyJob, ModelPart, ModelRow
 
 CHUNK = 64 * 2**20
+DEAF_LOOKS = 2
+"""A worker that falls deaf ends after so few looks."""
 GRACE_SECONDS = 2
 """The hard limit comes this long after the soft one, so that a test need not wait as long as people do."""
 LIMITED = ("loop", "hang", "deaf")
@@ -113,6 +117,17 @@ def _publish_or_die(
 
 def _patient_seconds(settings: Settings, job: AnyJob) -> float:
     return settings.model_seconds if isinstance(job, ModelRow) and job.name in LIMITED else PATIENT_SECONDS
+
+
+@signals.worker_ready.connect(weak=False)
+def _obey(sender: Consumer, **_: object) -> None:
+    """Take no message any more once SIGUSR2 comes, as happened to workers whose connection was lost and made again."""
+
+    def fall_deaf(*_: object) -> None:
+        queue._DEAF_LOOKS = DEAF_LOOKS
+        sender.task_consumer.cancel()
+
+    signal.signal(signal.SIGUSR2, fall_deaf)
 
 
 if __name__ == "__main__":

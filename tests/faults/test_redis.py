@@ -1,10 +1,15 @@
 """A Redis that is gone, stands still or has forgotten everything: jobs are taken all the same, and none is lost."""
 
+import signal
+import time
+
 import pytest
 from tests.faults.harness import PATIENCE_SECONDS, Service
 from tests.faults.processes import wait_for
 from tests.faults.redis_server import RedisServer
 from tests.promises import kept
+
+from treestroke.worker import _LOOK_SECONDS as LOOK_SECONDS
 
 pytestmark = pytest.mark.parametrize("broker", ["redis"], indirect=True)
 PROMISED_SECONDS = 1.0
@@ -86,3 +91,17 @@ def test_a_stop_does_not_wait_for_a_redis_that_stands_still(service: Service, br
     broker.thaw()
     service.start()
     assert outcomes(service, ids) == {"succeeded"}
+
+
+def test_a_worker_that_takes_no_messages_any_more_is_ended_and_started_again(service: Service) -> None:
+    held = ask_quickly(service, 1, "held instant")
+    service.wait_running(held[0])
+    (deaf,) = service.workers()
+    deaf.hit(signal.SIGUSR2)
+    ids = ask_quickly(service)
+    time.sleep(3 * LOOK_SECONDS)
+    assert service.workers() == [deaf]  # it has a job, and takes no other for a good reason
+    service.release(*held)
+    assert {row["attempt"] for row in service.finish(held + ids)} == {1}
+    assert [line["worker"] for line in service.logged("worker_deaf")] == [service.name_of(deaf)]
+    assert service.workers() != [deaf]
