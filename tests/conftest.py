@@ -30,6 +30,7 @@ NO_SHARED_SERVICE = tuple(
         "bucket",
         "rates",
         "request_counts",
+        "stream_places",
         "teams",
         "audit",
     )

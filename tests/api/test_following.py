@@ -1,12 +1,14 @@
 import asyncio
 from collections.abc import Awaitable, Callable
-from contextlib import ExitStack
+from contextlib import AsyncExitStack, ExitStack
 
 import pytest
 from tests.rows import add_model
 
 from treestroke.api import following
 from treestroke.api.following import Follower, TooManyFollowers, Watcher
+from treestroke.api.shared_redis import SharedRedis
+from treestroke.api.stream_places import StreamPlaces
 from treestroke.service import stored_models
 from treestroke.service.principals import Principal
 from treestroke.service.quotas import QuotaExceeded
@@ -22,7 +24,8 @@ def follow(database: Database, places: int, story: Callable[[Watcher], Awaitable
     """Run a story in which models are followed."""
 
     async def run() -> None:
-        await asyncio.wait_for(story(Watcher(database, places, streams)), 3 * SECONDS)
+        watcher = Watcher(database, places, StreamPlaces(SharedRedis(""), streams))
+        await asyncio.wait_for(story(watcher), 3 * SECONDS)
 
     asyncio.run(run())
 
@@ -106,29 +109,18 @@ def test_a_person_has_a_few_streams_and_others_have_theirs(database: Database) -
     seen = added(database)
 
     async def story(watcher: Watcher) -> None:
-        with ExitStack() as places:
+        async with AsyncExitStack() as places:
             for _ in range(3):
-                places.enter_context(watcher.follow(seen, ANN))
+                await places.enter_async_context(watcher.stream(seen, ANN))
             with pytest.raises(QuotaExceeded, match="streams"):
-                places.enter_context(watcher.follow(seen, ANN))
-            places.enter_context(watcher.follow(seen, BEN))
+                await places.enter_async_context(watcher.stream(seen, ANN))
+            await places.enter_async_context(watcher.stream(seen, BEN))
             places.enter_context(watcher.follow(seen))  # who waits for an answer has no stream
-            assert (watcher.streams_of(ANN).used, watcher.streams_of(BEN).used) == (3, 1)
-        with watcher.follow(seen, ANN):
-            assert watcher.streams_of(ANN).used == 1
+            assert ((await watcher.streams_of(ANN)).used, (await watcher.streams_of(BEN)).used) == (3, 1)
+        async with watcher.stream(seen, ANN):
+            assert (await watcher.streams_of(ANN)).used == 1
 
     follow(database, 9, story, streams=3)
-
-
-def test_without_teams_a_person_has_as_many_streams_as_there_are_places(database: Database) -> None:
-    seen = added(database)
-
-    async def story(watcher: Watcher) -> None:
-        with ExitStack() as places:
-            for _ in range(9):
-                places.enter_context(watcher.follow(seen, ANN))
-
-    follow(database, 9, story)
 
 
 def test_streams_end_whose_key_was_revoked_whatever_else_happens_to_the_model(
@@ -141,7 +133,7 @@ def test_streams_end_whose_key_was_revoked_whatever_else_happens_to_the_model(
         return {"key_ann"}
 
     async def story(watcher: Watcher) -> None:
-        with watcher.follow(seen, ANN) as revoked, watcher.follow(seen, BEN) as stays:
+        async with watcher.stream(seen, ANN) as revoked, watcher.stream(seen, BEN) as stays:
             while await news(revoked) is not None:
                 pass
             stored_models.change(database, seen.id, {"name": "Oak"})
@@ -150,6 +142,6 @@ def test_streams_end_whose_key_was_revoked_whatever_else_happens_to_the_model(
             assert await news(revoked) is None
 
     monkeypatch.setattr(following, "find_revoked", find_revoked)
-    monkeypatch.setattr(following, "_REVOKED_SECONDS", 0.0)
+    monkeypatch.setattr(following, "_OWNERS_SECONDS", 0.0)
     follow(database, 9, story)
     assert asked[0] == {"key_ann", "key_ben"}

@@ -17,7 +17,7 @@ from uvicorn.middleware.proxy_headers import ProxyHeadersMiddleware
 
 from treestroke import __version__
 from treestroke.api.errors import add_handlers, documented
-from treestroke.api.following import STREAMS_A_PERSON, Watcher
+from treestroke.api.following import Watcher
 from treestroke.api.identity import SECURITY_SCHEMES, admit
 from treestroke.api.issuer import Issuer
 from treestroke.api.metrics import add_metrics, private_metrics
@@ -46,7 +46,9 @@ from treestroke.api.routes import (
 )
 from treestroke.api.routes.page import add_page
 from treestroke.api.rules import RULES
+from treestroke.api.shared_redis import SharedRedis
 from treestroke.api.sign_ins import FAILED_KEYS, FAILED_SIGN_INS, Failures
+from treestroke.api.stream_places import STREAMS_A_PERSON, StreamPlaces
 from treestroke.limits import MAX_CLIP_BYTES, MAX_PHOTO_BYTES, MAX_TEXT_BYTES
 from treestroke.queue import Hints, make_queue
 from treestroke.schemas import Problem
@@ -194,7 +196,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     app.state.projects = Projects(blobs, packers)
     app.state.dispatcher = dispatcher
     tracers.start()
-    streams = STREAMS_A_PERSON if settings.hosted else 0
+    streams = StreamPlaces(app.state.redis, STREAMS_A_PERSON if settings.hosted else 0)
     app.state.watcher = Watcher(database.of(SERVICE), app.state.places, streams)
     dispatcher.start()
     _set_up_webhooks(app, database)
@@ -205,7 +207,7 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
         app.state.webhook_sender.stop()
         dispatcher.stop()
         packers.close()
-        await app.state.counts.close()
+        await app.state.redis.close()
         if app.state.issuer:
             await app.state.issuer.close()
         app.state.projects.close()
@@ -219,7 +221,8 @@ def _set_up_identity(app: FastAPI, database: Database) -> None:
     """Prepare what tells who asks, and counts how often they do."""
     settings: Settings = app.state.settings
     app.state.accounts = Accounts.of(database, settings.secret)
-    app.state.counts = RequestCounts(settings.broker_url)
+    app.state.redis = SharedRedis(settings.broker_url)
+    app.state.counts = RequestCounts(app.state.redis)
     app.state.failed_sign_ins = Failures(app.state.counts, FAILED_SIGN_INS)
     app.state.failed_keys = Failures(app.state.counts, FAILED_KEYS)
     app.state.issuer = Issuer(settings) if settings.oidc_issuer else None

@@ -11,8 +11,8 @@ from uvicorn.protocols.http.h11_impl import STATUS_PHRASES, H11Protocol
 
 from treestroke.api.errors import problem
 from treestroke.api.issuer import ISSUER_CONNECTIONS
-from treestroke.api.request_counts import REDIS_CONNECTIONS
 from treestroke.api.request_ids import identify
+from treestroke.api.shared_redis import CONNECTIONS as REDIS_CONNECTIONS
 
 MAX_CONNECTIONS = 1000
 MIN_CONNECTIONS = 8

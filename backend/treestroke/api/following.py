@@ -7,8 +7,8 @@ revoked that they were opened with.
 import asyncio
 import time
 from collections import defaultdict
-from collections.abc import Awaitable, Callable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager, suppress
 from contextvars import Context
 from typing import Any, Generic, TypeVar
 
@@ -16,20 +16,18 @@ import structlog
 from fastapi.concurrency import run_in_threadpool
 from sqlalchemy.exc import SQLAlchemyError
 
+from treestroke.api.stream_places import StreamPlaces
 from treestroke.service import captures, stored_models
 from treestroke.service.accounts import find_revoked
 from treestroke.service.captures import StoredCapture
 from treestroke.service.principals import Principal
-from treestroke.service.quotas import STREAMS, QuotaExceeded, Used
+from treestroke.service.quotas import Used
 from treestroke.service.stored_models import StoredModel
 from treestroke.store.database import Database
 
-STREAMS_A_PERSON = 3
-"""Streams of one person in one web process, where persons are told apart."""
 _POLL_SECONDS = 0.25
-_REVOKED_SECONDS = 10.0
-"""How often streams are ended whose key or session was revoked."""
-_RETRY_SECONDS = 10.0
+_OWNERS_SECONDS = 10.0
+"""How often streams are ended whose key or session was revoked, and the places of the others held on to."""
 Followed = TypeVar("Followed", StoredModel, StoredCapture)
 Changes = Callable[[Database, Mapping[str, Any]], Mapping[str, StoredModel | StoredCapture | None]]
 _CHANGES: dict[type[StoredModel | StoredCapture], Changes] = {
@@ -75,19 +73,19 @@ class Follower(Generic[Followed]):
 class Watcher:
     """Polls the database for what is followed, while there is anything, and wakes the followers.
 
-    Of ``places`` requests that follow, ``streams`` may be one person's streams; 0: no limit.
+    At most ``places`` requests follow at once.
     """
 
-    def __init__(self, database: Database, places: int, streams: int = 0) -> None:
+    def __init__(self, database: Database, places: int, streams: StreamPlaces) -> None:
         self._database, self.places, self._streams = database, places, streams
-        self._asked_revoked = time.monotonic()
+        self._saw_owners = time.monotonic()
         self._followers: set[Follower[Any]] = set()
         self._stopped = asyncio.Event()
         self._polling: asyncio.Task[None] | None = None
 
-    @contextmanager
-    def follow(self, known: Followed, principal: Principal | None = None) -> Iterator[Follower[Followed]]:
-        """Follow a model or a capture from a known state on, until the context ends, for somebody's stream.
+    @asynccontextmanager
+    async def stream(self, known: Followed, principal: Principal) -> AsyncIterator[Follower[Followed]]:
+        """Follow for a person's stream of events, as `follow` does.
 
         Raises
         ------
@@ -96,10 +94,21 @@ class Watcher:
         QuotaExceeded
             That person has as many streams as one may have.
         """
+        async with self._streams.taken(principal.id):
+            with self.follow(known, principal) as follower:
+                yield follower
+
+    @contextmanager
+    def follow(self, known: Followed, principal: Principal | None = None) -> Iterator[Follower[Followed]]:
+        """Follow a model or a capture from a known state on, until the context ends.
+
+        Raises
+        ------
+        TooManyFollowers
+            All places are taken.
+        """
         if len(self._followers) >= self.places:
             raise TooManyFollowers
-        if principal is not None and self._streams and self.streams_of(principal).used >= self._streams:
-            raise QuotaExceeded(STREAMS, self._streams, _RETRY_SECONDS)
         follower = Follower(known, principal)
         self._followers.add(follower)
         if self._polling is None:
@@ -109,10 +118,9 @@ class Watcher:
         finally:
             self._followers.discard(follower)
 
-    def streams_of(self, principal: Principal) -> Used:
+    async def streams_of(self, principal: Principal) -> Used:
         """Return how many streams somebody has."""
-        own = sum(one.principal is not None and one.principal.id == principal.id for one in self._followers)
-        return Used(STREAMS, self._streams, own)
+        return await self._streams.used(principal.id)
 
     def stop(self) -> None:
         """End the wait of all followers."""
@@ -124,8 +132,10 @@ class Watcher:
                 with suppress(TimeoutError):
                     await asyncio.wait_for(self._stopped.wait(), _POLL_SECONDS)
                 await _try(self._poll)
-                if time.monotonic() - self._asked_revoked >= _REVOKED_SECONDS:
+                if time.monotonic() - self._saw_owners >= _OWNERS_SECONDS:
+                    self._saw_owners = time.monotonic()
                     await _try(self.end_revoked)
+                    await self._streams.renew()
         finally:
             self._polling = None
             for follower in self._followers:
@@ -133,7 +143,6 @@ class Watcher:
 
     async def end_revoked(self) -> None:
         """End the streams whose key or session was revoked."""
-        self._asked_revoked = time.monotonic()
         owned = [(follower, follower.principal.credential) for follower in self._followers if follower.principal]
         if credentials := {credential for _, credential in owned if credential}:
             revoked = await run_in_threadpool(find_revoked, self._database, credentials)

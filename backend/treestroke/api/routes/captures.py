@@ -239,7 +239,7 @@ async def _follower(
     watcher: WatcherOf, principal: PrincipalOf, capture: Annotated[StoredCapture, Depends(_capture)]
 ) -> AsyncIterator[Follower[StoredCapture]]:
     """Yield a follower of the capture; before the stream begins, while the response can still be a problem."""
-    with watcher.follow(capture, principal) as follower:
+    async with watcher.stream(capture, principal) as follower:
         yield follower
 
 

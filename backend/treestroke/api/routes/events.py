@@ -33,7 +33,7 @@ async def _follower(
     watcher: WatcherOf, principal: PrincipalOf, model: Annotated[StoredModel, Depends(_model)]
 ) -> AsyncIterator[Follower[StoredModel]]:
     """Yield a follower of the model; before the stream begins, while the response can still be a problem."""
-    with watcher.follow(model, principal) as follower:
+    async with watcher.stream(model, principal) as follower:
         yield follower
 
 

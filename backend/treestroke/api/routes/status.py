@@ -35,7 +35,7 @@ from treestroke.limits import (
 from treestroke.schemas import Health, Limits, QuotaNow, RateNow, Version
 from treestroke.service.engine_version import engine_version
 from treestroke.service.files import files_on_offer
-from treestroke.service.quotas import used_by_team
+from treestroke.service.quotas import Used, used_by_team
 from treestroke.service.readiness import readiness
 
 router = APIRouter(tags=["service"])
@@ -65,14 +65,19 @@ async def _rates(request: Request, principal: PrincipalOf) -> list[RateNow]:
     return [RateNow(**asdict(one.rate), remaining=one.remaining) for one in standings]
 
 
-def _quotas(resources: ResourcesOf, principal: PrincipalOf, settings: SettingsOf, watcher: WatcherOf) -> list[QuotaNow]:
+async def _streams(principal: PrincipalOf, watcher: WatcherOf) -> Used:
+    return await watcher.streams_of(principal)
+
+
+def _quotas(
+    resources: ResourcesOf, settings: SettingsOf, streams: Annotated[Used, Depends(_streams)]
+) -> list[QuotaNow]:
     """Return the quotas of the team of who asks; a service without keys has none."""
     if not settings.hosted:
         return []
     with resources.database.reading() as session:
         used = used_by_team(session, resources.quotas)
-    quotas = *used, watcher.streams_of(principal)
-    return [QuotaNow(name=name, limit=limit or None, used=count) for name, limit, count in quotas]
+    return [QuotaNow(name=name, limit=limit or None, used=count) for name, limit, count in (*used, streams)]
 
 
 @router.get("/v1/limits")
