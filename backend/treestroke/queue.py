@@ -3,6 +3,7 @@
 import json
 import math
 import secrets
+import ssl
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -12,7 +13,7 @@ from typing import Any
 
 from celery import Celery
 from kombu.exceptions import OperationalError
-from kombu.transport import filesystem
+from kombu.transport import TRANSPORT_ALIASES, filesystem, redis, virtual
 from redis.exceptions import RedisError
 
 from treestroke.settings import Settings
@@ -24,6 +25,7 @@ EARLIER_TASKS = "treestroke.grow", "treestroke.solve"
 _QUEUE = "treestroke"
 _SOCKET_SECONDS = 2.0
 """A broker that does not respond within this time is down."""
+_VERIFIED = {"ssl_cert_reqs": ssl.CERT_REQUIRED}
 _POLL_SECONDS = 0.1
 _GRACE_SECONDS = 10
 """Time after a job's own limit, which it checks itself, at which a process that does not react is killed."""
@@ -45,6 +47,7 @@ def make_queue(settings: Settings) -> Celery:
     app.conf.update(
         broker_url=settings.broker_url or "filesystem://localhost",
         broker_transport=None if settings.broker_url else _FolderTransport,
+        broker_use_ssl=_VERIFIED if settings.broker_url.startswith("rediss:") else None,
         broker_transport_options=_redis() if settings.broker_url else _folder(settings),
         broker_connection_timeout=_SOCKET_SECONDS,
         broker_connection_retry_on_startup=True,
@@ -120,6 +123,34 @@ class Hearing:
             return self._hints.waiting() > 0
         except (OperationalError, RedisError, OSError):
             return False  # nobody can take a message from a broker that is away
+
+
+class _RedisQoS(redis.QoS):
+    """Forgets a message that was taken, even where Redis cannot be told so because it is away.
+
+    A worker that may have one message at a time would have it for ever: it would neither ask for another one nor
+    notice that its connection is lost. That the message comes back later does no harm.
+    """
+
+    def ack(self, delivery_tag: str) -> None:
+        try:
+            super().ack(delivery_tag)
+        except (RedisError, OSError):
+            virtual.QoS.ack(self, delivery_tag)
+            raise
+
+
+class _RedisChannel(redis.Channel):
+    QoS = _RedisQoS
+
+
+class RedisTransport(redis.Transport):
+    """Redis, as kombu speaks with it but for what is above; its URLs lead here."""
+
+    Channel = _RedisChannel
+
+
+TRANSPORT_ALIASES.update(dict.fromkeys(("redis", "rediss"), f"{__name__}:{RedisTransport.__name__}"))
 
 
 class _FolderChannel(filesystem.Channel):

@@ -68,6 +68,11 @@ class RedisServer:
         with Redis.from_url(self.url) as redis:
             return int(redis.llen("treestroke"))
 
+    def taken(self) -> int:
+        """Count the messages that workers hold and have not begun with."""
+        with Redis.from_url(self.url) as redis:
+            return int(redis.hlen("unacked"))
+
     def _answers(self) -> bool:
         try:
             with Redis.from_url(self.url, socket_timeout=1) as redis:

@@ -93,6 +93,24 @@ def test_a_stop_does_not_wait_for_a_redis_that_stands_still(service: Service, br
     assert outcomes(service, ids) == {"succeeded"}
 
 
+def test_a_worker_goes_on_that_could_not_tell_redis_what_it_took(service: Service, broker: RedisServer) -> None:
+    """It has taken messages ahead, and begins with them while Redis is gone: it must ask for others afterwards."""
+    held = ask_quickly(service, 2, "held instant")
+    for id in held:
+        service.wait_running(id)
+    ids = ask_quickly(service)
+    wait_for(lambda: broker.taken() == 2, PATIENCE_SECONDS, "messages that are taken ahead")
+    broker.kill()
+    begins = len(service.log())
+    service.release(*held)
+    wait_for(lambda: "Couldn't ack" in service.log()[begins:], PATIENCE_SECONDS, "a message that is begun with")
+    service.finish(held)
+    broker.start(empty=True)
+    ids += ask_quickly(service)
+    assert {row["attempt"] for row in service.finish(ids)} == {1}
+    assert service.logged("worker_deaf") == []
+
+
 def test_a_worker_that_takes_no_messages_any_more_is_ended_and_started_again(service: Service) -> None:
     held = ask_quickly(service, 1, "held instant")
     service.wait_running(held[0])
