@@ -23,7 +23,7 @@ RUN sed -n '/^setuptools==/,/[^\\]$/p' requirements-dev.txt > build.txt \
     && pip install --no-cache-dir --require-hashes -r build.txt \
     && pip wheel --no-cache-dir --no-deps --no-build-isolation --wheel-dir dist . \
     && /venv/bin/pip install --no-cache-dir --no-deps dist/*.whl \
-    && /venv/bin/python -c "import treestroke.core.grow._engine"
+    && /venv/bin/python -c "import treestroke.core.grow._engine, treestroke.core.leaf._covering"
 
 FROM python:3.11.17-slim-bookworm@sha256:2333bd330d12de02514770b3585cad313644316047cdee24a7acfdece6de6efb
 RUN useradd --system --uid 10001 --home-dir /data treestroke \

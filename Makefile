@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-SETUP := requirements-dev.txt pyproject.toml setup.py $(wildcard backend/treestroke/core/grow/*.c)
+SETUP := requirements-dev.txt pyproject.toml setup.py $(wildcard backend/treestroke/core/*/*.c)
 STAMP := $(VENV)/ready-$(shell cat $(SETUP) | sha256sum | cut -c1-16)
 NODE := frontend/node_modules
 NODE_STAMP := $(NODE)/.ready-$(shell cat frontend/package.json frontend/package-lock.json | sha256sum | cut -c1-16)

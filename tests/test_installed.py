@@ -87,15 +87,15 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
     return Installed(environment / "bin", wheel, folder)
 
 
-def test_the_wheel_holds_the_whole_package_and_its_compiled_part(installed: Installed) -> None:
+def test_the_wheel_holds_the_whole_package_and_its_compiled_parts(installed: Installed) -> None:
     package = ROOT / "backend" / "treestroke"
     files = {path for path in package.rglob("*") if path.is_file() and "__pycache__" not in path.parts}
     wanted = {f"treestroke/{path.relative_to(package)}" for path in files if path.suffix not in (".so", ".c")}
     with zipfile.ZipFile(installed.wheel) as wheel:
         names = {name for name in wheel.namelist() if ".dist-info/" not in name and not name.endswith(".c")}
         page = wheel.read("treestroke/api/page/index.html").decode()
-    compiled = {name for name in names if re.fullmatch(r"treestroke/core/grow/_engine\..*\.so", name)}
-    assert len(compiled) == (1 if shutil.which("cc") else 0)
+    compiled = {name for name in names if re.fullmatch(r"treestroke/core/(grow/_engine|leaf/_covering)\..*\.so", name)}
+    assert len(compiled) == (2 if shutil.which("cc") else 0)
     assert names - compiled == {name for name in wanted if "/page/.built-" not in name}
     assert {"treestroke/py.typed", "treestroke/store/migrations/script.py.mako"} <= names
     named = set(re.findall(r'(?:src|href)="/page/([^"]+)"', page))

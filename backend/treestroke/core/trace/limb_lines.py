@@ -12,6 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from treestroke.core.side_by_side import side_by_side
 from treestroke.core.trace.centre_lines import thin
 from treestroke.core.trace.ribbons import Ribbons
 from treestroke.core.types import Floats, Indices, Mask
@@ -66,16 +67,11 @@ def reduction(shape: tuple[int, ...]) -> float:
 
 def find_lines(picture: Bytes, inside: Mask, height_px: float) -> Lines:
     """Find dark lines in a picture (h, w), reduced, of a tree ``height_px`` high; ``inside`` (h, w) is its crown."""
-    height, width = picture.shape
     dark, light = np.zeros_like(picture), np.zeros_like(picture)
     direction, which = np.zeros_like(picture), np.zeros_like(picture)
     length_px = max(3, int(LENGTH * height_px))
-    for number in range(DIRECTIONS // 2):
-        turn, size = _turned((height, width), np.pi * number / DIRECTIONS)
-        turned = cv2.warpAffine(picture, turn, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-        found = _level_and_upright(np.asarray(turned, dtype=np.uint8), length_px)
-        darker, lighter = cv2.split(_turned_back(found[:2], turn, (width, height), cv2.INTER_LINEAR))
-        thickness, is_upright = cv2.split(_turned_back(found[2:], turn, (width, height), cv2.INTER_NEAREST))
+    found = side_by_side(lambda number: _lines_at(picture, number, length_px), range(DIRECTIONS // 2))
+    for number, (darker, lighter, thickness, is_upright) in enumerate(found):
         better = cv2.compare(darker, dark, cv2.CMP_GT)
         cv2.copyTo(number + np.uint8(DIRECTIONS // 2) * is_upright, better, direction)
         cv2.copyTo(thickness, better, which)
@@ -99,6 +95,17 @@ def pieces(layers: tuple[Lines, Lines], likely: Mask, shape: tuple[int, int], he
     pixels = np.argwhere(lines)
     row, column = np.minimum((pixels * scale).astype(np.int64), np.array(width.shape) - 1).T
     return Ribbons(pixels, np.array(HALF_WIDTHS)[width[row, column]] / scale)
+
+
+def _lines_at(picture: Bytes, number: int, length_px: int) -> tuple[Bytes, ...]:
+    """Return what `_level_and_upright` returns of a picture (h, w) that is turned to a direction, turned back."""
+    height, width = picture.shape
+    turn, size = _turned((height, width), np.pi * number / DIRECTIONS)
+    turned = cv2.warpAffine(picture, turn, size, flags=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    found = _level_and_upright(np.asarray(turned, dtype=np.uint8), length_px)
+    both = _turned_back(found[:2], turn, (width, height), cv2.INTER_LINEAR)
+    of_dark = _turned_back(found[2:], turn, (width, height), cv2.INTER_NEAREST)
+    return tuple(np.asarray(plane, dtype=np.uint8) for plane in (*cv2.split(both), *cv2.split(of_dark)))
 
 
 def _turned(shape: tuple[int, int], angle: float) -> tuple[Floats, tuple[int, int]]:
