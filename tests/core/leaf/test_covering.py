@@ -21,22 +21,28 @@ def test_both_forms_say_the_same(seed: int) -> None:
     starts = np.array([0, 30, 31, 31, 300])
     dots = rng.uniform(-1, 1, (300, 2)).astype(np.float32)
     cards, kinds = cards_of(80, rng), rng.integers(0, 4, 80)
-    compiled, plain = np.full((2, ROWS * COLUMNS), np.inf, dtype=np.float32)
-    compiled[:100] = plain[:100] = 6
-    covering.lower(compiled, (ROWS, COLUMNS), cards, kinds, dots, starts)
-    plain_covering.lower(plain, (ROWS, COLUMNS), cards, kinds, dots, starts)
+    compiled, plain = np.full((2, ROWS, COLUMNS), np.inf, dtype=np.float32)
+    compiled[:2] = plain[:2] = 6
+    covering.lower(compiled, cards, kinds, dots, starts)
+    plain_covering.lower(plain, cards, kinds, dots, starts)
     assert np.isfinite(compiled).sum() > 500
     assert compiled.tobytes() == plain.tobytes()
 
 
-@pytest.mark.parametrize("wrong", ["size", "cards", "kinds", "negative", "starts", "beyond"])
+@pytest.mark.parametrize("wrong", ["size", "type", "order", "read", "cards", "kinds", "negative", "starts", "beyond"])
 def test_arrays_that_do_not_fit_together_are_refused(wrong: str) -> None:
     rng = np.random.default_rng(0)
-    size, cards, kinds = (ROWS, COLUMNS), cards_of(3, rng), np.array([0, 1, 1])
+    nearest, cards, kinds = np.zeros((ROWS, COLUMNS), np.float32), cards_of(3, rng), np.array([0, 1, 1])
     dots, starts = rng.uniform(-1, 1, (9, 2)).astype(np.float32), np.array([0, 4, 9])
     match wrong:
         case "size":
-            size = (ROWS + 1, COLUMNS)
+            nearest = nearest.ravel()
+        case "type":
+            nearest = nearest.astype(np.float64)
+        case "order":
+            nearest = np.asfortranarray(nearest)
+        case "read":
+            nearest.flags.writeable = False
         case "cards":
             cards = cards[:2]
         case "kinds":
@@ -48,4 +54,4 @@ def test_arrays_that_do_not_fit_together_are_refused(wrong: str) -> None:
         case "beyond":
             starts = np.array([0, 4, 10])
     with pytest.raises(ValueError, match="fit together"):
-        covering.lower(np.zeros(ROWS * COLUMNS, np.float32), size, cards, kinds, dots, starts)
+        covering.lower(nearest, cards, kinds, dots, starts)

@@ -31,12 +31,14 @@ static void lower_card(float *nearest, int rows, int columns, const Card *card, 
 
 /* Lower the depths of a grid's cells to those of the cards whose dots lie in them. */
 static PyObject *lower(PyObject *Py_UNUSED(self), PyObject *args) {
+    PyObject *array;
     Py_buffer nearest, cards, kinds, dots, starts;
-    int rows, columns;
-    if (!PyArg_ParseTuple(args, "w*(ii)y*y*y*y*", &nearest, &rows, &columns, &cards, &kinds, &dots, &starts)) return NULL;
+    if (!PyArg_ParseTuple(args, "Oy*y*y*y*", &array, &cards, &kinds, &dots, &starts)) return NULL;
+    int bad = PyObject_GetBuffer(array, &nearest, PyBUF_WRITABLE | PyBUF_ND) < 0;
+    if (bad) { PyErr_Clear(); nearest.obj = NULL, nearest.ndim = 0; }
     int64_t count = kinds.len / (int64_t)sizeof(int64_t), known = starts.len / (int64_t)sizeof(int64_t) - 1;
     const int64_t *kind = kinds.buf, *start = starts.buf;
-    int bad = rows < 1 || columns < 1 || nearest.len != (int64_t)sizeof(float) * rows * columns
+    bad = bad || nearest.ndim != 2 || nearest.itemsize != sizeof(float) || nearest.shape[0] < 1 || nearest.shape[1] < 1
         || cards.len != (int64_t)sizeof(Card) * count || known < 0
         || start[0] != 0 || start[known] != dots.len / (int64_t)sizeof(Dot);
     for (int64_t i = 0; !bad && i < known; i++) bad = start[i] > start[i + 1];
@@ -44,6 +46,7 @@ static PyObject *lower(PyObject *Py_UNUSED(self), PyObject *args) {
     if (bad) {
         PyErr_SetString(PyExc_ValueError, "the arrays do not fit together");
     } else {
+        int rows = (int)nearest.shape[0], columns = (int)nearest.shape[1];
         Py_BEGIN_ALLOW_THREADS
         for (int64_t i = 0; i < count; i++) {
             const Dot *first = (const Dot *)dots.buf + start[kind[i]];
@@ -51,7 +54,7 @@ static PyObject *lower(PyObject *Py_UNUSED(self), PyObject *args) {
         }
         Py_END_ALLOW_THREADS
     }
-    PyBuffer_Release(&nearest);
+    if (nearest.obj) PyBuffer_Release(&nearest);
     PyBuffer_Release(&cards);
     PyBuffer_Release(&kinds);
     PyBuffer_Release(&dots);
@@ -61,7 +64,7 @@ static PyObject *lower(PyObject *Py_UNUSED(self), PyObject *args) {
 }
 
 static PyMethodDef methods[] = {
-    {"lower", lower, METH_VARARGS, "Lower depths of cells (h * w) of a grid (h, w) by cards (m, 9), kinds (m), dots (k, 2), starts."},
+    {"lower", lower, METH_VARARGS, "Lower depths (h, w) of a grid by cards (m, 9), kinds (m), dots (k, 2), starts."},
     {NULL, NULL, 0, NULL}};
 static struct PyModuleDef module = {PyModuleDef_HEAD_INIT, "_covering", "Lowers the depths of cells behind cards.", -1,
                                     methods, NULL, NULL, NULL, NULL};

@@ -7,7 +7,6 @@ from treestroke.core.types import Indices
 
 def lower(
     nearest: NDArray[np.float32],
-    size: tuple[int, int],
     cards: NDArray[np.float32],
     kinds: Indices,
     dots: NDArray[np.float32],

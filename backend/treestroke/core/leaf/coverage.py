@@ -123,7 +123,8 @@ def cover(nearest: Depths, leaves: Leaves, outlines: Outlines, grid: FoliageGrid
     cards = np.concatenate([shown.middles, shown.rights, shown.ups, shown.ridges, depth], axis=1)
     kinds = np.searchsorted(LATTICES[:-1], shown.sides) * len(outlines.probes) + leaves.tiles
     kinds = kinds.astype(np.int64)
-    lower(nearest, grid.inside.shape, np.ascontiguousarray(cards), kinds, outlines.every_dot, outlines.starts)
+    cells = nearest.reshape(grid.inside.shape)
+    lower(cells, np.ascontiguousarray(cards), kinds, outlines.every_dot, outlines.starts)
 
 
 @dataclass(frozen=True, eq=False)

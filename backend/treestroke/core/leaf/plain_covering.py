@@ -8,18 +8,17 @@ from treestroke.core.types import Indices
 
 def lower(
     nearest: NDArray[np.float32],
-    size: tuple[int, int],
     cards: NDArray[np.float32],
     kinds: Indices,
     dots: NDArray[np.float32],
     starts: Indices,
 ) -> None:
-    """Lower the depths ``nearest`` (h * w,), metres, of a grid's cells to those of the cards that hide them.
+    """Lower the depths ``nearest`` (h, w), metres, of a grid's cells to those of the cards that hide them.
 
     Parameters
     ----------
     nearest
-        Flat as the grid of ``size`` (h, w); changed.
+        Contiguous; changed.
     cards
         (m, 9) middle, half-extents right and up, and ridge, x and y each, in cells; depth, metres.
     kinds
@@ -40,6 +39,6 @@ def lower(
         place += up * to_top[card]
         place += before * ridge[card]
         place += middle[card]
-        places.append(np.clip(place, 0, size[1 - axis] - 1).astype(np.int32))
+        places.append(np.clip(place, 0, nearest.shape[1 - axis] - 1).astype(np.int32))
     column, row = places
-    np.minimum.at(nearest, row * size[1] + column, cards[card, 8])  # flat is three times as fast
+    np.minimum.at(nearest.reshape(-1), row * nearest.shape[1] + column, cards[card, 8])  # flat is three times as fast
