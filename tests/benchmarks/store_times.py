@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from sqlalchemy import Engine, event, insert, update
+from sqlalchemy import Engine, event, insert, text, update
 from sqlalchemy.pool import Pool
 from tests.api import drawn
 from tests.postgres import running_postgres
@@ -52,6 +52,9 @@ def fill(database: Database, count: int) -> None:
             session.execute(insert(ModelRow), [_model(at, count) for at in numbers])
             session.execute(insert(File), [_file(at, *each) for at in numbers for each in enumerate(_FILES)])
             session.execute(insert(ModelPart), [_part(at, *each) for at in numbers for each in _PARTS.items()])
+    if database.url:
+        with database.autocommitting() as session:
+            session.execute(text("ANALYZE"))  # as Postgres does by itself, within a minute
 
 
 def _model(at: int, count: int) -> dict[str, Any]:

@@ -101,6 +101,7 @@ def test_no_question_reads_a_whole_table(database: Database) -> None:
     assert scans(steps) == []
     assert any("ix_models_fingerprint (fingerprint=? AND team=? AND engine=? AND status=?)" in step for step in steps)
     assert any("ix_models_times (status=? AND started>?)" in step for step in steps)
+    assert any("files USING INDEX ix_files_team (team=? AND model=?)" in step for step in steps)  # not all of a team's
 
 
 @SQLITE_ONLY  # as above
