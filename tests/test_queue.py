@@ -1,8 +1,11 @@
+import ssl
+
 import pytest
 from kombu.exceptions import OperationalError
 
 from treestroke import queue
-from treestroke.queue import Hearing, Hints
+from treestroke.queue import Hearing, Hints, make_queue
+from treestroke.settings import read_settings
 
 LOOKS = 4
 
@@ -42,3 +45,18 @@ def test_each_good_reason_and_each_message_begins_the_count_anew() -> None:
     assert not any(looks(hearing, LOOKS - 1) + looks(hearing, 1, idle=False) + looks(hearing, LOOKS - 1))
     hearing.heard()
     assert not any(looks(hearing, LOOKS - 1))
+
+
+@pytest.mark.parametrize(
+    ("url", "checked"),
+    [
+        ("redis://localhost:1/0", None),
+        ("rediss://localhost:1/0", ssl.CERT_REQUIRED),
+        ("rediss://localhost:1/0?ssl_cert_reqs=none", ssl.CERT_NONE),
+    ],
+)
+def test_the_certificate_of_a_redis_by_tls_is_checked_unless_its_url_says_otherwise(
+    url: str, checked: ssl.VerifyMode | None
+) -> None:
+    wanted = make_queue(read_settings(broker_url=url)).connection_for_write().ssl
+    assert wanted["ssl_cert_reqs"] == checked if wanted else checked is None
