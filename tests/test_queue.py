@@ -28,7 +28,7 @@ def _few_looks(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def looks(hearing: Hearing, number: int, idle: bool = True) -> list[bool]:
-    return [hearing.is_lost(lambda: idle) for _ in range(number)]
+    return [hearing.is_deaf(lambda: idle) for _ in range(number)]
 
 
 def test_a_worker_that_leaves_messages_waiting_though_it_has_nothing_to_do_is_deaf() -> None:

@@ -113,7 +113,7 @@ class Hearing:
         """Note that the worker has taken a message."""
         self._missed = 0
 
-    def is_lost(self, idle: Callable[[], bool]) -> bool:
+    def is_deaf(self, idle: Callable[[], bool]) -> bool:
         """Look once, and tell whether messages have waited for long while the worker was ``idle`` and took none."""
         self._missed = self._missed + 1 if self._some_wait() and idle() else 0
         return self._missed >= _DEAF_LOOKS

@@ -268,7 +268,7 @@ def _end_when_deaf(database: Database, name: str, hearing: Hearing, stopped: thr
 
     while not stopped.wait(_LOOK_SECONDS):
         with suppress(SQLAlchemyError):
-            if hearing.is_lost(idle):
+            if hearing.is_deaf(idle):
                 log.error("worker_deaf", worker=name, mend="nothing: it ends, and is started again")
                 with _without_forks(database):
                     remove_worker(database, name)

@@ -29,6 +29,16 @@ def test_both_forms_say_the_same(seed: int) -> None:
     assert compiled.tobytes() == plain.tobytes()
 
 
+def test_a_card_that_lies_nowhere_changes_nothing_out_of_the_grid() -> None:
+    around = np.full((3, ROWS, COLUMNS), 9, dtype=np.float32)
+    cards = np.full((1, 9), np.nan, dtype=np.float32)
+    cards[0, 8] = 5
+    dots = np.zeros((4, 2), dtype=np.float32)
+    covering.lower(around[1], cards, np.array([0]), dots, np.array([0, 4]))
+    assert around[1, 0, 0] == 5
+    assert (around == 9).sum() == around.size - 1
+
+
 @pytest.mark.parametrize("wrong", ["size", "type", "order", "read", "cards", "kinds", "negative", "starts", "beyond"])
 def test_arrays_that_do_not_fit_together_are_refused(wrong: str) -> None:
     rng = np.random.default_rng(0)

@@ -11,8 +11,9 @@ typedef struct { float x, y; } Flat;
 typedef struct { Flat middle, right, up, ridge; float depth; } Card;
 typedef struct { float right, up; } Dot;
 
+/* What is no number lies in the first cell, not out of the grid. */
 static inline int32_t within(float position, float last) {
-    return (int32_t)(position < 0.0f ? 0.0f : position > last ? last : position);
+    return (int32_t)(position > 0.0f ? (position > last ? last : position) : 0.0f);
 }
 
 static void lower_card(float *nearest, int rows, int columns, const Card *card, const Dot *dots, int64_t count) {
